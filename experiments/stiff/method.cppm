@@ -1,4 +1,4 @@
-/// Compositions and engines whose effect on a trajectory is told.
+/// Compositions and engines whose effect on a trajectory is measured.
 module aabblab.stiff:method;
 
 import aabb.policy;
@@ -14,7 +14,7 @@ struct method {
     contender who;
 };
 
-/// The default composition but for these strategies, as the command line takes them: "triangle moller:epsilon=none".
+/// The default composition with one strategy replaced, as on the command line: "triangle moller:epsilon=none".
 [[nodiscard]] method composed(std::string_view changes) {
     aabb::composition c;
     const std::size_t space = changes.find(' ');
@@ -24,34 +24,33 @@ struct method {
     return {std::string(changes.substr(space + 1)), contender_of(c, true)};
 }
 
-/// Every triangle test of the registry in each of its forms, and each engine that collides meshes.
+/// Every triangle test of the registry with each of its settings, and each engine that collides meshes.
 [[nodiscard]] std::vector<method> triangle_methods() {
-    std::vector<method> all;
+    std::vector<method> methods;
     for (const char* const test :
          {"triangle exact", "triangle interval_arithmetic", "triangle interval_arithmetic:fallback=intersects",
           "triangle devillers_guigue", "triangle devillers_guigue:precision=float", "triangle separating_axes",
           "triangle separating_axes:precision=double", "triangle moller", "triangle moller:epsilon=none",
           "triangle moller:epsilon=scaled", "triangle moller_double"})
-        all.push_back(composed(test));
+        methods.push_back(composed(test));
     for (const aabb::engine_info& engine : aabb::engines())
-        // brute_force decides on triangles as cgal does, and takes longer.
+        // brute_force uses the same triangle predicate as cgal, but is slower.
         if (engine.collides_meshes && engine.name != "brute_force")
-            if (std::optional<contender> who = contender_of(engine, true))
-                all.push_back({engine.name, *std::move(who)});
-    return all;
+            if (std::optional<contender> candidate = contender_of(engine, true))
+                methods.push_back({engine.name, *std::move(candidate)});
+    return methods;
 }
 
-/// Every way in which a tree may be stored smaller; lists of neighbours that are searched for again in time, and lists
-/// that are not.
+/// Every compressed tree layout, Verlet lists that are rebuilt in time, and others that are rebuilt too rarely.
 [[nodiscard]] std::vector<method> tree_and_list_methods() {
-    std::vector<method> all;
+    std::vector<method> methods;
     for (const char* const changes :
          {"tree compressed", "tree quantized:bits=16", "tree quantized:bits=8", "tree quantized:bits=4",
           "prepare neighbour_list:margin=0.1", "prepare neighbour_list:margin=0.05,every=4",
           "prepare neighbour_list:margin=0,every=4", "prepare neighbour_list:margin=0,every=16",
           "prepare neighbour_list:margin=0,every=32", "prepare neighbour_list:margin=0,every=64"})
-        all.push_back(composed(changes));
-    return all;
+        methods.push_back(composed(changes));
+    return methods;
 }
 
 }  // namespace aabblab

@@ -8,7 +8,7 @@ namespace aabblab {
 
 namespace {
 
-/// A column of any number, in fifteen digits.
+/// A column of floating-point numbers with fifteen digits.
 template <class Number>
 struct any_number {
     Number& value;
@@ -44,19 +44,19 @@ std::filesystem::path file_of(const std::filesystem::path& folder, const stiff_s
 }  // namespace
 
 std::vector<figure> figures_of(const stiff_study& study, const stiff_result& result) {
-    std::vector<figure> all = study.figures;
-    if (study.mark) study.mark(all, result.rows);
-    for (figure& f : all)
+    std::vector<figure> figures = study.figures;
+    if (study.mark) study.mark(figures, result.rows);
+    for (figure& f : figures)
         for (const stiff_point& p : result.points) {
             if (p.figure != f.name) continue;
             auto line = std::ranges::find(f.lines, p.line, &series::label);
             if (line == f.lines.end()) line = f.lines.insert(line, {p.line});
             line->points.push_back({p.x, p.y});
         }
-    std::erase_if(all, [](const figure& f) {
+    std::erase_if(figures, [](const figure& f) {
         return std::ranges::all_of(f.lines, [](const series& line) { return line.points.empty(); });
     });
-    return all;
+    return figures;
 }
 
 void write_result(const std::filesystem::path& folder, const stiff_study& study, const stiff_result& result) {
@@ -67,7 +67,7 @@ void write_result(const std::filesystem::path& folder, const stiff_study& study,
 
 std::optional<stiff_result> read_result(const std::filesystem::path& folder, const stiff_study& study) {
     const auto rows = file_of(folder, study, ".csv"), points = file_of(folder, study, "_points.csv");
-    // Earlier versions left rows alone.
+    // Earlier versions wrote only the rows.
     if (!std::filesystem::exists(rows) || !std::filesystem::exists(points)) return std::nullopt;
     return stiff_result{rows_of_file<stiff_row>(rows, columns_of_row),
                         rows_of_file<stiff_point>(points, columns_of_point)};

@@ -1,4 +1,4 @@
-/// Rules that verdicts follow.
+/// Rules that derive verdicts from measurements.
 module aabblab.stiff:rules;
 
 import aabb.base;
@@ -8,12 +8,12 @@ import aabblab.stiff;
 
 namespace aabblab {
 
-/// "0.05", with as many digits as it needs.
+/// Up to four significant digits: "0.05".
 [[nodiscard]] std::string short_number(double value) {
     return fmt::format("{:.4g}", value);
 }
 
-/// Plays one part of a study. Where an integrator gives up, that is a row which does not hold.
+/// Runs one part of a study. If an integrator fails, it adds a row that does not hold.
 void unless_it_gives_up(stiff_result& result, std::string_view integrator, const std::function<void()>& part) {
     try {
         part();
@@ -30,7 +30,7 @@ void unless_it_gives_up(stiff_result& result, std::string_view integrator, const
     return holds ? stiff_verdict::holds : stiff_verdict::fails;
 }
 
-/// Measured differs from `expected` by no more than `share` of it.
+/// Expects a relative error of at most `share`.
 [[nodiscard]] stiff_row within(std::string subject, std::string quantity, double measured, double expected,
                                double share) {
     return {std::move(subject), std::move(quantity), measured,

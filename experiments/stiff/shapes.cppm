@@ -7,15 +7,14 @@ import aabblab.scenes;
 
 namespace aabblab {
 
-/// Eight triangles on the lowest of their six vertices, which is the origin: depths below a floor have all their
-/// digits.
+/// An octahedron whose lowest vertex is the origin, so that its depth below a floor does not suffer from rounding.
 [[nodiscard]] aabb::mesh octahedron(float radius) {
     const float r = radius;
     return {{{r, 0, r}, {0, r, r}, {-r, 0, r}, {0, -r, r}, {0, 0, 2 * r}, {0, 0, 0}},
             {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}}};
 }
 
-/// A square in z = 0 around the origin, facing up, cut into n × n squares of two triangles.
+/// An upward facing square in z = 0 around the origin, divided into n × n squares of two triangles.
 [[nodiscard]] aabb::mesh floor_of(double side, std::uint32_t n = 1) {
     aabb::mesh m = make_mesh("square:triangles=" + std::to_string(2 * n * n)).mesh;
     const double scale = side / (double{m.vertices.back()[0]} - double{m.vertices.front()[0]});
@@ -24,14 +23,14 @@ namespace aabblab {
     return m;
 }
 
-/// A pyramid on its apex, which is the origin, with a square top that faces up.
+/// An inverted pyramid with its apex at the origin and a square top.
 [[nodiscard]] aabb::mesh hanging_pyramid(float height, float side) {
     const float s = side / 2;
     return {{{0, 0, 0}, {-s, -s, height}, {s, -s, height}, {s, s, height}, {-s, s, height}},
             {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}}};
 }
 
-/// A box around the origin.
+/// A box centred at the origin.
 [[nodiscard]] aabb::mesh slab(float side, float thickness) {
     aabb::mesh m;
     for (const float z : {-thickness / 2, thickness / 2})

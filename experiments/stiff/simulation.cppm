@@ -8,7 +8,7 @@ import aabblab.stopwatch;
 
 namespace aabblab {
 
-/// A scene that has a frame wherever an integrator looks.
+/// A scene with one frame for each position at which an integrator evaluates forces.
 class posed_bodies final : public aabb::mesh_scene {
 public:
     explicit posed_bodies(const stepped_world& world) : world_(world) {
@@ -30,15 +30,16 @@ private:
     std::vector<double> position_;
 };
 
-/// A world that one integrator steps and one contender finds the contacts of.
+/// A world that is advanced by an integrator, with contacts found by a candidate.
 class simulation {
 public:
     /// @param world must outlive this
-    /// @param tolerance of an integrator that chooses its own steps
-    simulation(const stepped_world& world, const contender& who, const integrator_info& stepping, double tolerance = 0)
+    /// @param tolerance of an adaptive integrator
+    simulation(const stepped_world& world, const contender& candidate, const integrator_info& stepping,
+               double tolerance = 0)
         : poses_(new posed_bodies(world)),
           play_(std::unique_ptr<aabb::mesh_scene>(poses_)),
-          player_(who, play_, aabb::instrumentation::none),
+          player_(candidate, play_, aabb::instrumentation::none),
           dynamics_(world),
           integrator_(stepping.make(tolerance)),
           state_(world.start()),
@@ -49,19 +50,18 @@ public:
         };
     }
 
-    /// By so many seconds.
     void advance(double step) { integrator_->advance(acceleration_, state_, step); }
 
     [[nodiscard]] const motion_state& state() const { return state_; }
     [[nodiscard]] std::uint64_t detections() const { return detections_; }
     [[nodiscard]] double detection_ms() const { return detection_ms_; }
 
-    /// What is found where the bodies are now, sorted; looked for only where the integrator did not end there.
+    /// The sorted contacts at the current positions; detects them only if the integrator did not evaluate these last.
     [[nodiscard]] std::span<const aabb::contact> contacts() {
         return looked_at_ == state_.position ? std::span<const aabb::contact>(player_.sorted_contacts())
                                              : find(state_.position);
     }
-    /// Of motion, height and springs, J; of a shared volume without its pressure.
+    /// Kinetic, potential and spring energy, J; without the energy of a shared volume.
     [[nodiscard]] double energy() {
         dynamics_.accelerate(state_.position, state_.velocity, contacts(), ignored_);
         return dynamics_.mechanical_energy(state_) + dynamics_.spring_energy();
@@ -81,7 +81,7 @@ private:
         return player_.sorted_contacts();
     }
 
-    posed_bodies* poses_;  // in play_
+    posed_bodies* poses_;  // owned by play_
     scene_play play_;
     player player_;
     dynamics dynamics_;
@@ -89,7 +89,7 @@ private:
     acceleration_of acceleration_;
     motion_state state_;
     std::vector<double> ignored_;
-    std::vector<double> looked_at_;  // last
+    std::vector<double> looked_at_;  // the last position
     std::uint64_t detections_ = 0;
     double detection_ms_ = 0;
 };

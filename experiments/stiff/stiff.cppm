@@ -1,4 +1,4 @@
-/// The stiff suite: bodies stepped in time through detection, held against closed forms and published results.
+/// The stiff suite: simulations with collision detection, compared with closed forms and published results.
 export module aabblab.stiff;
 
 import aabb.registry;
@@ -8,16 +8,16 @@ import aabblab.trials;
 
 export namespace aabblab {
 
-/// Nothing is expected where a value is only told.
+/// `told` is for values that are reported without an expectation.
 enum class stiff_verdict : std::uint8_t { told, holds, fails };
 inline constexpr std::array<std::string_view, 3> stiff_verdict_words = {"", "holds", "FAILS"};
 
-/// Something measured, and what is expected of it.
+/// A measurement and its expectation.
 struct stiff_row {
-    std::string subject;   ///< what was played: "velocity_verlet, dt·ω 0.05"
+    std::string subject;   ///< the simulated case: "velocity_verlet, dt·ω 0.05"
     std::string quantity;  ///< with its unit: "contact time (s)"
     double measured = 0;
-    std::string rule;  ///< what is expected, in words; empty where nothing is
+    std::string rule;  ///< the expectation in words; may be empty
     stiff_verdict verdict = stiff_verdict::told;
 
     [[nodiscard]] bool holds() const { return verdict != stiff_verdict::fails; }
@@ -43,31 +43,31 @@ struct stiff_result {
 
 struct stiff_setting {
     bool quick = false;
-    contender who;  ///< who finds the contacts, but where a study compares methods
-    /// Takes the share of a study that is done, from 0 to 1.
+    contender who;  ///< finds the contacts, unless a study compares methods
+    /// Receives the completed share of a study, from 0 to 1.
     std::function<void(double)> progress = [](double) {};
 };
 
 struct stiff_study {
     std::string_view name;
-    std::string_view about;      ///< what is played, what it is held against
-    std::string_view reference;  ///< where the expectation comes from
+    std::string_view about;      ///< the simulated case and what it tests
+    std::string_view reference;  ///< the source of the expectation
     stiff_result (*play)(const stiff_setting& setting);
-    std::vector<figure> figures{};  ///< that its points stand in, without them
-    /// Marks in them what is in the rows.
+    std::vector<figure> figures{};  ///< the figures of its points, still empty
+    /// Marks values of the rows in the figures.
     void (*mark)(std::span<figure> figures, std::span<const stiff_row> rows) = nullptr;
 };
 
-/// In the order in which they are told.
+/// All studies, in the order of the report.
 [[nodiscard]] std::span<const stiff_study> stiff_studies();
 
-/// With their points; a figure in which no line has any is left out.
+/// The figures of a study with their points; figures without points are omitted.
 [[nodiscard]] std::vector<figure> figures_of(const stiff_study& study, const stiff_result& result);
 
 /// Writes STUDY.csv, the rows, and STUDY_points.csv.
 void write_result(const std::filesystem::path& folder, const stiff_study& study, const stiff_result& result);
-/// The inverse; empty where there are no such files.
-/// @throws aabb::input_error with file and line where they are something else.
+/// The inverse of `write_result`; empty if the files do not exist.
+/// @throws aabb::input_error with file and line if they are malformed.
 [[nodiscard]] std::optional<stiff_result> read_result(const std::filesystem::path& folder, const stiff_study& study);
 
 /// The default composition.

@@ -10,37 +10,37 @@ namespace aabblab {
 namespace {
 
 constexpr double speed = 1;         // m/s
-constexpr double tolerance = 1e-9;  // of what chooses its own steps
+constexpr double tolerance = 1e-9;  // of adaptive integrators
 
-/// One contact, from touching to leaving.
+/// A single contact, from touching to separating.
 struct bounce {
-    double error = 0;  // the greatest of position and velocity, over those of the undamped ball
+    double error = 0;  // the greatest error of position and velocity, relative to the undamped ball
     double contact_time = 0;
     double restitution = 0;
 };
 
-bounce bounce_of(const oscillator& contact, const contender& who, const integrator_info& stepping, double step,
-                 double its_tolerance) {
+bounce bounce_of(const oscillator& contact, const contender& candidate, const integrator_info& stepping, double step,
+                 double adaptive_tolerance) {
     const stepped_world world = ball_on_floor(contact, speed);
-    simulation ball(world, who, stepping, its_tolerance);
-    bounce found;
+    simulation ball(world, candidate, stepping, adaptive_tolerance);
+    bounce result;
     double before = 0;
     for (double end = 4 * contact.contact_time(); ball.state().time < end;) {
         ball.advance(step);
         const double time = ball.state().time;
         const double depth = depth_of_ball(ball.state());
         if (time <= contact.contact_time())
-            found.error = std::max(
-                found.error, std::hypot((depth - contact.depth(speed, time)) * contact.frequency / speed,
-                                        speed_of_ball(ball.state()) / speed + contact.sinking(speed, time) / speed));
+            result.error = std::max(
+                result.error, std::hypot((depth - contact.depth(speed, time)) * contact.frequency / speed,
+                                         speed_of_ball(ball.state()) / speed + contact.sinking(speed, time) / speed));
         if (depth < 0) {
-            found.contact_time = time + step * depth / (before - depth);
-            found.restitution = speed_of_ball(ball.state()) / speed;
+            result.contact_time = time + step * depth / (before - depth);
+            result.restitution = speed_of_ball(ball.state()) / speed;
             break;
         }
         before = depth;
     }
-    return found;
+    return result;
 }
 
 std::string subject_of(const integrator_info& i, double scaled, const std::string& more = {}) {
@@ -67,7 +67,7 @@ void convergence(const stiff_setting& setting, stiff_result& result) {
         if (errors.size() < steps.size()) continue;
         for (std::size_t s = 0; s < steps.size(); ++s) result.plot("ball_error_over_step", i.name, steps[s], errors[s]);
         const std::string subject = subject_of(i, steps.back());
-        // An integrator of first order is off by no more than a step.
+        // The error of a first-order integrator is at most one step.
         result.add(at_most(subject, "trajectory error", errors.back(), i.order == 1 ? steps.back() : 1e-3));
         if (!i.adaptive)
             result.add(at_least(std::string(i.name), "order of convergence", order_of(steps, errors), i.order - 0.1));
@@ -81,13 +81,12 @@ void stiffness(const stiff_setting& setting, stiff_result& result) {
         for (const integrator_info& i : integrators()) {
             if (i.order == 1) continue;
             unless_it_gives_up(result, i.name, [&] {
-                const bounce found = bounce_of(contact, setting.who, i, 0.05 / contact.frequency, tolerance);
+                const bounce measured = bounce_of(contact, setting.who, i, 0.05 / contact.frequency, tolerance);
                 const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";
-                // Boost's central differences take the dashpot's force a step late, which makes contacts shorter by ζ
-                // dt·ω.
+                // Boost's central differences apply the dashpot a step late, which shortens contacts by ζ dt·ω.
                 const double share = i.order == 2 ? 0.015 : 0.01;
-                result.add(within(subject, "contact time (s)", found.contact_time, contact.contact_time(), share));
-                result.add(within(subject, "restitution", found.restitution, contact.restitution(), share));
+                result.add(within(subject, "contact time (s)", measured.contact_time, contact.contact_time(), share));
+                result.add(within(subject, "restitution", measured.restitution, contact.restitution(), share));
             });
         }
     }

@@ -11,7 +11,7 @@ namespace {
 constexpr double height = 5;      // m
 constexpr double mass = 10;       // kg
 constexpr double gravity = 9.81;  // m/s²
-// As soft as the ball's size allows: 71 mm deep, and 1 ms is 5 % of the contact time.
+// As soft as the size of a ball allows: the depth is 71 mm, and 1 ms is 5 % of the contact time.
 constexpr double stiffness = 2e5;  // N/m
 constexpr double duration = 20;    // s
 
@@ -19,7 +19,7 @@ stepped_world bouncing_balls() {
     stepped_world world;
     world.meshes = {floor_of(8), octahedron(0.1F)};
     world.bodies = {{}};
-    // Not on the diagonal of the floor.
+    // The balls must not hit the diagonal between two triangles of the floor.
     for (int x = 0; x < 7; ++x)
         for (int y = 0; y < 7; ++y)
             world.bodies.push_back({.mesh = 1, .position = {x - 3.1, 0.9 * y - 2.8, height}, .mass = mass});
@@ -28,7 +28,7 @@ stepped_world bouncing_balls() {
     return world;
 }
 
-/// What two simulators published for this test: the mean of the squared energy error over 20 s, J².
+/// Published results of two simulators for this test: the mean squared energy error over 20 s, J².
 struct published {
     double step;
     double ode;
@@ -64,7 +64,7 @@ stiff_result play_bouncing(const stiff_setting& setting) {
                     if (s % 1000 == 0) setting.progress(static_cast<double>(s) / static_cast<double>(steps));
                 }
                 if (i.order == 2) {
-                    // Second order: the square of the step over the contact's own time, 1/ω.
+                    // Second order: the square of the step relative to the time scale of the contact, 1/ω.
                     const double limit = other.step * other.step * stiffness / mass;
                     result.add(at_most(subject, "energy error, RMS", std::sqrt(squares), limit));
                     result.add(

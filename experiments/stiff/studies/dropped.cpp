@@ -11,20 +11,20 @@ namespace aabblab {
 namespace {
 
 struct trajectory {
-    std::vector<std::vector<double>> positions;  ///< of all bodies, after each step that is kept
+    std::vector<std::vector<double>> positions;  ///< of all bodies, by sampled step
     double detection_ms = 0;
-    double energy_error = 0;  ///< the root of the mean square of twenty looks, over the energy at the beginning
-    /// How deep two balls are in each other at most, taken for spheres, in diameters, at twenty times.
+    double energy_error = 0;  ///< the root mean square of twenty samples, relative to the initial energy
+    /// The greatest overlap of two balls, treated as spheres, in diameters, at twenty samples.
     std::vector<double> times, depths;
 };
 
-/// Balls that fall in a lattice on a floor, with whoever finds their contacts.
+/// A lattice of balls that fall on a floor.
 class dropped_balls {
 public:
-    /// @param side balls on an edge of the lattice
+    /// @param side number of balls along an edge of the lattice
     /// @param diameter m
     dropped_balls(std::size_t side, double diameter) : diameter_(diameter) {
-        // The last half of a diameter; what is before it has a closed form.
+        // Only the last half diameter is simulated, since the fall before it has a closed form.
         const double fallen = 4.5 * diameter;
         world_ = dropped_world({.balls = static_cast<std::uint32_t>(side * side * side),
                                 .height = 0.5,
@@ -32,16 +32,16 @@ public:
                                {make_mesh("square").mesh, ball_of(diameter)}, 1);
     }
 
-    /// What takes so long for balls of 1 m, scaled to these, s.
-    [[nodiscard]] double seconds(double of_large_ones) const { return of_large_ones * std::sqrt(diameter_); }
+    /// Scales a time for balls of 1 m to these balls, s.
+    [[nodiscard]] double seconds(double for_1_m) const { return for_1_m * std::sqrt(diameter_); }
 
-    /// Ends early where bodies come beyond all poses.
-    /// @param kept positions are kept of every so many-th step
-    /// @throws aabb::input_error where it ends before the first of its twenty looks.
-    [[nodiscard]] trajectory play(const contender& who, const integrator_info& stepping, double step, std::size_t kept,
-                                  bool with_energy) const {
+    /// Ends early if bodies leave the range of valid poses.
+    /// @param kept stores the positions of every `kept`-th step
+    /// @throws aabb::input_error if it ends before the first of its twenty samples.
+    [[nodiscard]] trajectory play(const contender& candidate, const integrator_info& stepping, double step,
+                                  std::size_t kept, bool with_energy) const {
         trajectory t;
-        simulation balls(world_, who, stepping);
+        simulation balls(world_, candidate, stepping);
         const double began = dynamics(world_).mechanical_energy(balls.state());
         const auto steps = static_cast<std::size_t>(std::llround(seconds(end) / step));
         std::vector<double> squares;
@@ -66,22 +66,21 @@ public:
         return t;
     }
 
-    /// The greatest distance of a body from where it should be, in diameters, after each step that both kept; infinite
-    /// once it ended before the other.
-    [[nodiscard]] std::vector<double> departures(const trajectory& t, const trajectory& right) const {
-        std::vector<double> all;
-        for (std::size_t s = 0; s < std::min(t.positions.size(), right.positions.size()); ++s) {
+    /// The greatest error of any coordinate, in diameters, by stored step; infinite after the end of the trajectory.
+    [[nodiscard]] std::vector<double> departures(const trajectory& t, const trajectory& reference) const {
+        std::vector<double> errors;
+        for (std::size_t s = 0; s < std::min(t.positions.size(), reference.positions.size()); ++s) {
             double greatest = 0;
             for (std::size_t i = 0; i < t.positions[s].size(); ++i)
-                greatest = std::max(greatest, std::abs(t.positions[s][i] - right.positions[s][i]) / diameter_);
-            all.push_back(greatest);
+                greatest = std::max(greatest, std::abs(t.positions[s][i] - reference.positions[s][i]) / diameter_);
+            errors.push_back(greatest);
         }
-        all.resize(right.positions.size(), std::numeric_limits<double>::infinity());
-        return all;
+        errors.resize(reference.positions.size(), std::numeric_limits<double>::infinity());
+        return errors;
     }
 
 private:
-    static constexpr double end = 0.48;  // s, of balls of 1 m
+    static constexpr double end = 0.48;  // s, for balls of 1 m
 
     [[nodiscard]] static aabb::mesh ball_of(double diameter) {
         aabb::mesh ball = make_mesh("icosphere:triangles=80").mesh;
@@ -120,13 +119,13 @@ private:
 };
 
 std::vector<method> all_methods() {
-    std::vector<method> all = triangle_methods();
-    std::erase_if(all, [](const method& m) { return m.label == "exact"; });  // what the others are held against
-    std::ranges::move(tree_and_list_methods(), std::back_inserter(all));
-    return all;
+    std::vector<method> methods = triangle_methods();
+    std::erase_if(methods, [](const method& m) { return m.label == "exact"; });  // the reference of the others
+    std::ranges::move(tree_and_list_methods(), std::back_inserter(methods));
+    return methods;
 }
 
-/// Of balls.
+/// Diameters of balls.
 constexpr std::array<const char*, 2> sizes{"1 m", "10 mm"};
 
 /// "depth_10_mm"
@@ -140,72 +139,73 @@ void plot_depths(const std::string& size, const std::string& label, const trajec
     for (std::size_t i = 0; i < t.times.size(); ++i) result.plot(depth, label, t.times[i], t.depths[i]);
 }
 
-/// The trajectory by each method, as many at once as there are processors: nothing is timed.
+/// The trajectory of each method, with one thread per processor, since these runs are not timed.
 std::vector<trajectory> played_by(const std::vector<method>& methods, const dropped_balls& balls, double step,
                                   const stiff_setting& setting) {
-    std::vector<trajectory> all(methods.size());
+    std::vector<trajectory> trajectories(methods.size());
     std::atomic<std::size_t> begun = 0;
     const auto play = [&](const std::function<void(double)>& progress) {
         for (std::size_t m = begun++; m < methods.size(); m = begun++) {
             progress(static_cast<double>(m) / static_cast<double>(methods.size()));
-            all[m] = balls.play(methods[m].who, *integrator_named("velocity_verlet"), step, 1, true);
+            trajectories[m] = balls.play(methods[m].who, *integrator_named("velocity_verlet"), step, 1, true);
         }
     };
-    std::vector<std::future<void>> others;
+    std::vector<std::future<void>> workers;
     for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
-        others.push_back(std::async(std::launch::async, play, [](double) {}));
+        workers.push_back(std::async(std::launch::async, play, [](double) {}));
     play(setting.progress);
-    for (std::future<void>& other : others) other.get();
-    return all;
+    for (std::future<void>& worker : workers) worker.get();
+    return trajectories;
 }
 
-/// What each method does to the trajectory, with one step of time.
-void hold_methods(const dropped_balls& balls, const std::string& size, const stiff_setting& setting,
-                  stiff_result& result) {
+/// Compares the trajectory of each method with the exact one, for one step size.
+void compare_methods(const dropped_balls& balls, const std::string& size, const stiff_setting& setting,
+                     stiff_result& result) {
     const double step = balls.seconds(1e-3);
-    const trajectory right = balls.play(setting.who, *integrator_named("velocity_verlet"), step, 1, true);
-    const std::vector<method> all = all_methods();
-    const std::vector<trajectory> played = played_by(all, balls, step, setting);
+    const trajectory reference = balls.play(setting.who, *integrator_named("velocity_verlet"), step, 1, true);
+    const std::vector<method> methods = all_methods();
+    const std::vector<trajectory> trajectories = played_by(methods, balls, step, setting);
     constexpr std::size_t most_drawn = 9;
     std::size_t drawn = 0;
     const std::string departure = figure_name("departure " + size);
-    for (std::size_t m = 0; m < all.size(); ++m) {
-        const trajectory& t = played[m];
-        const std::vector<double> far = balls.departures(t, right);
-        const auto first = std::ranges::find_if(far, [](double d) { return !(d <= 0); });
-        const std::string subject = all[m].label + ", " + size;
-        const double greatest = std::ranges::max(far);
-        if (all[m].who.exact && all[m].who.exact_boxes) {
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+        const trajectory& t = trajectories[m];
+        const std::vector<double> errors = balls.departures(t, reference);
+        const auto first = std::ranges::find_if(errors, [](double d) { return !(d <= 0); });
+        const std::string subject = methods[m].label + ", " + size;
+        const double greatest = std::ranges::max(errors);
+        if (methods[m].who.exact && methods[m].who.exact_boxes) {
             result.add(at_most(subject, "greatest departure (diameters)", greatest, 0));
             continue;
         }
         result.add(told(subject, "greatest departure (diameters)", greatest));
-        if (first == far.end()) continue;
-        result.add(told(subject, "first step that is wrong", static_cast<double>(first - far.begin()) + 1));
+        if (first == errors.end()) continue;
+        result.add(told(subject, "first step that is wrong", static_cast<double>(first - errors.begin()) + 1));
         result.add(told(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
         result.add(told(subject, "energy error, RMS", t.energy_error));
         if (drawn == most_drawn) continue;
-        if (drawn++ == 0) plot_depths(size, "exact", right, result);
-        for (std::size_t s = 0; s < far.size(); ++s)
-            result.plot(departure, all[m].label, step * static_cast<double>(s + 1), far[s]);
-        plot_depths(size, all[m].label, t, result);
+        if (drawn++ == 0) plot_depths(size, "exact", reference, result);
+        for (std::size_t s = 0; s < errors.size(); ++s)
+            result.plot(departure, methods[m].label, step * static_cast<double>(s + 1), errors[s]);
+        plot_depths(size, methods[m].label, t, result);
     }
-    result.add(told("exact, " + size, "greatest depth of two balls (diameters)", std::ranges::max(right.depths)));
-    result.add(told("exact, " + size, "energy error, RMS", right.energy_error));
+    result.add(told("exact, " + size, "greatest depth of two balls (diameters)", std::ranges::max(reference.depths)));
+    result.add(told("exact, " + size, "energy error, RMS", reference.energy_error));
 }
 
-/// Error over run time: each integrator over its step, and stale lists over how stale they are.
-void hold_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
-    const std::vector<double> all = setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};
-    const auto kept = [&](double dt) { return static_cast<std::size_t>(std::llround(all.front() / dt)); };
+/// Error over detection time, of each integrator by step size, and of stale Verlet lists by their age.
+void compare_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
+    const std::vector<double> steps =
+        setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};
+    const auto kept = [&](double dt) { return static_cast<std::size_t>(std::llround(steps.front() / dt)); };
     const integrator_info& verlet = *integrator_named("velocity_verlet");
-    const double finest = all.back() / 16;
-    const trajectory right = balls.play(setting.who, verlet, finest, kept(finest), false);
-    const auto error_of = [&](const trajectory& t) { return balls.departures(t, right).back(); };
+    const double finest = steps.back() / 16;
+    const trajectory reference = balls.play(setting.who, verlet, finest, kept(finest), false);
+    const auto error_of = [&](const trajectory& t) { return balls.departures(t, reference).back(); };
     for (const integrator_info& i : integrators()) {
         if (i.adaptive || i.order == 5) continue;
         std::vector<double> energy_errors;
-        for (const double dt : all) {
+        for (const double dt : steps) {
             const trajectory t = balls.play(setting.who, i, dt, kept(dt), true);
             const double error = error_of(t);
             result.plot("error_over_time", i.name, t.detection_ms, error);
@@ -214,9 +214,9 @@ void hold_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_
             result.add(told(subject, "energy error, RMS", t.energy_error));
             energy_errors.push_back(t.energy_error);
         }
-        // Each step is half of the one before.
+        // Each step size is half of the previous one.
         const double order =
-            std::log2(energy_errors.front() / energy_errors.back()) / static_cast<double>(all.size() - 1);
+            std::log2(energy_errors.front() / energy_errors.back()) / static_cast<double>(steps.size() - 1);
         result.add(at_least(std::string(i.name), "order of the energy error", order, i.order - 0.3));
     }
     for (const char* const every : {"8", "16", "32", "64"}) {
@@ -227,7 +227,7 @@ void hold_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_
 }
 
 std::vector<figure> figures() {
-    std::vector<figure> all{
+    std::vector<figure> list{
         figure{.name = "error_over_time",
                .caption = "Error of a trajectory over the time that detection takes for it: each integrator over its "
                           "step, and a stale list over the frames from search to search, with steps of 1 ms.",
@@ -235,19 +235,21 @@ std::vector<figure> figures() {
                .y = {"greatest distance from the right place (diameters)", true}}};
     const figure_axis time{"time (s)", false};
     for (const std::string size : sizes) {
-        all.push_back({figure_name("departure " + size),
-                       "How far balls of " + size +
-                           " are from where exact contacts take them, because of a triangle test, an engine or a stale "
-                           "list; what never departs is not drawn, and of others no more than nine.",
-                       time,
-                       {"greatest distance over a ball's diameter", true}});
-        all.push_back({figure_name("depth " + size),
-                       "How deep balls of " + size +
-                           " are in each other at most, with exact contacts and with those of the methods that depart.",
-                       time,
-                       {"greatest depth over a ball's diameter", false}});
+        list.push_back(
+            {figure_name("departure " + size),
+             "How far balls of " + size +
+                 " are from where exact contacts take them, because of a triangle test, an engine or a stale "
+                 "list; what never departs is not drawn, and of others no more than nine.",
+             time,
+             {"greatest distance over a ball's diameter", true}});
+        list.push_back(
+            {figure_name("depth " + size),
+             "How deep balls of " + size +
+                 " are in each other at most, with exact contacts and with those of the methods that depart.",
+             time,
+             {"greatest depth over a ball's diameter", false}});
     }
-    return all;
+    return list;
 }
 
 }  // namespace
@@ -256,13 +258,13 @@ stiff_result play_dropped(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t side = setting.quick ? 3 : 6;
     const dropped_balls balls(side, 1);
-    hold_steps(balls, setting, result);
-    // The mean of the squared error over their run, J², of 34,454 J.
+    compare_steps(balls, setting, result);
+    // They publish the mean squared error over the run, J², of an energy of 34,454 J.
     result.add(told("published: ODE, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(112.326) / 34454));
     result.add(
         told("published: Bullet without ERP, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
-    hold_methods(balls, sizes[0], setting, result);
-    hold_methods(dropped_balls(side, 0.01), sizes[1], setting, result);
+    compare_methods(balls, sizes[0], setting, result);
+    compare_methods(dropped_balls(side, 0.01), sizes[1], setting, result);
     return result;
 }
 

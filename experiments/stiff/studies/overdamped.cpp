@@ -12,7 +12,7 @@ constexpr double gravity = 9.81;
 constexpr double damping = 10;  // ζ
 constexpr double end = 1;       // s
 
-/// The depth of a ball that was let go on the floor, over its depth at rest; overdamped.
+/// The depth of an overdamped ball that is released on the floor, relative to its depth at rest.
 double share_of_rest(double frequency, double time) {
     const double root = std::sqrt(damping * damping - 1);
     const double slow = frequency * (damping - root);
@@ -26,12 +26,12 @@ stiff_result play_overdamped(const stiff_setting& setting) {
     stiff_result result;
     for (const double k : {1e4, 1e6, 1e8, 1e10}) {
         const double frequency = std::sqrt(k);
-        // With central differences the dashpot's rate, 2ζω, allows steps of one over it.
+        // With central differences, the rate of the dashpot limits steps to 1/(2ζω).
         const double explicit_steps = end * 2 * damping * frequency;
         const stepped_world world = ball_on_floor({frequency, damping}, 0, gravity);
         for (const integrator_info& i : integrators()) {
             if (!i.adaptive) continue;
-            // What takes as many steps as an explicit integrator must ends where there are too many.
+            // Other adaptive integrators need as many steps as an explicit one, too many for stiff contacts.
             if (i.name != "bdf" && explicit_steps > (setting.quick ? 1e4 : 1e6)) continue;
             unless_it_gives_up(result, i.name, [&] {
                 const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";

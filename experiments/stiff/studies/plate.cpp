@@ -8,37 +8,38 @@ namespace aabblab {
 
 namespace {
 
-constexpr float thickness = 0.01F;                                // of the plate, m
-constexpr float radius = 0.05F;                                   // of the body
-constexpr double reach = double{thickness} + 2 * double{radius};  // on which the body touches the plate
+constexpr float thickness = 0.01F;                                 // of the plate, m
+constexpr float radius = 0.05F;                                    // of the body
+constexpr double extent = double{thickness} + 2 * double{radius};  // over which the body touches the plate
 
-/// A body that flies down through a plate, past it with this way a frame, and begins somewhere within a frame.
+/// A body that flies down through a plate with a constant displacement per frame.
 class shot {
 public:
-    shot(const contender& who, double way)
+    shot(const contender& candidate, double step)
         : plate_(slab(2, thickness)),
           body_(octahedron(radius)),
-          way_(way),
-          global_(who.make_global(aabb::instrumentation::none)),
-          local_(who.make_local(aabb::instrumentation::none)) {
+          step_(step),
+          global_(candidate.make_global(aabb::instrumentation::none)),
+          local_(candidate.make_local(aabb::instrumentation::none)) {
         for (const std::uint32_t id : {0U, 1U}) global_->insert(id);
         local_->add_model(plate_);
         local_->add_model(body_);
     }
 
-    /// @param swept boxes hold the body from frame to frame, and what they find is looked at in between
+    /// @param phase offset of the start, in steps
+    /// @param swept whether boxes cover the motion between frames, in which case positions in between are tested too
     [[nodiscard]] bool is_seen(double phase, bool swept) {
-        const double above = double{thickness} + way_;
-        for (double z = above - phase * way_; z > -above - 2 * double{radius}; z -= way_) {
+        const double above = double{thickness} + step_;
+        for (double z = above - phase * step_; z > -above - 2 * double{radius}; z -= step_) {
             if (!swept) {
                 if (boxes_meet(z, z) && meshes_meet(z)) return true;
                 continue;
             }
-            if (!boxes_meet(z, z - way_)) continue;
-            // Steps that the body cannot jump over the plate with.
-            const auto parts = static_cast<int>(std::ceil(2 * way_ / reach));
+            if (!boxes_meet(z, z - step_)) continue;
+            // Substeps are so short that the body cannot tunnel through the plate.
+            const auto parts = static_cast<int>(std::ceil(2 * step_ / extent));
             for (int i = 0; i < parts; ++i)
-                if (meshes_meet(z - way_ * i / parts)) return true;
+                if (meshes_meet(z - step_ * i / parts)) return true;
         }
         return false;
     }
@@ -67,7 +68,7 @@ private:
 
     aabb::mesh plate_;
     aabb::mesh body_;
-    double way_;
+    double step_;
     std::unique_ptr<aabb::global_stage> global_;
     std::unique_ptr<aabb::local_stage> local_;
 };
@@ -77,17 +78,17 @@ private:
 stiff_result play_plate(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t shots = setting.quick ? 200 : 2000;
-    for (const double ways : {0.5, 1.0, 1.25, 2.0, 4.0, 8.0, 16.0}) {
-        shot fired(setting.who, ways * reach);
-        const double expected = std::max(0.0, 1 - 1 / ways);
-        result.plot("tunnelled", "1 - reach / way", ways, expected);
+    for (const double ratio : {0.5, 1.0, 1.25, 2.0, 4.0, 8.0, 16.0}) {
+        shot fired(setting.who, ratio * extent);
+        const double expected = std::max(0.0, 1 - 1 / ratio);
+        result.plot("tunnelled", "1 - reach / way", ratio, expected);
         for (const bool swept : {false, true}) {
             std::size_t unseen = 0;
             for (std::size_t s = 0; s < shots; ++s)
                 if (!fired.is_seen((static_cast<double>(s) + 0.5) / static_cast<double>(shots), swept)) ++unseen;
             const double share = static_cast<double>(unseen) / static_cast<double>(shots);
-            result.plot("tunnelled", swept ? "swept boxes" : "plain boxes", ways, share);
-            const std::string subject = "a step of " + short_number(ways) + " reaches, " + (swept ? "swept" : "plain");
+            result.plot("tunnelled", swept ? "swept boxes" : "plain boxes", ratio, share);
+            const std::string subject = "a step of " + short_number(ratio) + " reaches, " + (swept ? "swept" : "plain");
             stiff_row row = told(subject, "share tunnelled of " + std::to_string(shots), share);
             row.rule = swept ? "0" : short_number(expected) + ", one shot more or less";
             row.verdict =

@@ -11,35 +11,35 @@ namespace aabblab {
 namespace {
 
 constexpr std::uint32_t tips = 8;  // on each side of the upper mesh
-constexpr double distance = 0.25;  // from tip to tip; all lengths are in sizes of the meshes
-constexpr double rest = 1e-3;      // to which a spring is compressed that only touches
+constexpr double distance = 0.25;  // between tips; all lengths are relative to the size of the meshes
+constexpr double rest = 1e-3;      // compression of a spring whose vertex just touches
 constexpr int positions = 257;
-constexpr double way = 1.0 / 128;  // from one to the next
+constexpr double displacement = 1.0 / 128;  // between positions
 
-/// Many teeth that stand on their tips, each a triangle, so that nothing but one pair or those of one edge tells of it.
+/// Teeth that stand on their tips. Each is a single triangle, so that only pairs at its tip detect it.
 aabb::mesh comb() {
-    aabb::mesh all;
+    aabb::mesh teeth;
     for (std::uint32_t i = 0; i < tips * tips; ++i) {
         const std::uint32_t row = i / tips;
         const auto x = static_cast<float>(distance * (i % tips - 0.5 * tips) - 1);
         const auto y = static_cast<float>(distance * (row - 0.5 * tips));
         for (const aabb::vec3f& v :
              {aabb::vec3f{x, y, 0}, {x + 0.06F, y + 0.08F, 0.125F}, {x - 0.06F, y - 0.08F, 0.125F}})
-            all.vertices.push_back(v);
-        all.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+            teeth.vertices.push_back(v);
+        teeth.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
-    return all;
+    return teeth;
 }
 
-/// How the two lie in their common frame, which decides what rounds.
+/// The placement of both meshes, which determines which coordinates are rounded.
 struct lie {
     std::string name;
-    aabb::pose frame;  // of both
+    aabb::pose frame;  // of both meshes
     double size;       // m
-    double pressed;    // in sizes; below 0 above the other
+    double pressed;    // relative depth of the upper mesh; negative above the lower one
 };
 
-/// A turn about (1, 1, 1) by an angle of cosine 0.8, so that no coordinate is favoured.
+/// A rotation about (1, 1, 1) by an angle of cosine 0.8, so that no axis is favoured.
 aabb::pose oblique() {
     const double third = 0.2 / 3;
     const double sine = 0.6 / std::sqrt(3.0);
@@ -64,11 +64,11 @@ aabb::mesh lying(aabb::mesh m, const lie& l) {
     return m;
 }
 
-/// The force along the normal at each position, over that of all tips at the depth to which they are pressed.
-std::vector<double> forces_of(const contender& who, const lie& l) {
+/// The normal force at each position, relative to the force if all tips are detected at their depth.
+std::vector<double> forces_of(const contender& candidate, const lie& l) {
     const aabb::mesh lower = lying(floor_of(8, 16), l);
     const aabb::mesh upper = lying(comb(), l);
-    const auto stage = who.make_local(aabb::instrumentation::none);
+    const auto stage = candidate.make_local(aabb::instrumentation::none);
     stage->add_model(lower);
     stage->add_model(upper);
     const contact_law law{contact_geometry::each_vertex, 1, 0, rest * l.size};
@@ -76,14 +76,14 @@ std::vector<double> forces_of(const contender& who, const lie& l) {
     std::vector<double> forces;
     for (int i = 0; i < positions; ++i) {
         aabb::pose at;
-        at.translation = turned(l.frame, {way * i * l.size, 0, -l.pressed * l.size});
+        at.translation = turned(l.frame, {displacement * i * l.size, 0, -l.pressed * l.size});
         std::vector<aabb::index_pair> pairs;
         stage->all_pairs(0, {}, 1, at, pairs);
         std::ranges::sort(pairs);
         std::vector<aabb::contact> contacts;
         for (const aabb::index_pair& p : pairs) contacts.push_back({0, 1, p.a, p.b});
-        const contact_force found = force_of(law, contacts, {&lower, {}}, {&upper, at}, {0, 0, 0});
-        forces.push_back(dot(found.force, normal) / (tips * tips * (rest + l.pressed) * l.size));
+        const contact_force contact = force_of(law, contacts, {&lower, {}}, {&upper, at}, {0, 0, 0});
+        forces.push_back(dot(contact.force, normal) / (tips * tips * (rest + l.pressed) * l.size));
     }
     return forces;
 }
@@ -128,7 +128,7 @@ stiff_result play_sliding(const stiff_setting& setting) {
             result.add(m.who.exact ? within(subject, lost, least, 1, 1e-3) : told(subject, lost, least));
             if (l.size == 0.01 && least < 0.999 && drawn++ < most_drawn)
                 for (int i = 0; i < positions; ++i)
-                    result.plot("sliding_force", m.label, way * i, forces[static_cast<std::size_t>(i)]);
+                    result.plot("sliding_force", m.label, displacement * i, forces[static_cast<std::size_t>(i)]);
         }
     return result;
 }

@@ -14,19 +14,19 @@ namespace {
 constexpr double frequency = 1e3;
 constexpr double gravity = 9.81;
 constexpr auto greatest_step = "greatest stable dt·ω";
-constexpr double at_rest = gravity / (frequency * frequency);  // the depth there, m
+constexpr double at_rest = gravity / (frequency * frequency);  // the depth of equilibrium, m
 
-/// A ball that swings about its depth at rest, in contact all the time.
+/// A ball that oscillates about its equilibrium and never leaves contact.
 class swinging_ball {
 public:
-    swinging_ball(const contender& who, const integrator_info& stepping, double amplitude, double tolerance)
-        : world_(world_with(amplitude)), ball_(world_, who, stepping, tolerance) {}
+    swinging_ball(const contender& candidate, const integrator_info& stepping, double amplitude, double tolerance)
+        : world_(world_with(amplitude)), ball_(world_, candidate, stepping, tolerance) {}
 
     void advance(double step) { ball_.advance(step); }
     [[nodiscard]] double energy() const {
-        const double out = depth_of_ball(ball_.state()) - at_rest;
+        const double offset = depth_of_ball(ball_.state()) - at_rest;
         const double v = speed_of_ball(ball_.state());
-        return (v * v + frequency * frequency * out * out) / 2;
+        return (v * v + frequency * frequency * offset * offset) / 2;
     }
 
 private:
@@ -40,11 +40,11 @@ private:
     simulation ball_;
 };
 
-/// The greatest energy in the last tenth of these periods over that in the first, less 1: energies that swing without
-/// end drift by nothing.
-double drift_of(const contender& who, const integrator_info& stepping, double scaled, std::size_t periods,
+/// The relative change of the greatest energy from the first to the last tenth of the periods, which ignores bounded
+/// oscillations of the energy.
+double drift_of(const contender& candidate, const integrator_info& stepping, double scaled, std::size_t periods,
                 double tolerance) {
-    swinging_ball ball(who, stepping, at_rest / 100, tolerance);
+    swinging_ball ball(candidate, stepping, at_rest / 100, tolerance);
     const auto steps = static_cast<std::size_t>(static_cast<double>(periods) * 2 * std::numbers::pi / scaled);
     double first = 0;
     double last = 0;
@@ -56,7 +56,7 @@ double drift_of(const contender& who, const integrator_info& stepping, double sc
     return last / first - 1;
 }
 
-/// What the stability polynomial of Dormand and Prince leaves of an oscillation's energy, each step.
+/// The factor by which a step changes the energy, from the stability polynomial of Dormand and Prince (1980).
 double kept_by_dormand_prince(double scaled) {
     const std::complex<double> z(0, scaled);
     const auto growth =
@@ -64,18 +64,18 @@ double kept_by_dormand_prince(double scaled) {
     return std::norm(growth);
 }
 
-/// Whether its energy stays what it was. Symplectic integrators keep one of their own, which swings the more the nearer
-/// their limit is.
-bool is_stable(const contender& who, const integrator_info& stepping, double scaled) {
-    // So small that it stays in contact however much it grows here.
-    swinging_ball ball(who, stepping, at_rest * 1e-6, 0);
+/// Whether the energy does not grow. Symplectic integrators conserve a modified energy, so that the real one
+/// oscillates, more so near their limit.
+bool is_stable(const contender& candidate, const integrator_info& stepping, double scaled) {
+    // The amplitude is so small that the ball stays in contact even if it grows.
+    swinging_ball ball(candidate, stepping, at_rest * 1e-6, 0);
     double before = 0;
     double after = 0;
     constexpr int steps = 20000;
     for (int i = 0; i < steps; ++i) {
         ball.advance(scaled / frequency);
         const double energy = ball.energy();
-        // Out of contact; or no number any more.
+        // The ball left contact, or its energy is NaN.
         if (!(energy < frequency * frequency * at_rest * at_rest / 2)) return false;
         double& half = i < steps / 2 ? before : after;
         half = std::max(half, energy);
@@ -83,12 +83,12 @@ bool is_stable(const contender& who, const integrator_info& stepping, double sca
     return after <= 1.01 * before;
 }
 
-double limit_of(const contender& who, const integrator_info& stepping) {
+double limit_of(const contender& candidate, const integrator_info& stepping) {
     double stable = 0.1;
     double unstable = 4;
     while (unstable - stable > 1e-3) {
         const double middle = (stable + unstable) / 2;
-        (is_stable(who, stepping, middle) ? stable : unstable) = middle;
+        (is_stable(candidate, stepping, middle) ? stable : unstable) = middle;
     }
     return (stable + unstable) / 2;
 }

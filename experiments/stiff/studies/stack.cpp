@@ -13,27 +13,27 @@ constexpr double gravity = 9.81;   // m/s²
 constexpr double edge = 0.25;      // m
 constexpr std::size_t bodies = 10;
 
-/// Ten pyramids, each on the top of the one below, of masses that grow by one factor from 1 kg at the bottom to `ratio`
-/// at the top; with a dashpot that is critical for the slowest of their motions.
+/// Ten stacked pyramids with masses in geometric progression from 1 kg at the bottom to `ratio` at the top, and a
+/// dashpot that is critical for the slowest mode.
 stepped_world stack_of(double ratio) {
     stepped_world world;
     world.meshes = {floor_of(4), hanging_pyramid(edge, 2 * edge)};
     world.bodies = {{}};
-    double all = 0;
+    double total_mass = 0;
     for (std::size_t i = 0; i < bodies; ++i) {
         const auto at = static_cast<double>(i);
         const double mass = std::pow(ratio, at / (bodies - 1));
-        all += mass;
-        // Beside the diagonals.
+        total_mass += mass;
+        // Apexes must not touch the diagonals between triangles.
         world.bodies.push_back({.mesh = 1, .position = {0.05 + 0.002 * at, 0.01, edge * at}, .mass = mass});
     }
     world.law.stiffness = stiffness;
-    world.law.damping = 2 * std::sqrt(bodies * stiffness * all);
+    world.law.damping = 2 * std::sqrt(bodies * stiffness * total_mass);
     world.gravity = gravity;
     return world;
 }
 
-/// How deep body i is in the one below, m.
+/// The depth of body i in the one below, m.
 double depth_of(const motion_state& state, std::size_t i) {
     const double below = i == 1 ? 0 : state.position[3 * (i - 1) + 2] + edge;
     return below - state.position[3 * i + 2];
@@ -46,7 +46,7 @@ stiff_result play_stack(const stiff_setting& setting) {
     for (const double ratio : {1.0, 10.0, 100.0, 1000.0}) {
         const stepped_world world = stack_of(ratio);
         for (const integrator_info& i : integrators()) {
-            // The dashpot lets explicit ones take steps of a quarter of m/c.
+            // The dashpot limits explicit integrators to steps of a quarter of m/c.
             const double step = i.name == "velocity_verlet" ? 0.25 / world.law.damping : 0.05;
             if (i.name != "bdf" && (i.name != "velocity_verlet" || ratio > (setting.quick ? 1 : 10))) continue;
             unless_it_gives_up(result, i.name, [&] {
