@@ -1,7 +1,7 @@
 module;
 #include <Eigen/Core>
 
-/// What the kinds of scenes of boxes share.
+/// Common parts of the scenes of boxes.
 module aabblab.scenes:boxes;
 
 import aabb.pipeline;
@@ -17,15 +17,15 @@ struct scene_size {
     std::uint32_t frames = 20;
 };
 
-/// What a displacement is a fraction of: the mean extent of the boxes, or their mean spacing.
+/// The unit of displacements: the mean extent of the boxes, or their mean spacing.
 enum class length_unit : unsigned char { extent, spacing };
 
 struct motion_config : scene_size {
-    /// How far a box moves in a frame.
+    /// The displacement of a box per frame, in `unit`.
     double displacement = 0.1;
     length_unit unit = length_unit::extent;
 };
-/// @param way what `displacement` is
+/// @param way help text for `displacement`
 [[nodiscard]] constexpr auto motion_parameters_of(std::string_view way) {
     return std::tuple_cat(
         size_parameters<scene_size>("how many boxes"),
@@ -40,7 +40,7 @@ inline constexpr auto motion_parameters =
     motion_parameters_of("the way of every box in a frame, unfolded where walls reflect it");
 
 /// `displacement` as a length.
-/// @param extent of the boxes, mean
+/// @param extent mean extent of the boxes
 /// @param sides of the world, 0 on a flat axis
 [[nodiscard]] inline double step_of(const motion_config& c, double extent, const aabb::vec3d& sides) {
     return c.displacement * (c.unit == length_unit::extent ? extent : mean_spacing(sides, c.objects));
@@ -56,25 +56,25 @@ inline constexpr auto motion_parameters =
     return b;
 }
 
-/// The width of a cube (square, segment) in which each of so many unit cubes overlaps two others on average, wherever
-/// their corners lie in it: one overlaps another whose corner lies in a cube of edge 2 around its own.
+/// The width of a cube (square, segment) in which uniformly distributed unit cubes overlap two others each on average:
+/// a unit cube overlaps those whose corner lies in a cube of edge 2 around its own.
 [[nodiscard]] inline double width_for(std::uint32_t objects, int axes) {
     return edge_of(static_cast<double>(objects) * (1 << axes) / 2, axes);
 }
 
-/// The edge of the smallest cubic lattice of so many cells.
+/// The edge of the smallest cubic lattice with at least `cells` cells.
 [[nodiscard]] inline std::uint32_t lattice_side(std::uint64_t cells) {
     std::uint64_t side = 1;
     while (side * side * side < cells) ++side;
     return static_cast<std::uint32_t>(side);
 }
-/// Of a cell, by its number, along each axis; the last axis changes first.
+/// The coordinates of a cell by its index; the last axis varies fastest.
 [[nodiscard]] inline Eigen::Vector3d lattice_cell(std::uint64_t cell, std::uint64_t side) {
     return Eigen::Matrix<std::uint64_t, 3, 1>(cell / (side * side), cell / side % side, cell % side).cast<double>();
 }
 
-/// Edges evenly spread in the logarithm from 1 to a ratio, in ascending order. The i-th is ratio^(i / (count - 1)),
-/// multiplied from roots of the ratio, one for each binary digit of the exponent: std::pow differs between libraries.
+/// Edges in geometric progression from 1 to a ratio, ascending. The i-th is ratio^(i / (count - 1)), a product of roots
+/// of the ratio, one for each binary digit of the exponent, since std::pow differs between libraries.
 [[nodiscard]] inline std::vector<double> spread_edges(std::uint32_t count, double ratio) {
     constexpr int digits = 32;
     std::array<double, digits + 1> roots{};
@@ -89,7 +89,7 @@ inline constexpr auto motion_parameters =
     return edges;
 }
 
-/// A scene of boxes that is made as it is played. A kind moves what it holds and places the boxes of a frame.
+/// A scene of boxes that is generated frame by frame. A kind advances its state and places the boxes of a frame.
 class generated_boxes : public aabb::box_scene {
 public:
     [[nodiscard]] std::size_t objects() const final { return size_.objects; }
@@ -104,8 +104,8 @@ public:
     }
 
 protected:
-    /// @param bytes_each what the kind holds of an object
-    /// @param noun behind the name, where it is not one itself
+    /// @param bytes_each memory that the kind holds per object
+    /// @param noun follows the name in messages, unless the name is a noun itself
     generated_boxes(std::string_view name, const scene_size& size, std::uint64_t seed, double bytes_each,
                     std::string_view noun = " scene")
         : random_(seed), size_(size) {
@@ -116,7 +116,7 @@ protected:
 
     virtual void advance() {}
     virtual void place(std::span<aabb::box> boxes) = 0;
-    /// The number of the frame that is advanced to, or placed.
+    /// The index of the current frame, in `advance` and in `place`.
     [[nodiscard]] std::size_t frame() const { return played_ - 1; }
 
     random_source random_;
@@ -126,14 +126,14 @@ private:
     std::size_t played_ = 0;
 };
 
-/// Boxes each of which drifts with a point: where not said otherwise, a unit cube with its lowest corner there.
+/// Boxes that drift with points: by default, unit cubes with their lowest corner there.
 class drifting_boxes : public generated_boxes {
 protected:
-    /// @param further_bytes_each what the kind holds of an object beside its point
+    /// @param further_bytes_each memory that the kind holds per object besides its point
     drifting_boxes(std::string_view name, const scene_size& size, std::uint64_t seed, double further_bytes_each = 0)
         : generated_boxes(name, size, seed, drifting_points::bytes_each + further_bytes_each) {}
 
-    /// @param width of the cube (square, segment) that points drift in
+    /// @param width of the cube (square, segment) in which points drift
     /// @param extent, sides see `step_of`
     void drift(const motion_config& c, double width, double extent, const aabb::vec3d& sides, int axes = 3) {
         const double step = step_of(c, extent, sides);
@@ -142,7 +142,7 @@ protected:
     void drift(const motion_config& c, double width, double extent, double side) {
         drift(c, width, extent, {side, side, side});
     }
-    /// Unit cubes on the first `axes` axes, as close as `width_for` says.
+    /// Unit cubes that drift along the first `axes` axes, with the density of `width_for`.
     void drift(const motion_config& c, int axes = 3) {
         const double width = width_for(c.objects, axes);
         aabb::vec3d sides{};

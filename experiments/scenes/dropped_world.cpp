@@ -19,18 +19,18 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     world.bodies = {{}};
     const aabb::box bounds = aabb::bounds_of(world.meshes[1]);
     const double extent = longest_extent(bounds);
-    // A sphere that is pressed into a plane shares πRδ² with it, so its pressure p pushes as a spring of 2πRp does.
+    // A sphere at depth δ in a plane shares a volume of πRδ² with it, so a pressure p acts like a spring of 2πRp.
     const double spring = gravity / (c.depth * extent);  // for 1 kg
     const double girth = std::numbers::pi * extent;      // 2πR
     world.law = {contact_geometry::shared_volume, spring / girth, 2 * c.loss * std::sqrt(spring) / girth, 0};
     const std::uint32_t side = lattice_side(c.balls);
-    // In the middle of the floor.
-    const double beside = extent * gap * (side - 1) / 2;
-    const Eigen::Vector3d first = {-beside, -beside, extent * (c.height + 0.5)};
+    // The lattice is centred on the floor.
+    const double half_width = extent * gap * (side - 1) / 2;
+    const Eigen::Vector3d first = {-half_width, -half_width, extent * (c.height + 0.5)};
     random_source random(seed);
     for (std::uint32_t i = 0; i < c.balls; ++i) {
-        const Eigen::Vector3d off = {random.within(), random.within(), random.within()};
-        const Eigen::Vector3d place = (lattice_cell(i, side).reverse() * gap + off * perturbation) * extent + first;
+        const Eigen::Vector3d offset = {random.within(), random.within(), random.within()};
+        const Eigen::Vector3d place = (lattice_cell(i, side).reverse() * gap + offset * perturbation) * extent + first;
         const aabb::pose at = placed(centre_of(bounds), random_rotation(random), place);
         world.bodies.push_back(
             {.mesh = 1, .position = at.translation, .velocity = {0, 0, -c.speed}, .mass = 1, .rotation = at.rotation});

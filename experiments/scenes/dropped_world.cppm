@@ -6,15 +6,15 @@ import aabblab.stepping;
 
 export namespace aabblab {
 
-/// Balls in a cubic lattice above a floor, each a little off its place so that the lattice falls apart, and turned in a
-/// way of its own: SimBenchmark's 666 test (leggedrobotics/SimBenchmark), with meshes for spheres. Lengths are in
-/// longest extents of the ball, which are in metres.
+/// Balls in a cubic lattice above a floor, perturbed so that the lattice collapses, with random rotations:
+/// SimBenchmark's 666 test (leggedrobotics/SimBenchmark), with meshes instead of spheres. Lengths are relative to the
+/// longest extent of the ball, which is in metres.
 struct dropped_config {
     std::uint32_t balls = 216;
     double height = 0.5;   ///< of the lowest ball above the floor
-    double speed = 0;      ///< downwards at the beginning, m/s
-    double depth = 0.001;  ///< to which one ball's weight presses it into the floor: the less, the stiffer
-    double loss = 0;       ///< damping over the critical one of a ball on the floor
+    double speed = 0;      ///< initial, downwards, m/s
+    double depth = 0.001;  ///< of a ball that rests on the floor; less is stiffer
+    double loss = 0;       ///< damping over the critical damping of a ball on the floor
 };
 
 /// The floor is the first mesh, the ball the second.

@@ -1,6 +1,6 @@
-/// What makes a class a kind of scene. It has a name, a summary and parameters like a strategy, and is made from its
-/// configuration and a seed (a scene of boxes), or from its configuration, meshes and a seed (a scene of meshes). A
-/// kind that plays a file has no seed: it opens what its configuration names as `file`.
+/// Concepts of scene kinds. A kind has a name, a summary and parameters like a strategy, and is constructed from its
+/// configuration and a seed (boxes), or from its configuration, meshes and a seed (meshes). A kind that reads a file
+/// has no seed: it opens the `file` of its configuration.
 module aabblab.scenes:kind;
 
 import aabb.pipeline;
@@ -13,7 +13,7 @@ template <class S>
 concept BoxScene = aabb::Configurable<S> && std::derived_from<S, aabb::box_scene> &&
                    std::constructible_from<S, const aabb::config_of<S>&, std::uint64_t>;
 
-/// `default_meshes` are names for `make_mesh`; `most_meshes` is how many it can take.
+/// `default_meshes` are names for `make_mesh`; `most_meshes` limits their number.
 template <class S>
 concept MeshScene =
     aabb::Configurable<S> && std::derived_from<S, aabb::mesh_scene> &&
@@ -35,7 +35,7 @@ concept MeshFileScene = PlaysFile<S> && requires(const aabb::config_of<S>& confi
     { S::open(config, std::move(meshes)) } -> std::same_as<std::unique_ptr<aabb::mesh_scene>>;
 };
 
-/// Either of the two functions is null.
+/// Exactly one of the two functions is set; the other is null.
 struct scene_kind {
     scene_info info;
     std::unique_ptr<aabb::box_scene> (*make_boxes)(const scene_choice&) = nullptr;
@@ -49,7 +49,7 @@ struct scene_kind {
 [[nodiscard]] std::vector<aabb::mesh> meshes_named(const scene_choice& choice, std::span<const std::string> names,
                                                    std::size_t most);
 
-/// With the file where it was found.
+/// The configuration with the resolved path of its file.
 template <PlaysFile S>
 [[nodiscard]] aabb::config_of<S> with_file(const scene_choice& choice) {
     aabb::config_of<S> config = aabb::configured<S>(choice.settings);

@@ -25,19 +25,19 @@ bool is_shape(std::string_view name) {
 
 template <class... Shapes>
 aabb::mesh make_shape(aabb::type_list<Shapes...>, const aabb::strategy_choice& choice) {
-    aabb::mesh made;
-    const auto try_one = [&]<class Shape>(aabb::type_list<Shape>) {
+    aabb::mesh mesh;
+    const auto try_shape = [&]<class Shape>(aabb::type_list<Shape>) {
         if (Shape::name != choice.name) return;
         const auto config = aabb::configured<Shape>(choice.settings);
-        // A triangle's corners and half a vertex, twice: vectors grow by doubling.
+        // A triangle needs three indices and half a vertex; the factor 2 covers vectors that grow by doubling.
         require_memory(aabb::to_text(choice), 2.0 * config.triangles * (3 * 4 + 0.5 * sizeof(aabb::vec3f)));
-        made = Shape::make(config);
+        mesh = Shape::make(config);
     };
-    (try_one(aabb::type_list<Shapes>{}), ...);
-    return made;
+    (try_shape(aabb::type_list<Shapes>{}), ...);
+    return mesh;
 }
 
-/// Where a mesh of that name may be, in the order in which it is looked for.
+/// The paths at which a mesh may be found, in search order.
 std::array<std::filesystem::path, 3> places(std::string_view name, const std::filesystem::path& folder) {
     return {name, folder / name, data_folder() / name};
 }
@@ -48,7 +48,7 @@ bool is_there(std::string_view name, const std::filesystem::path& folder) {
                                [&](const auto& p) { return std::filesystem::exists(p, ignored); });
 }
 
-/// Names of what could have been meant: shapes and the meshes of the data folder.
+/// Candidates for the nearest name: shapes and the meshes of the data folder.
 std::vector<std::string> known_names() {
     std::vector<std::string> names;
     for (const shape_info& shape : shapes()) names.push_back(shape.name);
@@ -67,11 +67,11 @@ std::vector<std::string> known_names() {
 /// "NAME:order=BUILD", or "SHAPE:parameter=value,order=BUILD".
 struct ordered_name {
     std::string_view name;
-    std::optional<std::string_view> build;  ///< none where triangles stay as they stand
+    std::optional<std::string_view> build;  ///< empty if triangles keep their order
 };
 
-/// A file may have such a name itself.
-ordered_name taken_apart(std::string_view name, const std::filesystem::path& folder) {
+/// Splits a name, unless a file has the full name.
+ordered_name split_name(std::string_view name, const std::filesystem::path& folder) {
     constexpr std::string_view key = "order=";
     if (is_there(name, folder)) return {name, {}};
     for (std::size_t at = name.find(key); at != std::string_view::npos; at = name.find(key, at + 1)) {
@@ -88,13 +88,13 @@ ordered_name taken_apart(std::string_view name, const std::filesystem::path& fol
     return {name, {}};
 }
 
-loaded_mesh make_mesh_as_it_stands(std::string_view name, const std::filesystem::path& folder) {
+loaded_mesh make_unordered_mesh(std::string_view name, const std::filesystem::path& folder) {
     std::error_code ignored;
     for (const std::filesystem::path& file : places(name, folder))
         if (std::filesystem::is_regular_file(file, ignored)) return read_mesh(file);
     if (is_shape(name.substr(0, name.find(':')))) return {make_shape(shape_types{}, aabb::parse_strategy(name)), {}};
     if (std::filesystem::status(name, ignored).type() != std::filesystem::file_type::not_found)
-        return read_mesh(name);  // says what it is instead of a file
+        return read_mesh(name);  // fails, and reports what it is instead of a file
     throw aabb::input_error(aabb::unknown_name("mesh", name, known_names()) + " (a mesh is a file, here" +
                             (folder.empty() ? "" : ", in " + folder.string()) + " or in " + data_folder().string() +
                             ", where ./aabblab data puts some, or a shape)");
@@ -103,8 +103,8 @@ loaded_mesh make_mesh_as_it_stands(std::string_view name, const std::filesystem:
 }  // namespace
 
 std::span<const shape_info> shapes() {
-    static const std::vector<shape_info> all = infos_of(shape_types{});
-    return all;
+    static const std::vector<shape_info> infos = infos_of(shape_types{});
+    return infos;
 }
 
 std::filesystem::path data_folder() {
@@ -122,7 +122,7 @@ std::filesystem::path found_file(const std::filesystem::path& name, const std::f
 }
 
 std::string_view name_without_order(std::string_view name, const std::filesystem::path& folder) {
-    return taken_apart(name, folder).name;
+    return split_name(name, folder).name;
 }
 
 bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
@@ -131,13 +131,13 @@ bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
 }
 
 loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder) {
-    const auto [itself, build] = taken_apart(name, folder);
-    if (!build) return make_mesh_as_it_stands(name, folder);
+    const auto [plain_name, build] = split_name(name, folder);
+    if (!build) return make_unordered_mesh(name, folder);
     const aabb::strategy_choice choice{std::string(*build), {}};
     require_known(aabb::strategy_kind::build, choice);
-    loaded_mesh made = make_mesh_as_it_stands(itself, folder);
-    made.mesh = in_leaf_order(made.mesh, choice).ordered;
-    return made;
+    loaded_mesh loaded = make_unordered_mesh(plain_name, folder);
+    loaded.mesh = in_leaf_order(loaded.mesh, choice).ordered;
+    return loaded;
 }
 
 std::vector<aabb::mesh> meshes_named(const scene_choice& choice, std::span<const std::string> names, std::size_t most) {

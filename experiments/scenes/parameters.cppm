@@ -1,4 +1,4 @@
-/// Parameters that several kinds of scenes have.
+/// Parameters that several kinds of scenes share.
 module aabblab.scenes:parameters;
 
 import aabb.policy;
@@ -11,7 +11,7 @@ template <class Config>
     return aabb::integer_parameter{"frames", &Config::frames, 0U, 0x7ffffffeU, "frames after the first one"};
 }
 
-/// @param objects how many of what
+/// @param objects help text for the number of objects
 template <class Config>
 [[nodiscard]] constexpr auto size_parameters(std::string_view objects) {
     return std::tuple{aabb::integer_parameter{"objects", &Config::objects, 0U, 0x7fffffffU, objects},

@@ -1,8 +1,8 @@
 module;
 #include <Eigen/Geometry>
 
-/// What the kinds of scenes of meshes share: rotations in double, and what places a mesh with one. Products are written
-/// out where Eigen's round as the processor likes: quaternions, and matrices with vectors.
+/// Rotations and poses in double precision for scenes of meshes. Products of quaternions, and of matrices and vectors,
+/// are written out, since the rounding of Eigen's depends on the processor.
 module aabblab.scenes:posed_meshes;
 
 import aabb.eigen;
@@ -20,7 +20,7 @@ namespace aabblab {
     return Eigen::Quaterniond(q.coeffs() / std::sqrt(square_of(q)));
 }
 
-/// q after p.
+/// The rotation p followed by q.
 [[nodiscard]] inline Eigen::Quaterniond composed(const Eigen::Quaterniond& q, const Eigen::Quaterniond& p) {
     return normalised({q.w() * p.w() - q.x() * p.x() - q.y() * p.y() - q.z() * p.z(),
                        q.w() * p.x() + q.x() * p.w() + q.y() * p.z() - q.z() * p.y(),
@@ -28,13 +28,13 @@ namespace aabblab {
                        q.w() * p.z() + q.x() * p.y() - q.y() * p.x() + q.z() * p.w()});
 }
 
-/// By 2 atan(angle / 2), which is `angle` radians for small ones, about a unit axis; needs no sine.
+/// A rotation about a unit axis by 2 atan(angle / 2), which is about `angle` radians; it avoids the sine.
 [[nodiscard]] inline Eigen::Quaterniond turn(const Eigen::Vector3d& axis, double angle) {
     const double t = angle / 2;
     return normalised({1, t * axis[0], t * axis[1], t * axis[2]});
 }
 
-/// Evenly over all rotations.
+/// A rotation from the uniform distribution.
 [[nodiscard]] inline Eigen::Quaterniond random_rotation(random_source& random) {
     while (true) {
         const Eigen::Quaterniond q{random.within(), random.within(), random.within(), random.within()};
@@ -42,7 +42,7 @@ namespace aabblab {
     }
 }
 
-/// Turns a mesh about its centre (in the mesh's frame) and brings the centre to a place.
+/// The pose that rotates a mesh about its centre, given in its local frame, and moves the centre to `place`.
 [[nodiscard]] inline aabb::pose placed(const Eigen::Vector3d& centre, const Eigen::Quaterniond& q,
                                        const Eigen::Vector3d& place) {
     const Eigen::Matrix3d r = q.toRotationMatrix();
@@ -61,7 +61,7 @@ namespace aabblab {
     return double{b.max[k]} - double{b.min[k]};
 }
 
-/// Moves the mesh's box to the origin and scales its longest extent; each vertex is rounded to float once.
+/// Centres the mesh at the origin and scales its longest extent; each vertex is rounded to float once.
 inline void normalise(aabb::mesh& m, double wanted = 1) {
     const aabb::box bounds = aabb::bounds_of(m);
     const Eigen::Vector3d centre = centre_of(bounds);
@@ -69,13 +69,13 @@ inline void normalise(aabb::mesh& m, double wanted = 1) {
     if (extent == 0) return;
     for (aabb::vec3f& v : m.vertices) {
         Eigen::Vector3d scaled = (in_eigen(v) - centre) / extent * wanted;
-        // A vertex that no triangle uses may lie anywhere; it stays finite.
+        // A vertex that no triangle uses may lie anywhere, but must stay finite.
         for (double& x : scaled) x = std::fmin(std::fmax(x, -0x1p100), 0x1p100);
         v = in_float(scaled);
     }
 }
 
-/// A scene of meshes whose poses are made as it is played.
+/// A scene of meshes whose poses are generated frame by frame.
 class generated_meshes : public aabb::mesh_scene {
 public:
     [[nodiscard]] std::size_t frames() const final { return frames_; }
@@ -90,10 +90,10 @@ public:
 
 protected:
     /// @param frames after the first one
-    generated_meshes(std::uint32_t frames, std::vector<aabb::mesh> given, scaling each)
+    generated_meshes(std::uint32_t frames, std::vector<aabb::mesh> models, scaling scaled)
         : frames_(std::size_t{frames} + 1) {
-        meshes = std::move(given);
-        if (each == scaling::yes)
+        meshes = std::move(models);
+        if (scaled == scaling::yes)
             for (aabb::mesh& m : meshes) normalise(m);
     }
 

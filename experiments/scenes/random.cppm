@@ -2,8 +2,8 @@ module;
 #include <Eigen/Core>
 #include <random>
 
-/// Random numbers, points that drift by them and roots that are the same with every compiler and on every machine: the
-/// standard fixes the engine, not its distributions, and of functions only the square root is rounded alike everywhere.
+/// Random numbers, drifting points and roots that are identical with every compiler and on every machine: the standard
+/// specifies random engines but not distributions, and among functions only the square root is correctly rounded.
 module aabblab.scenes:random;
 
 import aabb.std;
@@ -23,7 +23,7 @@ public:
         return static_cast<std::uint32_t>((engine_() >> 32) * count >> 32);
     }
 
-    /// Evenly over the unit sphere; over the unit circle of the first two axes; along the first.
+    /// Uniform on the unit sphere; with 2 axes on the unit circle; with 1 axis one of its two directions.
     [[nodiscard]] Eigen::Vector3d direction(int axes = 3) {
         while (true) {
             Eigen::Vector3d p = Eigen::Vector3d::Zero();
@@ -59,18 +59,18 @@ private:
     return axes == 3 ? cube_root(volume) : axes == 2 ? std::sqrt(volume) : volume;
 }
 
-/// The way of a point in a frame; points have steps spread evenly over the range.
+/// The range of displacements per frame, in which the steps of points are uniformly distributed.
 struct step_range {
     double least;
     double most;
 };
 
-/// Points in the cube [0, width]^3, each on a straight line with a constant step a frame. The walls reflect; a
-/// hundredth of the points, drawn anew, change their direction every frame.
+/// Points that move through the cube [0, width]^3 on straight lines with constant steps. The walls reflect them, and a
+/// random hundredth of them changes direction every frame.
 class drifting_points {
 public:
     drifting_points() = default;
-    /// On the first `axes` axes only; the other coordinates stay 0.
+    /// Points move along the first `axes` axes; their other coordinates stay 0.
     drifting_points(std::uint32_t count, int axes, double width, step_range steps, random_source& random)
         : axes_(axes), width_(width > 0 ? width : 0) {
         points_.reserve(count);
@@ -87,7 +87,7 @@ public:
 
     void advance(random_source& random) {
         const auto count = static_cast<std::uint32_t>(points_.size());
-        // What is left of a hundredth is carried over, so that few objects turn as often as many do.
+        // The remainder is carried over, so that few points turn as often as many do.
         for (to_turn_ += count; to_turn_ >= 100; to_turn_ -= 100)
             points_[random.below(count)].direction = random.direction(axes_);
         for (point& p : points_)
@@ -106,7 +106,7 @@ private:
 
     void move(point& p, int k) const {
         if (width_ == 0) return;
-        // Unfolded, the way between two walls repeats after twice the width.
+        // The unfolded path between two walls has a period of twice the width.
         double along = std::fmod(p.at[k] + p.step * p.direction[k], 2 * width_);
         if (along < 0) along += 2 * width_;
         if (along > width_) {

@@ -8,10 +8,10 @@ namespace aabblab {
 namespace {
 
 const scene_kind& kind_named(const std::string& name) {
-    const auto found = std::ranges::find(kinds(), name, [](const scene_kind& k) { return k.info.name; });
-    if (found == kinds().end())
+    const auto kind = std::ranges::find(kinds(), name, [](const scene_kind& k) { return k.info.name; });
+    if (kind == kinds().end())
         throw aabb::input_error(aabb::unknown_name("scene", name, scene_names(), "aabblab list scenes"));
-    return *found;
+    return *kind;
 }
 
 void require_seed(const scene_info& info, const scene_choice& choice) {
@@ -23,9 +23,9 @@ void require_seed(const scene_info& info, const scene_choice& choice) {
 
 std::span<const scene_info> scene_kinds() {
     static const std::vector<scene_info> infos = [] {
-        std::vector<scene_info> all;
-        for (const scene_kind& k : kinds()) all.push_back(k.info);
-        return all;
+        std::vector<scene_info> list;
+        for (const scene_kind& k : kinds()) list.push_back(k.info);
+        return list;
     }();
     return infos;
 }
@@ -59,7 +59,7 @@ double mean_spacing(const aabb::vec3d& sides, std::size_t objects) {
 
 std::string settings_text(const scene_choice& scene) {
     std::string text;
-    const auto add = [&](const std::string& one) { text += (text.empty() ? "" : " ") + one; };
+    const auto add = [&](const std::string& part) { text += (text.empty() ? "" : " ") + part; };
     for (const aabb::setting& s : scene.settings) add(s.name + "=" + s.value);
     std::string meshes;
     for (const std::string& mesh : scene.meshes) meshes += (meshes.empty() ? "" : "+") + mesh;

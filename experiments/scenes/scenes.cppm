@@ -1,4 +1,4 @@
-/// Scenes by name: boxes or meshes that move, the same for the same seed on every machine, or as a file says.
+/// Scenes by name: moving boxes or meshes that a seed reproduces on every machine, or that are read from a file.
 export module aabblab.scenes;
 
 import aabb.pipeline;
@@ -17,18 +17,18 @@ export namespace aabblab {
 [[nodiscard]] bool has_meshes(const scene_choice& scene);
 [[nodiscard]] std::vector<std::string> scene_names();
 
-/// @throws aabb::input_error on an unknown kind, parameter or value, on meshes for a scene of boxes, on a seed where
-/// there is none and the other way round, and on a file that cannot be played.
+/// @throws aabb::input_error on an unknown kind, parameter or value, on meshes for a scene of boxes, on a superfluous
+/// or missing seed, and on an invalid file.
 [[nodiscard]] std::unique_ptr<aabb::box_scene> make_box_scene(const scene_choice& choice);
 [[nodiscard]] std::unique_ptr<aabb::mesh_scene> make_mesh_scene(const scene_choice& choice);
 
-/// Whether a mesh has this name: a file, as given, in `folder` or in the data folder, or a shape.
+/// Whether this is the name of a mesh: a file (as given, in `folder` or in the data folder) or a shape.
 [[nodiscard]] bool is_mesh(std::string_view name, const std::filesystem::path& folder);
-/// The name before ":order=BUILD", if that stands there: that of a file or a shape.
+/// The name of the file or shape, without a suffix ":order=BUILD".
 [[nodiscard]] std::string_view name_without_order(std::string_view name, const std::filesystem::path& folder = {});
-/// The mesh of that name, looked for in this order. With ":order=BUILD" behind it, or ",order=BUILD" among a shape's
-/// parameters, its triangles stand in the order of the leaves that this build makes.
-/// @throws aabb::input_error on a name that is neither a file nor a shape, or no build, with the nearest one.
+/// Finds a mesh by name, in the order of `is_mesh`. With the suffix ":order=BUILD", or ",order=BUILD" after parameters
+/// of a shape, its triangles are sorted in the order of the leaves of a tree with this build.
+/// @throws aabb::input_error on an unknown file, shape or build, with the nearest name.
 [[nodiscard]] loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder = {});
 
 /// A generated mesh as `aabblab list` shows it.
@@ -39,7 +39,7 @@ struct shape_info {
 };
 [[nodiscard]] std::span<const shape_info> shapes();
 
-/// Where `aabblab data` puts real meshes: AABBLAB_DATA in the environment, else experiments/data of the source tree.
+/// The folder of downloaded meshes: AABBLAB_DATA in the environment, else experiments/data of the source tree.
 [[nodiscard]] std::filesystem::path data_folder();
 
 }  // namespace aabblab

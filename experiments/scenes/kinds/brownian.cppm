@@ -4,8 +4,8 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes that drift in a cube. As in Broadmark's Brownian scenes, they move at up to 0.75 of the world's side a
-/// second, a frame is 1/30 s, and one hundredth of them change direction every frame.
+/// Unit cubes that drift in a cube. As in Broadmark's Brownian scenes, their speed is up to 0.75 of the world's side
+/// per second, a frame takes 1/30 s, and one hundredth of them change direction every frame.
 class brownian final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "brownian";

@@ -7,9 +7,9 @@ import :boxes;
 
 namespace aabblab {
 
-/// Cubes whose number, motion, density, sizes and clustering are set one by one, for maps of what serves which scene.
-/// They lie in clouds, cubes of equal width in cells of a lattice, and drift each within its own; object i lies in
-/// cloud i modulo their number. Parked cubes, the first ones, rest in one more cloud.
+/// Cubes with independent parameters of number, motion, density, sizes and clustering, for maps of the fastest
+/// strategies. They drift within clouds of equal width in the cells of a lattice; object i lies in cloud i modulo their
+/// number. The first cubes may be parked: they rest in an additional cloud.
 class cloud final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "cloud";
@@ -19,11 +19,11 @@ public:
     struct config : motion_config {
         double moving = 1;
         double density = 0.1;
-        /// Edge of the largest cube over that of the smallest, the others between them as in `mixed_sizes`.
+        /// Edge of the largest cube over that of the smallest, with sizes distributed as in `mixed_sizes`.
         double ratio = 1;
         std::uint32_t clouds = 1;
         double apart = 4;
-        /// Share of the cubes, as games keep them out of sight until they need them.
+        /// The share of parked cubes, which imitate objects that games keep out of sight until they need them.
         double parked = 0;
     };
     static constexpr auto parameters = std::tuple_cat(
@@ -56,13 +56,13 @@ public:
         drift(c, width, sum / std::max(c.objects, 1U), width * cube_root(clouds));
         const auto resting = std::max(static_cast<std::uint32_t>((1 - c.moving) * c.objects), parked_);
         for (std::uint32_t i = 0; i < resting; ++i) resting_.push_back(points_[i]);
-        // So that an object's number does not tell its size.
+        // Shuffled, so that the size of an object does not depend on its index.
         for (std::size_t i = edges_.size(); i > 1; --i)
             std::swap(edges_[i - 1], edges_[random_.below(static_cast<std::uint32_t>(i))]);
     }
 
 private:
-    /// In cells of the smallest lattice that has enough of them, one after the other, each at a random place.
+    /// Places each cloud at a random position in its cell of the smallest sufficient lattice.
     void place_clouds(std::uint32_t clouds, double width, double cell) {
         const std::uint32_t side = lattice_side(clouds);
         for (std::uint32_t i = 0; i < clouds; ++i)
@@ -75,7 +75,7 @@ private:
     }
 
     std::vector<double> edges_;
-    std::uint32_t clouds_;                  // of those that are not parked
+    std::uint32_t clouds_;                  // of cubes that are not parked
     std::uint32_t parked_;                  // the first objects
     std::vector<Eigen::Vector3d> corners_;  // by cloud
     std::vector<Eigen::Vector3d> resting_;  // of the first objects, in their cloud

@@ -7,8 +7,8 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes in tight clusters far apart; object i drifts in cluster i modulo their number. Each cluster is a cube at
-/// a random place in the middle of a cell of its own, eight times as wide.
+/// Unit cubes in dense, distant clusters; object i drifts in cluster i modulo their number. Each cluster is a cube at a
+/// random position near the middle of its own lattice cell, which is eight times as wide.
 class clustered final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "clustered";
@@ -25,7 +25,7 @@ public:
     clustered(const config& c, std::uint64_t seed) : drifting_boxes(name, c, seed) {
         const double width = width_for((c.objects + c.clusters - 1) / c.clusters, 3);
         place_clusters(c.clusters, width + 1);
-        // The world is what the clusters span.
+        // The world is the bounding box of the clusters.
         Eigen::Vector3d least = corners_.front();
         Eigen::Vector3d most = corners_.front();
         for (const Eigen::Vector3d& corner : corners_) {
@@ -38,7 +38,7 @@ public:
     }
 
 private:
-    /// Takes cells of the smallest lattice that has enough of them, every choice of cells equally likely.
+    /// Selects a uniformly random subset of the cells of the smallest sufficient lattice.
     void place_clusters(std::uint32_t wanted, double width) {
         const std::uint32_t side = lattice_side(wanted);
         for (std::uint32_t cell = 0, cells = side * side * side; corners_.size() < wanted; ++cell) {

@@ -8,8 +8,8 @@ import :posed_meshes;
 
 namespace aabblab {
 
-/// Two meshes that overlap: the first is rigid and turns, through the second a wave runs, so that every vertex of it
-/// moves in every frame and its tree must be fitted anew. Rotations, offset and wave come from the seed.
+/// Two overlapping meshes: the first is rigid and rotates; a wave runs through the second, so that all of its vertices
+/// move in every frame and its tree must be refitted. Rotations, offset and wave depend on the seed.
 class deforming final : public generated_meshes {
 public:
     static constexpr std::string_view name = "deforming";
@@ -31,9 +31,9 @@ public:
                                "of the wave, over the extent of the mesh that it runs through"},
         normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
-    deforming(const config& c, std::vector<aabb::mesh> given, std::uint64_t seed)
-        : generated_meshes(c.frames, std::move(given), c.normalise) {
-        // Alone, a mesh meets a copy of itself.
+    deforming(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
+        : generated_meshes(c.frames, std::move(models), c.normalise) {
+        // A single mesh is paired with a copy of itself.
         if (meshes.size() == 1) meshes.push_back(meshes.front());
         mesh_of = {0, 1};
         const aabb::box rigid = aabb::bounds_of(meshes[0]);
@@ -61,12 +61,12 @@ private:
         poses = {placed(centre_, rotation_, place_), standing_};
     }
 
-    /// Two periods over the mesh's extent, after so many periods in time.
+    /// Applies a wave of two periods over the extent of the mesh; time is in periods.
     void wave(double time) {
         for (std::size_t v = 0; v < rest_.size(); ++v) {
             const Eigen::Vector3d at = in_eigen(rest_[v]);
-            const double by = amplitude_ * on_circle(2 * dot(along_, at) / extent_ + time).sin;
-            meshes[1].vertices[v] = in_float(at + push_ * by);
+            const double offset = amplitude_ * on_circle(2 * dot(along_, at) / extent_ + time).sin;
+            meshes[1].vertices[v] = in_float(at + push_ * offset);
         }
     }
 

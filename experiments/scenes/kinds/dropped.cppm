@@ -1,5 +1,5 @@
 module;
-// Beside Eigen's headers, which a partition has, clang 19 does not see that of aabb.std.
+// In a partition with Eigen's headers, clang 19 does not see the one of aabb.std.
 #include <tuple>
 
 module aabblab.scenes:dropped;
@@ -10,8 +10,8 @@ import :posed_meshes;
 
 namespace aabblab {
 
-/// Balls that fall on a floor and on each other, stepped in time by semi-implicit Euler: what is found in one frame
-/// moves them to the next. The first mesh is the floor, the second the ball.
+/// Balls that fall on a floor and on each other, integrated by semi-implicit Euler: the contacts of each frame
+/// determine the motion to the next. The first mesh is the floor, the second the ball.
 class dropped final : public generated_meshes {
 public:
     static constexpr std::string_view name = "dropped";
@@ -42,8 +42,8 @@ public:
         aabb::number_parameter{"loss", &config::loss, 0.0, 1e6, "damping over the critical one", true},
         normalise_parameter<config>("scale the ball to a longest extent of 1")};
 
-    dropped(const config& c, std::vector<aabb::mesh> given, std::uint64_t seed)
-        : generated_meshes(c.frames, std::move(given), scaling::no), step_(c.step) {
+    dropped(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
+        : generated_meshes(c.frames, std::move(models), scaling::no), step_(c.step) {
         if (meshes.size() != 2) throw aabb::input_error("dropped needs two meshes: a floor and a ball");
         require_memory("dropped with " + std::to_string(c.balls) + " balls",
                        c.balls * (sizeof(body) + sizeof(aabb::pose) + 9 * sizeof(double) + sizeof(std::uint32_t)));
@@ -58,7 +58,7 @@ public:
 
     void take_contacts(std::span<const aabb::contact> contacts) override {
         dynamics_.accelerate(state_.position, state_.velocity, contacts, acceleration_);
-        // The first frame is where they begin; the first step is with the velocity there.
+        // The first step uses the initial velocity, which contacts of the first frame do not change.
         if (played() == 1) return;
         for (std::size_t i = 0; i < state_.velocity.size(); ++i) state_.velocity[i] += step_ * acceleration_[i];
     }

@@ -7,8 +7,8 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes that fill a cube of their own volume, overlap about eight others each, and creep outwards; after a third
-/// of the frames they fly apart, and in the last third they stand still. What serves one third does not serve the next.
+/// Unit cubes that fill a cube of their total volume, overlap about eight others each, and creep outwards; after a
+/// third of the frames they fly apart, and in the last third they rest. Each third favours other strategies.
 class explosion final : public generated_boxes {
 public:
     static constexpr std::string_view name = "explosion";
@@ -16,7 +16,7 @@ public:
         "unit cubes heaped in a cube that creep outwards, then fly apart, then stand still, a third of the frames each";
 
     struct config : scene_size {
-        /// How far a cube moves in a frame while it flies, in edges; before, a hundredth of that.
+        /// The displacement of a flying cube per frame, in edges; a creeping cube moves a hundredth of it.
         double displacement = 0.5;
     };
     static constexpr auto parameters =

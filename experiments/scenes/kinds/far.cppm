@@ -7,7 +7,7 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes far from the origin, where floats lie far apart: different ends become equal, and cubes apart touch.
+/// Unit cubes far from the origin, where floats are coarse: different bounds become equal, and separate cubes touch.
 class far final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "far";

@@ -7,15 +7,15 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes that are released at rest above a floor, fall along z and bounce, losing half their speed each time, and
-/// pass through one another. The world is ten edges high and so wide that each overlaps four others on the floor.
+/// Unit cubes that are released at rest above a floor, fall along z, lose half their speed at each bounce, and pass
+/// through each other. The world is ten edges high and so wide that each cube overlaps four others on the floor.
 class free_fall final : public generated_boxes {
 public:
     static constexpr std::string_view name = "free_fall";
     static constexpr std::string_view summary =
         "unit cubes released above a floor, which fall along z, bounce with losses and gather at the floor";
 
-    /// The displacement is that of a box from the greatest height in the frame in which it meets the floor.
+    /// The displacement is that of a box from the greatest height in the frame of its first impact.
     struct config : motion_config {
         config() {
             frames = 60;
@@ -36,10 +36,10 @@ public:
 private:
     struct falling_box {
         Eigen::Vector3d corner;
-        double speed = 0;  // upwards, a frame
+        double speed = 0;  // upwards, per frame
     };
     static constexpr double height = 10;
-    static constexpr double kept = 0.5;  // of the speed, by a bounce
+    static constexpr double kept = 0.5;  // share of the speed after a bounce
 
     void advance() override {
         for (falling_box& b : boxes_) fall(b);
@@ -54,14 +54,14 @@ private:
             return;
         }
         const double impact = std::sqrt(b.speed * b.speed + 2 * gravity_ * z);
-        const double left = 1 - (b.speed + impact) / gravity_;  // of the frame
+        const double remaining = 1 - (b.speed + impact) / gravity_;  // share of the frame
         const double bounced = kept * impact;
         if (2 * bounced < gravity_) {
-            // What would be back within a frame stays down.
+            // A box that would return within a frame comes to rest.
             z = b.speed = 0;
         } else {
-            z = left * (bounced - gravity_ * left / 2);
-            b.speed = bounced - gravity_ * left;
+            z = remaining * (bounced - gravity_ * remaining / 2);
+            b.speed = bounced - gravity_ * remaining;
         }
     }
 

@@ -7,8 +7,8 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes whose centres lie on a sphere and move along great circles of it. Nearly all of their world is empty, and
-/// on every axis as many lie in the middle as at the ends.
+/// Unit cubes whose centres move along great circles of a sphere. Nearly all of their world is empty, and projections
+/// on every axis are uniformly distributed.
 class hollow_sphere final : public generated_boxes {
 public:
     static constexpr std::string_view name = "hollow_sphere";
@@ -19,12 +19,12 @@ public:
     static constexpr auto parameters = motion_parameters;
 
     hollow_sphere(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(point)) {
-        // A cube overlaps those whose centres the sphere has in the cube of edge 2 around its own: an area of 4.767 in
-        // the mean over the directions in which the sphere may pass. So each overlaps two others on average.
+        // A cube overlaps those with centres in the cube of edge 2 around its own, in which the sphere has an area of
+        // 4.767, averaged over the direction of its normal. With this radius each overlaps two others on average.
         radius_ = std::sqrt(c.objects * 4.767 / (8 * pi));
         const double side = 2 * radius_ + 1;
         const double step = step_of(c, 1, {side, side, side});
-        // Half the angle of a step has this sine; none is longer than the sphere is wide.
+        // The sine of half the angle of a step, which is at most the diameter of the sphere.
         const double sine = radius_ > 0 ? std::min(1.0, step / (2 * radius_)) : 0;
         along_ = 1 - 2 * sine * sine;
         across_ = 2 * sine * std::sqrt(1 - sine * sine);
@@ -38,7 +38,7 @@ public:
 private:
     static constexpr double pi = 3.141592653589793;
 
-    /// On the unit sphere, with the direction in which it moves, which is orthogonal to it.
+    /// A point on the unit sphere with its tangential direction of motion.
     struct point {
         Eigen::Vector3d at;
         Eigen::Vector3d direction;
@@ -48,15 +48,15 @@ private:
 
     Eigen::Vector3d tangent_at(const Eigen::Vector3d& at) {
         while (true) {
-            const Eigen::Vector3d any = random_.direction();
-            const Eigen::Vector3d across = any - at * dot(any, at);
+            const Eigen::Vector3d direction = random_.direction();
+            const Eigen::Vector3d across = direction - at * dot(direction, at);
             if (dot(across, across) > 1e-3) return unit(across);
         }
     }
 
     void advance() override {
         const auto count = static_cast<std::uint32_t>(points_.size());
-        // As points that drift elsewhere do.
+        // A hundredth of the points turns, as in `drifting_points`.
         for (to_turn_ += count; to_turn_ >= 100; to_turn_ -= 100) {
             point& turned = points_[random_.below(count)];
             turned.direction = tangent_at(turned.at);

@@ -7,9 +7,9 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes side by side on an integer lattice: each touches its neighbours, corners included, without a gap, so
-/// every answer hangs on closed comparisons, and sorted lists are full of ties. All move along the diagonal by the same
-/// step; coordinates that are equal stay equal, whatever the step is rounded to.
+/// Unit cubes side by side on an integer lattice: each touches its neighbours, corners included, so that results depend
+/// on closed comparisons, and sorted lists are full of ties. All move along the diagonal by the same step, so that
+/// equal coordinates stay equal in spite of rounding.
 class lattice final : public generated_boxes {
 public:
     static constexpr std::string_view name = "lattice";

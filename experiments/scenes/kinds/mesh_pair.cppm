@@ -7,8 +7,8 @@ import :posed_meshes;
 
 namespace aabblab {
 
-/// Two meshes: the first stands still with its centre at the origin; the second passes through it on a straight line,
-/// turning about its own centre, unless distance and turn are 0. Line, axis and first rotation come from the seed.
+/// Two meshes: the first rests with its centre at the origin; the second passes through it on a straight line, while it
+/// rotates about its own centre. With distance and turn 0 it rests too. Line, axis and first rotation depend on the seed.
 class mesh_pair final : public generated_meshes {
 public:
     static constexpr std::string_view name = "mesh_pair";
@@ -19,7 +19,7 @@ public:
     struct config {
         std::uint32_t frames = 20;
         double distance = 0.5;
-        /// Of the second mesh a frame, in radians (small ones; at most half a turn).
+        /// Rotation of the second mesh per frame, in radians if small; see `turn`.
         double turn = 0.1;
         scaling normalise = scaling::yes;
     };
@@ -30,8 +30,8 @@ public:
         aabb::number_parameter{"turn", &config::turn, 0.0, 1e6, "of the second mesh in a frame, in radians", true},
         normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
-    mesh_pair(const config& c, std::vector<aabb::mesh> given, std::uint64_t seed)
-        : generated_meshes(c.frames, std::move(given), c.normalise), turns_(c.turn > 0) {
+    mesh_pair(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
+        : generated_meshes(c.frames, std::move(models), c.normalise), turns_(c.turn > 0) {
         mesh_of = {0, static_cast<std::uint32_t>(meshes.size() - 1)};
         const aabb::box first = aabb::bounds_of(meshes.front());
         const aabb::box second = aabb::bounds_of(meshes.back());
@@ -49,9 +49,9 @@ private:
     }
 
     void place(std::size_t frame, std::vector<aabb::pose>& poses) override {
-        // From the start, through the origin, to its mirror image.
-        const double left = frames() > 1 ? 1 - 2 * static_cast<double>(frame) / static_cast<double>(frames() - 1) : 1;
-        poses = {standing_, placed(centre_, rotation_, start_ * left)};
+        // The path leads from the start through the origin to the mirror image of the start.
+        const double share = frames() > 1 ? 1 - 2 * static_cast<double>(frame) / static_cast<double>(frames() - 1) : 1;
+        poses = {standing_, placed(centre_, rotation_, start_ * share)};
     }
 
     aabb::pose standing_;

@@ -8,9 +8,9 @@ import :posed_meshes;
 
 namespace aabblab {
 
-/// Many meshes that drift and turn in a cube; object i is mesh i modulo the number of meshes. Unless told otherwise,
-/// each mesh is scaled to a longest extent of 1, since models come in units of their own. Where some objects are huge
-/// they are the first, and of the first mesh; the others are the other meshes in turn, or the same where there is one.
+/// Many meshes that drift and rotate in a cube; object i is mesh i modulo the number of meshes. By default, each mesh
+/// is scaled to a longest extent of 1, since models have different units. Huge objects come first and use the first
+/// mesh; the others alternate between the other meshes, or use the same if there is only one.
 class mesh_swarm final : public generated_meshes {
 public:
     static constexpr std::string_view name = "mesh_swarm";
@@ -25,7 +25,7 @@ public:
         double density = 0.5;
         double displacement = 0.05;
         scaling normalise = scaling::yes;
-        /// How many objects are huge, and their longest extent over the side of the world, which the others decide.
+        /// The number of huge objects, and their longest extent over the side of the world, which the others determine.
         std::uint32_t huge = 0;
         double span = 0.5;
     };
@@ -41,14 +41,14 @@ public:
             aabb::number_parameter{"span", &config::span, 0.0, 1.0,
                                    "longest extent of a huge object over the side of the world"}});
 
-    mesh_swarm(const config& c, std::vector<aabb::mesh> given, std::uint64_t seed)
-        : generated_meshes(c.frames, std::move(given), c.normalise), random_(seed) {
+    mesh_swarm(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
+        : generated_meshes(c.frames, std::move(models), c.normalise), random_(seed) {
         require_memory(
             "a mesh_swarm of " + std::to_string(c.objects) + " objects",
             c.objects * (drifting_points::bytes_each + sizeof(spin) + sizeof(aabb::pose) + sizeof(std::uint32_t)));
         const std::uint32_t huge = std::min(c.huge, c.objects);
         const std::uint32_t others = c.objects - huge;
-        const std::uint32_t first = huge > 0 ? 1 : 0;  // mesh of the others
+        const std::uint32_t first = huge > 0 ? 1 : 0;  // the first mesh of the others
         if (meshes.size() == first) meshes.push_back(meshes[0]);
         std::vector<double> extents;
         for (const aabb::mesh& m : meshes) extents.push_back(longest_extent(aabb::bounds_of(m)));
@@ -87,7 +87,7 @@ private:
     void place(std::size_t, std::vector<aabb::pose>& poses) override {
         poses.resize(spins_.size());
         for (std::size_t i = 0; i < poses.size(); ++i) {
-            // The centre keeps half an extent from the walls of the world, which begins at the origin.
+            // The world begins at the origin, and centres keep half an extent from its walls.
             const bool is_huge = i < huge_.size();
             const Eigen::Vector3d& point = is_huge ? huge_[i] : points_[i - huge_.size()];
             const double wall = (is_huge ? huge_extent_ : extent_) / 2;
@@ -97,11 +97,11 @@ private:
 
     struct spin {
         Eigen::Quaterniond at;
-        Eigen::Quaterniond by;  // a frame
+        Eigen::Quaterniond by;  // per frame
     };
 
     random_source random_;
-    double extent_ = 0;  // mean, of objects that are not huge
+    double extent_ = 0;  // mean over objects that are not huge
     double huge_extent_ = 0;
     std::vector<Eigen::Vector3d> centres_;  // by mesh
     drifting_points points_;

@@ -7,8 +7,8 @@ import :boxes;
 
 namespace aabblab {
 
-/// Cubes of very different sizes, evenly spread in the logarithm: as many between 1 and 10 as between 10 and 100.
-/// Object i is the i-th in size. The world lies around the origin, where floats are finest.
+/// Cubes of very different sizes in geometric progression: equally many between 1 and 10 and between 10 and 100. Object
+/// i is the i-th in size. The world is centred at the origin, where floats have the best resolution.
 class mixed_sizes final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "mixed_sizes";

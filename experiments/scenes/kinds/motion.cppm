@@ -6,7 +6,7 @@ import aabblab.files;
 
 namespace aabblab {
 
-/// Meshes of the user's own that a file moves; object i is mesh i modulo the number of meshes.
+/// Meshes of the user with poses from a file; object i is mesh i modulo the number of meshes.
 struct motion {
     static constexpr std::string_view name = "motion";
     static constexpr std::string_view summary = "meshes, which must be named, at the poses of a motion file";

@@ -7,7 +7,7 @@ import :boxes;
 
 namespace aabblab {
 
-/// Boxes that are thin on two axes; object i is long on axis i modulo 3. Cells that fit one axis do not fit the others.
+/// Boxes that are thin on two axes; object i is long on axis i modulo 3. No cell size of a grid fits all axes.
 class needles final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "needles";
@@ -27,8 +27,8 @@ public:
     }
 
 private:
-    /// The width in which each needle overlaps two others on average: the centres of two differ on every axis by half
-    /// the sum of their edges at most, in a volume of 8 l where they are long on one axis, of 2 (l + 1)^2 where not.
+    /// The width in which each needle overlaps two others on average: on every axis the centres of an overlapping pair
+    /// differ by at most half the sum of the edges: a volume of 8 l for parallel needles, of 2 (l + 1)^2 for others.
     static double width_around(const config& c) {
         const double volume = (8 * c.length + 4 * (c.length + 1) * (c.length + 1)) / 3;
         return cube_root(c.objects * volume / 2);
@@ -37,9 +37,9 @@ private:
     [[nodiscard]] aabb::box box_at(const Eigen::Vector3d& centre, std::size_t i) const override {
         aabb::box b{};
         for (int k = 0; k < 3; ++k) {
-            const double reach = (i % 3 == static_cast<std::size_t>(k) ? length_ : 1) / 2;
-            b.min[k] = static_cast<float>(centre[k] - reach);
-            b.max[k] = static_cast<float>(centre[k] + reach);
+            const double half = (i % 3 == static_cast<std::size_t>(k) ? length_ : 1) / 2;
+            b.min[k] = static_cast<float>(centre[k] - half);
+            b.max[k] = static_cast<float>(centre[k] + half);
         }
         return b;
     }

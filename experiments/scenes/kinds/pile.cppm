@@ -7,7 +7,7 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes heaped on a floor: their lowest corners fill a pyramid half as high as it is wide. They only jiggle.
+/// Jiggling unit cubes piled on a floor: their lowest corners fill a pyramid half as high as it is wide.
 class pile final : public generated_boxes {
 public:
     static constexpr std::string_view name = "pile";
@@ -50,13 +50,13 @@ private:
         }
     }
 
-    /// A box overlaps those whose corners lie in the cube of volume 8 around its own, so far as this is in the heap,
-    /// whose volume is 4/3 height^3. The share that is in it follows from the height, so that they are found in turns.
+    /// A box overlaps those whose corners lie in the cube of volume 8 around its own, as far as this cube is in the
+    /// heap of volume 4/3 height^3. That share depends on the height, so that both are found by fixed-point iteration.
     double height_for(const config& c) {
         if (c.objects < 2) return 1;
         double height = 0;
         double share = 1;
-        for (int turn = 0; turn < 10; ++turn) {
+        for (int iteration = 0; iteration < 10; ++iteration) {
             height = cube_root(6 * share * (c.objects - 1) / c.neighbours);
             if (height < 1) return 1;
             share = share_in_heap(height);
@@ -74,7 +74,7 @@ private:
         return static_cast<double>(inside) / samples;
     }
 
-    /// Of the two ways along a random line a box takes the one that leads nearer home, and it bounces off the floor.
+    /// A box moves along a random line, in the direction that leads nearer home, and bounces off the floor.
     void advance() override {
         for (jiggling_box& b : boxes_) {
             const Eigen::Vector3d direction = random_.direction();

@@ -7,8 +7,8 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes that come and go, whoever is there drifting. Those that are absent are points on a lattice below the
-/// world, as far from one another as objects are in it, so that ignoring absence costs what it should.
+/// Drifting unit cubes that appear and disappear. Absent ones are points on a lattice below the world with the mean
+/// spacing of objects, so that a strategy that ignores absence has a realistic cost.
 class population final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "population";

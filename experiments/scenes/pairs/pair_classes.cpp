@@ -16,11 +16,11 @@ struct pair {
     triangle b;
 };
 
-/// The numbers that a pair is rounded to.
+/// The floating-point format to which a pair is rounded.
 struct format {
     double smallest;  ///< denormal
     double largest;
-    double step;  ///< from 1 to the next greater number
+    double step;  ///< from 1 to the next greater number: the machine epsilon
 };
 template <class Real>
 constexpr format format_of{double{std::numeric_limits<Real>::denorm_min()}, double{std::numeric_limits<Real>::max()},
@@ -41,14 +41,14 @@ pair any_pair(random_source& random) {
     return {a, any_triangle(random)};
 }
 
-/// In the plane of a triangle, in it or near it.
+/// A point in the plane of a triangle, inside or near it.
 Vector3d near_triangle(random_source& random, const triangle& t) {
     const double u = 2 * random.unit() - 0.5;
     const double v = 2 * random.unit() - 0.5;
     return t[0] + (t[1] - t[0]) * u + (t[2] - t[0]) * v;
 }
 
-/// Whole numbers from 0 to `most`.
+/// A point with integer coordinates from 0 to `most`.
 Vector3d lattice_point(random_source& random, std::uint32_t most) {
     const auto coordinate = [&] { return static_cast<double>(random.below(most + 1)); };
     // Braces are evaluated from left to right.
@@ -62,7 +62,7 @@ pair lattice_pair(random_source& random, std::uint32_t most) {
     return {a, lattice_triangle(random, most)};
 }
 
-/// The other triangle lies in the plane of the first, off it by what rounding and a step of the last place do.
+/// The second triangle lies in the plane of the first, up to rounding and one unit in the last place.
 pair near_coplanar(random_source& random, const format& f) {
     pair p = any_pair(random);
     for (Vector3d& corner : p.b) {
@@ -98,7 +98,7 @@ pair shared_edge(random_source& random, const format&) {
     return p;
 }
 
-/// In one plane z = m x + n y of whole numbers, which nothing rounds.
+/// Both lie in a plane z = m x + n y with integer coordinates, which are exact.
 pair skew_coplanar(random_source& random, const format&) {
     const double m = static_cast<double>(random.below(7)) - 3;
     const double n = static_cast<double>(random.below(7)) - 3;
@@ -150,12 +150,12 @@ pair huge(random_source& random, const format& f) {
     return changed(any_pair(random), [&](const Vector3d& p) -> Vector3d { return p * f.largest; });
 }
 
-/// A hundred in size, a million away: floats there are a sixteenth apart.
+/// Size 100 at a distance of a million, where floats have a spacing of 1/16.
 pair far(random_source& random, const format&) {
     return changed(any_pair(random), [](const Vector3d& p) -> Vector3d { return p * 100 + Vector3d::Constant(1e6); });
 }
 
-/// The other triangle is up to a million times as large, or as small, about a point of the first.
+/// The second triangle is up to a million times larger or smaller, and close to the first.
 pair mixed_magnitudes(random_source& random, const format&) {
     pair p = any_pair(random);
     const Vector3d meeting = near_triangle(random, p.a);
@@ -195,19 +195,19 @@ constexpr std::array<pair_class, 16> classes{{
 
 template <class Real>
 aabb::triangle3<Real> rounded(const triangle& t) {
-    aabb::triangle3<Real> made{};
+    aabb::triangle3<Real> result{};
     for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) made[i][k] = static_cast<Real>(t[static_cast<std::size_t>(i)][k]);
-    return made;
+        for (int k = 0; k < 3; ++k) result[i][k] = static_cast<Real>(t[static_cast<std::size_t>(i)][k]);
+    return result;
 }
 
 }  // namespace
 
 std::span<const pair_class_info> pair_classes() {
     static const std::vector<pair_class_info> infos = [] {
-        std::vector<pair_class_info> all;
-        for (const pair_class& c : classes) all.push_back(c.info);
-        return all;
+        std::vector<pair_class_info> list;
+        for (const pair_class& c : classes) list.push_back(c.info);
+        return list;
     }();
     return infos;
 }
@@ -220,15 +220,15 @@ struct pair_source<Real>::state {
 
 template <class Real>
 pair_source<Real>::pair_source(std::string_view name, std::uint64_t seed) {
-    const auto found = std::ranges::find(classes, name, [](const pair_class& c) { return c.info.name; });
-    if (found == classes.end()) {
+    const auto entry = std::ranges::find(classes, name, [](const pair_class& c) { return c.info.name; });
+    if (entry == classes.end()) {
         std::vector<std::string> names;
         for (const pair_class& c : classes) names.emplace_back(c.info.name);
         throw aabb::input_error(aabb::unknown_name("class of pairs", name, names, "aabblab list pairs"));
     }
-    // Classes draw apart, or the same corners would stand in several of them.
-    const auto number = static_cast<std::uint64_t>(found - classes.begin());
-    state_ = std::make_unique<state>(&*found, random_source(seed * classes.size() + number));
+    // Each class has its own random sequence, or several classes would have the same corners.
+    const auto number = static_cast<std::uint64_t>(entry - classes.begin());
+    state_ = std::make_unique<state>(&*entry, random_source(seed * classes.size() + number));
 }
 
 template <class Real>
@@ -237,8 +237,8 @@ pair_source<Real>::~pair_source() = default;
 template <class Real>
 void pair_source<Real>::next(std::span<aabb::triangle_pair<Real>> pairs) {
     for (aabb::triangle_pair<Real>& p : pairs) {
-        const pair made = state_->of->make(state_->random, format_of<Real>);
-        p = {rounded<Real>(made.a), rounded<Real>(made.b)};
+        const pair unrounded = state_->of->make(state_->random, format_of<Real>);
+        p = {rounded<Real>(unrounded.a), rounded<Real>(unrounded.b)};
     }
 }
 

@@ -1,4 +1,4 @@
-/// Generated pairs of triangles, class by class: how the two lie to each other, and where and how large they are.
+/// Generated pairs of triangles, in classes of relative position, size and location.
 export module aabblab.scenes:pair_classes;
 
 import aabb.geometry;
@@ -6,14 +6,14 @@ import aabb.std;
 
 export namespace aabblab {
 
-/// As `aabblab list` shows it.
+/// A class as `aabblab list` shows it.
 struct pair_class_info {
     std::string_view name;  ///< "random", "near_coplanar", …
     std::string_view summary;
 };
 [[nodiscard]] std::span<const pair_class_info> pair_classes();
 
-/// Pairs of a class, the same for the same seed on every machine.
+/// Generates the pairs of a class; a seed gives the same pairs on every machine.
 /// @tparam Real float or double
 template <class Real>
 class pair_source {
@@ -22,7 +22,7 @@ public:
     pair_source(std::string_view pair_class, std::uint64_t seed);
     ~pair_source();
 
-    /// Fills all of it with the next pairs.
+    /// Fills the span with the next pairs.
     void next(std::span<aabb::triangle_pair<Real>> pairs);
 
 private:

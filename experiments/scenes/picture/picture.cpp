@@ -13,16 +13,16 @@ namespace aabblab {
 namespace {
 
 constexpr double panel_side = 490;
-constexpr double left_margin = 84;  // that the labels of an axis take, as the next
+constexpr double left_margin = 84;  // for the labels of an axis, like the next
 constexpr double bottom_margin = 44;
 constexpr double gap = 30;  // between panels
 constexpr double wide_panel = 2 * panel_side + left_margin + gap;
-constexpr double narrowest = 1.0 / 8;  // a panel's one side over the other
+constexpr double narrowest = 1.0 / 8;  // ratio of the sides of a panel
 
-/// Which two axes are shown, and how lengths become pixels.
+/// The two axes that are shown, and their scales in pixels.
 struct view_plane {
-    /// Along z lies what falls or is piled up, so z is left out only where it is flat, or less than a quarter as wide
-    /// as both others. Where one of the two axes is much longer, each has a scale of its own.
+    /// Objects fall and pile up along z, so z is omitted only if it is flat, or less than a quarter as wide as both
+    /// others. If one of the two axes is much longer, each has its own scale.
     view_plane(const aabb::box& world, const aabb::vec3d& sides) {
         for (int k = 0; k < 3; ++k) {
             const bool is_empty = world.min[k] > world.max[k];
@@ -32,7 +32,7 @@ struct view_plane {
             least[k] -= 0.5;
             length[k] = 1;
         }
-        // A single box has no flat axis to leave out.
+        // A single box is flat on all axes, so its lengths decide.
         aabb::vec3d weight = sides == aabb::vec3d{} ? length : sides;
         weight[2] *= 4;
         int left_out = 2;
@@ -49,10 +49,10 @@ struct view_plane {
         scale[up] = height / length[up];
     }
 
-    /// Too wide for another panel beside it.
+    /// Whether there is no room for another panel beside this one.
     [[nodiscard]] bool is_wide() const { return width > panel_side; }
 
-    /// From the left edge of the panel, from its upper edge.
+    /// Pixels from the left edge of the panel, and from its upper edge.
     [[nodiscard]] double x(double value) const { return (value - least[across]) * scale[across]; }
     [[nodiscard]] double y(double value) const { return height - (value - least[up]) * scale[up]; }
 
@@ -63,7 +63,7 @@ struct view_plane {
     bool equal_scales = true;
     aabb::vec3d least{};   // by axis, as are the following
     aabb::vec3d length{};  // shown
-    aabb::vec3d scale{};   // pixels a unit of length
+    aabb::vec3d scale{};   // pixels per unit of length
 };
 
 /// "x", "y" or "z"
@@ -72,8 +72,8 @@ std::string_view name_of_axis(int axis) {
 }
 
 struct frame_drawing {
-    std::vector<std::size_t> drawn;         // objects, the largest first
-    std::size_t huge = 0;                   // how many of them are outlined above all others
+    std::vector<std::size_t> drawn;         // objects by descending size
+    std::size_t huge = 0;                   // the number of them that are outlined on top
     std::vector<std::uint8_t> overlapping;  // by object
     std::size_t present = 0;
     std::size_t pairs = 0;
@@ -99,7 +99,7 @@ void add_axes(svg_picture& to, const view_plane& view) {
     to.text("axis", {8 - left_margin, below / 2 + 4}, name_of_axis(view.up));
 }
 
-/// What is smaller than a pixel is still to be seen.
+/// The rectangle of a box, at least one pixel wide and high so that it stays visible.
 svg_box shown(const view_plane& view, const aabb::box& b) {
     const double left = view.x(b.min[view.across]);
     const double top = view.y(b.max[view.up]);
@@ -114,7 +114,7 @@ void add_boxes(svg_picture& to, const view_plane& view, const survey::frame& fra
         area += r.width * r.height;
         boxes.rectangle(drawing.overlapping[object] != 0 ? "overlapping" : "apart", r);
     }
-    // The more boxes lie behind one another, the more is seen through each.
+    // Boxes are more transparent the more of them overlap on the plane.
     const double depth = area / (view.width * view.height);
     to.group(boxes, {{"fill-opacity", std::clamp(0.6 / depth, 0.03, 0.35)},
                      {"stroke-opacity", std::clamp(1.5 / depth, 0.1, 0.8)}});
@@ -134,7 +134,7 @@ svg_picture panel_of(const view_plane& view, std::string_view title, const surve
     return panel;
 }
 
-/// A path on the plane, which ends wherever the object is absent and begins anew behind it.
+/// Projects a path, which is interrupted while the object is absent.
 polylines drawn_path(const view_plane& view, const survey::path& path) {
     polylines lines;
     bool is_new = true;
@@ -146,7 +146,7 @@ polylines drawn_path(const view_plane& view, const survey::path& path) {
     return lines;
 }
 
-/// As many of the paths as can be drawn before they hide everything: at least one, where there is one.
+/// Projects paths until their total length would hide the boxes, but at least one.
 std::vector<polylines> clear_paths(const view_plane& view, std::span<const survey::path> paths) {
     const double most = 8 * (view.width + view.height);
     double length = 0;
@@ -164,10 +164,10 @@ std::vector<polylines> clear_paths(const view_plane& view, std::span<const surve
 constexpr std::size_t most_boxes = 4000;
 constexpr std::size_t line_length = 135;  // characters that fit beside one another
 constexpr double line_height = 19;
-constexpr double huge_extents = 5;         // above so many mean extents a box is huge
-constexpr std::size_t most_outlined = 10;  // where more are huge, none stands out
+constexpr double huge_extents = 5;         // a box above this multiple of the mean extent is huge
+constexpr std::size_t most_outlined = 10;  // if more boxes are huge, none is outlined
 
-// Blue and vermilion of Okabe and Ito (2008), which people with any colour vision tell apart.
+// Blue and vermilion of Okabe and Ito (2008), which are distinguishable with any colour vision.
 constexpr std::string_view style =
     "text{fill:#222}.name{font-size:18px;font-weight:bold}.title,.axis{font-weight:bold}"
     ".world{fill:none;stroke:#999}.tick{stroke:#999}"
@@ -180,7 +180,7 @@ double extent_of(const aabb::box& b) {
     return double{b.max[k]} - double{b.min[k]};
 }
 
-/// Sorts the objects by size and says how many are huge.
+/// Sorts the objects by size and returns the number of huge ones.
 std::size_t sort_by_size(std::vector<std::size_t>& objects, const std::vector<aabb::box>& boxes) {
     double sum = 0;
     for (const std::size_t i : objects) sum += extent_of(boxes[i]);
@@ -192,7 +192,7 @@ std::size_t sort_by_size(std::vector<std::size_t>& objects, const std::vector<aa
         std::ranges::count_if(objects, [&](std::size_t i) { return extent_of(boxes[i]) > huge; }));
 }
 
-/// Of more than can be shown, keeps the largest of the huge ones and some of the others, evenly spread over the sizes.
+/// Limits the number of boxes: keeps the largest huge ones and a sample of the others that is uniform in size order.
 void sample(std::vector<std::size_t>& objects, std::size_t huge) {
     if (objects.size() <= most_boxes) return;
     const std::size_t kept = std::min(huge, most_boxes / 2);
@@ -260,23 +260,23 @@ std::string picture_of(const survey& seen, const picture_caption& caption) {
     const frame_drawing last = drawing_of(seen.last());
     const bool is_sampled = std::max(first.present, last.present) > most_boxes;
 
-    svg_picture whole;
-    whole.style(style);
-    whole.text("name", {left_margin, 32}, caption.name);
+    svg_picture picture;
+    picture.style(style);
+    picture.text("name", {left_margin, 32}, caption.name);
     double y = 58;
     for (const std::string& line : caption_lines(seen, caption, view, is_sampled)) {
-        whole.text("", {left_margin, y}, line);
+        picture.text("", {left_margin, y}, line);
         y += line_height;
     }
     const std::vector<polylines> paths = clear_paths(view, seen.paths());
-    whole.put({left_margin, y + 6}, legend(paths.size(), first.huge + last.huge > 0));
+    picture.put({left_margin, y + 6}, legend(paths.size(), first.huge + last.huge > 0));
     const place left = {left_margin, y + 46};
     const double panel_height = view.height + bottom_margin;
     const place right = view.is_wide() ? place{left.x, left.y + panel_height + gap}
                                        : place{left.x + panel_side + left_margin + gap, left.y};
-    whole.put(left, panel_of(view, "first frame (0)", seen.first(), first, {}));
-    whole.put(right, panel_of(view, fmt::format("last frame ({})", seen.frames() - 1), seen.last(), last, paths));
-    return whole.file(2 * (panel_side + left_margin + gap), std::round(right.y + panel_height + 16), 13);
+    picture.put(left, panel_of(view, "first frame (0)", seen.first(), first, {}));
+    picture.put(right, panel_of(view, fmt::format("last frame ({})", seen.frames() - 1), seen.last(), last, paths));
+    return picture.file(2 * (panel_side + left_margin + gap), std::round(right.y + panel_height + 16), 13);
 }
 
 }  // namespace aabblab

@@ -8,7 +8,7 @@ namespace aabblab {
 namespace {
 
 constexpr std::size_t most_paths = 24;
-constexpr std::size_t most_places = 200;  // of a path
+constexpr std::size_t most_places = 200;  // per path
 
 aabb::vec3d centre_of(const aabb::box& b) {
     aabb::vec3d centre{};
@@ -33,21 +33,21 @@ void survey::see(std::span<const aabb::box> boxes, std::span<const std::uint8_t>
 }
 
 void survey::measure(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present) {
-    const aabb::box* some = nullptr;
+    const aabb::box* first = nullptr;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (!takes_part(present, i)) continue;
         const aabb::box& b = boxes[i];
-        if (some == nullptr) some = &b;
+        if (first == nullptr) first = &b;
         for (int k = 0; k < 3; ++k)
-            if (b.min[k] != some->min[k] || b.max[k] != some->max[k]) is_flat_[static_cast<std::size_t>(k)] = false;
+            if (b.min[k] != first->min[k] || b.max[k] != first->max[k]) is_flat_[static_cast<std::size_t>(k)] = false;
         world_ = aabb::merged(world_, b);
         const int longest = aabb::longest_axis(b);
         extents_ += double{b.max[longest]} - double{b.min[longest]};
         ++boxes_counted_;
         if (frames_seen_ == 0 || !last_.has(i)) continue;
-        const aabb::vec3d way = centre_of(b) - centre_of(last_.boxes[i]);
-        ways_ += std::sqrt(aabb::dot(way, way));
-        ++ways_counted_;
+        const aabb::vec3d displacement = centre_of(b) - centre_of(last_.boxes[i]);
+        displacements_ += std::sqrt(aabb::dot(displacement, displacement));
+        ++displacements_counted_;
     }
 }
 
@@ -67,8 +67,8 @@ aabb::vec3d survey::sides() const {
 }
 
 std::optional<double> survey::displacement_over(double length) const {
-    if (ways_counted_ == 0 || !(length > 0)) return std::nullopt;
-    return ways_ / static_cast<double>(ways_counted_) / length;
+    if (displacements_counted_ == 0 || !(length > 0)) return std::nullopt;
+    return displacements_ / static_cast<double>(displacements_counted_) / length;
 }
 
 std::optional<double> survey::displacement_over_extent() const {

@@ -8,12 +8,12 @@ import :shape;
 
 namespace aabblab {
 
-/// The unit sphere as an icosahedron whose faces are cut into n² triangles each.
+/// The unit sphere as an icosahedron with each face subdivided into n² triangles.
 struct icosphere {
     static constexpr std::string_view name = "icosphere";
     static constexpr std::string_view summary = "a sphere of nearly equal triangles";
 
-    /// About how many: 20 n², the nearest to it.
+    /// The number of triangles is the nearest 20 n².
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(20, "about how many triangles");
 
@@ -53,9 +53,9 @@ private:
     struct builder {
         aabb::mesh mesh;
         std::uint32_t cuts = 1;
-        std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges;  // to its first inner vertex
+        std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges;  // the first inner vertex of each edge
 
-        /// Vertex i of cuts on the edge from p to q; both faces of an edge get the same ones.
+        /// Vertex i of `cuts` on the edge from p to q, which the two faces of the edge share.
         [[nodiscard]] std::uint32_t on_edge(std::uint32_t p, std::uint32_t q, std::uint32_t i) {
             if (i == 0) return p;
             if (i == cuts) return q;

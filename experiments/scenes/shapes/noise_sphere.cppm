@@ -9,12 +9,12 @@ import :shape;
 
 namespace aabblab {
 
-/// A sphere with dents and bumps of many sizes, always the same, like a scanned lump: rings between two poles.
+/// A fixed sphere with dents and bumps of many sizes, like a scanned object: rings between two poles.
 struct noise_sphere {
     static constexpr std::string_view name = "noise_sphere";
     static constexpr std::string_view summary = "a sphere with dents and bumps";
 
-    /// About how many: rings · vertices of a ring · 2, the nearest to it that keeps the triangles' shape.
+    /// The number of triangles is 2 · rings · vertices per ring, the nearest one that keeps their shape.
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(18, "about how many triangles");
 
@@ -43,7 +43,7 @@ struct noise_sphere {
     }
 
 private:
-    /// Plane waves of random direction; the shorter, the lower.
+    /// Plane waves of random directions, with amplitudes proportional to wavelengths.
     class noise {
     public:
         noise() {
@@ -64,7 +64,7 @@ private:
     private:
         struct wave {
             Eigen::Vector3d direction;
-            double frequency;  // periods a unit of length
+            double frequency;  // periods per unit of length
             double phase;      // turns
             double height;
         };

@@ -1,4 +1,4 @@
-/// What shapes share: their one parameter; of those of rings, how many of how many vertices, and what lies between.
+/// Common parts of shapes: their parameter, and rings of vertices with the bands between them.
 module aabblab.scenes:shape;
 
 import aabb.geometry;
@@ -7,7 +7,7 @@ import aabb.std;
 
 namespace aabblab {
 
-/// @tparam Usual how many triangles where nothing is said
+/// @tparam Usual the default number of triangles
 template <std::uint32_t Usual>
 struct shape_size {
     std::uint32_t triangles = Usual;
@@ -19,11 +19,11 @@ struct shape_size {
 
 struct ring_counts {
     std::uint32_t rings;
-    std::uint32_t around;  ///< vertices of a ring
+    std::uint32_t around;  ///< vertices per ring
 };
 
-/// 2 · rings · around triangles, as near to `triangles` as rings of a fitting size allow; the nearest in size to
-/// rings = aspect · around where several are equally near.
+/// Chooses rings so that 2 · rings · around is nearest to `triangles`; among equally near choices, the one nearest to
+/// rings = aspect · around.
 [[nodiscard]] inline ring_counts rings_for(std::uint32_t triangles, double aspect) {
     const double half = triangles / 2.0;
     const double ideal = std::fmax(3, std::sqrt(half / aspect));
@@ -40,14 +40,14 @@ struct ring_counts {
     return best;
 }
 
-/// Four corners as two triangles, which meet between the first and the third.
+/// Adds a quadrilateral as two triangles, split along the diagonal a-c.
 inline void add_quad(aabb::mesh& m, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     m.triangles.push_back({a, b, c});
     m.triangles.push_back({a, c, d});
 }
 
-/// The band from each ring to the next, and around it.
-/// @param at the number of a vertex, by ring and place in the ring, which may be one beyond the last
+/// Adds the bands of triangles between consecutive rings.
+/// @param at the index of a vertex by ring and position, which may be one past the last
 void add_bands(aabb::mesh& m, std::uint32_t bands, std::uint32_t around, auto at) {
     for (std::uint32_t ring = 0; ring < bands; ++ring)
         for (std::uint32_t i = 0; i < around; ++i)

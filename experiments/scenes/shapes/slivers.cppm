@@ -4,9 +4,9 @@ import :shape;
 
 namespace aabblab {
 
-/// Triangles a hundred long along (1, 1, 1) and 0.001 wide, in a row of width 10 across it: the box of each overlaps
-/// that of every other one, and none comes near its neighbours. A second row moved by half a gap, 5 √½ / n along (1,
-/// -1, 0), stands in the gaps of the first one and touches nothing.
+/// Triangles of length 100 along (1, 1, 1) and width 0.001, in a row of width 10 across it: all of their boxes overlap,
+/// but no triangles intersect. A second row offset by half a gap, 5 √½ / n along (1, -1, 0), lies in the gaps of the
+/// first one and intersects nothing.
 struct slivers {
     static constexpr std::string_view name = "slivers";
     static constexpr std::string_view summary = "thin triangles in a row along a diagonal, whose boxes all overlap";

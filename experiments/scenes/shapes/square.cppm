@@ -4,12 +4,12 @@ import :shape;
 
 namespace aabblab {
 
-/// A square in z = 0 that faces up, cut into n² squares of two triangles: a floor.
+/// A floor: an upward facing square in z = 0, divided into n² squares of two triangles.
 struct square {
     static constexpr std::string_view name = "square";
     static constexpr std::string_view summary = "a flat square of side 100 that faces up, as a floor";
 
-    /// About how many: 2 n², the nearest from below.
+    /// The number of triangles is the greatest 2 n² that is not above the parameter.
     using config = shape_size<2>;
     static constexpr auto parameters = config::parameters(2, "about how many triangles");
 

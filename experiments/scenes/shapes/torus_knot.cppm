@@ -9,17 +9,17 @@ import :shape;
 
 namespace aabblab {
 
-/// A tube around the (2, 3) torus knot, the trefoil: closed, twisted into itself, without an inside in the middle.
+/// A closed tube around the (2, 3) torus knot, the trefoil.
 struct torus_knot {
     static constexpr std::string_view name = "torus_knot";
     static constexpr std::string_view summary = "a tube around a trefoil knot";
 
-    /// About how many: rings · vertices of a ring · 2, the nearest to it that keeps the triangles' shape.
+    /// The number of triangles is 2 · rings · vertices per ring, the nearest one that keeps their shape.
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(96, "about how many triangles");
 
     [[nodiscard]] static aabb::mesh make(const config& c) {
-        // The knot is about 12.5 times as long as the tube is around.
+        // The length of the knot is about 12.5 times the circumference of the tube.
         const auto [rings, around] = rings_for(c.triangles, 12.5);
         aabb::mesh m;
         for (std::uint32_t ring = 0; ring < rings; ++ring)
@@ -31,21 +31,21 @@ struct torus_knot {
     }
 
 private:
-    /// The tube `along` the knot and `around` it, both in turns. The normal of the torus on which the knot lies and the
-    /// knot's tangent give a frame that closes.
+    /// The point `along` the knot and `around` the tube, both in turns. The frame from the normal of the torus and the
+    /// tangent of the knot closes.
     [[nodiscard]] static aabb::vec3f surface(double along, double around) {
         constexpr double major = 2;
         constexpr double tube = 0.4;
         const circle_point u = on_circle(2 * along);
         const circle_point v = on_circle(3 * along);
         const Eigen::Vector3d normal = {v.cos * u.cos, v.cos * u.sin, v.sin};
-        const double reach = major + v.cos;
-        Eigen::Vector3d tangent = {-3 * v.sin * u.cos - 2 * reach * u.sin, -3 * v.sin * u.sin + 2 * reach * u.cos,
+        const double radius = major + v.cos;
+        Eigen::Vector3d tangent = {-3 * v.sin * u.cos - 2 * radius * u.sin, -3 * v.sin * u.sin + 2 * radius * u.cos,
                                    3 * v.cos};
         tangent /= length_of(tangent);
         const Eigen::Vector3d side = normal.cross(tangent);
         const circle_point w = on_circle(around);
-        const Eigen::Vector3d centre = {reach * u.cos, reach * u.sin, v.sin};
+        const Eigen::Vector3d centre = {radius * u.cos, radius * u.sin, v.sin};
         return in_float(centre + (normal * w.cos + side * w.sin) * tube);
     }
 };
