@@ -30,7 +30,7 @@ struct trial {
     std::string scene;
     bool held_out;  ///< used to check the fit, not for it
     std::function<std::vector<piece>(aabb::instrumentation)> play;
-    std::vector<std::pair<cost_group, timed_work>> seen = {};  ///< by piece
+    std::vector<std::pair<cost_group, timed_work>> observations = {};  ///< by piece
 };
 
 using box_frames = std::shared_ptr<const std::vector<std::vector<aabb::box>>>;
@@ -154,8 +154,8 @@ trial built_and_reused(const generated_scene& scene) {
 }
 
 void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
-    trials.push_back(usual_frames(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& seen) {
-        return std::vector<double>{n, seen.pairs, 0, 0, 0};
+    trials.push_back(usual_frames(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
+        return std::vector<double>{n, mean.pairs, 0, 0, 0};
     }));
     trials.push_back(built_and_reused(scene));
 }
@@ -167,12 +167,12 @@ void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, con
     c[aabb::strategy_kind::sort] = {sort, {}};
     c[aabb::strategy_kind::partition] = partition;
     c[aabb::strategy_kind::sweep] = {"one_axis", {}};
-    trials.push_back(usual_frames(scene, cost_group::cut, c, {}, [listed = scene.n * lists](const frame_sample& seen) {
+    trials.push_back(usual_frames(scene, cost_group::cut, c, {}, [listed = scene.n * lists](const frame_sample& mean) {
         return std::vector<double>{listed,
-                                   seen.count(aabb::work::subset_copies),
-                                   seen.count(aabb::work::subsets),
-                                   seen.count(aabb::work::box_tests),
-                                   seen.pairs,
+                                   mean.count(aabb::work::subset_copies),
+                                   mean.count(aabb::work::subsets),
+                                   mean.count(aabb::work::box_tests),
+                                   mean.pairs,
                                    1};
     }));
 }
@@ -194,13 +194,13 @@ void add_column_trial(std::vector<trial>& trials, const generated_scene& scene, 
                       const aabb::cost_model& planned_by) {
     aabb::composition c;
     c[aabb::strategy_kind::partition] = {"columns", {{"axes", axes}}};
-    trials.push_back(usual_frames(scene, cost_group::columns, c, planned_by, [n = scene.n](const frame_sample& seen) {
+    trials.push_back(usual_frames(scene, cost_group::columns, c, planned_by, [n = scene.n](const frame_sample& mean) {
         // Copies are not counted if there is a single column.
-        return std::vector<double>{std::max(n, seen.count(aabb::work::subset_copies)),
-                                   seen.count(aabb::work::subsets),
-                                   seen.count(aabb::work::box_tests) / double{aabb::simd::width},
+        return std::vector<double>{std::max(n, mean.count(aabb::work::subset_copies)),
+                                   mean.count(aabb::work::subsets),
+                                   mean.count(aabb::work::box_tests) / double{aabb::simd::width},
                                    n,
-                                   seen.pairs,
+                                   mean.pairs,
                                    1};
     }));
 }
@@ -237,10 +237,10 @@ void add_trial(std::vector<trial>& trials, const scene_choice& choice, bool held
     aabb::composition c;
     c[aabb::strategy_kind::build] = {build, {}};
     trials.push_back({choice.kind + " " + settings_text(choice), held_out, [=](aabb::instrumentation counted) {
-                          const observation seen = observe(choice, contender_of(c, true), {.counted = counted});
-                          const auto visits = static_cast<double>(seen.work[aabb::work::node_visits]);
-                          const double queries = seen.first.detect.cpu_ms + seen.rest.detect.cpu_ms;
-                          return std::vector{piece{group, {triangles}, 1e6 * seen.build.cpu_ms},
+                          const observation result = observe(choice, contender_of(c, true), {.counted = counted});
+                          const auto visits = static_cast<double>(result.work[aabb::work::node_visits]);
+                          const double queries = result.first.detect.cpu_ms + result.rest.detect.cpu_ms;
+                          return std::vector{piece{group, {triangles}, 1e6 * result.build.cpu_ms},
                                              piece{cost_group::queries, {visits}, 1e6 * queries}};
                       }});
 }
@@ -326,19 +326,19 @@ std::vector<group_observations> counted_and_timed(std::vector<trial> trials, dou
     };
     for (trial& t : trials)
         for (piece& p : t.play(aabb::instrumentation::counters))
-            t.seen.emplace_back(p.group, timed_work{t.scene, std::move(p.work), {}});
+            t.observations.emplace_back(p.group, timed_work{t.scene, std::move(p.work), {}});
     progress shown("seconds of measuring", static_cast<std::size_t>(seconds));
     const auto time = [&](trial& t, std::size_t) {
         const std::vector<piece> timed = t.play(aabb::instrumentation::none);
-        for (std::size_t p = 0; p < timed.size(); ++p) t.seen[p].second.ns.push_back(timed[p].ns);
+        for (std::size_t p = 0; p < timed.size(); ++p) t.observations[p].second.ns.push_back(timed[p].ns);
         shown.at(static_cast<std::size_t>(seconds - std::max(0.0, remaining())));
     };
     run_rounds(trials, {.end = most_repeats, .fewest = fewest_repeats, .left = remaining}, time, [](std::size_t) {});
     std::vector<group_observations> by_group(cost_groups.size());
     for (trial& t : trials)
-        for (auto& [group, seen] : t.seen) {
+        for (auto& [group, timed] : t.observations) {
             group_observations& of_group = by_group[static_cast<std::size_t>(group)];
-            (t.held_out ? of_group.held_out : of_group.fitted).push_back(std::move(seen));
+            (t.held_out ? of_group.held_out : of_group.fitted).push_back(std::move(timed));
         }
     return by_group;
 }
@@ -348,20 +348,20 @@ std::vector<group_observations> counted_and_timed(std::vector<trial> trials, dou
 calibration calibrate(calibration_size size, double seconds) {
     std::vector<trial> trials = box_trials(size);
     std::ranges::move(mesh_trials(size), std::back_inserter(trials));
-    const std::vector<group_observations> seen = counted_and_timed(std::move(trials), seconds);
+    const std::vector<group_observations> observed = counted_and_timed(std::move(trials), seconds);
     // A cost of nearly 0 means that noise hid it: nothing is free.
     constexpr double least_share = 0.01;
     calibration result;
-    for (std::size_t g = 0; g < seen.size(); ++g) {
+    for (std::size_t g = 0; g < observed.size(); ++g) {
         const cost_group_info& group = cost_groups[g];
-        std::vector<estimate> costs = fit_costs(seen[g].fitted);
+        std::vector<estimate> costs = fit_costs(observed[g].fitted);
         for (std::size_t k = 0; k < group.costs.size(); ++k) {
             costs[k].value = std::max(costs[k].value, least_share * (aabb::cost_model{}.*group.costs[k]));
             result.costs.*group.costs[k] = costs[k].value;
             const auto info = std::ranges::find(aabb::cost_infos, group.costs[k], &aabb::cost_info::value);
             result.estimates[static_cast<std::size_t>(info - aabb::cost_infos.begin())] = costs[k];
         }
-        result.checks.push_back({group.name, accuracy_of(seen[g].held_out, costs)});
+        result.checks.push_back({group.name, accuracy_of(observed[g].held_out, costs)});
     }
     return result;
 }

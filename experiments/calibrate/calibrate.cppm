@@ -17,8 +17,8 @@ struct timed_work {
 
 /// Fits non-negative costs to the times, by least squares of the relative error; outliers are weighted down (Huber,
 /// "Robust estimation of a location parameter", 1964). Confidence intervals are bootstrapped over scenes and repeats.
-/// @param seen not empty; all observations have the same kinds of work
-[[nodiscard]] std::vector<estimate> fit_costs(std::span<const timed_work> seen);
+/// @param observations not empty; all have the same kinds of work
+[[nodiscard]] std::vector<estimate> fit_costs(std::span<const timed_work> observations);
 
 /// The factors, at least 1, by which predicted times are too long or too short.
 struct accuracy {
@@ -26,7 +26,7 @@ struct accuracy {
     double median = 1;
     double worst = 1;
 };
-[[nodiscard]] accuracy accuracy_of(std::span<const timed_work> seen, std::span<const estimate> costs);
+[[nodiscard]] accuracy accuracy_of(std::span<const timed_work> observations, std::span<const estimate> costs);
 
 enum class calibration_size : unsigned char { quick, full };
 

@@ -53,12 +53,12 @@ double median_of(std::vector<double> values) {
 }
 
 /// The Huber weight of each observation: 1 for usual residuals, smaller for outliers.
-std::vector<double> weights_of(std::span<const timed_work> seen, const Eigen::VectorXd& costs) {
+std::vector<double> weights_of(std::span<const timed_work> observations, const Eigen::VectorXd& costs) {
     constexpr double usual = 1.345;  // standard deviations: 95 % efficient for normal errors
     constexpr double deviations_per_median = 1.4826;
     constexpr double least_scale = 1e-9;
     std::vector<double> residuals;
-    for (const timed_work& o : seen) residuals.push_back(std::abs(work_of(o).dot(costs) / median_of(o.ns) - 1));
+    for (const timed_work& o : observations) residuals.push_back(std::abs(work_of(o).dot(costs) / median_of(o.ns) - 1));
     const double threshold = usual * std::max(least_scale, deviations_per_median * median_of(residuals));
     std::vector<double> weights;
     for (const double r : residuals) weights.push_back(r <= threshold ? 1 : threshold / r);
@@ -68,18 +68,18 @@ std::vector<double> weights_of(std::span<const timed_work> seen, const Eigen::Ve
 /// Normal equations that can be bootstrapped. Whole scenes are resampled, in the role of processes.
 class drawn_equations {
 public:
-    drawn_equations(std::span<const timed_work> seen, std::span<const double> weights)
-        : count_(static_cast<Eigen::Index>(seen.front().work.size())) {
+    drawn_equations(std::span<const timed_work> observations, std::span<const double> weights)
+        : count_(static_cast<Eigen::Index>(observations.front().work.size())) {
         std::map<std::string, std::vector<std::size_t>> scenes;
-        for (std::size_t o = 0; o < seen.size(); ++o) scenes[seen[o].scene].push_back(o);
-        size_ = {scenes.size(), 1, seen.front().ns.size()};
-        sums_.assign(seen.front().work.size(), cells(scenes.size(), 1));
-        products_.assign(seen.front().work.size() * seen.front().work.size(), cells(scenes.size(), 1));
+        for (std::size_t o = 0; o < observations.size(); ++o) scenes[observations[o].scene].push_back(o);
+        size_ = {scenes.size(), 1, observations.front().ns.size()};
+        sums_.assign(observations.front().work.size(), cells(scenes.size(), 1));
+        products_.assign(observations.front().work.size() * observations.front().work.size(), cells(scenes.size(), 1));
         std::size_t scene = 0;
         for (const auto& [name, places] : scenes) {
             for (std::size_t repeat = 0; repeat < size_.repeats; ++repeat) {
                 normal_equations own(count_);
-                for (const std::size_t o : places) own.add(seen[o], seen[o].ns[repeat], weights[o]);
+                for (const std::size_t o : places) own.add(observations[o], observations[o].ns[repeat], weights[o]);
                 for (Eigen::Index i = 0; i < count_; ++i) {
                     sums_[static_cast<std::size_t>(i)].add(scene, 0, own.sums[i]);
                     for (Eigen::Index j = 0; j <= i; ++j) products_[place(i, j)].add(scene, 0, own.products(i, j));
@@ -113,18 +113,19 @@ private:
 
 }  // namespace
 
-std::vector<estimate> fit_costs(std::span<const timed_work> seen) {
+std::vector<estimate> fit_costs(std::span<const timed_work> observations) {
     constexpr int rounds = 30;
-    const auto count = static_cast<Eigen::Index>(seen.front().work.size());
-    std::vector<double> weights(seen.size(), 1.0);
+    const auto count = static_cast<Eigen::Index>(observations.front().work.size());
+    std::vector<double> weights(observations.size(), 1.0);
     Eigen::VectorXd costs = Eigen::VectorXd::Zero(count);
     for (int round = 0; round < rounds; ++round) {
         normal_equations equations(count);
-        for (std::size_t o = 0; o < seen.size(); ++o) equations.add(seen[o], median_of(seen[o].ns), weights[o]);
+        for (std::size_t o = 0; o < observations.size(); ++o)
+            equations.add(observations[o], median_of(observations[o].ns), weights[o]);
         descend(equations, costs);
-        weights = weights_of(seen, costs);
+        weights = weights_of(observations, costs);
     }
-    const drawn_equations equations(seen, weights);
+    const drawn_equations equations(observations, weights);
     std::vector<estimate> estimates;
     for (Eigen::Index k = 0; k < count; ++k) {
         estimates.push_back(bootstrap(equations.size(), [&](const resample& drawn) {
@@ -137,11 +138,11 @@ std::vector<estimate> fit_costs(std::span<const timed_work> seen) {
     return estimates;
 }
 
-accuracy accuracy_of(std::span<const timed_work> seen, std::span<const estimate> costs) {
+accuracy accuracy_of(std::span<const timed_work> observations, std::span<const estimate> costs) {
     Eigen::VectorXd values(static_cast<Eigen::Index>(costs.size()));
     std::ranges::transform(costs, values.begin(), &estimate::value);
     std::vector<double> ratios;
-    for (const timed_work& o : seen) {
+    for (const timed_work& o : observations) {
         const double ratio = work_of(o).dot(values) / median_of(o.ns);
         ratios.push_back(std::max(ratio, 1 / ratio));
     }

@@ -188,18 +188,18 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     std::ranges::move(by_settings, std::back_inserter(variants));
     std::vector<contender> contenders;
     for (const variant& v : variants) contenders.push_back(v.candidate);
-    turns played = play_in_turn(staged, contenders, most_frames, rounds, limits);
-    if (played.times[0].empty()) {
-        const attempt& selected_play = *played.broken_off[0];
+    turns outcome = play_in_turn(staged, contenders, most_frames, rounds, limits);
+    if (outcome.times[0].empty()) {
+        const attempt& selected_play = *outcome.broken_off[0];
         if (selected_play.end == ending::refused) throw aabb::input_error(selected_play.reason);
         print_paragraph("what each choice saves is not known; as selected: " + text_of(selected_play) +
                         (selected_play.end == ending::stopped ? "; increase --seconds" : "") + ".");
         return true;
     }
     for (std::size_t i = 0; i < variants.size(); ++i) {
-        variants[i].times = std::move(played.times[i]);
-        variants[i].broken_off = std::move(played.broken_off[i]);
-        variants[i].is_hopeless = played.hopeless[i];
+        variants[i].times = std::move(outcome.times[i]);
+        variants[i].broken_off = std::move(outcome.broken_off[i]);
+        variants[i].is_hopeless = outcome.hopeless[i];
     }
 
     table t = empty_table({"kind", "in its place"}, {"ms/frame", "ratio", "range"});
@@ -207,7 +207,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     t.columns.push_back({"bytes", true, 1});
     for (std::size_t i = 0; i < in_table; ++i) add_row(t, variants[i], variants[0]);
     print_paragraph(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} of {}",
-                                counted(played.rounds, "round"), counted(played.frames, "frame")));
+                                counted(outcome.rounds, "round"), counted(outcome.frames, "frame")));
     print(to_text(t, output_width()) + "\n");
     print_unfinished(variants);
     if (!alone.empty()) print_paragraph(alone + ": nothing else can be composed with the rest.");

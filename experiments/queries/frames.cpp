@@ -95,7 +95,7 @@ frames_result search_frames(scene_play& scene, search_method& method, number_tab
     std::optional<player> searcher;
     result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(method.made), scene); });
     progress shown("frames searched", scene.frames());
-    tally results(meshes);
+    tally totals(meshes);
     play(scene, *searcher, [&](const played_frame& frame) {
         result.ms.push_back(whole_nanoseconds(frame.ms()));
         const std::string where = fmt::format("{}, frame {}", method.name, frame.number);
@@ -107,14 +107,14 @@ frames_result search_frames(scene_play& scene, search_method& method, number_tab
             if (rows)
                 for (const auto [a, b] : frame.pairs) rows->add({frame.number, a, b});
         }
-        results.add(frame.pairs, frame.contacts);
+        totals.add(frame.pairs, frame.contacts);
         result.object_pairs += count_object_pairs(frame.contacts);
         shown.at(frame.number + 1);
     });
     if (rows) rows->commit();
-    result.pairs = results.candidates();
-    result.contacts = results.contacts().value_or(0);
-    result.digest = results.digest();
+    result.pairs = totals.candidates();
+    result.contacts = totals.contacts().value_or(0);
+    result.digest = totals.digest();
     return result;
 }
 

@@ -183,9 +183,9 @@ private:
 
     /// Repeats the runs of candidates that are slightly behind, since the first run may have been disturbed.
     void play_again(std::size_t frames, double margin) {
-        constexpr double far = 2;
+        constexpr double far_behind = 2;
         for (racer& r : running_) {
-            if (r.broken_off || r.behind <= margin || r.behind > far * margin || left() < whole_ / 2) continue;
+            if (r.broken_off || r.behind <= margin || r.behind > far_behind * margin || left() < whole_ / 2) continue;
             const attempt second = scene_.play(r.who, frames, longest(r.seconds, margin), left());
             if (second.end == ending::done && second.seen.whole_ms() < r.last->whole_ms()) r.last = second.seen;
         }
@@ -290,11 +290,11 @@ private:
                                           result_.final_frames, limits_.to_end());
         result_.validated = exact.seen.frames;
         if (result_.validated == 0) return;
-        const auto right = [&](const racer& r) {
+        const auto agrees = [&](const racer& r) {
             return std::ranges::all_of(
                 r.times, [&](const observation& t) { return t.digests[result_.validated - 1] == exact.seen.digest; });
         };
-        const auto first_wrong = std::stable_partition(running_.begin(), running_.end(), right);
+        const auto first_wrong = std::stable_partition(running_.begin(), running_.end(), agrees);
         result_.wrong.assign(std::move_iterator(first_wrong), std::move_iterator(running_.end()));
         running_.erase(first_wrong, running_.end());
         if (running_.empty()) throw std::runtime_error("nobody finds the exact pairs of this scene");

@@ -11,35 +11,35 @@ public:
     first_order_system(const acceleration_of& acceleration, const motion_state& state)
         : acceleration_(acceleration),
           origin_(state.position),
-          both_(state.position.size(), 0.0),
+          values_(state.position.size(), 0.0),
           position_(state.position),
           velocity_(state.velocity),
           result_(state.position.size()) {
-        both_.insert(both_.end(), state.velocity.begin(), state.velocity.end());
+        values_.insert(values_.end(), state.velocity.begin(), state.velocity.end());
     }
 
     /// The derivative of displacements and velocities.
-    void operator()(const std::vector<double>& both, std::vector<double>& change, double /*time*/) {
+    void operator()(const std::vector<double>& values, std::vector<double>& change, double /*time*/) {
         const auto half = static_cast<std::ptrdiff_t>(position_.size());
-        std::transform(both.begin(), both.begin() + half, origin_.begin(), position_.begin(), std::plus());
-        std::copy(both.begin() + half, both.end(), velocity_.begin());
+        std::transform(values.begin(), values.begin() + half, origin_.begin(), position_.begin(), std::plus());
+        std::copy(values.begin() + half, values.end(), velocity_.begin());
         acceleration_(position_, velocity_, result_);
         std::ranges::copy(velocity_, change.begin());
         std::ranges::copy(result_, change.begin() + half);
     }
 
-    [[nodiscard]] std::vector<double>& both() { return both_; }
+    [[nodiscard]] std::vector<double>& values() { return values_; }
 
     void store(motion_state& state) const {
         const auto half = static_cast<std::ptrdiff_t>(position_.size());
-        std::transform(both_.begin(), both_.begin() + half, origin_.begin(), state.position.begin(), std::plus());
-        std::copy(both_.begin() + half, both_.end(), state.velocity.begin());
+        std::transform(values_.begin(), values_.begin() + half, origin_.begin(), state.position.begin(), std::plus());
+        std::copy(values_.begin() + half, values_.end(), state.velocity.begin());
     }
 
 private:
     const acceleration_of& acceleration_;
     std::vector<double> origin_;
-    std::vector<double> both_;
+    std::vector<double> values_;
     std::vector<double> position_;
     std::vector<double> velocity_;
     std::vector<double> result_;

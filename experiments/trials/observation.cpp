@@ -5,11 +5,11 @@ namespace aabblab {
 namespace {
 
 /// Replaces the measured times, which are those of reading the results of the external engine.
-void take_told(std::span<const told_times> times, observation& seen) {
-    seen.build = {};
-    seen.first = seen.rest = {};
+void take_told(std::span<const told_times> times, observation& result) {
+    result.build = {};
+    result.first = result.rest = {};
     for (std::size_t frame = 0; frame < times.size(); ++frame) {
-        phases& took = frame == 0 ? seen.first : seen.rest;
+        phases& took = frame == 0 ? result.first : result.rest;
         took.update.wall_ms += times[frame].update_ms;
         took.search.wall_ms += times[frame].search_ms;
     }
@@ -56,24 +56,24 @@ elapsed ask(player& p, const asking& how, std::string& wrong) {
 }  // namespace
 
 observation observe(scene_play& scene, const contender& candidate, const protocol& how) {
-    observation seen;
+    observation result;
     std::optional<player> p;
-    seen.build = elapsed_in([&] { p.emplace(candidate, scene, how.counted); });
-    tally results(scene.meshes() != nullptr);
+    result.build = elapsed_in([&] { p.emplace(candidate, scene, how.counted); });
+    tally totals(scene.meshes() != nullptr);
     const auto take = [&](const played_frame& frame) {
-        results.add(frame.pairs, frame.contacts);
-        (seen.frames++ == 0 ? seen.first : seen.rest) += frame.took;
+        totals.add(frame.pairs, frame.contacts);
+        (result.frames++ == 0 ? result.first : result.rest) += frame.took;
         if (!how.each) return;
-        seen.digest = results.digest();
-        how.each(seen);
+        result.digest = totals.digest();
+        how.each(result);
     };
-    play(scene, *p, take, how.frames, [&](player& asked) { return ask(asked, how.asked, seen.wrong); });
-    if (candidate.told) take_told(*candidate.told, seen);
-    seen.digest = results.digest();
-    seen.bytes = p->held_bytes();
-    seen.work = p->counters();
-    seen.left_out = p->left_out();
-    return seen;
+    play(scene, *p, take, how.frames, [&](player& asked) { return ask(asked, how.asked, result.wrong); });
+    if (candidate.told) take_told(*candidate.told, result);
+    result.digest = totals.digest();
+    result.bytes = p->held_bytes();
+    result.work = p->counters();
+    result.left_out = p->left_out();
+    return result;
 }
 
 observation observe(const scene_choice& choice, const contender& candidate, const protocol& how) {

@@ -43,26 +43,26 @@ void scene_play::note_changes(std::span<const std::uint8_t> present) {
 player::player(const contender& candidate, const scene_play& scene, aabb::instrumentation counted)
     : player(stages{candidate.make_global(counted), scene.meshes() ? candidate.make_local(counted) : nullptr}, scene) {}
 
-player::player(stages run_stages, const scene_play& scene) : scene_(scene), made_(std::move(run_stages)) {
-    if (made_.global) made_.global->expect(scene.frames());
+player::player(stages run_stages, const scene_play& scene) : scene_(scene), stages_(std::move(run_stages)) {
+    if (stages_.global) stages_.global->expect(scene.frames());
     if (!scene.meshes()) return;
-    if (made_.global)
-        pipeline_.emplace(*scene.meshes(), *made_.global, *made_.local);
+    if (stages_.global)
+        pipeline_.emplace(*scene.meshes(), *stages_.global, *stages_.local);
     else
-        pipeline_.emplace(*scene.meshes(), *made_.local);
+        pipeline_.emplace(*scene.meshes(), *stages_.local);
 }
 
 void player::update() {
     if (pipeline_) return scene_.in_frame([&] { pipeline_->update(scene_.poses()); });
-    for (const std::uint32_t object : scene_.departures()) made_.global->remove(object);
-    for (const std::uint32_t object : scene_.arrivals()) made_.global->insert(object);
-    made_.global->update(scene_.boxes());
+    for (const std::uint32_t object : scene_.departures()) stages_.global->remove(object);
+    for (const std::uint32_t object : scene_.arrivals()) stages_.global->insert(object);
+    stages_.global->update(scene_.boxes());
 }
 
 void player::search() {
     if (pipeline_) return scene_.in_frame([&] { pipeline_->search(); });
     pairs_.clear();
-    made_.global->search(pairs_);
+    stages_.global->search(pairs_);
 }
 
 void player::detect() {
@@ -83,21 +83,21 @@ const std::vector<aabb::contact>& player::sorted_contacts() {
 
 aabb::work_counters player::counters() const {
     aabb::work_counters work;
-    if (made_.global) work = made_.global->counters();
-    if (made_.local)
-        for (std::size_t i = 0; i < work.counts.size(); ++i) work.counts[i] += made_.local->counters().counts[i];
+    if (stages_.global) work = stages_.global->counters();
+    if (stages_.local)
+        for (std::size_t i = 0; i < work.counts.size(); ++i) work.counts[i] += stages_.local->counters().counts[i];
     return work;
 }
 
 std::vector<aabb::part_bytes> player::global_bytes() const {
-    std::vector<aabb::part_bytes> parts = made_.global ? made_.global->bytes() : std::vector<aabb::part_bytes>{};
+    std::vector<aabb::part_bytes> parts = stages_.global ? stages_.global->bytes() : std::vector<aabb::part_bytes>{};
     if (pipeline_ && pipeline_->division_bytes() > 0) parts.push_back({"prepare", pipeline_->division_bytes()});
     return parts;
 }
 
 std::vector<aabb::part_bytes> player::local_bytes() const {
-    if (!made_.local) return {};
-    std::vector<aabb::part_bytes> parts = made_.local->bytes();
+    if (!stages_.local) return {};
+    std::vector<aabb::part_bytes> parts = stages_.local->bytes();
     std::size_t triangles = 0;
     std::size_t vertices = 0;
     for (const aabb::mesh& m : scene_.meshes()->meshes) {
@@ -118,13 +118,13 @@ std::size_t player::held_bytes() const {
 }
 
 std::optional<double> player::box_inflation() const {
-    if (!made_.local) return std::nullopt;
+    if (!stages_.local) return std::nullopt;
     double sum = 0;
     const std::uint32_t models = pipeline_->models();
     for (std::uint32_t m = 0; m < models; ++m) {
-        const std::optional<aabb::tree_survey> seen = made_.local->survey(m);
-        if (!seen) return std::nullopt;
-        sum += seen->area_inflation;
+        const std::optional<aabb::tree_survey> survey = stages_.local->survey(m);
+        if (!survey) return std::nullopt;
+        sum += survey->area_inflation;
     }
     return sum / static_cast<double>(models);
 }
@@ -143,9 +143,9 @@ void play(scene_play& scene, player& p, const std::function<void(const played_fr
         took.update += sorted;
         took.search += {-sorted.wall_ms, -sorted.cpu_ms};
         took.detect = detect(p);
-        const played_frame played{frame, took, p.sorted_pairs(), p.sorted_contacts()};
-        each(played);
-        scene.tell(played.pairs, played.contacts);
+        const played_frame result{frame, took, p.sorted_pairs(), p.sorted_contacts()};
+        each(result);
+        scene.tell(result.pairs, result.contacts);
     }
 }
 

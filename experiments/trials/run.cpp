@@ -46,13 +46,13 @@ std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
 std::set<contender_name> given_up(const experiment& e, const round_limits& share, std::span<const row> rows) {
     std::set<contender_name> names;
     if (!e.patience) return names;
-    const row_value& whole = measured("whole_ms");
+    const row_value& whole_ms = measured("whole_ms");
     double least = std::numeric_limits<double>::infinity();
     for (const row& r : rows)
-        if (r.repeat == share.begin) least = std::min(least, whole(r).value_or(least));
+        if (r.repeat == share.begin) least = std::min(least, whole_ms(r).value_or(least));
     const double longest = stopping_rule{.ratio = static_cast<double>(*e.patience)}.hopeless_after(least);
     for (const row& r : rows)
-        if (r.repeat == share.begin && whole(r).value_or(0) > longest) names.insert(r.name);
+        if (r.repeat == share.begin && whole_ms(r).value_or(0) > longest) names.insert(r.name);
     return names;
 }
 
@@ -64,8 +64,8 @@ void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, con
     if (last.scene != scene || last.repeat < share.begin || last.repeat >= share.end) return;
     const std::vector<row> rows = rows_of(scene, results.rows());
     if (last.repeat > share.begin) contenders -= given_up(e, share, rows).size();
-    const auto played = std::ranges::count(rows, last.repeat, &row::repeat);
-    if (static_cast<std::size_t>(played) < contenders) results.drop(scene, last.repeat);
+    const auto finished = std::ranges::count(rows, last.repeat, &row::repeat);
+    if (static_cast<std::size_t>(finished) < contenders) results.drop(scene, last.repeat);
 }
 
 std::vector<contender> unfinished(const experiment& e, std::span<const contender> contenders, const round_limits& share,

@@ -110,10 +110,10 @@ std::string line_of(const observation& seen, double seconds) {
 }
 
 /// Parses the output of the child; an incomplete last line is ignored.
-attempt attempt_from(const work_apart& played) {
-    attempt result{.end = played.end, .seen = {}, .reason = played.reason, .seconds = played.seconds};
+attempt attempt_from(const work_apart& work) {
+    attempt result{.end = work.end, .seen = {}, .reason = work.reason, .seconds = work.seconds};
     observation& seen = result.seen;
-    std::istringstream lines(played.told.substr(0, played.told.rfind('\n') + 1));
+    std::istringstream lines(work.told.substr(0, work.told.rfind('\n') + 1));
     for (std::string line; std::getline(lines, line);) {
         std::istringstream text(line.substr(1));
         if (line[0] == frame_line) {

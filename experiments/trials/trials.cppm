@@ -111,14 +111,14 @@ public:
     void detect();
 
     /// The share of the last search that belongs to the update (`aabb::global_stage`).
-    [[nodiscard]] double share_of_update() const { return made_.global ? made_.global->share_of_update() : 0; }
+    [[nodiscard]] double share_of_update() const { return stages_.global ? stages_.global->share_of_update() : 0; }
 
     /// Replace `detect` for meshes: any one contact of the frame, and the number of contacts.
     [[nodiscard]] std::optional<aabb::contact> first_contact() { return pipeline_->first_contact(); }
     [[nodiscard]] std::uint64_t count_contacts() { return pipeline_->count_contacts(); }
     /// Reports the pairs a < b of intersecting triangles of one undivided mesh with itself, in no particular order.
     void each_self_pair(std::uint32_t mesh, const std::function<void(aabb::index_pair)>& take) {
-        made_.local->each_self_pair(mesh, take);
+        stages_.local->each_self_pair(mesh, take);
     }
 
     /// The boxes of the frame, by object, or by piece if meshes are divided; empty without a broad phase.
@@ -136,17 +136,17 @@ public:
     [[nodiscard]] std::size_t held_bytes() const;
     /// The plans that the broad phase derived from earlier frames.
     [[nodiscard]] std::vector<aabb::stage_plan> plans() const {
-        return made_.global ? made_.global->plans() : std::vector<aabb::stage_plan>{};
+        return stages_.global ? stages_.global->plans() : std::vector<aabb::stage_plan>{};
     }
     [[nodiscard]] std::vector<aabb::omission> left_out() const {
-        return left_out_by(made_.global.get(), made_.local.get());
+        return left_out_by(stages_.global.get(), stages_.local.get());
     }
     /// The mean over the models of the inflation of their trees; empty for stages without trees.
     [[nodiscard]] std::optional<double> box_inflation() const;
 
 private:
     const scene_play& scene_;
-    stages made_;
+    stages stages_;
     std::optional<aabb::pipeline> pipeline_;  // of meshes
     std::vector<aabb::index_pair> pairs_;
     std::vector<aabb::contact> contacts_;

@@ -29,17 +29,17 @@ attempt first_play(staged_scene& scene, const contender& candidate, std::size_t 
 turns play_in_turn(staged_scene& scene, std::span<const contender> contenders, std::size_t frames, std::size_t rounds,
                    const time_limits& limits) {
     progress shown("plays", rounds * contenders.size());
-    turns played{frames, 0, std::vector<std::vector<observation>>(contenders.size()),
+    turns result{frames, 0, std::vector<std::vector<observation>>(contenders.size()),
                  std::vector<std::optional<attempt>>(contenders.size()), std::vector<bool>(contenders.size())};
     const double before_first = limits.to_play();
     attempt of_first = first_play(scene, contenders[0], frames, limits);
     const double first = before_first - limits.to_play();
     if (of_first.end != ending::done) {
-        played.broken_off[0] = std::move(of_first);
-        return played;
+        result.broken_off[0] = std::move(of_first);
+        return result;
     }
-    played.frames = of_first.seen.frames;
-    played.times[0].push_back(std::move(of_first.seen));
+    result.frames = of_first.seen.frames;
+    result.times[0].push_back(std::move(of_first.seen));
     std::vector<std::size_t> running(contenders.size());
     std::iota(running.begin(), running.end(), std::size_t{0});
     std::size_t done = 0;
@@ -48,24 +48,24 @@ turns play_in_turn(staged_scene& scene, std::span<const contender> contenders, s
         if (index == 0 && round == 0) return;
         const double left = limits.to_play();
         const stopping_rule rule{.grace = hopeless_ms / 1000, .share = greatest_share * left, .margin = 2};
-        attempt tried = scene.play(contenders[index], played.frames, rule.longest(first), left);
+        attempt tried = scene.play(contenders[index], result.frames, rule.longest(first), left);
         if (tried.end == ending::stopped && !tried.is_out_of_time && rule.longest(first) >= rule.hopeless_after(first))
-            played.hopeless[index] = true;
+            result.hopeless[index] = true;
         if (tried.end == ending::done)
-            played.times[index].push_back(std::move(tried.seen));
-        else if (played.times[index].empty())
-            played.broken_off[index] = std::move(tried);
+            result.times[index].push_back(std::move(tried.seen));
+        else if (result.times[index].empty())
+            result.broken_off[index] = std::move(tried);
     };
     const auto give_up = [&](std::size_t round) {
         for (const std::size_t index : running)
-            if (!played.times[index].empty() && is_hopeless(played.times[index][0], played.times[0][0]))
-                played.hopeless[index] = true;
+            if (!result.times[index].empty() && is_hopeless(result.times[index][0], result.times[0][0]))
+                result.hopeless[index] = true;
         std::erase_if(running,
-                      [&](std::size_t index) { return played.hopeless[index] || played.times[index].size() <= round; });
+                      [&](std::size_t index) { return result.hopeless[index] || result.times[index].size() <= round; });
         done = (round + 1) * contenders.size();
     };
-    played.rounds = run_rounds(running, {.end = rounds, .left = [&] { return limits.to_play(); }}, play, give_up);
-    return played;
+    result.rounds = run_rounds(running, {.end = rounds, .left = [&] { return limits.to_play(); }}, play, give_up);
+    return result;
 }
 
 std::vector<std::size_t> who_disagrees(std::span<const std::vector<observation>> times) {

@@ -163,7 +163,7 @@ scene_validation validate_scene(const scene_choice& choice, scene_play& scene, s
     tally exact_tally(scene.meshes() != nullptr);
     std::deque<validated_player> players;
     std::vector<validated_row> results(contenders.size());
-    std::vector<std::size_t> places;  // indices of the players among the contenders
+    std::vector<std::size_t> places;  // indices of the players among the candidates
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         try {
             players.emplace_back(contenders[i], choice, scene);

@@ -8,7 +8,7 @@ import :posed_meshes;
 namespace aabblab {
 
 /// Two meshes: the first rests with its centre at the origin; the second passes through it on a straight line, while it
-/// rotates about its own centre. With distance and turn 0 it rests too. Line, axis and first rotation depend on the seed.
+/// rotates about its own centre. With distance and turn 0 it rests too. Line, axis and rotation depend on the seed.
 class mesh_pair final : public generated_meshes {
 public:
     static constexpr std::string_view name = "mesh_pair";

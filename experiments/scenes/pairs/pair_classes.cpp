@@ -214,7 +214,7 @@ std::span<const pair_class_info> pair_classes() {
 
 template <class Real>
 struct pair_source<Real>::state {
-    const pair_class* of;
+    const pair_class* generator;
     random_source random;
 };
 
@@ -237,7 +237,7 @@ pair_source<Real>::~pair_source() = default;
 template <class Real>
 void pair_source<Real>::next(std::span<aabb::triangle_pair<Real>> pairs) {
     for (aabb::triangle_pair<Real>& p : pairs) {
-        const pair unrounded = state_->of->make(state_->random, format_of<Real>);
+        const pair unrounded = state_->generator->make(state_->random, format_of<Real>);
         p = {rounded<Real>(unrounded.a), rounded<Real>(unrounded.b)};
     }
 }

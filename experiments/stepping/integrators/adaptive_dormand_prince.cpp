@@ -23,8 +23,8 @@ public:
         using stepper = odeint::runge_kutta_dopri5<std::vector<double>>;
         first_order_system system(acceleration, state);
         try {
-            odeint::integrate_adaptive(odeint::make_controlled<stepper>(tolerance_, tolerance_), system, system.both(),
-                                       state.time, state.time + step, step);
+            odeint::integrate_adaptive(odeint::make_controlled<stepper>(tolerance_, tolerance_), system,
+                                       system.values(), state.time, state.time + step, step);
         } catch (const odeint::odeint_error& error) {
             throw aabb::input_error("adaptive_dormand_prince gives up after " + std::to_string(state.time) +
                                     " s: " + error.what());

@@ -26,7 +26,7 @@ public:
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         if (!system_) {
             system_.emplace(acceleration, state);
-            start(system_->both(), state.time);
+            start(system_->values(), state.time);
         }
         failure_ = nullptr;
         double reached = state.time;
@@ -38,7 +38,7 @@ public:
         if (status < 0)
             throw aabb::input_error("bdf gives up after " + std::to_string(reached) + " s: CVODE says " +
                                     std::to_string(status));
-        std::copy_n(N_VGetArrayPointer(values_.get()), system_->both().size(), system_->both().begin());
+        std::copy_n(N_VGetArrayPointer(values_.get()), system_->values().size(), system_->values().begin());
         system_->store(state);
         state.time = end;
     }
@@ -58,10 +58,10 @@ private:
     template <class Handle, auto Free>
     using owned = std::unique_ptr<std::remove_pointer_t<Handle>, freed_by<Free>>;
 
-    void start(const std::vector<double>& both, double time) {
-        const auto size = static_cast<sunindextype>(both.size());
+    void start(const std::vector<double>& initial, double time) {
+        const auto size = static_cast<sunindextype>(initial.size());
         values_.reset(N_VNew_Serial(size, context_.get()));
-        std::ranges::copy(both, N_VGetArrayPointer(values_.get()));
+        std::ranges::copy(initial, N_VGetArrayPointer(values_.get()));
         memory_.reset(CVodeCreate(CV_BDF, context_.get()));
         matrix_.reset(SUNDenseMatrix(size, size, context_.get()));
         solver_.reset(SUNLinSol_Dense(values_.get(), matrix_.get(), context_.get()));

@@ -16,7 +16,7 @@ public:
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         first_order_system system(acceleration, state);
         // First same as last: the stepper reuses the last stage of the previous step, which left this state.
-        stepper_.do_step(system, system.both(), state.time, step);
+        stepper_.do_step(system, system.values(), state.time, step);
         system.store(state);
         state.time += step;
     }
