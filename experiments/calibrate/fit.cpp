@@ -27,7 +27,7 @@ struct normal_equations {
     Eigen::VectorXd sums;
 };
 
-/// Solves non-negative least squares by coordinate descent, starting from the given costs.
+/// Solves non-negative least squares by coordinate descent (Franc, Hlaváč and Navara 2005), from the given costs.
 void descend(const normal_equations& equations, Eigen::VectorXd& costs) {
     constexpr int most_rounds = 20'000;
     constexpr double near_enough = 1e-12;

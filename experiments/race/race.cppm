@@ -1,5 +1,5 @@
-/// Finds the fastest candidate for a scene without running every candidate on all frames: rounds get longer, and a
-/// candidate that is far behind after a round is dropped.
+/// Finds the fastest candidate for a scene without running every candidate on all frames, as racing algorithms do
+/// (Maron and Moore 1994): rounds get longer, and a candidate that is far behind after a round is dropped.
 export module aabblab.race;
 
 import aabb.std;

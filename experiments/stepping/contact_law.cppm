@@ -8,8 +8,8 @@ export namespace aabblab {
 /// The geometry of a contact force, computed only from the detected pairs of triangles, so that forces depend on the
 /// quality of detection. A false positive may add a vertex with a spring, but no segment of an intersection curve.
 enum class contact_geometry : std::uint8_t {
-    /// One linear spring and dashpot for two bodies, which may also pull, at the deepest vertex of the second body's
-    /// triangles below the plane of the intersected triangle of the first, along the normal of that plane.
+    /// One linear spring and dashpot for two bodies (Cundall and Strack 1979), which may also pull, at the deepest
+    /// vertex of the second body's triangles below the intersected triangle of the first, along its normal.
     deepest_vertex,
     /// Likewise for each such vertex of the second body; springs begin `rest` above the plane and share the load.
     each_vertex,

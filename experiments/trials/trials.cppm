@@ -113,7 +113,7 @@ public:
     /// The share of the last search that belongs to the update (`aabb::global_stage`).
     [[nodiscard]] double share_of_update() const { return stages_.global ? stages_.global->share_of_update() : 0; }
 
-    /// Replace `detect` for meshes: any one contact of the frame, and the number of contacts.
+    /// Alternatives to `detect` for meshes: any one contact of the frame, and the number of contacts.
     [[nodiscard]] std::optional<aabb::contact> first_contact() { return pipeline_->first_contact(); }
     [[nodiscard]] std::uint64_t count_contacts() { return pipeline_->count_contacts(); }
     /// Reports the pairs a < b of intersecting triangles of one undivided mesh with itself, in no particular order.

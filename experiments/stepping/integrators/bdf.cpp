@@ -14,7 +14,7 @@ namespace aabblab {
 
 namespace {
 
-/// Wraps CVODE for one system, which the first call of `advance` fixes.
+/// Wraps CVODE (Hindmarsh et al. 2005) for one system, which the first call of `advance` fixes.
 class bdf final : public integrator {
 public:
     explicit bdf(double tolerance) : tolerance_(tolerance) {

@@ -15,7 +15,7 @@ class dormand_prince final : public integrator {
 public:
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         first_order_system system(acceleration, state);
-        // First same as last: the stepper reuses the last stage of the previous step, which left this state.
+        // First same as last (Dormand and Prince 1980): the last stage of the previous step is the first of this one.
         stepper_.do_step(system, system.values(), state.time, step);
         system.store(state);
         state.time += step;

@@ -7,6 +7,7 @@ namespace aabblab {
 
 namespace {
 
+/// The integrator of Verlet 1967, in the velocity form of Swope et al. 1982.
 class velocity_verlet final : public integrator {
 public:
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
