@@ -141,7 +141,7 @@ void print_unfinished(const std::vector<variant>& variants) {
     if (!t.rows.empty()) print(to_text(t, output_width()) + "\n");
 }
 
-/// @returns whether there are none
+/// @returns whether the results of all variants agree
 bool print_disagreements(const std::vector<variant>& variants) {
     // Inexact candidates find other pairs by design, and move a reactive scene differently.
     if (!variants.front().candidate.exact || !variants.front().candidate.exact_boxes) return true;

@@ -302,7 +302,7 @@ private:
 
     staged_scene& scene_;
     const time_limits& limits_;
-    double whole_;  // time to play, in seconds
+    double whole_;  // total time for runs, in seconds
     std::vector<racer> running_;
     race_result result_;
 };

@@ -162,7 +162,7 @@ std::vector<polylines> clear_paths(const view_plane& view, std::span<const surve
 }
 
 constexpr std::size_t most_boxes = 4000;
-constexpr std::size_t line_length = 135;  // characters that fit beside one another
+constexpr std::size_t line_length = 135;  // characters
 constexpr double line_height = 19;
 constexpr double huge_extents = 5;         // a box above this multiple of the mean extent is huge
 constexpr std::size_t most_outlined = 10;  // if more boxes are huge, none is outlined
