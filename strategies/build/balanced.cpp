@@ -2,7 +2,7 @@ module aabb.build.balanced;
 
 import aabb.build.balanced_items;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {
@@ -12,12 +12,12 @@ namespace {
 constexpr std::size_t leaf_triangles = balanced_order::leaf_triangles;
 constexpr std::size_t bins = 256;
 
-/// A range of places, and where its items are.
+/// A range of items, and the array that currently holds them.
 struct part {
     std::size_t begin;
     std::size_t end;
     box bounds;
-    bool in_second;  ///< of the two arrays
+    bool in_second;  ///< whether the items are in the second of the two arrays
 
     [[nodiscard]] std::size_t size() const noexcept { return end - begin; }
 };
@@ -40,11 +40,11 @@ public:
         workers.for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
             bounds[begin / least_shared] = read(begin, end).as_box();
         });
-        box all = empty_box();
-        for (const box& b : bounds) all = merged(all, b);
+        box root = empty_box();
+        for (const box& b : bounds) root = merged(root, b);
         halve(
-            workers, part{0, n, all, false},
-            // Where there are fewer parts than threads, these share one.
+            workers, part{0, n, root, false},
+            // The threads share a part while there are fewer parts than threads.
             [&](const part& p) { return split(p, p.size() > n / workers.count() ? workers : alone_); },
             [&](const part& p) { finish(p); });
         order_.threads = threads;
@@ -53,22 +53,22 @@ public:
 
 private:
     item_bounds read(std::size_t begin, std::size_t end) noexcept {
-        item_bounds all;
+        item_bounds range;
         for (std::size_t t = begin; t < end; ++t) {
             const box b = bounds_of(mesh_.triangle(static_cast<std::uint32_t>(t)));
-            balanced_item& made = items_[0][t];
+            balanced_item& item = items_[0][t];
             for (int k = 0; k < 3; ++k) {
-                made.lower[static_cast<std::size_t>(k)] = b.min[k];
-                made.negated_upper[static_cast<std::size_t>(k)] = -b.max[k];
+                item.lower[static_cast<std::size_t>(k)] = b.min[k];
+                item.negated_upper[static_cast<std::size_t>(k)] = -b.max[k];
             }
-            made.triangle = static_cast<std::uint32_t>(t);
-            made.unused = 0;
-            all.take(made);
+            item.triangle = static_cast<std::uint32_t>(t);
+            item.unused = 0;
+            range.take(item);
         }
-        return all;
+        return range;
     }
 
-    /// Calls itself no deeper than a number has bits.
+    /// Splits a part down to leaves; the recursion is no deeper than a number has bits.
     void finish(const part& p) {
         if (p.size() > leaf_triangles) {
             for (const part& half : split(p, alone_)) finish(half);
@@ -91,22 +91,22 @@ private:
                 part{middle, p.end, bounds_of_items(to.subspan(left), workers), !p.in_second}};
     }
 
-    /// Of what has just been moved, which mostly lies in a cache: to take each on its way costs more.
+    /// Runs after the items were moved, when most are cached: merging each item while it is moved is slower.
     [[nodiscard]] static box bounds_of_items(std::span<const balanced_item> items, worker_threads& workers) {
-        item_bounds all;
+        item_bounds bounds;
         if (workers.count() == 1) {
-            all.take(items);
-            return all.as_box();
+            bounds.take(items);
+            return bounds.as_box();
         }
-        std::vector<item_bounds> some((items.size() + least_shared - 1) / least_shared);
+        std::vector<item_bounds> partial((items.size() + least_shared - 1) / least_shared);
         workers.for_each_range(items.size(), least_shared, [&](std::size_t begin, std::size_t end) {
-            some[begin / least_shared].take(items.subspan(begin, end - begin));
+            partial[begin / least_shared].take(items.subspan(begin, end - begin));
         });
-        for (const item_bounds& one : some) all.take(one);
-        return all.as_box();
+        for (const item_bounds& b : partial) bounds.take(b);
+        return bounds.as_box();
     }
 
-    /// An axis, and what `few_items::first` has along it.
+    /// A split axis, and the result of `few_items::first` along it.
     struct few_split {
         std::size_t axis;
         std::uint64_t first;
@@ -141,7 +141,7 @@ private:
         }
     }
 
-    /// The bit of the last of those items.
+    /// The bit of the last item in `which`, in the order of centres.
     [[nodiscard]] static std::uint64_t last_of(std::span<const balanced_item> items, std::uint64_t which,
                                                std::size_t axis) noexcept {
         auto last = static_cast<std::size_t>(std::countr_zero(which));
@@ -164,15 +164,15 @@ private:
         return best;
     }
 
-    /// What falls to one thread of a range that is split.
+    /// The share of one thread in a range that is split.
     struct share {
         std::size_t begin;
         std::size_t end;
         std::array<std::uint32_t, bins> count{};
-        std::array<std::size_t, 3> next{};  // places for what lies below, in and above the bin that is split
+        std::array<std::size_t, 3> next{};  // output positions below, in and above the bin that is split
     };
 
-    /// By how many centres lie in each bin: only those of one bin have to be put in order.
+    /// Splits by a histogram of the centres, so that only the items of one bin must be sorted.
     void split_many(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds, std::size_t left,
                     std::uint8_t* bin, worker_threads& workers) const {
         if (workers.count() == 1) {
@@ -185,15 +185,15 @@ private:
         split_shared(from, to, bounds, left, bin, workers, shares);
     }
 
-    /// @param bin takes the bin of each
-    /// @returns how many lie in each bin
+    /// @param bin receives the bin of each item
+    /// @returns the histogram
     static std::array<std::uint32_t, bins> put_in_bins(std::span<const balanced_item> items, std::size_t axis,
                                                        float low, float scale, std::uint8_t* bin) noexcept {
-        // Counted in turn: neighbours mostly lie in the same bin, and each would wait for the one before.
+        // Several histograms: adjacent items mostly share a bin, so that increments of a single one would stall.
         constexpr std::size_t turns = 4;
         std::array<std::array<std::uint32_t, bins>, turns> counts{};
         const auto take = [&](std::size_t i, std::size_t turn) {
-            // Not a number where all are equal.
+            // NaN if all centres are equal.
             const float place = (items[i].centre(axis) - low) * scale;
             const auto of_item = static_cast<std::uint8_t>(place > 0 ? std::min(place, float{bins - 1}) : 0);
             bin[i] = of_item;
@@ -214,9 +214,8 @@ private:
         const float low = bounds.min[static_cast<int>(axis)];
         const float scale = bins / (bounds.max[static_cast<int>(axis)] - low);
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
-            share& mine = shares[s];
-            mine.count =
-                put_in_bins(from.subspan(mine.begin, mine.end - mine.begin), axis, low, scale, bin + mine.begin);
+            share& own = shares[s];
+            own.count = put_in_bins(from.subspan(own.begin, own.end - own.begin), axis, low, scale, bin + own.begin);
         });
         std::array<std::uint32_t, bins> count{};
         for (const share& s : shares)
@@ -236,7 +235,7 @@ private:
             next[2] += s.end - s.begin - below - s.count[at];
         }
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
-            // In registers: a processor waits for what it reads where it has just written.
+            // Copied to registers, since loads of recently stored values stall.
             auto [below, within, above] = shares[s].next;
             for (std::size_t i = shares[s].begin; i < shares[s].end; ++i) {
                 const bool is_below = bin[i] < at;
@@ -247,17 +246,17 @@ private:
                 within += !is_below && !is_above;
             }
         });
-        // In the order in which they came, whatever the library makes of it: what was read is no longer needed.
+        // Restores the original order, so that the result does not depend on the library; `from` is free by now.
         const std::span between = to.subspan(begin, end - begin);
-        const std::span came = from.subspan(begin, end - begin);
-        std::ranges::copy(between, came.begin());
+        const std::span original = from.subspan(begin, end - begin);
+        std::ranges::copy(between, original.begin());
         const auto middle = between.begin() + static_cast<std::ptrdiff_t>(left - begin);
         std::ranges::nth_element(between, middle, centre_order{axis});
         const balanced_item first_of_right = *middle;
         std::array<std::size_t, 2> place{begin, left};
-        for (const balanced_item& one : came) {
-            const bool is_right = !centre_order{axis}(one, first_of_right);
-            to[place[is_right]++] = one;
+        for (const balanced_item& item : original) {
+            const bool is_right = !centre_order{axis}(item, first_of_right);
+            to[place[is_right]++] = item;
         }
     }
 

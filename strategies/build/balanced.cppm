@@ -1,5 +1,5 @@
-/// Builds for layouts that prescribe how many triangles go to which side; and by several threads: their parameter, and
-/// how a range of triangles is split in two, and these again.
+/// Builds for layouts that prescribe how many triangles go to each side, and multithreaded builds: their parameter, and
+/// the recursive splitting of a range of triangles.
 export module aabb.build.balanced;
 
 export import aabb.local_detection;
@@ -7,7 +7,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// A build by several threads, which make the same tree as one.
+/// A multithreaded build; the tree does not depend on the number of threads.
 struct threaded_build {
     struct config {
         std::uint32_t threads = 1;
@@ -21,17 +21,17 @@ struct threaded_build {
     std::uint32_t threads = 1;
 };
 
-/// How many triangles are worth another thread.
+/// The number of triangles that repay another thread.
 inline constexpr std::size_t least_shared = 2048;
 
-/// Halves need no more than fourteen for 2^31 triangles and 256 threads.
+/// Balanced splits need no more than 14 levels for 2^31 triangles and 256 threads.
 inline constexpr std::size_t most_shared_levels = 64;
 
-/// Splits the whole, and what comes of it, until there is enough for all threads to end at about the same time; then
-/// each thread finishes one part after the other, neighbours first, which lie in its caches. With one thread the whole
-/// is finished at once. Splits that take off little at a time end sooner, since each level costs stack.
-/// @param split returns the two parts of one; called from several threads, like `finish`, of parts that do not overlap
-/// @param finish does all that is left to do for a part
+/// Splits the whole recursively until there are enough parts to balance the load; then each thread finishes one part
+/// after the other, adjacent parts first, which are in its caches. A single thread finishes the whole at once.
+/// Unbalanced splits stop at `most_shared_levels`, since each level costs stack.
+/// @param split returns the two parts of a part; runs in several threads, like `finish`, on disjoint parts
+/// @param finish completes a part
 template <class Part, class Split, class Finish>
 void halve(worker_threads& workers, const Part& whole, const Split& split, const Finish& finish) {
     const std::size_t enough =
@@ -44,12 +44,12 @@ void halve(worker_threads& workers, const Part& whole, const Split& split, const
     halve_part(halve_part, whole, most_shared_levels);
 }
 
-/// Across which axis a node's triangles are split, in the order of their boxes' centres, where their numbers are
-/// prescribed: the longest of the node's box, or that with the least sum of area times triangles on both sides (of a
-/// sample, where they are many).
+/// The axis along which a node's triangles are split, ordered by the centres of their boxes, when their numbers are
+/// prescribed: the longest axis of the node's box, or that with the least sum of area times triangles over both sides
+/// (estimated from a sample if there are many).
 enum class axis_rule : std::uint8_t { longest, least_area };
 
-/// The same order whatever the number of threads.
+/// The order does not depend on the number of threads.
 [[nodiscard]] balanced_order order_by_halves(const mesh& m, axis_rule rule, std::uint32_t threads);
 
 }  // namespace aabb

@@ -1,27 +1,28 @@
-/// What a balanced build moves about, and how it is split: many items across which axis, a few in which way.
+/// The items of a balanced build, and the choice of a split: the axis for many items, the exact split for a few.
 export module aabb.build.balanced_items;
 
 import aabb.geometry;
 import aabb.simd;
 import aabb.std;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
 
-/// A triangle on its way, as a vector.
+/// A triangle as a build moves it: its box as one SIMD vector.
 struct alignas(32) balanced_item {
     std::array<float, 3> lower;
     std::uint32_t triangle;
-    std::array<float, 3> negated_upper;  // so that both grow downward
+    std::array<float, 3> negated_upper;  // so that one minimum merges both
     std::uint32_t unused;
 
-    /// Never beyond the range of float.
+    /// Cannot overflow.
     [[nodiscard]] inline float centre(std::size_t axis) const noexcept {
         return 0.5F * lower[axis] - 0.5F * negated_upper[axis];
     }
-    /// Along each axis; then numbers of no account. The triangle's is no float: products with one may be slow.
+    /// The centres along each axis, then padding. The shuffle drops the triangle's index: as a float it may be denormal
+    /// and slow.
     [[nodiscard]] inline simd::eight_floats centres() const noexcept {
         const auto bounds = std::bit_cast<simd::eight_floats>(*this);
         const auto half = 0.5F * __builtin_shufflevector(bounds, bounds, 0, 1, 2, 2, 4, 5, 6, 6);
@@ -29,7 +30,7 @@ struct alignas(32) balanced_item {
     }
 };
 
-/// In the order of centres along an axis; ties go by triangle, so that it is clear who goes to which side.
+/// Orders items by centre along an axis; ties are broken by triangle, so that the order is unique.
 struct centre_order {
     std::size_t axis;
 
@@ -40,12 +41,12 @@ struct centre_order {
     }
 };
 
-/// The box of several items. What stands in the places of their numbers is nobody's.
+/// The box of several items. The lanes of their indices have no meaning.
 class item_bounds {
 public:
-    inline void take(const balanced_item& one) noexcept { at_ = lesser(one); }
+    inline void take(const balanced_item& item) noexcept { at_ = lesser(item); }
     inline void take(const item_bounds& other) noexcept { at_ = other.at_ < at_ ? other.at_ : at_; }
-    /// Two in turn, of which neither waits for the one before.
+    /// Uses two accumulators to halve the chain of dependent minima.
     inline void take(std::span<const balanced_item> items) noexcept {
         item_bounds odd;
         std::size_t i = 0;
@@ -56,30 +57,30 @@ public:
         if (i < items.size()) take(items[i]);
         take(odd);
     }
-    /// Without a branch.
-    inline void take_if(bool wanted, const balanced_item& one) noexcept {
+    /// Merges the item if `wanted`, without a branch.
+    inline void take_if(bool wanted, const balanced_item& item) noexcept {
         const simd::eight_words every = simd::eight_words{} - std::uint32_t{wanted};
-        at_ = every ? lesser(one) : at_;
+        at_ = every ? lesser(item) : at_;
     }
     [[nodiscard]] box as_box() const noexcept { return {{at_[0], at_[1], at_[2]}, {-at_[4], -at_[5], -at_[6]}}; }
 
 private:
-    [[nodiscard]] inline simd::eight_floats lesser(const balanced_item& one) const noexcept {
-        const auto other = std::bit_cast<simd::eight_floats>(one);
+    [[nodiscard]] inline simd::eight_floats lesser(const balanced_item& item) const noexcept {
+        const auto other = std::bit_cast<simd::eight_floats>(item);
         return other < at_ ? other : at_;
     }
 
     simd::eight_floats at_ = simd::eight_floats{} + std::numeric_limits<float>::infinity();
 };
 
-/// Some items in bins along each axis, by their centres: how large both sides of a split are is known to a bin.
+/// A sample of items, binned along each axis by centre: estimates the cost of a split to the precision of a bin.
 class binned_items {
 public:
-    /// So many are as good as all: trees of them are searched as fast.
+    /// The sample size; trees built from larger samples are not faster to query.
     static constexpr std::size_t most = 256;
 
-    /// Every so many of `items`, which must outlive these.
-    /// @param bounds box of all
+    /// Takes every `step`-th of `items`, which must outlive the sample.
+    /// @param bounds the box of all items
     binned_items(std::span<const balanced_item> items, std::size_t step, const box& bounds) noexcept
         : items_(items), step_(step) {
         eight_floats low{};
@@ -98,7 +99,7 @@ public:
         }
     }
 
-    /// Along each axis the sum over both sides of box area times number, where about so many go to the left.
+    /// For each axis, the sum over both sides of area times number of items, with about `left` items on the left.
     [[nodiscard]] std::array<double, 3> costs(std::size_t left) const noexcept {
         std::array<std::size_t, 3> end{};
         std::array<std::size_t, 3> in_left{};
@@ -123,7 +124,7 @@ public:
 
 private:
     using eight_floats = simd::eight_floats;
-    static constexpr std::size_t bins = 255;  // as whole bytes reach
+    static constexpr std::size_t bins = 255;  // the range of `whole_bytes`
 
     std::span<const balanced_item> items_;
     std::size_t step_;
@@ -132,7 +133,7 @@ private:
     std::array<std::array<std::uint16_t, bins>, 3> in_bin_{};
 };
 
-/// Up to sixty-four items, coordinate by coordinate.
+/// Up to 64 items as a structure of arrays.
 class few_items {
 public:
     static constexpr std::size_t most = 64;
@@ -143,7 +144,7 @@ public:
                 lower_[k][i] = items[i].lower[k];
                 negated_upper_[k][i] = items[i].negated_upper[k];
             }
-        // The last one fills the rest, as far as whole vectors are looked at.
+        // Pads full vectors with the last item.
         const std::size_t filled = std::max(std::bit_ceil(count_), lanes);
         for (std::size_t i = count_; i < filled; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
@@ -153,15 +154,15 @@ public:
         for (std::size_t k = 0; k < 3; ++k) number_centres(k, filled / lanes);
     }
 
-    /// Bit i for each item i before which, along the axis, there are fewer than `left`, as far as 16 bits tell: those
-    /// that come first, and maybe others just behind them.
+    /// Sets bit i for each item i with fewer than `left` items before it along the axis, to a precision of 16 bits: the
+    /// first `left` items, and possibly ties behind them.
     [[nodiscard]] inline std::uint64_t first(std::size_t axis, std::size_t left) const noexcept {
         return first_in<1>(axis, static_cast<std::int16_t>(left));
     }
 
-    /// The sum, for those in `which` and for the others, of their box's area times their number.
+    /// The sum of area times number over the items in `which` and the others.
     [[nodiscard]] inline double cost_of(std::uint64_t which) const noexcept {
-        // What fills the last vector goes where the last item goes.
+        // Padding goes to the side of the last item.
         const std::uint64_t fill = count_ < most && (which >> (count_ - 1) & 1) != 0 ? ~std::uint64_t{0} << count_ : 0;
         std::array<std::array<eight_floats, 6>, 2> sides;
         for (auto& side : sides) side.fill(eight_floats{} + std::numeric_limits<float>::infinity());
@@ -184,11 +185,11 @@ public:
 private:
     using eight_floats = simd::eight_floats;
     static constexpr std::size_t width = 8;
-    static constexpr std::size_t lanes = 16;  // of the longest vector
-    static constexpr float reach = 32500;     // of numbers of 16 bits
+    static constexpr std::size_t lanes = 16;    // of the longest vector
+    static constexpr float half_range = 32500;  // of 16-bit integers
     using row = std::array<float, most>;
 
-    /// In whole steps from the least to the greatest.
+    /// Quantises the centres to 16 bits between the least and the greatest.
     inline void number_centres(std::size_t axis, std::size_t vectors) noexcept {
         std::array<simd::sixteen_floats, most / lanes> centre;
         simd::sixteen_floats least = simd::sixteen_floats{} + std::numeric_limits<float>::infinity();
@@ -203,16 +204,16 @@ private:
             most_negated = -centre[v] < most_negated ? -centre[v] : most_negated;
         }
         const float low = simd::least(least);
-        const float steps = 2 * reach / (-simd::least(most_negated) - low);
+        const float steps = 2 * half_range / (-simd::least(most_negated) - low);
         const bool differ = steps > 0 && steps < std::numeric_limits<float>::max();
         for (std::size_t v = 0; v < vectors; ++v) {
             const simd::sixteen_halves numbers =
-                differ ? simd::whole_halves((centre[v] - low) * steps - reach) : simd::sixteen_halves{};
+                differ ? simd::whole_halves((centre[v] - low) * steps - half_range) : simd::sixteen_halves{};
             std::memcpy(&centre_[axis][v * lanes], &numbers, sizeof numbers);
         }
     }
 
-    /// By counting, so that nothing is moved: in registers, which is why how many vectors there are must be known.
+    /// Selects by counting, which moves no items. The number of vectors is a constant so that they stay in registers.
     template <std::size_t Vectors>
     [[nodiscard]] inline std::uint64_t first_in(std::size_t axis, std::int16_t left) const noexcept {
         if constexpr (Vectors * lanes < most)

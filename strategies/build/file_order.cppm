@@ -5,9 +5,9 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Triangles stay as they stand in the mesh: a node's first ones, as many as the greatest power of two below their
+/// Keeps the triangles in the order of the mesh: the first ones of a node, up to the greatest power of two below their
 /// number, go to the left. When to use: for meshes that were written in the order of a tree's leaves (`in_leaf_order`,
-/// `./aabblab order`), of which `implicit` then need not say which triangle stands where.
+/// `./aabblab order`), for which `implicit` needs no triangle indices.
 struct file_order_build : threaded_build {
     using threaded_build::threaded_build;
 
@@ -24,16 +24,16 @@ struct file_order_build : threaded_build {
     [[nodiscard]] balanced_order order(const mesh& m) const {
         constexpr std::size_t in_leaf = balanced_order::leaf_triangles;
         const std::size_t n = m.triangles.size();
-        balanced_order made{large_vector<std::uint32_t>(n), large_vector<box>((n + in_leaf - 1) / in_leaf, empty_box()),
-                            threads};
-        std::iota(made.triangles.begin(), made.triangles.end(), 0U);
+        balanced_order order_of_file{large_vector<std::uint32_t>(n),
+                                     large_vector<box>((n + in_leaf - 1) / in_leaf, empty_box()), threads};
+        std::iota(order_of_file.triangles.begin(), order_of_file.triangles.end(), 0U);
         worker_threads(threads).for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {
-                box& leaf = made.bounds[t / in_leaf];
+                box& leaf = order_of_file.bounds[t / in_leaf];
                 leaf = merged(leaf, bounds_of(m.triangle(static_cast<std::uint32_t>(t))));
             }
         });
-        return made;
+        return order_of_file;
     }
 };
 

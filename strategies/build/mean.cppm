@@ -3,7 +3,7 @@ export module aabb.build.mean;
 import aabb.build.top_down;
 import aabb.std;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
@@ -18,9 +18,9 @@ export namespace aabb {
     return left == 0 || left == range.size() ? median_split(range, bounds) : split_choice{axis, left};
 }
 
-/// The unbalanced build that the balanced one is held against (claim C8): a node is split at the mean of the centroids
-/// along the longest axis of its box; at the median where none or all lie below the mean as rounded (equal ones). When
-/// to use: for trees that are searched faster than balanced ones and built as fast.
+/// The unbalanced build that the balanced one is compared with (claim C8): splits a node at the mean of the centroids
+/// along the longest axis of its box, or at the median if none or all lie below the rounded mean (equal centroids).
+/// When to use: for trees that are queried faster than balanced ones and built as fast.
 struct mean_build : top_down_build<mean_split, axis_rule::longest> {
     using top_down_build::top_down_build;
 

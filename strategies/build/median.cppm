@@ -5,9 +5,9 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The paper's balanced build (section 3.1): a node is split at the median of its triangles' centroids along the
-/// longest axis of its box. n triangles give a depth of ⌈log₂ n⌉, paired or not. When to use: where depth and build
-/// time must be bounded.
+/// The paper's balanced build (section 3.1): splits a node at the median of its triangles' centroids along the longest
+/// axis of its box. The depth for n triangles is ⌈log₂ n⌉, with or without paired leaves. When to use: if depth and
+/// build time must be bounded.
 struct median_build : top_down_build<median_split, axis_rule::longest> {
     using top_down_build::top_down_build;
 

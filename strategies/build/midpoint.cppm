@@ -3,7 +3,7 @@ export module aabb.build.midpoint;
 import aabb.build.top_down;
 import aabb.std;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
@@ -18,10 +18,9 @@ export namespace aabb {
 }
 
 /// The spatial midpoint (van den Bergen, "Efficient collision detection of complex deformable models using AABB trees",
-/// 1997): a node is split in the middle of the longest axis of its box, each triangle to the side of its centroid; at
-/// the median where a side would be empty. When to use: as what AABB trees were usually built by before the
-/// surface-area heuristic (claim C8). Triangles nested in one another may be peeled off one by one, which takes time
-/// quadratic in their number.
+/// 1997): splits a node in the middle of the longest axis of its box, each triangle to the side of its centroid, or at
+/// the median if a side would be empty. When to use: as the usual build of AABB trees before the surface-area heuristic
+/// (claim C8). Nested triangles may be split off one at a time, which takes quadratic time.
 struct midpoint_build : top_down_build<midpoint_split, axis_rule::longest> {
     using top_down_build::top_down_build;
 

@@ -1,6 +1,6 @@
 module aabb.build.sah;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {
@@ -9,13 +9,13 @@ namespace {
 
 constexpr std::size_t sah_bins = 16;
 
-/// Triangles whose centroids lie in one slice of the node.
+/// The triangles whose centroids lie in one slice of the node.
 struct sah_bin {
     box bounds = empty_box();
     std::size_t count = 0;
 };
 
-/// Maps centroids to bins, a monotone function along the axis.
+/// Maps centroids to bins; the map is monotone along the axis.
 class sah_binning {
 public:
     sah_binning(double low, double high) noexcept : low_(low), scale_(double{sah_bins} / (high - low)) {}
@@ -29,7 +29,7 @@ private:
     double scale_;
 };
 
-/// Takes the best split along the axis if it is better than the best so far.
+/// Updates `best` if a split along the axis costs less.
 void try_sah_axis(std::span<const build_element> range, int axis, const box& centroids, double& least,
                   split_choice& best) noexcept {
     const sah_binning bin_of(centroids.min[axis], centroids.max[axis]);
@@ -39,23 +39,23 @@ void try_sah_axis(std::span<const build_element> range, int axis, const box& cen
         bin.bounds = merged(bin.bounds, e.bounds);
         ++bin.count;
     }
-    // Cost of all from a bin on.
+    // right[i] is the cost of bins i and above.
     std::array<double, sah_bins> right{};
-    sah_bin all;
+    sah_bin side;
     for (std::size_t i = sah_bins; i-- > 1;) {
-        all.bounds = merged(all.bounds, bins[i].bounds);
-        all.count += bins[i].count;
-        right[i] = all.count == 0 ? 0 : surface_area(all.bounds) * static_cast<double>(all.count);
+        side.bounds = merged(side.bounds, bins[i].bounds);
+        side.count += bins[i].count;
+        right[i] = side.count == 0 ? 0 : surface_area(side.bounds) * static_cast<double>(side.count);
     }
-    all = {};
+    side = {};
     for (std::size_t i = 0; i + 1 < sah_bins; ++i) {
-        all.bounds = merged(all.bounds, bins[i].bounds);
-        all.count += bins[i].count;
-        if (all.count == 0 || all.count == range.size()) continue;
-        const double cost = surface_area(all.bounds) * static_cast<double>(all.count) + right[i + 1];
+        side.bounds = merged(side.bounds, bins[i].bounds);
+        side.count += bins[i].count;
+        if (side.count == 0 || side.count == range.size()) continue;
+        const double cost = surface_area(side.bounds) * static_cast<double>(side.count) + right[i + 1];
         if (cost < least) {
             least = cost;
-            best = {axis, all.count};
+            best = {axis, side.count};
         }
     }
 }

@@ -8,16 +8,16 @@ export namespace aabb {
 
 [[nodiscard]] split_choice sah_split(std::span<const build_element> range, const box& bounds);
 
-/// The surface-area heuristic in bins (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007): of
-/// 15 planes on each axis the one with the least sum of area times triangles on both sides; at the median where all
-/// centroids are equal. When to use: for trees that are searched often.
+/// The binned surface-area heuristic (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007): of
+/// 15 planes on each axis, picks the one with the least sum of area times triangles over both sides; splits at the
+/// median if all centroids are equal. When to use: for trees that are queried often.
 struct sah_build : top_down_build<sah_split, axis_rule::least_area> {
     using top_down_build::top_down_build;
 
     static constexpr std::string_view name = "sah";
     static constexpr std::string_view summary = "by the surface-area heuristic, in 16 bins on each axis";
 
-    /// Its trees are visited a twelfth less than those by `median`.
+    /// Queries visit a twelfth fewer nodes than in trees by `median`.
     [[nodiscard]] static scene_fit fit(const scene_outlook& scene) {
         if (scene.triangles == 0) return {.because = {{"no meshes: nothing is built"}}};
         const std::size_t repaid =

@@ -1,6 +1,6 @@
 module aabb.build.top_down;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {
@@ -17,19 +17,19 @@ build_element element_of(const mesh& m, std::uint32_t triangle) {
 }
 
 box bounds_of(std::span<const build_element> range) {
-    box all = range[0].bounds;
-    for (const build_element& e : range.subspan(1)) all = merged(all, e.bounds);
-    return all;
+    box bounds = range[0].bounds;
+    for (const build_element& e : range.subspan(1)) bounds = merged(bounds, e.bounds);
+    return bounds;
 }
 
-/// The number of triangles nearest to `left` that leaves pairs on both sides. A balanced tree grows no deeper by it: of
-/// 2m triangles, m odd, above 1 and so below some power of two, m + 1 still fit under that power.
-std::size_t paired(std::size_t left, std::size_t all) {
-    if (all % 2 != 0 || left % 2 == 0 || all == 2) return left;
-    return left + 1 < all ? left + 1 : left - 1;
+/// The number of triangles nearest to `left` that leaves pairs on both sides. It does not deepen a balanced tree: for
+/// 2m triangles, m odd and above 1, hence below some power of two, m + 1 do not exceed that power.
+std::size_t paired(std::size_t left, std::size_t count) {
+    if (count % 2 != 0 || left % 2 == 0 || count == 2) return left;
+    return left + 1 < count ? left + 1 : left - 1;
 }
 
-/// A range of elements to become a node.
+/// A range of elements that becomes a node.
 struct task {
     std::size_t begin;
     std::size_t end;
@@ -76,15 +76,15 @@ private:
     }
 
     void finish(const task& whole) {
-        // Deep trees must not cost stack.
+        // An explicit stack, since trees may be deep.
         std::vector<task> tasks{whole};
         while (!tasks.empty()) {
-            const task now = tasks.back();
+            const task current = tasks.back();
             tasks.pop_back();
-            if (now.size() == 1) {
-                nodes_[now.node] = {elements_[now.begin].bounds, 0, elements_[now.begin].triangle};
+            if (current.size() == 1) {
+                nodes_[current.node] = {elements_[current.begin].bounds, 0, elements_[current.begin].triangle};
             } else {
-                const auto [left, right] = halves_of(now);
+                const auto [left, right] = halves_of(current);
                 tasks.push_back(right);
                 tasks.push_back(left);
             }

@@ -1,4 +1,4 @@
-/// Builds from the root down, node by node, whatever says where a node is split.
+/// A top-down build with an arbitrary split rule.
 export module aabb.build.top_down;
 
 export import aabb.build.balanced;
@@ -6,11 +6,11 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Takes the elements of a node and their box. Asked by a call, so that the rest is compiled once, whatever the rule;
-/// by several threads at a time.
+/// Chooses the split of a node from its elements and their box. It is type-erased, so that the build is compiled once
+/// for all rules, and must be thread-safe.
 using split_rule = std::function<split_choice(std::span<const build_element> range, const box& bounds)>;
 
-/// Along an axis; ties go by index, so that the tree does not depend on the library.
+/// Orders elements along an axis; ties are broken by index, so that the tree does not depend on the library.
 struct centroid_order {
     int axis;
 
@@ -19,16 +19,16 @@ struct centroid_order {
     }
 };
 
-/// The same nodes whatever the number of threads.
+/// The nodes do not depend on the number of threads.
 [[nodiscard]] std::vector<build_node> build_top_down(const mesh& m, leaf_arrangement arrangement,
                                                      const split_rule& split, std::uint32_t threads);
 
-/// At the median of the longest axis of the box: what every split falls back to where its own rule leaves a side empty.
+/// Splits at the median along the longest axis of the box: the fallback of rules that would leave a side empty.
 [[nodiscard]] inline split_choice median_split(std::span<const build_element> range, const box& bounds) {
     return {longest_axis(bounds), range.size() / 2};
 }
 
-/// A build by rules: one for the nodes of a binary tree, one for layouts that prescribe how many go to which side.
+/// A build by two rules: one for binary trees, one for layouts that prescribe how many triangles go to each side.
 template <split_choice (*Split)(std::span<const build_element> range, const box& bounds), axis_rule Rule>
 struct top_down_build : threaded_build {
     using threaded_build::threaded_build;

@@ -11,31 +11,31 @@ constexpr std::uint32_t whole = 0xffffffff;
 
 struct part {
     mesh own;
-    std::vector<std::uint32_t> vertices;   // of the mesh that it is of, by own number
-    std::vector<std::uint32_t> triangles;  // the same
+    std::vector<std::uint32_t> vertices;   // the mesh's vertices, by the part's vertex
+    std::vector<std::uint32_t> triangles;  // the same for triangles
 };
 
 part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
     assert(!triangles.empty());
-    part made;
+    part result;
     for (const std::uint32_t t : triangles)
-        made.vertices.insert(made.vertices.end(), m.triangles[t].begin(), m.triangles[t].end());
-    std::ranges::sort(made.vertices);
-    const auto repeated = std::ranges::unique(made.vertices);
-    made.vertices.erase(repeated.begin(), repeated.end());
-    made.vertices.shrink_to_fit();
+        result.vertices.insert(result.vertices.end(), m.triangles[t].begin(), m.triangles[t].end());
+    std::ranges::sort(result.vertices);
+    const auto repeated = std::ranges::unique(result.vertices);
+    result.vertices.erase(repeated.begin(), repeated.end());
+    result.vertices.shrink_to_fit();
     const auto own_number = [&](std::uint32_t vertex) {
-        return static_cast<std::uint32_t>(std::ranges::lower_bound(made.vertices, vertex) - made.vertices.begin());
+        return static_cast<std::uint32_t>(std::ranges::lower_bound(result.vertices, vertex) - result.vertices.begin());
     };
-    made.own.vertices.reserve(made.vertices.size());
-    for (const std::uint32_t v : made.vertices) made.own.vertices.push_back(m.vertices[v]);
-    made.own.triangles.reserve(triangles.size());
+    result.own.vertices.reserve(result.vertices.size());
+    for (const std::uint32_t v : result.vertices) result.own.vertices.push_back(m.vertices[v]);
+    result.own.triangles.reserve(triangles.size());
     for (const std::uint32_t t : triangles) {
         const auto& [a, b, c] = m.triangles[t];
-        made.own.triangles.push_back({own_number(a), own_number(b), own_number(c)});
+        result.own.triangles.push_back({own_number(a), own_number(b), own_number(c)});
     }
-    made.triangles = std::move(triangles);
-    return made;
+    result.triangles = std::move(triangles);
+    return result;
 }
 
 class divided_scene final : public scene_parts {
@@ -68,14 +68,14 @@ private:
         std::uint32_t model;
     };
 
-    /// In the mesh of the scene, of a triangle of the model.
+    /// Maps a triangle of the model to the scene's mesh.
     [[nodiscard]] std::uint32_t triangle_of(std::uint32_t model, std::uint32_t triangle) const noexcept {
         const std::uint32_t part = models_[model].part;
         return part == whole ? triangle : parts_[part].triangles[triangle];
     }
 
     const mesh_scene& scene_;
-    std::vector<std::size_t> triangles_;  // of the scene's meshes
+    std::vector<std::size_t> triangles_;  // how many, by mesh of the scene
     std::vector<part> parts_;
     std::vector<model> models_;
     std::vector<piece> pieces_;
@@ -152,9 +152,9 @@ void divided_scene::name_triangles(index_pair models, std::span<index_pair> tria
 }
 
 std::size_t divided_scene::bytes() const noexcept {
-    std::size_t all = bytes_of(triangles_, parts_, models_, pieces_, boxes_);
-    for (const part& p : parts_) all += bytes_of(p.own.vertices, p.own.triangles, p.vertices, p.triangles);
-    return all;
+    std::size_t total = bytes_of(triangles_, parts_, models_, pieces_, boxes_);
+    for (const part& p : parts_) total += bytes_of(p.own.vertices, p.own.triangles, p.vertices, p.triangles);
+    return total;
 }
 
 }  // namespace

@@ -8,14 +8,14 @@ import aabb.wide_tree.triangle_batch;
 
 export namespace aabb {
 
-/// Walks two trees together, level by level: some node pairs of the lowest level that has any are opened at a time, so
-/// that no step waits for the one before, and few pairs are kept; all pairs of leaves that there are go on together;
-/// for the first pair by `nearest_walk`. Triangles are read and moved once for all the leaves that they meet one after
-/// the other, and tested in batches.
+/// Traverses two trees simultaneously, level by level. Each step opens a batch of node pairs of the lowest level that
+/// has any, so that the pairs of a batch do not depend on each other and few pairs are pending. Leaves are read and
+/// transformed once for consecutive pairs, and their triangles are tested in batches. Queries for the first pair use
+/// `nearest_walk`.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
-    /// Hands intersecting pairs of triangles (a of A, b of B) to `emit`, some at a time, until that returns true.
+    /// Passes intersecting pairs of triangles (a of A, b of B) to `emit`, in batches, until `emit` returns true.
     template <class Emit>
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal goal, Emit emit) {
@@ -23,14 +23,14 @@ public:
         walk(test, a, b, to_a, extent::two_meshes, emit);
     }
 
-    /// Those of one mesh, in either order.
+    /// Finds the self-intersections of a mesh; each pair is reported once, in either order.
     template <class Emit>
     void within(const Triangle& test, const model<Tree>& m, Emit emit) {
         walk(test, m, m, relative_pose({}, {}, m.bounds()), extent::one_mesh, emit);
     }
 
     /// Appends the pairs of leaves with triangles within a margin of each other, less rounding (`most_rounding`).
-    /// @returns false when it stopped at more than so many
+    /// @returns false if there are more than `most`, where it stops
     [[nodiscard]] bool near(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
                             std::size_t most, std::vector<kept_pair>& pairs) {
         leaves_.begin(a, b, to_a, false, false,
@@ -45,7 +45,7 @@ public:
                         });
     }
 
-    /// As `between`, of these pairs alone.
+    /// The same as `between`, restricted to these pairs of leaves.
     template <class Emit>
     void among(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                std::span<const kept_pair> pairs, kept_leaves<Tree>& leaves, walk_goal goal, Emit emit) {
@@ -63,28 +63,28 @@ public:
     [[nodiscard]] Counters& counters() noexcept { return counters_; }
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all =
+        std::size_t total =
             sizeof *this + bytes_of(pairs_) + steps_.bytes() + children_.bytes() + leaves_.bytes() + nearest_.bytes();
-        for (const node_pairs& p : pairs_) all += bytes_of(p.a, p.b);
-        return all;
+        for (const node_pairs& p : pairs_) total += bytes_of(p.a, p.b);
+        return total;
     }
 
 private:
     static constexpr std::size_t children = wide_node::most_children;
     static constexpr std::size_t most_children_of_pair = children * children;
     static constexpr std::size_t most_at_once = child_pairs<Tree>::most_at_once;
-    /// Whether a filter decides where rounding leaves no doubt: of exact tests alone.
+    /// Only exact tests have a floating-point filter in front.
     static constexpr bool is_filtered = requires { requires Triangle::filtered; };
 
     enum class extent : std::uint8_t { two_meshes, one_mesh };
 
-    /// Node pairs of the same levels, still to be opened.
+    /// The pending node pairs of one step of the descent.
     struct node_pairs {
         std::vector<std::uint32_t> a;
         std::vector<std::uint32_t> b;
         std::size_t size = 0;
 
-        /// For all pairs of children of one more pair.
+        /// Makes room for all pairs of children of one more pair.
         inline void make_room() {
             if (size + most_children_of_pair <= a.size()) return;
             b.resize(2 * size + most_children_of_pair);
@@ -107,7 +107,7 @@ private:
         if (!stopped) static_cast<void>(waiting_.decide(test, true, triangles_at, emit));
     }
 
-    /// Any one pair: each pair of leaves is decided on before the next is read.
+    /// Finds any one pair: tests each pair of leaves before it reads the next.
     template <class Emit>
     void find(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
               const Emit& emit) {
@@ -123,10 +123,10 @@ private:
         });
     }
 
-    /// Opens nodes down to pairs of leaves that may meet.
-    /// @param margin within which boxes are said to meet
-    /// @param at_leaves called with leaves of A and of B, as many of both; returns whether to stop
-    /// @returns whether it was stopped
+    /// Descends to the pairs of leaves whose boxes overlap.
+    /// @param margin the distance up to which boxes count as overlapping
+    /// @param at_leaves called with a batch of pairs, as leaves of A and leaves of B; returns whether to stop
+    /// @returns whether `at_leaves` stopped the walk
     template <class AtLeaves>
     bool descend(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what, double margin,
                  const AtLeaves& at_leaves) {
@@ -171,15 +171,15 @@ private:
         children_.begin(a.tree(), b.tree(), to_a, a.bounds(), margin);
     }
 
-    /// Triangles of the meshes, by their leaves and their places there.
+    /// Maps places in two leaves to triangles of the meshes.
     [[nodiscard]] static auto naming(const model<Tree>& a, const model<Tree>& b) {
         return [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
             return index_pair{a.tree().triangle_at(children * leaf_a + i), b.tree().triangle_at(children * leaf_b + j)};
         };
     }
 
-    /// Those pairs of children that may meet go to the next step, from which the last ones are taken first, or all
-    /// where they are leaves.
+    /// Pushes the overlapping pairs of children to the next step, which is a stack; pairs of leaves are taken all at
+    /// once.
     void open(const Tree& a, const Tree& b, extent what, std::size_t step, std::size_t begin, std::size_t end) {
         const wide_node* const nodes_a = a.level(steps_[step].a - 1);
         const wide_node* const nodes_b = b.level(steps_[step].b - 1);
@@ -201,7 +201,7 @@ private:
             simd::store_places(places.data(), to_open);
             const auto count = static_cast<std::size_t>(std::popcount(to_open));
             std::size_t p = 0;
-            do {  // mostly once, which is foreseen
+            do {  // almost always one iteration, so that the branch is predicted
                 const auto place =
                     __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&places[p]), simd::eight_words);
                 simd::store_eight(&to.a[to.size + p], first_a + (place & 7U));
@@ -212,14 +212,14 @@ private:
         }
     }
 
-    /// Pairs of leaves: those of their triangles that may meet wait for the test.
+    /// Queues the pairs of triangles of these leaves whose boxes overlap, and tests them when a batch is full.
     /// @returns whether to stop
     template <class TrianglesAt, class Emit>
     [[nodiscard]] bool test_leaves(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
                                    const relative_pose& to_a, extent what, std::span<const std::uint32_t> leaves_a,
                                    std::span<const std::uint32_t> leaves_b, const TrianglesAt& triangles_at,
                                    const Emit& emit) {
-        // Called in one place, where a call would cost as much as a tenth of what it does.
+        // Inlined, because a call would cost up to a tenth of the work in it.
         const auto take = [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b,
                               std::uint64_t met) __attribute__((always_inline)) {
             if (what == extent::one_mesh) {
@@ -233,7 +233,7 @@ private:
         return leaves_(a, b, to_a, leaves_a, leaves_b, counters_, take);
     }
 
-    /// Until they are tested. Memory is told that it will be asked which triangles they are.
+    /// Queues pairs of triangles for the test, and prefetches the indices of the triangles.
     [[gnu::always_inline]] inline void make_wait(const Tree& a, const Tree& b, const kept_pair& p,
                                                  const triangle_block& of_a, const triangle_block& of_b) {
         counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.which)));
@@ -242,8 +242,8 @@ private:
         b.fetch_triangles(p.leaf_b);
     }
 
-    /// An exact test would find that triangles with a corner in common meet there.
-    /// @param met loses those that are handed over
+    /// Reports adjacent triangles without a test, because an exact test always accepts a shared corner.
+    /// @param met the overlapping pairs; reported pairs are removed
     /// @returns whether to stop
     template <class TrianglesAt, class Emit>
     [[nodiscard]] bool emit_neighbours(std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
@@ -252,8 +252,8 @@ private:
             const std::uint64_t shared = leaves_.neighbours(leaf_a, leaf_b);
             std::array<index_pair, most_children_of_pair> neighbours;
             std::size_t count = 0;
-            for (std::uint64_t found = met & shared; found != 0; found &= found - 1) {
-                const auto place = static_cast<std::uint32_t>(std::countr_zero(found));
+            for (std::uint64_t left = met & shared; left != 0; left &= left - 1) {
+                const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
                 neighbours[count++] = triangles_at(leaf_a, place & 7U, leaf_b, place >> 3U);
             }
             met &= ~shared;
@@ -262,7 +262,7 @@ private:
         return false;
     }
 
-    /// Child i of a node and child j of the same with i <= j, or i != j.
+    /// Pairs of children of the same node: i <= j, and i != j.
     static constexpr std::uint64_t not_twice = 0xff7f3f1f0f070301;
     static constexpr std::uint64_t not_itself = 0x7fbfdfeff7fbfdfe;
 

@@ -3,12 +3,12 @@ export module aabb.wide_tree.box_images;
 import aabb.std;
 export import aabb.wide_tree.wide_node;
 
-// Products may be fused into sums, which the bounds allow for; nothing else.
+// Fused multiply-adds are allowed, which the error bounds include; nothing else is.
 #pragma clang fp reassociate(off) reciprocal(off)
 
 export namespace aabb {
 
-/// Takes the boxes of a node's children into another frame: each holds the image of all that the child's does.
+/// Transforms the boxes of a node's children into another frame: each box contains the image of the child's box.
 class box_images {
 public:
     void begin(const box_motion& motion) noexcept {
@@ -20,12 +20,12 @@ public:
         }
     }
 
-    /// In double, grown by the margin of the motion, and rounded to nearest, which is monotone, like vertices. Planes
-    /// lie further out than the vertices that the margin is for: by a 60th of the node, 2^-22 of the coordinate or the
-    /// least step. What rounding adds by that is within what is left of the margin, or within `least`.
+    /// Computes in double, adds the margin of the motion, and rounds to nearest, which is monotone, as for vertices.
+    /// Planes lie further out than the vertices that the margin is for, by a 60th of the node, 2^-22 of the coordinate
+    /// or the smallest step. The additional rounding errors stay within the rest of the margin, or within `least`.
     void store(const wide_node& n, eight_boxes& to) const noexcept {
 #pragma clang fp contract(fast)
-        // Centres and halves of edges, exactly: whole or half codes, times powers of two.
+        // Centres and half extents are exact: integer or half codes times powers of two.
         std::array<simd::eight_doubles, 3> centre;
         std::array<simd::eight_doubles, 3> half;
         for (std::size_t j = 0; j < 3; ++j) {
@@ -37,47 +37,47 @@ public:
         }
         for (std::size_t k = 0; k < 3; ++k) {
             simd::eight_doubles at = simd::eight_doubles{} + shift_[k];
-            simd::eight_doubles reach = simd::eight_doubles{} + margin_[k];
+            simd::eight_doubles radius = simd::eight_doubles{} + margin_[k];
             for (std::size_t j = 0; j < 3; ++j) {
                 at += turn_[k][j] * centre[j];
-                reach += std::abs(turn_[k][j]) * half[j];
+                radius += std::abs(turn_[k][j]) * half[j];
             }
-            simd::store_eight(to.lower[k].data(), __builtin_convertvector(at - reach, simd::eight_floats));
-            simd::store_eight(to.upper[k].data(), __builtin_convertvector(at + reach, simd::eight_floats));
+            simd::store_eight(to.lower[k].data(), __builtin_convertvector(at - radius, simd::eight_floats));
+            simd::store_eight(to.upper[k].data(), __builtin_convertvector(at + radius, simd::eight_floats));
         }
         to.count = n.children;
     }
 
 private:
-    static constexpr double least = 0x1p-160;  // where all is denormal
+    static constexpr double least = 0x1p-160;  // for denormal coordinates
 
     [[nodiscard]] static inline simd::eight_doubles doubles_of(const box_codes::row& codes) noexcept {
         return __builtin_convertvector(simd::load_eight<simd::eight_bytes>(codes.data()), simd::eight_doubles);
     }
 
-    std::array<std::array<double, 3>, 3> turn_{};  // by the axis there, then here
+    std::array<std::array<double, 3>, 3> turn_{};  // by the target axis, then the source axis
     std::array<double, 3> shift_{};
     std::array<double, 3> margin_{};
 };
 
-/// Images of the children of a tree's nodes, kept for those that come again: each node has a place, shared with others.
+/// A direct-mapped cache of the transformed children of a tree's nodes.
 class kept_images {
 public:
-    /// Forgets all, and takes few places where there are few nodes.
-    /// @param first of the nodes, which all lie in one array
+    /// Invalidates the cache, and grows it if the tree has many nodes.
+    /// @param first the first node of the array that has all nodes
     void begin(const wide_node* first, std::size_t nodes, const box_motion& motion) {
         first_ = first;
         images_.begin(motion);
         if (boxes_.size() < most && boxes_.size() < nodes) boxes_.resize(std::min(most, std::bit_ceil(nodes)));
-        made_.fill(nothing);
+        cached_.fill(no_node);
     }
 
     [[nodiscard]] inline const eight_boxes& operator()(const wide_node& n) {
         const auto number = static_cast<std::uint32_t>(&n - first_);
         const std::size_t place = number & (boxes_.size() - 1);
-        if (made_[place] != number) {
+        if (cached_[place] != number) {
             images_.store(n, boxes_[place]);
-            made_[place] = number;
+            cached_[place] = number;
         }
         return boxes_[place];
     }
@@ -86,11 +86,11 @@ public:
 
 private:
     static constexpr std::size_t most = 32;  // a power of two
-    static constexpr std::uint32_t nothing = 0xffffffff;
+    static constexpr std::uint32_t no_node = 0xffffffff;
 
     const wide_node* first_ = nullptr;
     box_images images_;
-    std::array<std::uint32_t, most> made_{};
+    std::array<std::uint32_t, most> cached_{};
     std::vector<eight_boxes> boxes_;
 };
 

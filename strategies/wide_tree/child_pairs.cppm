@@ -6,13 +6,13 @@ export import aabb.wide_tree.policy;
 
 export namespace aabb {
 
-/// Which children of pairs of nodes, of the same pair of trees, may meet: all sixty-four of a pair at once. The boxes
-/// of B's children are taken into A's frame and held against those of A's node, and where a turn makes them much
-/// larger, those of A's into B's frame as well. A node meets many, so that its boxes in the other frame are kept.
+/// Tests which children of pairs of nodes may meet, all 64 pairs of a node pair at once. The boxes of B's children are
+/// transformed into A's frame and compared with those of A's node. If the rotation inflates them much, A's boxes are
+/// tested in B's frame as well. A node occurs in many pairs, so that its transformed boxes are cached.
 template <WideTreePolicy Tree>
 class child_pairs {
 public:
-    /// @param margin within which children are said to meet
+    /// @param margin the distance up to which children count as meeting
     void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, double margin) {
         in_a_.begin(b.level(0), nodes_of(b), grown(to_a.to_boxes(), margin));
         turned_ = to_a.growth() > least_growth;
@@ -21,16 +21,16 @@ public:
 
     static constexpr std::size_t most_at_once = 64;
 
-    /// Bit 8 j + i of `met` for child i of A's node and child j of B's.
+    /// A pair of nodes, and its overlapping children: bit 8 j + i of `met` for child i of A's node and child j of B's.
     struct found {
         std::size_t pair;
         std::uint64_t met;
     };
 
-    /// Of up to so many pairs of nodes those that have children which may meet, by their place, in order. Pairs of
-    /// children whose triangles meet are among them. Memory is told of all of them first, so that it is waited for
-    /// once, and one test is made of all pairs before the next, so that the processor need not guess.
-    /// @param nodes_a of a level, of which `a` has numbers
+    /// Returns, in order, those of up to `most_at_once` pairs of nodes that have overlapping children. There are no
+    /// false negatives. All nodes are prefetched first, so that their cache misses overlap, and each test runs over all
+    /// pairs before the next one starts, which avoids branch mispredictions.
+    /// @param nodes_a the nodes of a level, which `a` indexes
     template <class Counters>
     [[nodiscard]] std::span<const found> operator()(const wide_node* nodes_a, std::span<const std::uint32_t> a,
                                                     const wide_node* nodes_b, std::span<const std::uint32_t> b,
@@ -69,9 +69,9 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return in_a_.bytes() + in_b_.bytes(); }
 
 private:
-    static constexpr double least_growth = 1.2;  // from here on, the second test saves more than it costs
+    static constexpr double least_growth = 1.2;  // above, the second test saves more than it costs
 
-    /// A pose is a rotation within 1e-6, so that lengths in the other frame are the same within 2^-18.
+    /// A pose is a rotation within 1e-6, so that lengths in both frames agree within 2^-18.
     [[nodiscard]] static box_motion grown(box_motion motion, double margin) noexcept {
         for (int k = 0; k < 3; ++k) motion.margin[k] += margin * (1 + 0x1p-16);
         return motion;
@@ -80,7 +80,7 @@ private:
         return std::uint64_t{a.children} * b.children;
     }
 
-    /// Bit 8 i + j becomes bit 8 j + i.
+    /// Transposes the matrix: bit 8 i + j becomes bit 8 j + i.
     [[nodiscard]] static constexpr std::uint64_t transposed(std::uint64_t m) noexcept {
         const auto swap = [&m](unsigned by, std::uint64_t which) {
             const std::uint64_t changed = (m ^ m >> by) & which;

@@ -5,12 +5,12 @@ import aabb.wide_tree.batched_walk;
 
 export namespace aabb {
 
-/// A batched walk, but where a tree keeps fronts and an earlier query's pairs of leaves still hold, these alone. What
-/// an inexact test makes of triangles hangs on which boxes were tested before, so that nothing is kept for it.
+/// A batched walk with BVTT front tracking: if an earlier query's pairs of leaves are still valid, only these are
+/// tested. The result of an inexact test depends on which boxes were tested before it, so that it gets no fronts.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class front_walk {
 public:
-    /// Hands intersecting pairs of triangles (a of A, b of B) to `emit`, some at a time, until that returns true.
+    /// Passes intersecting pairs of triangles (a of A, b of B) to `emit`, in batches, until `emit` returns true.
     template <class Emit>
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal goal, Emit emit) {
@@ -20,7 +20,7 @@ public:
         walk_.between(test, a, b, to_a, goal, emit);
     }
 
-    /// Those of one mesh, in either order.
+    /// Finds the self-intersections of a mesh; each pair is reported once, in either order.
     template <class Emit>
     void within(const Triangle& test, const model<Tree>& m, Emit emit) {
         walk_.within(test, m, emit);
@@ -28,15 +28,14 @@ public:
 
     [[nodiscard]] const Counters& counters() const noexcept { return walk_.counters(); }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = walk_.bytes() + (sizeof *this - sizeof walk_);
-        if (fronts_) all += sizeof *fronts_ + fronts_->bytes();
-        if (leaves_) all += sizeof *leaves_ + leaves_->bytes();
-        return all;
+        std::size_t total = walk_.bytes() + (sizeof *this - sizeof walk_);
+        if (fronts_) total += sizeof *fronts_ + fronts_->bytes();
+        if (leaves_) total += sizeof *leaves_ + leaves_->bytes();
+        return total;
     }
 
 private:
-    /// Where one pair is wanted, the one that met last is tried first, and all that is near is sought only where none
-    /// meets.
+    /// A first-pair query tries the last hit first, and builds a front only if nothing intersects.
     template <class Emit>
     void follow(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                 walk_goal goal, const Emit& emit) {
@@ -47,7 +46,7 @@ private:
         const box_motion at = to_a.to_boxes();
         const double size = std::sqrt(std::min(area_of_leaf(a), area_of_leaf(b)));
         const double near = leaf_front::most_step * size;
-        // Where rounding moves it further than that, nothing is worth keeping.
+        // If rounding alone moves B further than that, a front is not worth its cost.
         if (!(2 * most_rounding(at) <= near)) return walk_.between(test, a, b, to_a, goal, emit);
 
         if (!fronts_) fronts_ = std::make_unique<front_keeper>();
@@ -73,9 +72,9 @@ private:
             }
             front.hit.reset();
         }
-        const auto emit_and_keep = [&](std::span<const index_pair> found) {
-            front.hit = found.front();
-            return emit(found);
+        const auto emit_and_keep = [&](std::span<const index_pair> hits) {
+            front.hit = hits.front();
+            return emit(hits);
         };
         if (outlook.holds) return serve(test, a, b, to_a, front, goal, emit_and_keep);
         walk_.between(test, a, b, to_a, goal, emit_and_keep);
@@ -90,13 +89,13 @@ private:
         walk_.among(test, a, b, to_a, front.pairs(), *leaves_, goal, emit);
     }
 
-    /// About: the area of the mesh's box, shared among its leaves.
+    /// An estimate: the area of the mesh's box, divided among its leaves.
     [[nodiscard]] static double area_of_leaf(const model<Tree>& m) {
         return surface_area(m.bounds()) / static_cast<double>(leaves_of(m));
     }
 
     batched_walk<Tree, Triangle, Counters> walk_;
-    // Made when first needed.
+    // Both are created on first use.
     std::unique_ptr<front_keeper> fronts_;
     std::unique_ptr<kept_leaves<Tree>> leaves_;
 };

@@ -3,7 +3,7 @@ module;
 #include <immintrin.h>
 #endif
 
-/// What a walk over wide trees does with eight numbers at a time, beside what `aabb.simd` has.
+/// The SIMD kernels of the walks over wide trees, on top of those of `aabb.simd`.
 export module aabb.wide_tree.kernels;
 
 export import aabb.simd;
@@ -13,31 +13,31 @@ namespace aabb::simd::detail {
 
 #if defined(__AVX512VBMI2__)
 [[gnu::always_inline]] inline void places_of_sixty_four(std::uint64_t set, void* to) noexcept {
-    static constexpr auto all = [] {
+    static constexpr auto identity = [] {
         struct {
             std::uint8_t at[64];
         } places{};
         for (std::uint8_t i = 0; i < 64; ++i) places.at[i] = i;
         return places;
     }();
-    _mm512_storeu_si512(to, _mm512_maskz_compress_epi8(set, _mm512_loadu_si512(&all)));
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi8(set, _mm512_loadu_si512(&identity)));
 }
 #endif
 #if defined(__AVX512VBMI__)
 [[gnu::always_inline]] inline void spread_sixteen_numbers(void* to, const void* from, std::size_t bytes,
                                                           std::uint32_t count) noexcept {
-    // Byte b of number i stands at bytes * i + b, where b is less than bytes.
+    // Byte b < bytes of number i is at bytes * i + b.
     static constexpr auto patterns = [] {
         struct {
             alignas(64) std::uint8_t at[5][64];
             std::uint64_t present[5];
-        } made{};
+        } table{};
         for (unsigned n = 1; n < 5; ++n)
             for (unsigned i = 0; i < 64; ++i) {
-                made.at[n][i] = static_cast<std::uint8_t>(i / 4 * n + i % 4);
-                made.present[n] |= std::uint64_t{i % 4 < n} << i;
+                table.at[n][i] = static_cast<std::uint8_t>(i / 4 * n + i % 4);
+                table.present[n] |= std::uint64_t{i % 4 < n} << i;
             }
-        return made;
+        return table;
     }();
     const __m512i numbers = _mm512_maskz_permutexvar_epi8(
         patterns.present[bytes], _mm512_load_si512(patterns.at[bytes]), _mm512_loadu_si512(from));
@@ -53,7 +53,7 @@ using eight_floats_taken = float __attribute__((vector_size(32)));
     return _mm512_castps512_ps256(_mm512_permutexvar_ps(at, _mm512_loadu_ps(from)));
 }
 
-/// Rows of `a` twice in a vector, against each number twice eight times of `b`.
+/// Compares two copies of each row of `a` with two numbers of `b`, each broadcast to eight lanes.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t columns_that_share(const void* a, const void* b) noexcept {
     const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
     const auto row = [](const void* of, int c) { return _mm256_loadu_si256(static_cast<const __m256i*>(of) + c); };
@@ -69,7 +69,7 @@ using eight_floats_taken = float __attribute__((vector_size(32)));
     }
     return shared;
 }
-/// Boxes of `a` twice in a vector, against each twice eight of `b`.
+/// Compares two copies of the boxes of `a` with two boxes of `b`, each broadcast to eight lanes.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_that_overlap(const float* a, const float* b) noexcept {
     const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
     const auto twice = [](const float* row) {
@@ -92,7 +92,7 @@ using eight_floats_taken = float __attribute__((vector_size(32)));
 }
 #endif
 #if defined(__AVX512BW__)
-/// Bits 16 i to 16 i + 7 of eight numbers of `a` that are negative, the others of eight of `b`.
+/// Interleaves the sign masks: bits 16 i to 16 i + 7 belong to eight numbers of `a`, the others to eight of `b`.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t negative_of_eights_in_turn(const void* a,
                                                                                   const void* b) noexcept {
     return _mm512_movepi8_mask(_mm512_packs_epi16(_mm512_loadu_si512(a), _mm512_loadu_si512(b)));
@@ -106,7 +106,7 @@ using eight_floats_taken = float __attribute__((vector_size(32)));
 #endif
 
 using two_points_of_four = float __attribute__((vector_size(32)));
-/// Each with a fourth number that is not theirs.
+/// Loads two points; the fourth lane of each is padding.
 [[nodiscard, gnu::always_inline]] inline two_points_of_four two_points(const float* p, const float* q) noexcept {
 #if defined(__AVX512VL__)
     const __m256 low = _mm256_castps128_ps256(_mm_maskz_loadu_ps(7, p));
@@ -120,7 +120,7 @@ using two_points_of_four = float __attribute__((vector_size(32)));
 
 export namespace aabb::simd {
 
-/// Of eight points of three numbers: their columns.
+/// Transposes eight points: returns their x, y and z as three vectors.
 [[nodiscard, gnu::always_inline]] inline std::array<eight_floats, 3> columns_of_eight_points(
     const float* const* points) noexcept {
     const auto row = [&](int i) { return detail::two_points(points[i], points[i + 4]); };
@@ -142,7 +142,7 @@ export namespace aabb::simd {
             first_halves(high(row(0), row(1)), high(row(2), row(3)))};
 }
 
-/// Of eight numbers those at these places, of which the lowest three bits count.
+/// Permutes eight numbers; only the lowest three bits of each place are used.
 [[nodiscard, gnu::always_inline]] inline eight_floats taken(const float* from, eight_words places) noexcept {
     eight_floats v;
 #if defined(__AVX2__)
@@ -153,12 +153,12 @@ export namespace aabb::simd {
     return v;
 }
 
-/// One behind the other.
+/// Concatenates two vectors.
 [[nodiscard, gnu::always_inline]] inline sixteen_floats joined(eight_floats low, eight_floats high) noexcept {
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
-/// Of sixteen numbers those at eight places of 4 bits each.
+/// Gathers eight of sixteen numbers, by places of 4 bits each.
 [[nodiscard, gnu::always_inline]] inline eight_floats taken_of_sixteen(const sixteen_floats& from,
                                                                        std::uint32_t places) noexcept {
     constexpr eight_words shift{0, 4, 8, 12, 16, 20, 24, 28};
@@ -191,11 +191,11 @@ export namespace aabb::simd {
     const auto left = reinterpret_cast<bytes>(rows{} + row);
     constexpr auto eight_times = [](std::size_t i) { return i / 8; };
     const auto right = shuffled<bytes, eight_times>(b, b, std::make_index_sequence<64>{});
-    const signed_bytes held = left <= right;
-    return __builtin_bit_cast(std::uint64_t, __builtin_convertvector(held, bools));
+    const signed_bytes is_no_greater = left <= right;
+    return __builtin_bit_cast(std::uint64_t, __builtin_convertvector(is_no_greater, bools));
 }
 
-/// Bit 8 j + i where one of the three numbers in column i of `a` is in column j of `b`; both are three rows of eight.
+/// Sets bit 8 j + i where column i of `a` and column j of `b` share a number; both have three rows of eight.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t columns_of_eight_that_share(const std::uint32_t* a,
                                                                                    const std::uint32_t* b) noexcept {
 #if defined(__AVX512F__)
@@ -212,7 +212,7 @@ export namespace aabb::simd {
 #endif
 }
 
-/// Numbers of 1 to 4 bytes, as many as `count`, from 1 to 16; the first one fills the rest. Reads 64 bytes.
+/// Unpacks `count` numbers (1 to 16) of 1 to 4 bytes each; the first one pads the rest. Reads 64 bytes.
 [[gnu::always_inline]] inline void load_sixteen_numbers(std::uint32_t* to, const std::byte* from, std::size_t bytes,
                                                         std::uint32_t count) noexcept {
 #if defined(__AVX512VBMI__)
@@ -226,8 +226,8 @@ export namespace aabb::simd {
 #endif
 }
 
-/// Sixty-four pairs of boxes, each given as six rows of eight numbers, three of lower bounds and three of upper ones:
-/// bit 8 j + i for box i of `a` and j of `b` that overlap.
+/// Tests all 64 pairs of eight boxes and eight: sets bit 8 j + i where box i of `a` overlaps box j of `b`. Each side
+/// has six rows of eight numbers: three of lower bounds, then three of upper bounds.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_of_eight_that_overlap(const float* a,
                                                                                    const float* b) noexcept {
 #if defined(__AVX512F__)
@@ -245,22 +245,22 @@ export namespace aabb::simd {
 #endif
 }
 
-/// The same of boxes in whole numbers of 16 bits.
+/// The same test for boxes in 16-bit integers.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_of_eight_that_overlap(const std::int16_t* a,
                                                                                    const std::int16_t* b) noexcept {
     using eight_halves = std::int16_t __attribute__((vector_size(16)));
     using four_rows = std::int16_t __attribute__((vector_size(64)));
-    // Rows of pairs with even j and those with odd j: differences, of which one is negative where two boxes lie apart.
+    // Rows of pairs with even j and with odd j hold differences; one is negative where two boxes are disjoint.
     four_rows even{};
     four_rows odd{};
-    const auto all = std::make_index_sequence<32>{};
+    const auto indices = std::make_index_sequence<32>{};
     constexpr auto in_turn = [](std::size_t i) { return i % 8; };
     constexpr auto even_ones = [](std::size_t i) { return i / 8 * 2; };
     constexpr auto odd_ones = [](std::size_t i) { return i / 8 * 2 + 1; };
     for (std::size_t k = 0; k < 3; ++k) {
-        const auto four_times = [&](eight_halves v) { return shuffled<four_rows, in_turn>(v, v, all); };
-        const auto each_even = [&](eight_halves v) { return shuffled<four_rows, even_ones>(v, v, all); };
-        const auto each_odd = [&](eight_halves v) { return shuffled<four_rows, odd_ones>(v, v, all); };
+        const auto four_times = [&](eight_halves v) { return shuffled<four_rows, in_turn>(v, v, indices); };
+        const auto each_even = [&](eight_halves v) { return shuffled<four_rows, even_ones>(v, v, indices); };
+        const auto each_odd = [&](eight_halves v) { return shuffled<four_rows, odd_ones>(v, v, indices); };
         const auto row = [k](const std::int16_t* of, std::size_t first) {
             return load_eight<eight_halves>(of + 8 * (first + k));
         };
@@ -278,21 +278,21 @@ export namespace aabb::simd {
 #else
     using bytes = std::int8_t __attribute__((vector_size(32)));
     using bools = bool __attribute__((ext_vector_type(32)));
-    const auto apart_even = __builtin_convertvector(even < 0, bytes);
-    const auto apart_odd = __builtin_convertvector(odd < 0, bytes);
+    const auto disjoint_even = __builtin_convertvector(even < 0, bytes);
+    const auto disjoint_odd = __builtin_convertvector(odd < 0, bytes);
     const auto bits = [](bytes v) {
         return std::uint64_t{__builtin_bit_cast(std::uint32_t, __builtin_convertvector(v, bools))};
     };
-    // Eights of the one and of the other in turn.
+    // Interleaves the rows of eight of both vectors.
     constexpr auto low_rows = [](std::size_t i) { return i / 16 * 8 + i % 8 + i / 8 % 2 * 32; };
     constexpr auto high_rows = [](std::size_t i) { return 16 + i / 16 * 8 + i % 8 + i / 8 % 2 * 32; };
-    const std::uint64_t first = bits(shuffled<bytes, low_rows>(apart_even, apart_odd, all));
-    const std::uint64_t last = bits(shuffled<bytes, high_rows>(apart_even, apart_odd, all));
+    const std::uint64_t first = bits(shuffled<bytes, low_rows>(disjoint_even, disjoint_odd, indices));
+    const std::uint64_t last = bits(shuffled<bytes, high_rows>(disjoint_even, disjoint_odd, indices));
     return ~(first | last << 32U);
 #endif
 }
 
-/// The places of the bits that are set, in order; whatever stands behind them, up to 64 bytes, is lost.
+/// Stores the positions of the set bits, in order; up to 64 bytes at `to` are overwritten.
 [[gnu::always_inline]] inline void store_places(std::uint8_t* to, std::uint64_t set) noexcept {
 #if defined(__AVX512VBMI2__)
     detail::places_of_sixty_four(set, to);

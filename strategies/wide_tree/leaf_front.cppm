@@ -6,31 +6,31 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Two models, by their numbers, and as they are: each refit makes another state.
+/// Identifies two models by their numbers and their states; each refit changes the state.
 struct model_pair {
     std::array<std::uint64_t, 2> numbers;
     std::array<std::uint64_t, 2> states;
 };
 
-/// Two leaves, and which of their triangles may meet: bit 8 j + i for triangle i of A's leaf and j of B's.
+/// Two leaves and a mask of the pairs of triangles that may meet: bit 8 j + i for triangle i of A's leaf and j of B's.
 struct kept_pair {
     std::uint32_t leaf_a;
     std::uint32_t leaf_b;
     std::uint64_t which;
 };
 
-/// Pairs of leaves of two trees whose triangles came within a margin of each other at one pose. As long as no point of
-/// B has moved further than that in A's frame, all whose triangles meet are among them. Such pairs are kept from query
-/// to query by front tracking (Ehmann and Lin, Computer Graphics Forum 20, 2001), and with a margin by neighbour lists
-/// (Verlet, Physical Review 159, 1967).
+/// BVTT front tracking with a skin: the pairs of leaves of two trees whose triangles were within a margin at one pose.
+/// While no point of B moves further than the margin in A's frame, they include all pairs whose triangles meet. Front
+/// tracking keeps pairs from query to query (Ehmann and Lin, Computer Graphics Forum 20, 2001); the margin is the skin
+/// of Verlet lists (Verlet, Physical Review 159, 1967).
 class leaf_front {
 public:
-    /// A pair of triangles that met in the last query for one.
+    /// The pair of triangles that the last first-pair query reported.
     std::optional<index_pair> hit;
-    /// Whether it was found again since that was last asked.
+    /// Whether the front was reused since the last replacement scan.
     bool is_used = false;
 
-    /// Begins anew, in the same memory.
+    /// Resets the front and reuses its memory.
     void begin(const model_pair& of) noexcept {
         numbers_ = of.numbers;
         last_states_ = {};
@@ -42,25 +42,25 @@ public:
 
     [[nodiscard]] std::span<const kept_pair> pairs() const noexcept { return pairs_; }
 
-    /// Whether all pairs that meet at this pose are among these.
-    /// @param reach box of B's vertices, in its own frame
+    /// Whether the pairs include all that meet at this pose.
+    /// @param reach the box of B's vertices, in B's frame
     [[nodiscard]] bool holds(const model_pair& of, const box_motion& at, const box& reach) const noexcept {
         return margin_ >= 0 && made_states_ == of.states && most_apart(made_at_, at, reach) <= margin_;
     }
-    /// Whether the last query was one of the same models about there.
+    /// Whether the last query had the same models at a nearby pose.
     [[nodiscard]] bool is_near(const model_pair& of, const box_motion& at, const box& reach,
                                double near) const noexcept {
         return numbers_ == of.numbers && most_apart(last_at_, at, reach) <= near;
     }
 
     struct outlook {
-        bool holds;                    ///< these pairs, for this query
-        std::optional<double> margin;  ///< of others that are worth making
+        bool holds;                    ///< whether the pairs are valid for this query
+        std::optional<double> margin;  ///< the margin of a new front, if one is worth its cost
     };
-    /// Notes a query. Pairs that do not hold for it are forgotten, and others are worth making where the last two such
-    /// queries moved B by little and changed neither mesh, unless those made before were of no use. A margin that
-    /// serves long holds many pairs, so that it grows like the root of the step.
-    /// @param size of a leaf
+    /// Records a query. A front that is not valid for it is dropped. A new one is worth its cost if the last two such
+    /// queries moved B little and changed neither mesh, unless earlier fronts were of no use. A larger margin lasts
+    /// longer but has more pairs, so that the margin grows with the square root of the step.
+    /// @param size the edge length of a leaf
     [[nodiscard]] outlook note(const model_pair& of, const box_motion& at, const box& reach, double size) noexcept {
         const bool same_states = last_states_ == of.states;
         const box_motion before = std::exchange(last_at_, at);
@@ -80,8 +80,9 @@ public:
         return {false, std::sqrt(step * size / 5)};
     }
 
-    /// @param fill called as `fill(pairs)`, of which there are none; returns false where there would be too many
-    /// @returns whether they are kept
+    /// Builds a new front.
+    /// @param fill called as `fill(pairs)` with an empty list; returns false if there are too many pairs
+    /// @returns whether the front is kept
     template <class Fill>
     bool make(const model_pair& of, const box_motion& at, double margin, const Fill& fill) {
         pairs_.clear();
@@ -98,13 +99,13 @@ public:
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(pairs_); }
 
-    /// Of a leaf's size: beyond, so much lies within a margin that serves long that a walk from the roots is faster.
+    /// In leaf sizes. Larger steps need a margin with so many pairs that a walk from the roots is faster.
     static constexpr double most_step = 1.0 / 32;
 
 private:
-    /// More than one, since some ask twice about every pose of what moves fast.
+    /// More than one, since some callers query every pose twice, even of fast objects.
     static constexpr std::uint32_t least_near_queries = 2;
-    static constexpr std::uint32_t least_served = 2;  // below, pairs were not worth their making
+    static constexpr std::uint32_t least_served = 2;  // fewer do not repay the front
     static constexpr std::uint32_t most_failures = 6;
 
     void fail_or_forgive() noexcept {
@@ -114,29 +115,29 @@ private:
     }
 
     std::array<std::uint64_t, 2> numbers_{};
-    std::array<std::uint64_t, 2> last_states_{};  // of a query; no model's at first
+    std::array<std::uint64_t, 2> last_states_{};  // of the last query; initially of no model
     box_motion last_at_{};
     std::array<std::uint64_t, 2> made_states_{};
     box_motion made_at_{};
-    double margin_ = -1;  // negative where no pairs are kept
+    double margin_ = -1;  // negative without a front
     std::vector<kept_pair> pairs_;
     std::uint32_t near_queries_ = 0;  // in a row
-    std::uint32_t served_ = 0;        // queries since these were made
+    std::uint32_t served_ = 0;        // queries since the front was built
     std::uint32_t failures_ = 0;      // in a row
-    std::uint32_t waits_ = 0;         // queries until others may be made
+    std::uint32_t waits_ = 0;         // back-off, in queries
 };
 
-/// The fronts of many pairs of objects. Nobody says which object is which: a front is found again by its models and by
-/// where they were in its last query, or because its pairs hold, the one behind the last found first, since objects
-/// mostly come in the same order.
+/// Caches the fronts of many pairs of objects. Queries carry no object ids: a front is recognised by its models and
+/// their last pose, or because its pairs are still valid. The front behind the last one is tried first, since objects
+/// are mostly queried in the same order.
 class front_keeper {
 public:
     static constexpr std::size_t most = 1024;
-    static constexpr std::size_t least_leaves = 64;  ///< of two meshes: fewer are walked before a front is found
+    static constexpr std::size_t least_leaves = 64;  ///< of both meshes: with fewer, a walk costs less than the lookup
 
-    /// @param reach box of B's vertices, in its own frame
+    /// @param reach the box of B's vertices, in B's frame
     /// @param near how far B may have moved since the front's last query
-    /// @returns the front, or a new one, which has had no query
+    /// @returns the cached front, or a new, empty one
     [[nodiscard]] leaf_front& find(const model_pair& of, const box_motion& at, const box& reach, double near) {
         const std::array<float, 3> centre = centre_of(at, reach);
         const std::size_t place = place_of(of, at, reach, near, centre);
@@ -146,16 +147,16 @@ public:
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = bytes_of(fronts_, centres_);
-        for (const leaf_front& f : fronts_) all += f.bytes();
-        return all;
+        std::size_t total = bytes_of(fronts_, centres_);
+        for (const leaf_front& f : fronts_) total += f.bytes();
+        return total;
     }
 
 private:
     static constexpr std::size_t width = 8;
     using row = std::array<float, width>;
 
-    /// Of B, in A's frame: it moves no further than the rest.
+    /// The centre of B in A's frame, which moves no further than the furthest point of B.
     [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& at, const box& reach) noexcept {
         vec3d centre = at.shift;
         for (int j = 0; j < 3; ++j)
@@ -179,9 +180,9 @@ private:
                     simd::load_eight<simd::eight_floats>(centres_[group][k].data()) - centre[k]);
                 furthest = away > furthest ? away : furthest;
             }
-            for (std::uint32_t near_ones = simd::bits_of_eight(furthest <= static_cast<float>(near)); near_ones != 0;
-                 near_ones &= near_ones - 1) {
-                const std::size_t place = group * width + static_cast<std::size_t>(std::countr_zero(near_ones));
+            for (std::uint32_t near_fronts = simd::bits_of_eight(furthest <= static_cast<float>(near));
+                 near_fronts != 0; near_fronts &= near_fronts - 1) {
+                const std::size_t place = group * width + static_cast<std::size_t>(std::countr_zero(near_fronts));
                 if (place < fronts_.size() && is_it(place)) return found_again(place);
             }
         }
@@ -193,7 +194,7 @@ private:
         return place;
     }
 
-    /// Of as many as are kept, the next one that was not found again of late makes room.
+    /// Evicts a front that was not reused lately, by the clock algorithm, when the cache is full.
     [[nodiscard]] std::size_t new_place(const model_pair& of) {
         std::size_t place = fronts_.size();
         if (place < most) {
@@ -209,9 +210,9 @@ private:
     }
 
     std::vector<leaf_front> fronts_;
-    std::vector<std::array<row, 3>> centres_;  // of B in the fronts' last queries, by eights
-    std::size_t last_ = 0;                     // found
-    std::size_t hand_ = 0;                     // where room is sought
+    std::vector<std::array<row, 3>> centres_;  // of B in the fronts' last queries, in groups of eight
+    std::size_t last_ = 0;                     // the front found last
+    std::size_t hand_ = 0;                     // the clock's hand
 };
 
 }  // namespace aabb

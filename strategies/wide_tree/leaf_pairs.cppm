@@ -6,7 +6,7 @@ export import aabb.wide_tree.leaf_slab;
 
 export namespace aabb {
 
-/// Triangles of a leaf, in A's frame.
+/// The triangles of a leaf and their boxes, in A's frame.
 struct read_leaf {
     leaf_boxes boxes;
     triangle_block block;
@@ -17,14 +17,14 @@ struct leaf_of_b : read_leaf {
     bool has_slab;
 };
 
-/// Reads the leaves of two trees, those of B in A's frame. A leaf meets many, so that it is kept.
+/// Reads the leaves of two trees, those of B in A's frame, and caches them: a leaf occurs in many pairs.
 template <WideTreePolicy Tree>
 class leaf_pairs {
 public:
-    /// @param one_mesh whether both are the same, so that triangles may share corners
-    /// @param only_boxes_that_meet whether none may be handed over whose boxes lie less than a step of the grid apart:
-    /// what an inexact test makes of these would depend on the grid
-    /// @param margin within which triangles are said to meet
+    /// @param one_mesh whether A and B are the same mesh, so that triangles may share corners
+    /// @param only_boxes_that_meet whether to reject pairs whose boxes overlap only because the grid rounds them; for
+    /// inexact tests, whose result for such pairs would otherwise depend on the grid
+    /// @param margin the distance up to which triangles count as close
     void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, bool one_mesh,
                bool only_boxes_that_meet, float margin) {
         grid_.begin(a.bounds(), to_a(b.bounds()));
@@ -39,43 +39,43 @@ public:
         one_mesh_ = one_mesh;
     }
 
-    /// Hands over, in order, those pairs of leaves whose triangles may meet: their boxes do, and those of A reach into
-    /// the slab of B's leaf. One test is made of many pairs before the next, so that the processor need not guess,
-    /// and writes a list of its own, so that nothing read waits for what was just written.
-    /// @param take called with the place of a pair, its leaves and, bit 8 j + i for triangle i of A's leaf and j of
-    /// B's, the pairs of triangles; returns whether to stop
+    /// Passes on, in order, the pairs of leaves whose triangles may intersect: their boxes overlap, and triangles of A
+    /// enter the slab of B's leaf. Each test runs over many pairs before the next one starts, which avoids branch
+    /// mispredictions, and writes to its own list, which avoids store-to-load stalls.
+    /// @param take called with the index of a pair, its leaves, and a mask of pairs of triangles (bit 8 j + i for
+    /// triangle i of A's leaf and j of B's); returns whether to stop
     template <class Counters, class Take>
     [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                   std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
                                   Counters& counters, const Take& take) {
         return each_group(
             a, b, to_a, leaves_a, leaves_b, counters,
-            [&](std::span<const found> meeting) {
+            [&](std::span<const overlap> meeting) {
                 fit_slabs(leaves_b, meeting);
                 std::size_t left = 0;
-                for (const found& f : meeting) {
+                for (const overlap& f : meeting) {
                     const std::uint64_t which =
                         f.which & columns(of_b_[leaves_b[f.pair]].slab.reached_by(of_a_[leaves_a[f.pair]].block));
                     left_[left] = {f.pair, which};
                     left += which != 0;
                 }
-                return std::span<const found>(left_).first(left);
+                return std::span<const overlap>(left_).first(left);
             },
-            [&](const found& f) { return take(f.pair, of_a_[leaves_a[f.pair]], of_b_[leaves_b[f.pair]], f.which); });
+            [&](const overlap& f) { return take(f.pair, of_a_[leaves_a[f.pair]], of_b_[leaves_b[f.pair]], f.which); });
     }
 
-    /// Hands over in the same way those pairs of triangles that may come within the margin.
+    /// Passes on, in the same way, the pairs of triangles that may lie within the margin of each other.
     template <class Counters, class Take>
     [[nodiscard]] bool within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                      std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
                                      Counters& counters, const Take& take) {
         return each_group(
             a, b, to_a, leaves_a, leaves_b, counters,
-            [&](std::span<const found> meeting) {
+            [&](std::span<const overlap> meeting) {
                 fit_slabs(leaves_b, meeting);
                 return meeting;
             },
-            [&](const found& f) {
+            [&](const overlap& f) {
                 const read_leaf& of_a = of_a_[leaves_a[f.pair]];
                 const leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
                 leaf_slab slab_of_a;
@@ -86,7 +86,7 @@ public:
             });
     }
 
-    /// Of one mesh: where triangle i of A's leaf and j of B's have a corner in common, bit 8 j + i.
+    /// For one mesh: sets bit 8 j + i where triangle i of A's leaf and j of B's share a corner.
     [[nodiscard]] inline std::uint64_t neighbours(std::uint32_t leaf_a, std::uint32_t leaf_b) const noexcept {
         return corners_of_a_[of_a_.place(leaf_a)].shared_with(corners_of_b_[of_b_.place(leaf_b)]);
     }
@@ -97,18 +97,18 @@ public:
     }
 
 private:
-    static constexpr int many = 32;  // of 64 pairs whose boxes overlap: more are rare
+    static constexpr int many_overlaps = 32;  // of 64 pairs; leaves rarely have more
 
-    /// Reads a leaf's triangles.
-    /// @param frame A's, where the leaf is one of B's
+    /// Returns a function that reads a leaf's triangles.
+    /// @param frame the pose relative to A, for leaves of B
     template <class Leaf, class... Frame>
     [[nodiscard]] static inline auto block_maker(const model<Tree>& m, const Frame&... frame) {
         return [&m, &frame...](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
             leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
         };
     }
-    /// Makes their boxes and corners.
-    /// @tparam OfB whether it is the leaf whose boxes the margin widens
+    /// Returns a function that computes the boxes and corners of a leaf's triangles.
+    /// @tparam OfB whether the leaf is B's, whose boxes the margin inflates
     template <bool OfB, class Leaf>
     [[nodiscard]] inline auto box_maker(const model<Tree>& m, const leaf_store<Leaf>& store,
                                         std::vector<corner_numbers>& corners) const {
@@ -121,7 +121,7 @@ private:
         };
     }
 
-    /// Floats that lie outside by no more than the margin are in the boxes then, which end where floats do.
+    /// Inflates boxes by the margin, clamped to the range of float.
     inline void grow(std::array<simd::eight_floats, 6>& bounds) const noexcept {
         const simd::eight_floats most = simd::eight_floats{} + std::numeric_limits<float>::max();
         for (std::size_t k = 0; k < 3; ++k) {
@@ -132,14 +132,14 @@ private:
         }
     }
 
-    struct found {
+    struct overlap {
         std::size_t pair;
         std::uint64_t which;
     };
 
-    /// Makes the leaves of a group of pairs, then sifts those whose triangles have boxes that meet, and hands over what
-    /// is left. Memory is told of the next group's lists of vertices meanwhile.
-    /// @returns whether `take` stopped it
+    /// Reads the leaves of one group of pairs at a time, keeps the pairs with overlapping triangle boxes, filters them
+    /// by `sift` and passes on the rest. The vertex lists of the next group are prefetched meanwhile.
+    /// @returns whether `take` stopped the loop
     template <class Counters, class Sift, class Take>
     [[nodiscard]] inline bool each_group(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                          std::span<const std::uint32_t> leaves_a,
@@ -155,7 +155,7 @@ private:
             reader_.make_a(a, of_a_, block_maker<read_leaf>(a), box_maker<false>(a, of_a_, corners_of_a_));
             reader_.make_b(b, of_b_, block_maker<leaf_of_b>(b, to_a), box_maker<true>(b, of_b_, corners_of_b_));
             const std::size_t next = claim(end);
-            for (const found& f : sift(meet(leaves_a, leaves_b, begin, end, counters)))
+            for (const overlap& f : sift(meet(leaves_a, leaves_b, begin, end, counters)))
                 if (take(f)) return true;
             begin = end;
             end = next;
@@ -163,30 +163,30 @@ private:
         return false;
     }
 
-    /// Those of the pairs whose triangles have boxes that meet.
+    /// Finds the pairs of leaves with overlapping triangle boxes.
     template <class Counters>
-    [[nodiscard]] inline std::span<const found> meet(std::span<const std::uint32_t> leaves_a,
-                                                     std::span<const std::uint32_t> leaves_b, std::size_t begin,
-                                                     std::size_t end, Counters& counters) {
+    [[nodiscard]] inline std::span<const overlap> meet(std::span<const std::uint32_t> leaves_a,
+                                                       std::span<const std::uint32_t> leaves_b, std::size_t begin,
+                                                       std::size_t end, Counters& counters) {
         std::size_t meeting = 0;
         for (; begin < end; ++begin) {
             const read_leaf& of_a = of_a_[leaves_a[begin]];
             const read_leaf& of_b = of_b_[leaves_b[begin]];
             counters.add(work::box_tests, std::uint64_t{of_a.block.triangles} * of_b.block.triangles);
             std::uint64_t which = of_a.boxes.overlaps(of_b.boxes);
-            if (only_boxes_that_meet_ || std::popcount(which) > many) which &= overlaps_in_floats(of_a, of_b);
+            if (only_boxes_that_meet_ || std::popcount(which) > many_overlaps) which &= overlaps_in_floats(of_a, of_b);
             meeting_[meeting] = {begin, which};
             meeting += which != 0;
         }
         return std::span(meeting_).first(meeting);
     }
 
-    /// Makes the slabs that are missing of B's leaves in these pairs: many leaves are read and in none, so that slabs
-    /// wait until boxes have been found to meet. Of B's, since leaves of B are read less often: a node of B is opened
-    /// with many of A, one after the other.
-    inline void fit_slabs(std::span<const std::uint32_t> leaves_b, std::span<const found> meeting) noexcept {
+    /// Fits the missing slabs of B's leaves in these pairs. Slabs are fitted lazily, because many leaves have no
+    /// overlapping boxes, and for B's leaves, which are read less often: a node of B is opened with many nodes of A in
+    /// a row.
+    inline void fit_slabs(std::span<const std::uint32_t> leaves_b, std::span<const overlap> meeting) noexcept {
         std::size_t missing = 0;
-        for (const found& f : meeting) {
+        for (const overlap& f : meeting) {
             leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
             without_slab_[missing] = &of_b;
             missing += !of_b.has_slab;
@@ -196,8 +196,8 @@ private:
             of_b->slab.fit(of_b->block, grid_.edges());
     }
 
-    /// Bit 8 j + i where the boxes of triangle i of A's leaf and j of B's overlap, or come within the margin. All where
-    /// 16 bits will do.
+    /// Sets bit 8 j + i where the float boxes of triangle i of A's leaf and j of B's overlap or lie within the margin.
+    /// Sets all bits where 16 bits are precise enough.
     [[nodiscard, gnu::noinline]] std::uint64_t overlaps_in_floats(const read_leaf& of_a,
                                                                   const read_leaf& of_b) const noexcept {
         const bool are_coarse = of_a.boxes.are_coarse() && of_b.boxes.are_coarse();
@@ -211,14 +211,14 @@ private:
         return boxes_a.overlaps(boxes_b);
     }
 
-    /// All bits of row j for bit j.
+    /// Expands bit j to all bits of row j.
     [[nodiscard]] static constexpr std::uint64_t rows(std::uint64_t which) noexcept {
         const std::uint64_t bit_of_row = which * 0x0101010101010101 & 0x8040201008040201;
         constexpr std::uint64_t low_bits = 0x7f7f7f7f7f7f7f7f;
         return ((((bit_of_row & low_bits) + low_bits) | bit_of_row) >> 7U & 0x0101010101010101) * 0xff;
     }
 
-    /// Bit i of each row for bit i.
+    /// Copies bit i to bit i of each row.
     [[nodiscard]] static constexpr std::uint64_t columns(std::uint64_t which) noexcept {
         return which * 0x0101010101010101;
     }
@@ -229,11 +229,11 @@ private:
     float margin_ = 0;
     leaf_store<read_leaf> of_a_;
     leaf_store<leaf_of_b> of_b_;
-    std::vector<corner_numbers> corners_of_a_;  // of one mesh only, at the places of the leaves
+    std::vector<corner_numbers> corners_of_a_;  // for one mesh only; indexed as the leaves
     std::vector<corner_numbers> corners_of_b_;
-    std::array<found, most_claims + 1> meeting_{};
+    std::array<overlap, most_claims + 1> meeting_{};
     std::array<leaf_of_b*, most_claims + 1> without_slab_{};
-    std::array<found, most_claims + 1> left_{};
+    std::array<overlap, most_claims + 1> left_{};
     leaf_reader<Tree> reader_;
 };
 

@@ -6,33 +6,32 @@ export import aabb.wide_tree.triangle_block;
 
 export namespace aabb {
 
-inline constexpr std::size_t most_claims = 128;  ///< at once
+inline constexpr std::size_t most_claims = 128;  ///< pairs per group
 
-/// Leaves that were read lately, found again by their number: each has one place, which it shares with others. First
-/// all that are needed at a time are claimed, then those that are missing are read, so that none waits for another.
-/// What a place holds can be read, by its own number, until another leaf is read into it.
+/// A direct-mapped cache of leaves, by number. A group first claims all leaves that it needs, then reads the missing
+/// ones, so that their memory accesses overlap. A leaf stays valid until another leaf is read into its place.
 template <class Leaf>
 class leaf_store {
 public:
-    /// Forgets all, and takes few places where there will be few numbers.
+    /// Invalidates the cache, and grows it if the tree has many leaves.
     void begin(std::size_t numbers) {
         if (leaves_.size() < most_places && 2 * leaves_.size() <= numbers)
             leaves_.resize(std::min(most_places, std::bit_floor(numbers)));
         if (++begun_ != 0) return;
-        // After all numbers of 32 bits: what was held under the first ones is not to come back.
+        // The 32-bit epoch wrapped around: entries of old epochs must not become valid again.
         held_.fill(0);
         begun_ = 1;
     }
 
     void release_claims() noexcept { ++claim_; }
 
-    /// @returns false where another one that is claimed has the place
+    /// @returns false if another claimed leaf occupies the place
     [[nodiscard]] inline bool claim(std::uint32_t number) noexcept {
         const std::size_t at = place(number);
         const std::uint64_t held = std::uint64_t{begun_} << 32U | number;
         const bool is_missing = held_[at] != held;
-        // Of the two, one is mostly false and the other hard to foresee. What is told to be unforeseeable as a whole
-        // stays one branch, where a compiler would make two of it.
+        // One condition is mostly false, the other is hard to predict. Marked as unpredictable, the conjunction stays a
+        // single branch; otherwise the compiler makes two.
         if (__builtin_unpredictable(static_cast<int>(is_missing) & static_cast<int>(claims_[at] == claim_)))
             return false;
         missing_[missing_count_] = number;
@@ -42,7 +41,7 @@ public:
         return true;
     }
 
-    /// What was claimed and is not there, to be read before the next claim, or never before the next `begin`.
+    /// The claimed leaves that are not cached; the caller must read them before the next claim, or call `begin`.
     [[nodiscard]] inline std::span<const std::uint32_t> take_missing() noexcept {
         return std::span(missing_).first(std::exchange(missing_count_, 0));
     }
@@ -59,8 +58,8 @@ public:
 private:
     static constexpr std::size_t most_places = 256;
 
-    std::array<std::uint64_t, most_places> held_{};  // the number of the beginning, then that of the leaf
-    std::uint32_t begun_ = 0;                        // how often; 0 stands for nothing held
+    std::array<std::uint64_t, most_places> held_{};  // epoch, then the leaf's number
+    std::uint32_t begun_ = 0;                        // the epoch; 0 marks an empty place
     std::array<std::uint64_t, most_places> claims_{};
     std::uint64_t claim_ = 1;
     std::array<std::uint32_t, most_claims + 1> missing_{};
@@ -68,17 +67,17 @@ private:
     std::vector<Leaf> leaves_;
 };
 
-/// Reads the leaves of pairs, group by group: of as many pairs at a time as two stores have places for. Memory is told
-/// of a group's lists of vertices while the group before is tested, and of vertices some leaves before they are read.
-/// Not of all at once: a processor drops requests beyond some twenty that are under way.
+/// Reads the leaves of pairs in groups that fit into two caches. It prefetches a group's vertex lists while the
+/// previous group is tested, and vertices a few leaves ahead. Not all at once: processors drop prefetches beyond some
+/// twenty in flight.
 template <WideTreePolicy Tree>
 class leaf_reader {
 public:
-    /// Claims the leaves of pairs for the next group, once those of the group before are made, which can be read until
-    /// the next ones are. Memory is told of the lists of those that are missing.
-    /// @param begin of the group
-    /// @param end of all pairs
-    /// @param pair_at the leaves of pair i, of A's tree and of B's
+    /// Claims the leaves of the next group and prefetches the vertex lists of the missing ones. The previous group must
+    /// have been made; its leaves stay valid until the next group is made.
+    /// @param begin the first pair of the group
+    /// @param end the end of all pairs
+    /// @param pair_at returns the leaves of pair i, in A's tree and in B's
     /// @returns the end of the group
     template <class LeafOfA, class LeafOfB, class PairAt>
     [[nodiscard]] inline std::size_t claim(const model<Tree>& a, leaf_store<LeafOfA>& of_a, const model<Tree>& b,
@@ -98,21 +97,21 @@ public:
         return begin;
     }
 
-    /// Makes those leaves of the group that are missing in A's store.
-    /// @param steps each called for all of them before the next, as `step(leaf, number, its vertices)`, so that none
-    /// waits for what was made just before
+    /// Makes the leaves of the group that are missing in A's cache.
+    /// @param steps called as `step(leaf, number, vertices)`; each step runs over all leaves before the next one
+    /// starts, so that no leaf stalls on its own previous step
     template <class Leaf, class... Steps>
     inline void make_a(const model<Tree>& a, leaf_store<Leaf>& store, const Steps&... steps) {
         make(a, missing_a_, store, steps...);
     }
-    /// The same of B's.
+    /// The same for B.
     template <class Leaf, class... Steps>
     inline void make_b(const model<Tree>& b, leaf_store<Leaf>& store, const Steps&... steps) {
         make(b, missing_b_, store, steps...);
     }
 
 private:
-    static constexpr std::size_t ahead = 10;  // leaves, of which most vertices are in the caches already
+    static constexpr std::size_t ahead = 10;  // leaves; most of their vertices are cached already
 
     template <class Leaf, class First, class... Others>
     inline void make(const model<Tree>& m, std::span<const std::uint32_t> missing, leaf_store<Leaf>& store,
@@ -127,10 +126,10 @@ private:
             if (i + ahead < missing.size()) fetch(i + ahead);
             do_step(i, first);
         }
-        const auto do_all = [&](const auto& step) {
+        const auto run = [&](const auto& step) {
             for (std::size_t i = 0; i < missing.size(); ++i) do_step(i, step);
         };
-        (do_all(others), ...);
+        (run(others), ...);
     }
 
     std::span<const std::uint32_t> missing_a_;
@@ -138,11 +137,11 @@ private:
     std::array<vertex_list, most_claims + 1> lists_{};
 };
 
-/// Reads the triangles of pairs of leaves of which is known which may meet, those of B in A's frame.
+/// Reads the triangles of a front's pairs of leaves, those of B in A's frame.
 template <WideTreePolicy Tree>
 class kept_leaves {
 public:
-    /// @param read shared with others
+    /// @param read a reader, which others may share
     /// @param take called with a pair and the triangles of both leaves; returns whether to stop
     template <class Take>
     [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,

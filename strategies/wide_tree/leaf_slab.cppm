@@ -3,16 +3,16 @@ export module aabb.wide_tree.leaf_slab;
 import aabb.std;
 export import aabb.wide_tree.triangle_block;
 
-// Products may be fused into sums, which the bounds allow for; nothing else.
+// Fused multiply-adds are allowed, which the error bounds include; nothing else is.
 #pragma clang fp reassociate(off) reciprocal(off)
 
 export namespace aabb {
 
-/// The space between two parallel planes that holds a leaf's triangles, across the mean of their normals: much thinner
-/// than their boxes where a surface is smooth. What lies beyond it meets none of them.
+/// A slab between two parallel planes around a leaf's triangles, perpendicular to their mean normal. On smooth surfaces
+/// it is much thinner than their boxes. A triangle outside intersects none of them.
 class leaf_slab {
 public:
-    /// @param edges of a box around all vertices that are held against it, and its own
+    /// @param edges extents of a box around the leaf's vertices and all that are compared with the slab
     void fit(const triangle_block& block, const std::array<float, 3>& edges) noexcept {
         set_normal(block);
         float magnitude = 0;
@@ -29,8 +29,8 @@ public:
         high_ = -simd::least(-own.high) + 2 * error;
     }
 
-    /// Bit j for each triangle j of the other block that reaches into the slab, or may.
-    /// @param margin within which it is said to reach
+    /// Sets bit j if triangle j of the other block may intersect the slab.
+    /// @param margin by which the slab is inflated
     [[nodiscard]] inline std::uint32_t reached_by(const triangle_block& other, float margin = 0) const noexcept {
         const heights of_other(*this, other);
         const float grown = margin == 0 ? 0 : margin * length();
@@ -40,16 +40,16 @@ public:
 private:
     static constexpr float most_magnitude = 1e37F;  // below, nothing overflows
 
-    /// Of a sum of three products of differences: each is rounded, all in all by 6 times 2^-24 of the magnitude of the
-    /// terms, or by half the least denormal.
+    /// Bounds the error of a sum of three products of differences: rounding adds up to 6 times 2^-24 of the magnitude
+    /// of the terms, or half the smallest denormal.
     [[nodiscard]] static inline float error_of(float magnitude) noexcept { return magnitude * 0x1p-20F + 0x1p-140F; }
 
-    /// Of the normal, or more.
+    /// An upper bound of the normal's length.
     [[nodiscard]] inline float length() const noexcept {
         return (std::abs(normal_[0]) + std::abs(normal_[1]) + std::abs(normal_[2])) * (1 + 0x1p-20F);
     }
 
-    /// Of the corners of triangles over the origin, along the normal.
+    /// The range of each triangle's corners along the normal, relative to the origin.
     struct heights {
         simd::eight_floats low;
         simd::eight_floats high;

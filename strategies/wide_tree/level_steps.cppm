@@ -5,11 +5,11 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The way down from the roots of two trees to their leaves: the higher of two nodes is opened first, both where they
-/// are as high. At the last step both are leaves.
+/// The steps of a simultaneous descent from the roots of two trees to their leaves: each step opens the higher of two
+/// nodes, or both if they have equal height. At the last step both are leaves.
 class level_steps {
 public:
-    /// How many levels of nodes lie below and with the nodes of a pair: 0 for leaves.
+    /// The heights of a pair of nodes: 0 for leaves.
     struct heights {
         std::size_t a;
         std::size_t b;
@@ -19,13 +19,13 @@ public:
 
     void begin(heights roots) {
         if (!steps_.empty() && steps_.front() == roots) return;
-        // All memory first: what is there when it runs out must be whole.
+        // Reserves first, so that a failed allocation leaves the old steps intact.
         steps_.reserve(std::max(roots.a, roots.b) + 1);
         steps_.assign(1, roots);
-        for (heights now = roots; now.a > 0 || now.b > 0; steps_.push_back(now)) {
-            const std::size_t higher = std::max(now.a, now.b);
-            if (now.a == higher) --now.a;
-            if (now.b == higher) --now.b;
+        for (heights current = roots; current.a > 0 || current.b > 0; steps_.push_back(current)) {
+            const std::size_t higher = std::max(current.a, current.b);
+            if (current.a == higher) --current.a;
+            if (current.b == higher) --current.b;
         }
     }
 
@@ -34,8 +34,8 @@ public:
     [[nodiscard]] inline bool opens_a(std::size_t step) const noexcept { return steps_[step + 1].a < steps_[step].a; }
     [[nodiscard]] inline bool opens_b(std::size_t step) const noexcept { return steps_[step + 1].b < steps_[step].b; }
 
-    /// Of pairs of children, bit 8 j + i for child i of A's node and j of B's, those that are opened at the next step:
-    /// a node that is not opened stands at the place of its first child.
+    /// Maps overlapping pairs of children (bit 8 j + i for child i of A's node and j of B's) to the pairs that the next
+    /// step opens: a node that is not opened takes the place of its first child.
     [[nodiscard]] inline std::uint64_t opened(std::size_t step, std::uint64_t met) const noexcept {
         if (!opens_a(step)) {
             met |= met >> 4U;

@@ -10,17 +10,17 @@ export import aabb.wide_tree.policy;
 
 export namespace aabb {
 
-/// Pairs, 8 j + i for child i of a node and box j, whose centres are the least distance apart.
+/// The pairs with the nearest centres: 8 j + i for child i of a node and box j.
 struct nearest_places {
     std::uint32_t first;
-    std::uint32_t second;  ///< the first again where there is no other
+    std::uint32_t second;  ///< equal to `first` if there is only one
 };
 
-/// Of the pairs in `met`, bit 8 j + i for child i and box j; not all may be 0. All sixty-four distances are taken, so
-/// that they need not wait for what met.
+/// Picks the two nearest of the pairs in `met` (bit 8 j + i for child i and box j), which must not be empty. It
+/// computes all 64 distances, so that they do not depend on `met`.
 [[nodiscard]] inline nearest_places two_nearest(std::uint64_t met, const wide_node& node,
                                                 const eight_boxes& boxes) noexcept {
-    // Which of two as near comes first may hang on how distances are rounded; no answer does.
+    // Rounding may decide which of two equally near pairs comes first; no result depends on that.
 #pragma clang fp contract(fast)
     std::array<simd::eight_floats, 3> of_node;
     std::array<eight_boxes::row, 3> of_boxes;
@@ -28,15 +28,15 @@ struct nearest_places {
         return __builtin_convertvector(simd::load_eight<simd::eight_bytes>(codes.data()), simd::eight_floats);
     };
     for (std::size_t k = 0; k < 3; ++k) {
-        // Twice the coordinates of the centres.
+        // Twice the coordinates of the centres, so that nothing is halved.
         const auto step = static_cast<float>(node.step(k));
         const float twice_origin = 2 * static_cast<float>(node.origin[k]) + 255;
         of_node[k] = (floats_of(node.planes.lower[k]) - floats_of(node.planes.upper[k]) + twice_origin) * step;
         simd::store_eight(of_boxes[k].data(), simd::load_eight<simd::eight_floats>(boxes.lower[k].data()) +
                                                   simd::load_eight<simd::eight_floats>(boxes.upper[k].data()));
     }
-    // Floats that are not negative are in the order of their bits; the last six make room for the pair. What is not a
-    // number comes after all that are.
+    // Non-negative floats compare like their bits, of which the last six hold the pair. NaN compares greater than any
+    // number.
     constexpr simd::eight_words places{0, 1, 2, 3, 4, 5, 6, 7};
     constexpr simd::eight_words none = ~simd::eight_words{};
     simd::eight_words least = none;  // of each column
@@ -44,32 +44,32 @@ struct nearest_places {
     for (std::uint32_t j = 0; j < eight_boxes::most; ++j) {
         simd::eight_floats distance{};
         for (std::size_t k = 0; k < 3; ++k) {
-            const simd::eight_floats way = of_node[k] - of_boxes[k][j];
-            distance += way * way;
+            const simd::eight_floats difference = of_node[k] - of_boxes[k][j];
+            distance += difference * difference;
         }
         const simd::eight_words key = (__builtin_bit_cast(simd::eight_words, distance) & ~63U) | places | 8 * j;
-        const simd::eight_words asked = key | ~simd::flags_of_eight(static_cast<std::uint8_t>(met >> (8 * j)));
-        next = __builtin_elementwise_min(next, __builtin_elementwise_max(least, asked));
-        least = __builtin_elementwise_min(least, asked);
+        const simd::eight_words candidate = key | ~simd::flags_of_eight(static_cast<std::uint8_t>(met >> (8 * j)));
+        next = __builtin_elementwise_min(next, __builtin_elementwise_max(least, candidate));
+        least = __builtin_elementwise_min(least, candidate);
     }
     const std::uint32_t nearest = __builtin_reduce_min(least);
     const std::uint32_t second = __builtin_reduce_min(least == nearest ? next : least);
     return {nearest & 63U, (second == none[0] ? nearest : second) & 63U};
 }
 
-/// Walks two trees down to a pair of leaves that meet: to the two nearest children of a pair of nodes first, and after
-/// leaves that did not meet from a higher level again. The way down is one chain of dependent steps, so that a step is
-/// to wait for little: pairs of children that are left for later are kept as bits.
+/// Descends two trees to any intersecting pair of leaves: the nearest two children first, and after leaves that do not
+/// intersect it restarts at a higher level. The descent is one chain of dependent steps, so that latency matters:
+/// postponed pairs of children are stored as bit masks.
 template <WideTreePolicy Tree>
 class nearest_walk {
 public:
-    /// @param at_leaves called with a leaf of A and one of B whose boxes may meet; returns whether to stop
+    /// @param at_leaves called with a leaf of A and one of B whose boxes may overlap; returns whether to stop
     template <class Counters, class AtLeaves>
     void operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, Counters& counters,
                     const AtLeaves& at_leaves) {
         begin(a.tree(), b.tree(), to_a);
         const std::size_t leaves = steps_.size() - 1;
-        std::size_t missed = 0;  // pairs of leaves
+        std::size_t missed = 0;  // pairs of leaves without an intersection
         std::size_t step = 0;
         node_pair at{0, 0};
         for (;;) {
@@ -80,9 +80,9 @@ public:
                 if (goes_on) continue;
             } else {
                 if (at_leaves(at.a, at.b)) return;
-                // What looks near may be parallel all over. So it goes back, mostly a little, at times to the top, as
-                // often as restarts are best made so long (Luby, Sinclair, Zuckerman, "Optimal speedup of Las Vegas
-                // algorithms", 1993), and to the highest pairs from there on.
+                // Near surfaces may be parallel everywhere. So the walk restarts, mostly a few levels up, sometimes at
+                // the root, with the frequencies of the universal restart strategy (Luby, Sinclair, Zuckerman, "Optimal
+                // speedup of Las Vegas algorithms", 1993), and takes the highest pairs from there on.
                 step -= std::min(step, least_back + static_cast<std::size_t>(std::countr_zero(++missed)));
                 const std::uint64_t below = steps_waiting_ >> step;
                 step = below == 0 ? leaves : step + static_cast<std::size_t>(std::countr_zero(below));
@@ -94,9 +94,9 @@ public:
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = steps_.bytes() + in_a_.bytes() + bytes_of(waiting_);
-        for (const waiting& w : waiting_) all += bytes_of(w.left);
-        return all;
+        std::size_t total = steps_.bytes() + in_a_.bytes() + bytes_of(waiting_);
+        for (const waiting& w : waiting_) total += bytes_of(w.left);
+        return total;
     }
 
 private:
@@ -108,14 +108,14 @@ private:
         std::uint32_t b;
     };
 
-    /// Pairs of children of two nodes, still to be opened.
+    /// The postponed pairs of children of two nodes.
     struct children_left {
         node_pair first;
         std::uint64_t which;  // bit 8 j + i for child i of A's node and j of B's
-        std::uint32_t next;   // of these the one to be opened next
+        std::uint32_t next;   // the pair to open next
     };
 
-    /// At one step. What the nodes that were opened last left stands last.
+    /// The postponed pairs of one step, as a stack.
     struct waiting {
         std::vector<children_left> left;
         std::size_t size = 0;
@@ -130,8 +130,8 @@ private:
         in_a_.begin(b.level(0), nodes_of(b), to_a.to_boxes());
     }
 
-    /// Goes on to the nearest pair of children, and leaves the others for later.
-    /// @returns whether there is one
+    /// Descends to the nearest pair of children and postpones the others.
+    /// @returns whether any pair overlaps
     template <class Counters>
     [[nodiscard]] inline bool open(const Tree& a, const Tree& b, std::size_t step, node_pair& at, Counters& counters) {
         const wide_node& of_a = a.level(steps_[step].a - 1)[at.a];
@@ -158,7 +158,7 @@ private:
         return {first.a + (place & 7U), first.b + (place >> 3U)};
     }
 
-    /// @param next to be opened, if it is among them
+    /// @param next the pair to open next, if `which` has it
     inline void leave(std::size_t step, const node_pair& first, std::uint64_t which, std::uint32_t next) {
         waiting& here = waiting_[step];
         if (here.size == here.left.size()) here.left.resize(2 * here.size + children);
@@ -169,7 +169,7 @@ private:
         steps_waiting_ |= bit(step);
     }
 
-    /// The next pair of those that came to this step last.
+    /// Pops the next pair of the step's most recent entry.
     [[nodiscard]] inline node_pair take(std::size_t step) noexcept {
         waiting& here = waiting_[step];
         children_left& left = here.left[here.size - 1];
@@ -190,7 +190,7 @@ private:
     level_steps steps_;
     kept_images in_a_;                 // nodes of B
     std::vector<waiting> waiting_;     // by step
-    std::uint64_t steps_waiting_ = 0;  // bit s where any wait at step s
+    std::uint64_t steps_waiting_ = 0;  // bit s: step s has postponed pairs
 };
 
 }  // namespace aabb

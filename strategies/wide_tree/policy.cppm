@@ -6,11 +6,11 @@ export import aabb.wide_tree.wide_node;
 
 export namespace aabb {
 
-/// A tree with eight children a node that stand side by side, level by level, for `batched_walk`. Child i of node n on
-/// level l is node 8 n + i of level l - 1; on level 0 it is leaf 8 n + i, without a node of its own, which holds the
-/// triangles at places 8 (8 n + i) to 8 (8 n + i) + 7, or as many as there are. The highest level has one node. All lie
-/// in one array, level 0 first. A leaf's vertices are read from lists of the tree's, where
-/// it has such. One that keeps fronts has pairs of leaves kept from query to query (`leaf_front`).
+/// A tree with eight children per node, stored level by level, for `batched_walk`. Child i of node n on level l is node
+/// 8 n + i of level l - 1. On level 0 it is leaf 8 n + i, which has no node of its own and holds the triangles at
+/// places 8 (8 n + i) to 8 (8 n + i) + 7, as far as they exist. The highest level has one node. All nodes are in one
+/// array, level 0 first. A leaf's vertices come from the tree's vertex lists, if it has any. A tree that keeps fronts
+/// keeps pairs of leaves from query to query (`leaf_front`).
 template <class T>
 concept WideTreePolicy =
     TreePolicy<T> && requires(const T built, std::size_t level, std::uint32_t index, vertex_list& list) {

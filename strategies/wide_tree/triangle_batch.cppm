@@ -6,15 +6,15 @@ import aabb.wide_tree.triangle_filter;
 
 export namespace aabb {
 
-/// Pairs of triangles, both in A's frame, that wait until there are as many as the processor decides on at once. An
-/// exact test decides on what the filter leaves open, any other on all.
+/// Queues pairs of triangles, both in A's frame, until they fill SIMD vectors. For exact tests a floating-point filter
+/// decides most pairs, and the test the rest; any other test decides all pairs.
 template <TrianglePolicy Triangle>
 class triangle_batch {
 public:
     void clear() noexcept { pairs_ = leaf_pairs_ = 0; }
     [[nodiscard]] bool is_full() const noexcept { return pairs_ + most_of_a_leaf_pair > capacity; }
 
-    /// Bit 8 j + i of `which` for triangle i of `a` and j of `b`; not all may be 0. `is_full` must not hold.
+    /// Adds the pairs in `which` (bit 8 j + i for triangle i of `a` and j of `b`), not zero. `is_full` must not hold.
     inline void add(std::uint64_t which, std::uint32_t leaf_a, const triangle_block& a, std::uint32_t leaf_b,
                     const triangle_block& b) noexcept {
         alignas(64) std::array<std::uint8_t, most_of_a_leaf_pair> place{};
@@ -22,7 +22,7 @@ public:
         leaves_[leaf_pairs_] = {leaf_a, leaf_b};
         const auto from = static_cast<std::uint32_t>(leaf_pairs_++ << pair_bits);
         const auto count = static_cast<std::size_t>(std::popcount(which));
-        // Mostly once, which is foreseen.
+        // Almost always one iteration, so that the branch is predicted.
         std::size_t first = 0;
         do {
             const auto chosen =
@@ -38,15 +38,15 @@ public:
         pairs_ += count;
     }
 
-    /// Hands the pairs that intersect to `emit`, all at once.
-    /// @param all or only as many as whole vectors hold
-    /// @param triangles_at which triangles of the meshes stand at places of two leaves, as `(leaf_a, i, leaf_b, j)`
+    /// Tests the queued pairs and passes those that intersect to `emit`, in one call.
+    /// @param flush whether to test all pairs, instead of full vectors only
+    /// @param triangles_at maps places in two leaves to triangles of the meshes, as `(leaf_a, i, leaf_b, j)`
     /// @returns what `emit` returned: whether to stop
     template <class TrianglesAt, class Emit>
-    [[nodiscard]] bool decide(const Triangle& test, bool all, const TrianglesAt& triangles_at, const Emit& emit) {
+    [[nodiscard]] bool decide(const Triangle& test, bool flush, const TrianglesAt& triangles_at, const Emit& emit) {
         std::size_t done = 0;
-        std::size_t found = 0;
-        for (; done + simd::width <= pairs_ || (all && done < pairs_); done += simd::width) {
+        std::size_t hit_count = 0;
+        for (; done + simd::width <= pairs_ || (flush && done < pairs_); done += simd::width) {
             const std::uint32_t present = simd::lanes_below(pairs_ - done);
             const filtered_pairs by_filter = filtered(done);
             std::uint32_t hits = by_filter.hits & present;
@@ -54,22 +54,22 @@ public:
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
                 if (test.intersects(triangle(a_, done + lane), triangle(b_, done + lane))) hits |= 1U << lane;
             }
-            found += simd::store_where(&found_[found], simd::load(&origin_[done]), hits);
+            hit_count += simd::store_where(&hits_[hit_count], simd::load(&origin_[done]), hits);
         }
-        for (std::size_t i = 0; i < found; ++i) {
-            const std::uint32_t origin = found_[i];
+        for (std::size_t i = 0; i < hit_count; ++i) {
+            const std::uint32_t origin = hits_[i];
             const auto& [leaf_a, leaf_b] = leaves_[origin >> pair_bits];
-            named_[i] = triangles_at(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U);
+            pairs_of_hits_[i] = triangles_at(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U);
         }
         keep_from(std::min(done, pairs_));
-        return found != 0 && emit(std::span<const index_pair>(named_).first(found));
+        return hit_count != 0 && emit(std::span<const index_pair>(pairs_of_hits_).first(hit_count));
     }
 
 private:
     static constexpr std::size_t rows = 9;
     static constexpr std::size_t most_of_a_leaf_pair = 64;
     static constexpr std::size_t capacity = 144;
-    static constexpr unsigned pair_bits = 6;  // of a pair among those of a leaf pair
+    static constexpr unsigned pair_bits = 6;  // of the place 8 j + i within a leaf pair
     using corners = std::array<std::array<float, capacity + triangle_block::width>, rows>;
 
     [[nodiscard]] inline filtered_pairs filtered(std::size_t first) const noexcept {
@@ -86,7 +86,7 @@ private:
         return t;
     }
 
-    /// Fewer are left than a vector holds: one vector of each row is moved.
+    /// Moves the rest to the front: less than a vector, so that one vector per row suffices.
     void keep_from(std::size_t done) noexcept {
         pairs_ -= done;
         if (pairs_ == 0) return clear();
@@ -104,10 +104,10 @@ private:
     std::size_t leaf_pairs_ = 0;
     alignas(64) corners a_{};
     alignas(64) corners b_{};
-    std::array<std::uint32_t, capacity + triangle_block::width> origin_{};  // place among leaf pairs, then 8 j + i
+    std::array<std::uint32_t, capacity + triangle_block::width> origin_{};  // index of the leaf pair, then 8 j + i
     std::array<std::array<std::uint32_t, 2>, capacity> leaves_{};
-    std::array<std::uint32_t, capacity + simd::width> found_{};  // origins of those that intersect
-    std::array<index_pair, capacity> named_{};                   // the same, as triangles of the meshes
+    std::array<std::uint32_t, capacity + simd::width> hits_{};  // origins of the pairs that intersect
+    std::array<index_pair, capacity> pairs_of_hits_{};          // the same as triangles of the meshes
 };
 
 }  // namespace aabb

@@ -5,7 +5,7 @@ export import aabb.wide_tree.policy;
 
 export namespace aabb {
 
-/// The triangles of a leaf, coordinate by coordinate. Where there are fewer than eight, the last one fills the rest.
+/// The triangles of a leaf as a structure of arrays, padded to eight with the last triangle.
 struct triangle_block {
     static constexpr std::size_t width = eight_boxes::most;
     using row = std::array<float, width>;
@@ -13,13 +13,13 @@ struct triangle_block {
     alignas(32) std::array<std::array<row, 3>, 3> corner;  ///< corner c, axis k: [c][k]
     std::uint32_t triangles;
 
-    /// As they lie in the mesh.
+    /// Loads the triangles in the mesh's own frame.
     template <WideTreePolicy Tree>
     void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list) noexcept {
         load(m, tree, leaf, list, [](auto&) {});
     }
 
-    /// In A's frame.
+    /// Loads the triangles in A's frame.
     template <WideTreePolicy Tree>
     void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
               const relative_pose& to_a) noexcept {
@@ -32,7 +32,7 @@ struct triangle_block {
         });
     }
 
-    /// Of the triangles' boxes: lower bounds along each axis, then upper ones.
+    /// The triangles' boxes: rows of lower bounds along each axis, then of upper bounds.
     [[nodiscard]] inline std::array<simd::eight_floats, 6> bounds() const noexcept {
         const auto lesser = [](simd::eight_floats p, simd::eight_floats q) { return p < q ? p : q; };
         const auto greater = [](simd::eight_floats p, simd::eight_floats q) { return p > q ? p : q; };
@@ -48,7 +48,7 @@ struct triangle_block {
 private:
     using columns = std::array<simd::eight_floats, 3>;
 
-    /// @param change takes eight points, coordinate by coordinate
+    /// @param change transforms eight points, given as three vectors of coordinates
     template <class Tree, class Change>
     inline void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
                      Change change) noexcept {
@@ -64,7 +64,7 @@ private:
         const columns low = eight_from(0);
         const columns high = eight_from(width);
         for (std::size_t k = 0; k < 3; ++k) {
-            // Joined in a register: a processor waits where it reads as a whole what it has just written in parts.
+            // Joined in a register, since a wide load from two narrower stores stalls.
             const simd::sixteen_floats points = simd::joined(low[k], high[k]);
             for (std::size_t c = 0; c < 3; ++c)
                 simd::store_eight(corner[c][k].data(), simd::taken_of_sixteen(points, list.places[c]));
@@ -86,7 +86,7 @@ private:
     }
 };
 
-/// Which vertices are the corners of a leaf's triangles. Where there are fewer than eight, the last one fills the rest.
+/// The vertex indices of a leaf's triangles, padded to eight with the last triangle.
 struct corner_numbers {
     static constexpr std::size_t width = eight_boxes::most;
 
@@ -101,7 +101,8 @@ struct corner_numbers {
         }
     }
 
-    /// Bit 8 j + i where triangle i of these has a corner that triangle j of the others has: they meet there.
+    /// Sets bit 8 j + i where triangle i of these shares a corner with triangle j of the others, so that they
+    /// intersect.
     [[nodiscard]] inline std::uint64_t shared_with(const corner_numbers& other) const noexcept {
         return simd::columns_of_eight_that_share(vertex[0].data(), other.vertex[0].data());
     }

@@ -3,27 +3,27 @@ export module aabb.wide_tree.triangle_filter;
 import aabb.simd;
 import aabb.std;
 
-// Products may be fused into sums, which the bounds allow for; nothing else.
+// Fused multiply-adds are allowed, which the error bounds include; nothing else is.
 #pragma clang fp reassociate(off) reciprocal(off)
 
 export namespace aabb {
 
-/// Bit i of either for pair i.
+/// Two masks of pairs: those that intersect, and those that the filter cannot decide.
 struct filtered_pairs {
     std::uint32_t hits;
     std::uint32_t undecided;
 };
 
-/// Decides on as many pairs of triangles as a vector has lanes, in float, where rounding leaves no doubt; the others
-/// are left to an exact test. After Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488,
-/// 2002): the signs of eight orientations. Triangles with a corner in common are hits.
+/// A floating-point filter: tests one vector of pairs of triangles in float and leaves those to an exact test whose
+/// signs rounding could change. The signs of eight orientations decide (Devillers and Guigue, "Faster triangle-triangle
+/// intersection tests", INRIA RR-4488, 2002). Triangles with a common corner are hits.
 ///
-/// A determinant of differences of coordinates that are at most X, Y and Z apart is 46 u XYZ from the real one, to
-/// first order, u = 2^-24: three differences and six products, with the sums of them, are rounded. What underflows adds
-/// no more than 20 times 2^-150 of a factor X, Y, Z or 1. What overflows compares as nothing, and stays undecided.
+/// For coordinates that differ by at most X, Y and Z, the error of a determinant is 46 u XYZ to first order, u = 2^-24:
+/// three differences, six products and their sums are rounded. Underflow adds at most 20 times 2^-150 of a factor X, Y,
+/// Z or 1. After an overflow all comparisons are false, so that the pair stays undecided.
 class triangle_filter {
 public:
-    /// @param a the first row of nine: corner c, axis k in row 3 c + k, rows `stride` apart; b likewise
+    /// @param a,b the first of nine rows at a distance of `stride`: row 3 c + k has axis k of corner c
     [[nodiscard]] static inline filtered_pairs decide(const float* a, const float* b, std::size_t stride) noexcept {
 #pragma clang fp contract(fast)
         corners s = load(a, stride);
@@ -37,12 +37,12 @@ public:
         const sides of_t = most.of(dot(s_normal, t[0] - s[0]), dot(s_normal, t[1] - s[0]), dot(s_normal, t[2] - s[0]));
         const point t_normal = cross(t[1] - t[0], t[2] - t[0]);
         const sides of_s = most.of(dot(t_normal, s[0] - t[0]), dot(t_normal, s[1] - t[0]), dot(t_normal, s[2] - t[0]));
-        const simd::flags apart = of_t.all_above() | of_t.all_below() | of_s.all_above() | of_s.all_below();
+        const simd::flags separated = of_t.all_above() | of_t.all_below() | of_s.all_above() | of_s.all_below();
         const simd::flags sure = of_t.sure() & of_s.sure();
 
         const simd::flags t_apex_above = turn_to_apex(t, of_t.above);
         const simd::flags s_apex_above = turn_to_apex(s, of_s.above);
-        // Each apex is to lie above the other triangle.
+        // Reorders corners so that each apex lies above the other triangle.
         swap_where(~s_apex_above, t[1], t[2]);
         swap_where(~t_apex_above, s[1], s[2]);
         const point between = t[0] - s[0];
@@ -50,8 +50,8 @@ public:
         const simd::floats second = dot(cross(s[2] - s[0], t[2] - s[0]), between);
         const simd::flags beyond = most.above(first) | most.above(second);
         const simd::flags crossing = most.below(first) & most.below(second);
-        const std::uint32_t hits = simd::bits(~apart & sure & crossing);
-        const std::uint32_t undecided = simd::bits(~apart & ~(sure & (beyond | crossing)));
+        const std::uint32_t hits = simd::bits(~separated & sure & crossing);
+        const std::uint32_t undecided = simd::bits(~separated & ~(sure & (beyond | crossing)));
         if (undecided == 0) return {hits, 0};
         const std::uint32_t touching = undecided & simd::bits(share_corner(s, t));
         return {hits | touching, undecided & ~touching};
@@ -67,7 +67,7 @@ private:
     };
     using corners = std::array<point, 3>;
 
-    /// Of three orientations.
+    /// The certain signs of three orientations.
     struct sides {
         std::array<simd::flags, 3> above;
         std::array<simd::flags, 3> below;
@@ -83,7 +83,7 @@ private:
         }
     };
 
-    /// Which signs are certain.
+    /// An error bound, which tells which signs are certain.
     class bound {
     public:
         explicit inline bound(simd::floats most) noexcept : most_(most) {}
@@ -115,7 +115,7 @@ private:
         return p.at[0] * q.at[0] + p.at[1] * q.at[1] + p.at[2] * q.at[2];
     }
 
-    /// As neighbours in a mesh do: there is nothing more to decide.
+    /// Adjacent triangles of a mesh share a corner and therefore intersect.
     [[nodiscard, gnu::always_inline]] static inline simd::flags share_corner(const corners& s,
                                                                              const corners& t) noexcept {
         simd::flags any{};
@@ -145,8 +145,8 @@ private:
         q = chosen(which, kept, q);
     }
 
-    /// Turns the triangle until corner 0 is the one that is alone on its side of the other's plane.
-    /// @returns whether that is above
+    /// Rotates the triangle until corner 0 is alone on its side of the other's plane.
+    /// @returns whether it is above
     [[nodiscard, gnu::always_inline]] static inline simd::flags turn_to_apex(
         corners& t, const std::array<simd::flags, 3>& above) noexcept {
         const simd::flags is_1 = (above[0] ^ above[1]) & ~(above[0] ^ above[2]);

@@ -6,38 +6,38 @@ export import aabb.wide_tree.kernels;
 
 export namespace aabb {
 
-/// The vertices of a leaf of eight triangles, each once.
+/// The distinct vertices of a leaf of eight triangles.
 struct vertex_list {
     static constexpr std::size_t most = 16;
 
-    alignas(64) std::array<std::uint32_t, most> vertices;  ///< ascending; the first one fills the rest
-    std::array<std::uint32_t, 3> places;  ///< by corner: 4 bits a triangle; the last one fills the rest
-    std::uint32_t count;                  ///< 0 where they have to be found in the mesh
+    alignas(64) std::array<std::uint32_t, most> vertices;  ///< ascending, padded with the first
+    std::array<std::uint32_t, 3> places;                   ///< by corner: 4 bits per triangle, padded with the last
+    std::uint32_t count;                                   ///< 0 if the vertices must be read from the mesh
 
-    /// Tells memory that they will be read: of every second, since neighbours mostly share a line of it.
+    /// Prefetches every second vertex, since neighbours mostly share a cache line.
     inline void fetch(const mesh& m) const noexcept {
         if (count == 0) return;
         for (std::size_t i = 0; i < most; i += 2) __builtin_prefetch(&m.vertices[vertices[i]]);
     }
 };
 
-/// The vertices of leaves of eight triangles, each once: neighbours share most of their corners, so that some ten are
-/// read in place of twenty-four, sixteen moved, and the mesh's triangles not read at all.
+/// The distinct vertices of each leaf of eight triangles. Adjacent triangles share most of their corners, so that a
+/// leaf reads some ten vertices instead of 24, transforms sixteen, and does not read the mesh's triangles at all.
 ///
-/// A list is a byte, how many vertices there are; for each corner, eight triangles' places in the list in 4 bits each;
-/// and the vertices' indices, each in as many bytes as the largest one has, ascending, so that those side by side in
-/// memory follow each other. Few leaves, of triangles that lie apart, have more than sixteen vertices: they have a list
-/// of none, and are read from the mesh.
+/// A list is one byte for the number of vertices; for each corner, the places of eight triangles in the list, in 4 bits
+/// each; and the indices of the vertices, each in as many bytes as the largest index needs, ascending, so that accesses
+/// to adjacent memory follow each other. Few leaves, of scattered triangles, have more than sixteen vertices: their
+/// lists are empty, and they are read from the mesh.
 class vertex_lists {
 public:
     static constexpr std::size_t triangles = balanced_order::leaf_triangles;
 
     vertex_lists() = default;
-    /// @param order the mesh's triangles, leaf by leaf
+    /// @param order the mesh's triangles in the order of the leaves
     vertex_lists(const mesh& m, std::span<const std::uint32_t> order, worker_threads& workers) {
         while (width_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * width_) ++width_;
         begins_.resize((order.size() + triangles - 1) / triangles);
-        // What one thread lists at a time, with room for the longest lists.
+        // Each thread writes one part at a time, which has room for the longest lists.
         const std::size_t room = least_shared * (header + width_ * vertex_list::most);
         std::vector<std::size_t> sizes((begins_.size() + least_shared - 1) / least_shared);
         large_vector<std::byte> parts(sizes.size() * room);
@@ -56,14 +56,14 @@ public:
             sizes[p] = static_cast<std::size_t>(end - begin);
         });
         std::vector<std::size_t> offsets;
-        std::size_t all = 0;
+        std::size_t total = 0;
         for (const std::size_t size : sizes) {
-            offsets.push_back(all);
-            all += size;
+            offsets.push_back(total);
+            total += size;
         }
-        if (all > most_bytes)
+        if (total > most_bytes)
             throw input_error("lists of vertices take no more than 4 GiB; this mesh needs implicit:vertices=fetched");
-        lists_.resize(all + read_beyond);
+        lists_.resize(total + read_beyond);
         std::fill(lists_.end() - read_beyond, lists_.end(), std::byte{});
         workers.for_each_index(sizes.size(), [&](std::size_t p, std::size_t) {
             std::memcpy(&lists_[offsets[p]], &parts[p * room], sizes[p]);
@@ -83,7 +83,7 @@ public:
         simd::load_sixteen_numbers(to.vertices.data(), at + header, width_, to.count);
     }
 
-    /// Whether these are still the corners of the leaf's triangles.
+    /// Whether the list still has the corners of the leaf's triangles.
     [[nodiscard]] bool matches(const mesh& m, std::uint32_t leaf,
                                std::span<const std::uint32_t> of_leaf) const noexcept {
         vertex_list list;
@@ -102,39 +102,39 @@ private:
     static constexpr std::size_t header = 1 + sizeof vertex_list::places;
     static constexpr std::size_t read_beyond = 64;
     static constexpr std::size_t most_bytes = 0xffffffff;
-    static constexpr std::size_t ahead = 4;            // leaves whose triangles memory is told of
-    static constexpr std::size_t least_shared = 1024;  // leaves that are worth another thread
+    static constexpr std::size_t ahead = 4;            // leaves whose triangles are prefetched
+    static constexpr std::size_t least_shared = 1024;  // leaves that repay another thread
 
-    /// @returns the end of the list that begins at `to`
+    /// Writes the list of one leaf at `to`.
+    /// @returns the end of the list
     std::byte* add(const mesh& m, std::span<const std::uint32_t> of_leaf, std::byte* to) const {
         constexpr std::size_t corners = 3 * triangles;
-        alignas(32) std::array<std::uint32_t, corners> all;
+        alignas(32) std::array<std::uint32_t, corners> vertices;
         for (std::size_t i = 0; i < triangles; ++i)
-            std::ranges::copy(m.triangles[of_leaf[std::min(i, of_leaf.size() - 1)]], &all[3 * i]);
-        // Bit by bit, those that are so to `one`.
-        const auto bits_where = [&](const auto& is, std::uint32_t one) {
+            std::ranges::copy(m.triangles[of_leaf[std::min(i, of_leaf.size() - 1)]], &vertices[3 * i]);
+        const auto bits_where = [&](const auto& compare, std::uint32_t v) {
             std::uint32_t bits = 0;
             for (std::size_t eight = 0; eight < corners; eight += 8)
-                bits |= simd::bits_of_eight(is(simd::load_eight<simd::eight_words>(&all[eight]), one)) << eight;
+                bits |= simd::bits_of_eight(compare(simd::load_eight<simd::eight_words>(&vertices[eight]), v)) << eight;
             return bits;
         };
-        // Where each stands first, of all before any has a place, so that none waits for the one before.
+        // Finds all first occurrences before any place, so that no iteration depends on the previous one.
         std::array<std::uint8_t, corners> first;
         std::uint32_t is_new = 0;
         for (std::size_t at = 0; at < corners; ++at) {
-            const std::uint32_t same = bits_where([](auto some, std::uint32_t one) { return some == one; }, all[at]);
+            const std::uint32_t same = bits_where([](auto x, std::uint32_t v) { return x == v; }, vertices[at]);
             first[at] = static_cast<std::uint8_t>(std::countr_zero(same));
             is_new |= same & -same;
         }
         const auto count = static_cast<std::size_t>(std::popcount(is_new));
         *to = static_cast<std::byte>(count > vertex_list::most ? 0 : count);
         if (count > vertex_list::most) return to + 1;
-        std::array<std::uint32_t, corners> place;  // of those that are new
+        std::array<std::uint32_t, corners> place;  // of first occurrences
         for (std::uint32_t left = is_new; left != 0; left &= left - 1) {
             const auto at = static_cast<std::size_t>(std::countr_zero(left));
-            const std::uint32_t less = bits_where([](auto some, std::uint32_t one) { return some < one; }, all[at]);
+            const std::uint32_t less = bits_where([](auto x, std::uint32_t v) { return x < v; }, vertices[at]);
             place[at] = static_cast<std::uint32_t>(std::popcount(less & is_new));
-            std::memcpy(to + header + width_ * place[at], &all[at], width_);
+            std::memcpy(to + header + width_ * place[at], &vertices[at], width_);
         }
         std::array<std::uint32_t, 3> places{};
         for (std::size_t at = 0; at < corners; ++at) places[at % 3] |= place[first[at]] << 4 * (at / 3);

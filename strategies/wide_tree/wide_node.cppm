@@ -5,10 +5,11 @@ export import aabb.wide_tree.eight_boxes;
 
 export namespace aabb {
 
-/// Node of a tree with up to eight children: their boxes, rounded outward to a grid of the node's own, in 64 bytes.
+/// A node with up to eight children in 64 bytes: their boxes, rounded outward to a grid of the node's own, as in the
+/// compressed wide BVH (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs ...", HPG 2017).
 ///
-/// Along axis k the grid has planes at i * 2^exponent[k] for whole i, and code q, from 1 to 254, stands for i =
-/// origin[k] + q. Both are exact: |i| stays below 2^24, so that a plane is a float where it is in their range.
+/// Along axis k the grid has planes at i * 2^exponent[k] for integers i, and code q, from 1 to 254, means i = origin[k]
+/// + q. Both are exact: |i| stays below 2^24, so that a plane within the range of float is a float.
 struct wide_node {
     static constexpr std::size_t most_children = eight_boxes::most;
     static constexpr int last_code = 255;
@@ -18,7 +19,7 @@ struct wide_node {
     std::array<std::int8_t, 3> exponent;
     std::uint8_t children;
 
-    /// Takes the boxes of 1 to 8 children.
+    /// Encodes the boxes of 1 to 8 children.
     void encode(std::span<const box> boxes) noexcept {
         children = static_cast<std::uint8_t>(boxes.size());
         for (int k = 0; k < 3; ++k) encode_axis(boxes, k);
@@ -27,7 +28,7 @@ struct wide_node {
 
     [[nodiscard]] inline double step(std::size_t axis) const noexcept { return power_of_two(exponent[axis]); }
 
-    /// Planes are exact on it, and rounding is monotone, so nothing is rounded past a plane.
+    /// Planes are exact on this grid and rounding is monotone, so that no coordinate is rounded past a plane.
     [[nodiscard]] inline code_grid grid() const noexcept {
         code_grid g;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -48,10 +49,10 @@ struct wide_node {
     }
 
 private:
-    static constexpr int least_exponent = -126;  // of a float with all its digits
-    static constexpr int origin_digits = 22;     // fewer than those of a float, since codes are added
+    static constexpr int least_exponent = -126;  // of normal floats
+    static constexpr int origin_digits = 22;     // fewer than a float has, since codes are added
 
-    /// Of a positive number, what power of 2 it has reached; of 0, one below that of every float.
+    /// The binary exponent of a positive number; that of 0 is below those of all floats.
     [[nodiscard]] static inline int power_of(double x) noexcept {
         return static_cast<int>(std::bit_cast<std::uint64_t>(x) >> 52U) - 1023;
     }
@@ -60,7 +61,7 @@ private:
     }
 
     void encode_axis(std::span<const box> boxes, int k) noexcept {
-        // In double, products with powers of 2 are exact, and so are their whole parts.
+        // In double, products with powers of 2 are exact, and so are their integer parts.
         simd::eight_doubles least = simd::eight_doubles{} + boxes[0].min[k];
         simd::eight_doubles most = simd::eight_doubles{} + boxes[0].max[k];
         double low = boxes[0].min[k];

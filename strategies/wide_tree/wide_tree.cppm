@@ -1,5 +1,5 @@
-/// The room of trees with eight children a node: what a layout of such a tree sees of it, and who plans for its fronts.
-/// All else is behind.
+/// The interface of trees with eight children per node, for layouts of such trees and for the planning of their fronts.
+/// The rest is internal.
 export module aabb.wide_tree;
 
 export import aabb.wide_tree.front_walk;
@@ -10,7 +10,7 @@ import aabb.wide_tree.leaf_front;
 
 export namespace aabb {
 
-/// Of how many pairs of objects pairs of leaves are kept, and of how many leaves at least the two must have.
+/// How many pairs of objects can have fronts, and how many leaves the two models must have at least.
 inline constexpr std::size_t most_fronts = front_keeper::most;
 inline constexpr std::size_t least_leaves_of_front = front_keeper::least_leaves;
 
