@@ -5,15 +5,15 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The paper's canonical storage (section 3.2): internal nodes of a box and two child indices, 32 bytes; leaves of a
-/// box and a triangle index, 28 bytes. 60 bytes a triangle. When to use: as the baseline of every other layout.
+/// The paper's canonical storage (section 3.2): internal nodes with a box and two child indices, 32 bytes; leaves with
+/// a box and a triangle index, 28 bytes. 60 bytes per triangle. When to use: as the baseline of all other layouts.
 class canonical_tree {
 public:
     static constexpr std::string_view name = "canonical";
     static constexpr std::string_view summary = "internal nodes of 32 bytes, leaves of 28: a box in every node";
     static constexpr bool has_leaf_boxes = true;
 
-    /// Index of an internal node, or of a leaf with the top bit set.
+    /// The index of an internal node, or with the top bit set that of a leaf.
     using cursor = std::uint32_t;
 
     void pack(std::span<const build_node> nodes) {
@@ -36,7 +36,7 @@ public:
 
     void refit(const mesh& m, std::vector<box>&) {
         for (leaf& l : leaves_) l.bounds = bounds_of(m.triangle(l.triangle));
-        // Children stand behind their parents.
+        // Children are stored behind their parents, so that a reverse pass is bottom-up.
         for (std::size_t i = internals_.size(); i-- > 0;) {
             internal_node& node = internals_[i];
             node.bounds = merged(bounds(node.child[0]), bounds(node.child[1]));

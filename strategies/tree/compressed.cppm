@@ -5,11 +5,11 @@ import aabb.tree.leafless_config;
 
 export namespace aabb {
 
-/// The paper's compressed storage (section 3.2, table 1) without loss: no leaves, and two siblings share one record of
-/// six planes, 12 bytes a node. Where both children are leaves there is nothing to describe: such nodes stand behind
-/// the others, as two triangle indices without planes and without the symbol byte. That takes 20.5 bytes a triangle in
-/// place of table 1's 21. Leaves come in pairs (`leaf_arrangement::pairs`), since one beside an internal node would
-/// waste half a record. When to use: for the least memory with exact boxes.
+/// The paper's compressed storage (section 3.2, table 1), lossless: there are no leaves, and two siblings share one
+/// record of six planes, 12 bytes per node. A node above two leaves needs no planes and no symbol byte: such nodes are
+/// stored behind the others, as two triangle indices. That takes 20.5 bytes per triangle instead of table 1's 21.
+/// Leaves come in pairs (`leaf_arrangement::pairs`), since a leaf beside an internal node would waste half a record.
+/// When to use: for the least memory with exact boxes.
 class compressed_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "compressed";
@@ -54,7 +54,7 @@ public:
         for (std::size_t i = 0; i < leaf_pairs_.size(); ++i)
             boxes[nodes_.size() + i] =
                 merged(bounds_of(m.triangle(leaf_pairs_[i][0])), bounds_of(m.triangle(leaf_pairs_[i][1])));
-        // Children stand behind their parents.
+        // Children are stored behind their parents, so that a reverse pass is bottom-up.
         for (std::size_t i = nodes_.size(); i-- > 0;) {
             const box left = bounds_at(i, 0);
             const box right = bounds_at(i, 1);
@@ -98,7 +98,7 @@ private:
     box root_{};
     std::vector<node> nodes_;  // depth first
     std::vector<std::uint8_t> symbols_;
-    std::vector<child_pair> leaf_pairs_;  // of the nodes behind those; triangles
+    std::vector<child_pair> leaf_pairs_;  // the nodes above two leaves, as triangles
 };
 
 static_assert(TreePolicy<compressed_tree>);

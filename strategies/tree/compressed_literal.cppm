@@ -5,10 +5,10 @@ import aabb.tree.leafless_config;
 
 export namespace aabb {
 
-/// The paper's table 1 to the letter: every internal node holds three planes of its own and two child indices, and a
-/// symbol byte; the other three planes are its parent's. A node that differs from its parent in more than three keeps
-/// the three that make its box smallest: boxes still hold what is below them, but some are larger than `canonical`'s.
-/// No leaves; 21 bytes a triangle. When to use: to see what table 1 costs when it is taken at its word.
+/// The paper's table 1 to the letter: every internal node stores three planes, two child indices and a symbol byte; it
+/// inherits the other three planes from its parent. A node that differs from its parent in more than three planes keeps
+/// those that make its box smallest: boxes stay conservative, but some are larger than `canonical`'s. There are no
+/// leaves; 21 bytes per triangle. When to use: to measure what the literal table 1 costs.
 class compressed_literal_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "compressed_literal";
@@ -20,7 +20,7 @@ public:
     void pack(std::span<const build_node> nodes) {
         nodes_.assign(nodes.size() / 2, {});
         symbols_.assign(nodes_.size(), 0);
-        // The internal children of a node stand side by side, behind it.
+        // The internal children of a node are adjacent and stored behind it.
         std::vector<std::uint32_t> packed(nodes.size());
         std::uint32_t next = 1;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -80,22 +80,22 @@ private:
         return symbols_[parent] & leaf_flag(side);
     }
 
-    /// Planes of a box in the order of the symbol's bits: three lower ones, three upper ones.
+    /// The planes of a box in the order of the symbol's bits: three lower planes, then three upper planes.
     [[nodiscard]] static constexpr float& plane(box& b, unsigned k) noexcept {
         return k < 3 ? b.min[static_cast<int>(k)] : b.max[static_cast<int>(k) - 3];
     }
 
-    /// The parent's box with the planes whose bits are set replaced, in order.
+    /// The parent's box, in which `planes` replace those whose bits are set, in order.
     [[nodiscard]] static constexpr box decoded(const box& parent, const three_planes& planes,
                                                unsigned symbol) noexcept {
-        box all = parent;
+        box result = parent;
         std::size_t used = 0;
         for (unsigned k = 0; k < 6; ++k)
-            if (symbol >> k & 1) plane(all, k) = planes[used++];
-        return all;
+            if (symbol >> k & 1) plane(result, k) = planes[used++];
+        return result;
     }
 
-    /// @param exact by internal node; becomes the boxes as they are decoded.
+    /// @param exact the box of each internal node; replaced by the decoded boxes.
     void encode(std::vector<box>& exact) noexcept {
         for (std::size_t i = 0; i < nodes_.size(); ++i)
             for (std::size_t side = 0; side < 2; ++side)
@@ -113,7 +113,7 @@ private:
             for (unsigned k = 0; k < 6; ++k)
                 if (bits >> k & 1) planes[used++] = plane(bounds, k);
             const box candidate = decoded(parent, planes, bits);
-            // Flat boxes may have the area of the smallest without being it.
+            // A flat box may have the same area as the exact one without being equal to it.
             const double area = candidate == bounds ? -1 : surface_area(candidate);
             if (area < least) {
                 least = area;

@@ -6,15 +6,15 @@ import aabb.wide_tree;
 
 export namespace aabb {
 
-/// A balanced tree without indices: every node has eight children, and where they stand follows from where it stands.
-/// Boxes are in 8 bits a plane (`wide_node`). Leaves are eight triangles, whose boxes are made when they are met, so
-/// that nodes take 1.14 bytes a triangle; which triangle stands where takes as many bits as the largest index has, and
-/// none where they stand as in the mesh (`file_order`). The vertices of each leaf are listed, which takes more bytes
-/// than all else and saves a tenth of the time of a query, a third where a mesh is large. Nodes are walked in batches
-/// (`batched_walk`), or with `front=kept` not at all, as long as the pairs of leaves of an earlier query hold
-/// (`leaf_front`). Seen as a binary tree, node (height, index) holds the triangles at places index * 2^height and up to
-/// 2^height - 1 beyond; below leaves, all have the leaf's box. A build chooses axes, not how many triangles go to which
-/// side (`balanced_order`). When to use: for the fastest queries.
+/// A balanced tree without child indices: every node has eight children, whose positions follow from its own. Boxes
+/// have 8 bits per plane (`wide_node`). Leaves are eight triangles, whose boxes are computed on demand, so that nodes
+/// take 1.14 bytes per triangle. Each triangle index takes as many bits as the largest one needs, or none if the
+/// triangles keep the order of the mesh (`file_order`). Each leaf has a list of its vertices, which takes more memory
+/// than the rest and saves a tenth of the query time, or a third for large meshes. Nodes are walked in batches
+/// (`batched_walk`), or with `front=kept` not at all while the front of an earlier query is valid (`leaf_front`). As a
+/// binary tree, node (height, index) has the triangles at places index * 2^height to (index + 1) * 2^height - 1; nodes
+/// below leaves have the leaf's box. A build chooses axes, not the number of triangles per side (`balanced_order`).
+/// When to use: for the fastest queries.
 class implicit_tree {
 public:
     static constexpr std::string_view name = "implicit";
@@ -23,15 +23,15 @@ public:
     static constexpr std::array leaves_out{absence::triangle_boxes, absence::node_indices};
     static constexpr bool has_leaf_boxes = true;
 
-    /// How the vertices of a leaf are found.
+    /// How a query reads the vertices of a leaf.
     enum class vertex_choice : std::uint8_t {
-        listed,  ///< each leaf has a list of them
+        listed,  ///< from the leaf's own list
         fetched  ///< through the mesh's triangles
     };
-    /// What becomes of the pairs of leaves that a query has met.
+    /// Whether queries use BVTT front tracking.
     enum class front_choice : std::uint8_t {
-        forgotten,  ///< the next one begins at the roots
-        kept        ///< those within a margin serve the next ones, as long as little moves
+        forgotten,  ///< no: each query starts at the roots
+        kept        ///< yes: pairs of leaves within a margin serve later queries while B moves little
     };
     struct config {
         vertex_choice vertices = vertex_choice::listed;
@@ -48,11 +48,11 @@ public:
     template <class Triangle, class Counters>
     using walk = front_walk<implicit_tree, Triangle, Counters>;
 
-    /// Vertices are fetched by few queries of meshes that are not large. Lists of them take about half as long to write
-    /// as `sah` takes longer than `median`. A query is faster with them by a tenth where the two meshes have 150,000
-    /// triangles, whose vertices outgrow the second cache, by less where they have fewer, and hardly at all where these
-    /// fit into it. Fronts are kept where frames follow each other, of no more pairs of objects a frame than are kept:
-    /// more would find none again.
+    /// Vertices are fetched if there are few queries and the meshes are not large. Vertex lists take about half as long
+    /// to write as `sah` takes longer than `median`. They speed up a query by a tenth if the two meshes have 150,000
+    /// triangles, whose vertices exceed the L2 cache, by less for fewer triangles, and hardly if these fit into it.
+    /// Fronts are kept over several frames, unless a frame has more pairs of objects than fronts: these would evict
+    /// each other.
     [[nodiscard]] static scene_fit fit(const scene_outlook& scene) {
         constexpr double most_fetched_of_two = 200'000;
         constexpr std::size_t least_of_front = least_leaves_of_front * balanced_order::leaf_triangles;
@@ -97,14 +97,14 @@ public:
             });
         }
         if (config_.vertices == vertex_choice::listed) vertices_ = vertex_lists(m, order.triangles, workers);
-        std::size_t all = 0;
+        std::size_t total = 0;
         levels_ = 0;
         for (std::size_t below = order.bounds.size(); levels_ == 0 || below > 1;) {
             below = groups_of(below);
-            begins_[levels_++] = all;
-            all += below;
+            begins_[levels_++] = total;
+            total += below;
         }
-        nodes_.resize(all);
+        nodes_.resize(total);
         fit(order.bounds, workers);
     }
 
@@ -129,13 +129,13 @@ public:
         return normal({static_cast<std::uint32_t>(std::bit_width(triangles_ - 1)), 0});
     }
     [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.height == 0; }
-    /// Whether the box is the node's own.
+    /// Whether the node has its own box.
     [[nodiscard]] static inline bool has_box(const cursor& at) noexcept { return at.height >= leaf_height; }
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh&) const noexcept {
         return {normal({at.height - 1, 2 * at.index}), normal({at.height - 1, 2 * at.index + 1})};
     }
     [[nodiscard]] inline box bounds(const cursor& at) const noexcept {
-        const std::uint32_t height = std::max(at.height, leaf_height) - leaf_height;  // above leaves
+        const std::uint32_t height = std::max(at.height, leaf_height) - leaf_height;  // above the leaves
         const std::uint32_t index = at.height < leaf_height ? at.index >> (leaf_height - at.height) : at.index;
         const std::size_t level = std::min<std::size_t>(height / 3, levels() - 1);
         const auto above = static_cast<std::uint32_t>(height - 3 * level);  // the node is 2^above children
@@ -143,9 +143,9 @@ public:
         const wide_node& n = nodes_[begins_[level] + first / wide_node::most_children];
         const std::uint32_t begin = first % wide_node::most_children;
         const std::uint32_t end = std::min<std::uint32_t>(begin + (1U << above), n.children);
-        box all = empty_box();
-        for (std::uint32_t i = begin; i < end; ++i) all = merged(all, n.child(i));
-        return all;
+        box range = empty_box();
+        for (std::uint32_t i = begin; i < end; ++i) range = merged(range, n.child(i));
+        return range;
     }
     [[nodiscard]] inline std::uint32_t triangle(const cursor& at) const noexcept { return triangle_at(at.index); }
     [[nodiscard]] tree_bytes bytes() const noexcept {
@@ -163,11 +163,11 @@ public:
     }
 
     [[nodiscard]] inline bool keeps_front() const noexcept { return config_.front == front_choice::kept; }
-    /// Tells memory that the leaf's vertices will be asked for.
+    /// Prefetches the list of the leaf's vertices.
     inline void fetch_vertices(std::uint32_t leaf) const noexcept {
         if (!vertices_.empty()) vertices_.fetch(leaf);
     }
-    /// The same of which triangles the leaf holds.
+    /// Prefetches the indices of the leaf's triangles.
     inline void fetch_triangles(std::uint32_t leaf) const noexcept {
         if (bits_ != 0) __builtin_prefetch(&places_[std::size_t{leaf} * bits_]);
     }
@@ -178,7 +178,7 @@ public:
 
 private:
     static constexpr std::size_t read_beyond = 8;
-    static constexpr std::size_t least_shared_triangles = 8 * 512;  // what is worth another thread
+    static constexpr std::size_t least_shared_triangles = 8 * 512;  // repay another thread
     static constexpr std::size_t least_shared_boxes = wide_node::most_children * 256;
     static constexpr std::uint32_t leaf_height = 3;
     static constexpr std::size_t most_levels = 10;
@@ -188,7 +188,7 @@ private:
         return (count + wide_node::most_children - 1) / wide_node::most_children;
     }
 
-    /// Eight numbers fill whole bytes, which no other thread touches.
+    /// Eight indices fill whole bytes, so that threads write disjoint bytes.
     void set_triangles(std::span<const std::uint32_t> order, std::size_t begin, std::size_t end) noexcept {
         std::byte* to = &places_[begin * bits_ / 8];
         std::uint64_t unwritten = 0;
@@ -204,14 +204,14 @@ private:
         if (bits > 0) write();
     }
 
-    /// A node of one child is that child.
+    /// Replaces a node with one child by that child.
     [[nodiscard]] inline cursor normal(cursor at) const noexcept {
         while (at.height > 0 && (std::uint64_t{2} * at.index + 1) << (at.height - 1) >= triangles_)
             at = {at.height - 1, 2 * at.index};
         return at;
     }
 
-    /// @param boxes of the leaves; scratch
+    /// @param boxes the boxes of the leaves, which are overwritten
     void fit(std::span<box> boxes, worker_threads& workers) {
         for (std::size_t l = 0; l < levels(); ++l) {
             workers.for_each_range(boxes.size(), least_shared_boxes, [&](std::size_t begin, std::size_t end) {
@@ -220,40 +220,40 @@ private:
                         boxes.subspan(i, std::min(wide_node::most_children, end - i)));
                 merged_in_eights(boxes.subspan(begin, end - begin));
             });
-            // Those that each range left at its begin.
-            std::size_t made = 0;
+            // Compacts the boxes, which each range left at its beginning.
+            std::size_t merged_count = 0;
             for (std::size_t begin = 0; begin < boxes.size(); begin += least_shared_boxes)
                 for (std::size_t i = 0; i < groups_of(std::min(least_shared_boxes, boxes.size() - begin)); ++i)
-                    boxes[made++] = boxes[begin + i];
-            boxes = boxes.first(made);
+                    boxes[merged_count++] = boxes[begin + i];
+            boxes = boxes.first(merged_count);
         }
     }
 
-    /// After vertices were numbered anew.
+    /// Rewrites the vertex lists after the mesh's vertices were renumbered.
     void list_vertices(const mesh& m, worker_threads& workers) {
         std::vector<std::uint32_t> order(triangles_);
         for (std::uint32_t place = 0; place < triangles_; ++place) order[place] = triangle_at(place);
         vertices_ = vertex_lists(m, order, workers);
     }
 
-    /// In place.
+    /// Merges boxes in groups of eight, in place.
     static std::span<box> merged_in_eights(std::span<box> boxes) noexcept {
-        std::size_t made = 0;
+        std::size_t merged_count = 0;
         for (std::size_t i = 0; i < boxes.size(); i += wide_node::most_children) {
-            box all = empty_box();
+            box group = empty_box();
             for (const box& b : boxes.subspan(i, std::min(wide_node::most_children, boxes.size() - i)))
-                all = merged(all, b);
-            boxes[made++] = all;
+                group = merged(group, b);
+            boxes[merged_count++] = group;
         }
-        return boxes.first(made);
+        return boxes.first(merged_count);
     }
 
     config config_;
     std::uint32_t triangles_ = 0;
-    std::size_t bits_ = 0;  // of a triangle's index; none where that is its place
+    std::size_t bits_ = 0;  // per triangle index; 0 if the index is the place
     large_vector<wide_node> nodes_;
-    large_vector<std::byte> places_;  // which triangle stands where
-    vertex_lists vertices_;           // none where they are fetched
+    large_vector<std::byte> places_;  // the triangle index at each place
+    vertex_lists vertices_;           // empty if vertices are fetched
     std::size_t levels_ = 0;
     std::array<std::size_t, most_levels> begins_{};
 };

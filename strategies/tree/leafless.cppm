@@ -5,9 +5,9 @@ import aabb.tree.leafless_config;
 
 export namespace aabb {
 
-/// The canonical internal node without leaves: a leaf's triangle index stands in its parent where the node index stood
-/// (paper, section 3.2, one half of the compression). 32 bytes a triangle. When to use: as the half-step between
-/// `canonical` and `compressed`.
+/// The canonical internal nodes without leaves: the parent stores a leaf's triangle index in place of the node index
+/// (paper, section 3.2, one half of the compression). 32 bytes per triangle. When to use: as the intermediate step
+/// between `canonical` and `compressed`.
 class leafless_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "leafless";
@@ -33,7 +33,7 @@ public:
         const auto bounds_at = [&](std::uint32_t child) {
             return child & cursor::leaf_bit ? bounds_of(m.triangle(child & ~cursor::leaf_bit)) : nodes_[child].bounds;
         };
-        // Children stand behind their parents.
+        // Children are stored behind their parents, so that a reverse pass is bottom-up.
         for (std::size_t i = nodes_.size(); i-- > 0;)
             nodes_[i].bounds = merged(bounds_at(nodes_[i].child[0]), bounds_at(nodes_[i].child[1]));
     }
@@ -56,7 +56,7 @@ public:
 private:
     struct node {
         box bounds;
-        std::array<std::uint32_t, 2> child;  // triangles with the top bit set
+        std::array<std::uint32_t, 2> child;  // nodes, or triangles with the top bit set
     };
     static_assert(sizeof(node) == 32);
 

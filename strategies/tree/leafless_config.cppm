@@ -9,7 +9,7 @@ export namespace aabb {
 struct leafless_config {
     leaf_test_choice leaf_test = leaf_test_choice::none;
 
-    /// Möller's original may cull a pair that touches.
+    /// Möller's original test may reject a touching pair.
     [[nodiscard]] constexpr bool is_exact() const noexcept {
         return leaf_test != leaf_test_choice::moller_triangle_box;
     }
@@ -21,8 +21,8 @@ inline constexpr std::tuple leafless_parameters{
                      "what is tested in place of a leaf's box: nothing, the triangle against the other box, or the "
                      "triangle's own box; moller_triangle_box is Möller's original of the second and inexact"}};
 
-/// What layouts share that keep no leaves: at a leaf a cursor carries its parent's box, or the triangle's own where
-/// that is to be tested.
+/// The common part of layouts without leaves: at a leaf the cursor carries the parent's box, or the triangle's own box
+/// if that is tested.
 class leafless_layout {
 public:
     static constexpr std::array leaves_out{absence::triangle_boxes};

@@ -10,11 +10,12 @@ struct quantized_config : leafless_config {
     unsigned bits = 8;
 };
 
-/// As `compressed`, with planes in a few bits each: no leaves, and two siblings share six planes, rounded outward.
-/// Boxes are a little larger than `canonical`'s, and always hold what is below them. Nodes stand depth first in one run
-/// of bytes, so that of two children only the right one needs an index. One above two leaves is their triangles, 8
-/// bytes; every other is an index, the symbol and six codes, 5 + 6 bits / 8 bytes. With 8 bits that takes 9.5 bytes a
-/// triangle, where leaves come in pairs (`leaf_arrangement::pairs`). When to use: where a binary tree must be small.
+/// Like `compressed`, with quantised planes: there are no leaves, and two siblings share six planes, rounded outward.
+/// Boxes are slightly larger than `canonical`'s, and always conservative. Nodes are stored depth first in one byte
+/// array, so that only the right child needs an index. A node above two leaves is their triangles, 8 bytes; any other
+/// node is an index, the symbol and six codes, 5 + 6 bits / 8 bytes. 8 bits take 9.5 bytes per triangle with paired
+/// leaves
+/// (`leaf_arrangement::pairs`). When to use: if a binary tree must be small.
 class quantized_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "quantized";
@@ -74,8 +75,8 @@ public:
         const auto bounds_at = [&](const child& c) {
             return c.is_leaf ? bounds_of(m.triangle(c.index)) : boxes[place(c.index)];
         };
-        // Children stand behind their parents, but from the back nobody can tell where nodes begin: a node's place
-        // holds that until it holds the node's box.
+        // The reverse pass is bottom-up, but cannot see where nodes of different sizes begin: a node's place holds its
+        // offset until it holds its box.
         boxes.assign(place(bytes_.size()) + 1, empty_box());
         for (std::size_t at = 0; at < bytes_.size(); at += size_at(at))
             boxes[place(at)].min[0] = static_cast<float>(at % pair_bytes);
@@ -85,7 +86,7 @@ public:
             boxes[i] = merged(bounds_at(left), bounds_at(right));
         }
         root_ = bytes_.empty() ? bounds_of(m.triangle(0)) : boxes[0];
-        // From the front parents are decoded before their children, whose boxes then take the place of the exact ones.
+        // The forward pass decodes parents before their children and replaces exact boxes by decoded ones.
         for (std::size_t at = 0; at < bytes_.size(); at += size_at(at)) {
             if (is_pair(at)) continue;
             const auto [left, right] = children_at(at);
@@ -120,7 +121,7 @@ private:
     static_assert(quantized_planes::read_beyond <= pair_bytes);
 
     struct child {
-        std::uint32_t index;  // of its first byte, or its triangle
+        std::uint32_t index;  // the child's first byte, or its triangle
         bool is_leaf;
     };
 
@@ -138,7 +139,7 @@ private:
     [[nodiscard]] inline unsigned symbol_at(std::size_t at) const noexcept {
         return std::to_integer<unsigned>(bytes_[at + symbol_place]);
     }
-    /// No node is shorter than 8 bytes, so no two begin in the same eight.
+    /// Nodes have at least 8 bytes, so that no two begin in the same group of eight.
     [[nodiscard]] static std::size_t place(std::size_t at) noexcept { return at / pair_bytes; }
 
     [[nodiscard]] inline std::array<child, 2> children_at(std::size_t at) const noexcept {
@@ -150,12 +151,12 @@ private:
         return {child{next, false}, child{first, (symbol & leaf_flag(1)) != 0}};
     }
 
-    /// The children's boxes.
+    /// Decodes the children's boxes.
     [[nodiscard]] inline std::array<box, 2> decode(std::size_t at, const box& parent) const noexcept {
         return decode_siblings(parent, planes_.decode(parent, &bytes_[at + codes_place]), symbol_at(at));
     }
 
-    /// Writes the planes, and the symbol but for its leaf flags. @return the children's boxes as they are decoded.
+    /// Writes the planes and the symbol, except its leaf flags. @return the children's decoded boxes.
     std::array<box, 2> encode(std::size_t at, const box& parent, const box& left, const box& right) noexcept {
         sibling_planes planes{};
         auto symbol = static_cast<std::uint8_t>(symbol_at(at));
@@ -168,7 +169,7 @@ private:
     quantized_planes planes_{config{}.bits};
     box root_{};
     std::size_t records_ = 0;  // nodes with planes
-    // Behind a node with planes there is always another one, so reading a few bytes beyond its codes is reading these.
+    // A node with planes is never the last one, so that reading a few bytes beyond its codes stays in the array.
     std::vector<std::byte> bytes_;
 };
 

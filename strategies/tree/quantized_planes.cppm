@@ -3,35 +3,35 @@ export module aabb.tree.quantized_planes;
 import aabb.std;
 export import aabb.tree.sibling_planes;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
 
-/// `sibling_planes` in so many bits a plane, rounded outward, relative to the parent's box as it is decoded. A plane
-/// that a child inherits is the decoded one: what rounding added to it stays, down to where no child has it.
+/// `sibling_planes` with a fixed number of bits per plane, rounded outward, relative to the parent's decoded box. A
+/// child inherits the decoded plane, so that the rounding error of a plane persists in all descendants that inherit it.
 ///
-/// A code q counts steps inward from the parent's plane, each 2^-bits of the parent's length on that axis: decoded(q) =
-/// plane + q * step, in float, product and sum rounded apart. Both are monotone in q, and decoded(0) is the parent's
-/// plane, so bisection finds the greatest q that does not cut the child, by comparing what is decoded with the child's
-/// plane. That no box cuts what it must hold rests on this comparison alone, whatever is rounded, lost below the least
-/// denormal or overflows: a step is the difference of two planes times 2^-bits, hence finite, and a q whose product
-/// overflows is none that does not cut.
+/// A code q counts steps inward from the parent's plane, each 2^-bits of the parent's extent on that axis: decoded(q) =
+/// plane + q * step, in float, with product and sum rounded separately. Both are monotone in q, and decoded(0) is the
+/// parent's plane, so that bisection finds the greatest q that does not cut the child, by comparing the decoded plane
+/// with the child's. Only this comparison makes boxes conservative, whatever is rounded, underflows or overflows: a
+/// step is the difference of two planes times 2^-bits, hence finite, and a q whose product overflows fails the
+/// comparison.
 class quantized_planes {
 public:
     static constexpr unsigned least_bits = 4;
     static constexpr unsigned most_bits = 16;
 
-    /// Beyond the codes as many bytes may be read, and are not used.
+    /// The number of bytes beyond the codes that may be read; they are ignored.
     static constexpr std::size_t read_beyond = 8;
 
     explicit quantized_planes(unsigned bits) noexcept
         : bits_(bits), bytes_((6 * bits + 7) / 8), scale_(1 / static_cast<float>(1U << bits)) {}
 
-    /// Of six codes.
+    /// The size of six codes.
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
-    /// @param parent as it is decoded; holds both children
+    /// @param parent the decoded box of the parent, which contains both children
     void encode(const box& parent, const sibling_planes& planes, std::byte* codes) const noexcept {
         std::array<std::uint64_t, 2> words{};
         for (int k = 0; k < 3; ++k) {
@@ -41,12 +41,12 @@ public:
             words[0] |= greatest([&](unsigned q) { return decoded(parent.min[k], q, step) <= low; }) << k * bits_;
             words[1] |= greatest([&](unsigned q) { return decoded(parent.max[k], q, -step) >= high; }) << k * bits_;
         }
-        // The upper planes' codes begin where the lower ones' end, which may be within a byte.
-        std::array<std::byte, 2 * sizeof(std::uint64_t)> all{};
-        std::memcpy(all.data(), words.data(), sizeof(std::uint64_t));
+        // The codes of the upper planes follow those of the lower planes, possibly within a byte.
+        std::array<std::byte, 2 * sizeof(std::uint64_t)> packed{};
+        std::memcpy(packed.data(), words.data(), sizeof(std::uint64_t));
         words[1] = words[1] << upper_shift() | (words[0] >> 8 * upper_byte());
-        std::memcpy(&all[upper_byte()], &words[1], sizeof(std::uint64_t));
-        std::copy_n(all.begin(), bytes_, codes);
+        std::memcpy(&packed[upper_byte()], &words[1], sizeof(std::uint64_t));
+        std::copy_n(packed.begin(), bytes_, codes);
     }
 
     [[nodiscard]] inline sibling_planes decode(const box& parent, const std::byte* codes) const noexcept {
@@ -79,7 +79,7 @@ private:
         return plane + static_cast<float>(static_cast<int>(code)) * step;
     }
 
-    /// Of the codes that fit, where 0 does and with a code every lower one.
+    /// Bisects for the greatest code that fits; 0 fits, and so does every code below one that fits.
     template <class Fits>
     [[nodiscard]] std::uint64_t greatest(Fits fits) const noexcept {
         unsigned code = 0;

@@ -6,9 +6,9 @@ import aabb.tree.sibling_planes;
 
 export namespace aabb {
 
-/// Leaves are kept, planes are shared: each internal node holds the six planes that its two children do not inherit, so
-/// that every box, of leaves too, comes without loss (paper, section 3.2, the other half of the compression). 37 bytes
-/// a triangle. When to use: as the half-step between `canonical` and `compressed`.
+/// Shared planes with leaves: each internal node stores the six planes that its two children do not inherit, so that
+/// all boxes, including those of leaves, are lossless (paper, section 3.2, the other half of the compression). 37 bytes
+/// per triangle. When to use: as the intermediate step between `canonical` and `compressed`.
 class shared_planes_tree {
 public:
     static constexpr std::string_view name = "shared_planes";
@@ -49,7 +49,7 @@ public:
             const std::uint32_t child = nodes_[parent].child[side];
             return symbols_[parent] & leaf_flag(side) ? bounds_of(m.triangle(leaves_[child])) : boxes[child];
         };
-        // Children stand behind their parents.
+        // Children are stored behind their parents, so that a reverse pass is bottom-up.
         for (std::size_t i = nodes_.size(); i-- > 0;) {
             const box left = bounds_at(i, 0);
             const box right = bounds_at(i, 1);
@@ -67,7 +67,7 @@ public:
         const node& parent = nodes_[at.index];
         const std::uint32_t symbol = symbols_[at.index];
         const auto [left, right] = decode_siblings(at.bounds, parent.planes, symbol);
-        // The leaf flags stand in the two top bits of the symbol.
+        // The leaf flags are the two top bits of the symbol.
         return {cursor{left, parent.child[0] | (symbol << 25 & cursor::leaf_bit)},
                 cursor{right, parent.child[1] | (symbol << 24 & cursor::leaf_bit)}};
     }

@@ -5,35 +5,35 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Place in a tree that does not store its nodes' boxes as they are: the box goes along.
+/// A position in a tree that does not store its nodes' boxes directly: the cursor carries the box.
 struct box_cursor {
     static constexpr std::uint32_t leaf_bit = 0x80000000;
 
     box bounds;
-    std::uint32_t index;  ///< of an internal node, or with the top bit set of a leaf or its triangle
+    std::uint32_t index;  ///< of an internal node, or with the top bit set of a leaf or triangle
 
     [[nodiscard]] constexpr bool is_leaf() const noexcept { return index & leaf_bit; }
     [[nodiscard]] constexpr std::uint32_t leaf() const noexcept { return index & ~leaf_bit; }
 };
 
-/// The boxes of two siblings without loss, in six floats and six bits (paper, section 3.2, read for both children of a
-/// node at once). Each plane of the parent's box is that of at least one child; the record holds the other child's.
-/// Planes in the order of `box`: three lower ones, three upper ones.
+/// The boxes of two siblings, lossless in six floats and six bits (paper, section 3.2, applied to both children of a
+/// node at once). At least one child inherits each plane of the parent's box; the record stores the other child's
+/// plane. The order is that of `box`: three lower planes, then three upper planes.
 struct sibling_planes {
     std::array<float, 6> own;
 };
 static_assert(sizeof(sibling_planes) == 24);
 
-/// Bit k of the symbol: the right child inherits the parent's plane k, the left one has its own; else the reverse.
+/// Bit k of the symbol is set if the right child inherits the parent's plane k and the left child has its own.
 inline constexpr std::uint8_t plane_bits = 0b11'1111;
 
-/// The other two bits: the left child is a leaf, the right child is.
+/// The other two bits mark the left and the right child as leaves.
 [[nodiscard]] constexpr std::uint8_t leaf_flag(std::size_t side) noexcept {
     return static_cast<std::uint8_t>(64U << side);
 }
 
-/// Sets the record, and the symbol but for its leaf flags.
-/// @param left,right boxes whose union is the parent's.
+/// Sets the record and the symbol, except its leaf flags.
+/// @param left,right boxes whose union is the parent's box.
 constexpr void encode_siblings(const box& left, const box& right, sibling_planes& planes,
                                std::uint8_t& symbol) noexcept {
     symbol &= static_cast<std::uint8_t>(~plane_bits);
@@ -46,7 +46,7 @@ constexpr void encode_siblings(const box& left, const box& right, sibling_planes
     }
 }
 
-/// The boxes of the left and the right child.
+/// Decodes the boxes of the left and the right child.
 [[nodiscard]] constexpr std::array<box, 2> decode_siblings(const box& parent, const sibling_planes& planes,
                                                            unsigned symbol) noexcept {
     std::array<box, 2> boxes{};

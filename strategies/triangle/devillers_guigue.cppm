@@ -3,14 +3,15 @@ export module aabb.triangle.devillers_guigue;
 import aabb.std;
 import aabb.triangle.precision;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
 
-/// Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488, 2002) with orientations in plain
-/// double, as it is commonly used, or float. Inexact: signs near zero are those of rounding, and triangles of zero area
-/// are not told from others. When to use: as the fastest well-known test, to hold `exact` against.
+/// The test by Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488, 2002) with
+/// orientations in plain double, as it is commonly used, or float. Inexact: rounding decides signs near zero, and
+/// zero-area triangles get no special treatment. When to use: as the fastest well-known test, for comparison with
+/// `exact`.
 class devillers_guigue_triangle : public test_in_precision<precision_choice::float64> {
 public:
     using test_in_precision::test_in_precision;
@@ -36,8 +37,8 @@ private:
         triangle3<Real> v = t;
         const bool t_turns = turn_to_apex(u, s_to_t);
         const bool s_turns = turn_to_apex(v, t_to_s);
-        // Each apex lies above the other triangle, so that the intervals in which they cut the common line begin at the
-        // edge to corner 1 of one and end at that to corner 2 of the other.
+        // Now each apex lies above the other triangle, so that the intervals on the common line start at the edge to
+        // corner 1 of one triangle and end at the edge to corner 2 of the other.
         if (t_turns) v = {v[0], v[2], v[1]};
         if (s_turns) u = {u[0], u[2], u[1]};
         return side(u[0], u[1], v[0], v[1]) <= 0 && side(u[0], u[2], v[2], v[0]) <= 0;
@@ -49,7 +50,7 @@ private:
         return dot(cross(b - a, c - a), d - a);
     }
 
-    /// Of the corners of `s` over the plane of `t`, times the length of its normal.
+    /// Signed distances of the corners of `s` from the plane of `t`, times the length of its normal.
     template <class Real>
     [[nodiscard]] static inline std::array<Real, 3> heights(const triangle3<Real>& s,
                                                             const triangle3<Real>& t) noexcept {
@@ -62,9 +63,9 @@ private:
         return d[0] * d[1] > 0 && d[0] * d[2] > 0;
     }
 
-    /// Rotates the triangle until corner 0 is alone on its side of the other plane, or on the plane with both others
-    /// off it on one side.
-    /// @returns whether the apex lies below the plane (the others above it), so that the other triangle must be turned
+    /// Rotates the triangle until corner 0 is alone on its side of the other plane, or alone on the plane with both
+    /// other corners on one side.
+    /// @returns whether the apex lies below the plane (the others above it), so that the other triangle must be flipped
     template <class Real>
     static inline bool turn_to_apex(triangle3<Real>& s, const std::array<Real, 3>& d) noexcept {
         const auto apex = [&](int i, Real up) {
@@ -82,8 +83,8 @@ private:
         return false;
     }
 
-    /// On the axis plane in which the area of `s` is largest: apart when the line of an edge has the other triangle
-    /// strictly beyond it.
+    /// Projects to the axis plane in which `s` has the largest area. The triangles are disjoint if one lies strictly
+    /// beyond the line of an edge of the other.
     template <class Real>
     [[nodiscard]] static inline bool coplanar_intersects(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
         const vec3<Real> normal = cross(s[1] - s[0], s[2] - s[0]);

@@ -7,9 +7,9 @@ import aabb.triangle.orientation_test;
 
 export namespace aabb {
 
-/// `orientation_test` by exact signs: exact for any finite triangles of floats or doubles, zero-area ones included; who
-/// calls it outside of a query asks `require_ieee_arithmetic` first.
-/// When to use: wherever a wrong answer matters; it costs little more than an inexact test.
+/// `orientation_test` with exact signs: exact for all finite triangles of floats or doubles, including zero-area ones.
+/// Outside of a query, the caller must call `require_ieee_arithmetic` first.
+/// When to use: wherever a wrong result matters; it costs little more than an inexact test.
 struct exact_triangle : orientation_test<orientations> {
     static constexpr std::string_view name = "exact";
     static constexpr std::string_view summary =

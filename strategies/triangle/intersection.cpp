@@ -3,7 +3,7 @@ module aabb.triangle.intersection;
 import aabb.std;
 import aabb.triangle.orientation_test;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {
@@ -12,12 +12,13 @@ namespace {
 
 using signs_of_corners = std::array<int, 3>;
 
-/// An intersection in the making.
+/// Collects the corners of an intersection.
 class result {
 public:
-    void add_corner(const vec3d& p) { made_.corners[made_.size++] = p; }
+    void add_corner(const vec3d& p) { common_.corners[common_.size++] = p; }
 
-    /// Where the edge from a to b, which lie at the distances p and q of opposite signs (or zero), meets the other set.
+    /// Adds the point where the edge from a to b crosses the other triangle's plane or edge, from which a and b have
+    /// distances p and q of opposite signs, or zero.
     void add_crossing(vec3d a, vec3d b, scaled_double p, scaled_double q) {
         if (p.mantissa == 0) return add_corner(a);
         if (q.mantissa == 0) return add_corner(b);
@@ -32,37 +33,37 @@ public:
         vec3d at{};
         for (int k = 0; k < 3; ++k) {
             const double difference = b[k] - a[k];
-            // Beyond the range of double only where both are large, so that halves are exact.
+            // The difference overflows only if both are large, so that their halves are exact.
             at[k] = std::isfinite(difference) ? a[k] + difference * t : 2 * (a[k] / 2 + (b[k] / 2 - a[k] / 2) * t);
             const double length = std::abs(b[k] / 2 - a[k] / 2);
             const double bound = 8 * unit * length + unit * std::abs(at[k]) + std::numeric_limits<double>::denorm_min();
-            if (a[k] != b[k]) made_.error[k] = std::max(made_.error[k], bound);
+            if (a[k] != b[k]) common_.error[k] = std::max(common_.error[k], bound);
         }
         add_corner(at);
     }
 
-    [[nodiscard]] std::uint32_t size() const { return made_.size; }
+    [[nodiscard]] std::uint32_t size() const { return common_.size; }
     void reorder(const std::array<std::uint32_t, 6>& order) {
-        const std::array<vec3d, 6> before = made_.corners;
-        for (std::size_t i = 0; i < made_.size; ++i) made_.corners[i] = before[order[i]];
+        const std::array<vec3d, 6> before = common_.corners;
+        for (std::size_t i = 0; i < common_.size; ++i) common_.corners[i] = before[order[i]];
     }
     [[nodiscard]] triangle_intersection as(intersection_kind kind) {
-        made_.kind = kind;
-        return made_;
+        common_.kind = kind;
+        return common_;
     }
-    /// A point or a segment that touches, or a polygon; nothing where there are no corners.
+    /// Derives the kind of a coplanar intersection from the number of corners.
     [[nodiscard]] triangle_intersection by_size() {
         using enum intersection_kind;
-        return as(made_.size == 0 ? none : made_.size == 1 ? point : made_.size == 2 ? segment : overlap);
+        return as(common_.size == 0 ? none : common_.size == 1 ? point : common_.size == 2 ? segment : overlap);
     }
 
 private:
     static constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
-    triangle_intersection made_;
+    triangle_intersection common_;
 };
 
-/// The corners of a triangle without area, or all three: what it is the convex hull of.
+/// A triangle as a convex hull: three corners, or fewer if it has zero area.
 struct hull {
     std::array<vec3d, 3> corner;
     int size;
@@ -80,10 +81,10 @@ hull hull_of(const triangle3d& t) {
     return {{first, last, last}, first == last ? 1 : 2};
 }
 
-// In one plane, seen along an axis in which it is not edge-on. What lies on a line is named by bits, one an edge: those
-// of the first hull from bit 0 on, those of the other from bit 3 on.
+// Coplanar hulls, projected along an axis along which their plane is not edge-on. Bit masks say on which edges' lines a
+// point lies: bits 0 to 2 are edges of the first hull, bits 3 to 5 those of the second.
 
-/// Where points and hulls lie, seen along an axis.
+/// Predicates of points and hulls in the projection along an axis.
 struct view {
     int axis;
 
@@ -94,7 +95,7 @@ struct view {
         return true;
     }
 
-    /// Whether p, in the plane of the hull, lies in it.
+    /// Whether p, which is coplanar with the hull, lies in it.
     [[nodiscard]] bool holds(const hull& h, const vec3d& p) const {
         if (h.size == 1) return p == h.corner[0];
         if (h.size == 2) return turn(h.corner[0], h.corner[1], p) == 0 && between(p, h.corner[0], h.corner[1]);
@@ -104,7 +105,7 @@ struct view {
         return true;
     }
 
-    /// The edges of the hull on whose lines p lies.
+    /// The mask of the hull's edges whose lines contain p.
     [[nodiscard]] unsigned edges_through(const hull& h, const vec3d& p) const {
         unsigned edges = 0;
         for (int i = 0; i < edges_of(h); ++i)
@@ -119,22 +120,22 @@ struct view {
     }
 };
 
-/// The corners of the intersection of two hulls in one plane: corners of one that lie in the other, and where edges
-/// cross within both. None of them is there twice, and none lies between others.
+/// Intersects two coplanar hulls. The corners are those of one hull that lie in the other, and the proper crossings of
+/// edges. They are distinct, and none lies between two others.
 triangle_intersection flat_intersection(const hull& g, const hull& h, const view& seen) {
-    result made;
+    result common;
     std::array<unsigned, 6> lines{};
     for (std::size_t i = 0; i < static_cast<std::size_t>(g.size); ++i)
         if (seen.holds(h, g.corner[i])) {
-            lines[made.size()] = seen.edges_through(g, g.corner[i]) | seen.edges_through(h, g.corner[i]) << 3;
-            made.add_corner(g.corner[i]);
+            lines[common.size()] = seen.edges_through(g, g.corner[i]) | seen.edges_through(h, g.corner[i]) << 3;
+            common.add_corner(g.corner[i]);
         }
     for (std::size_t i = 0; i < static_cast<std::size_t>(h.size); ++i) {
         const vec3d& p = h.corner[i];
         const auto* const end = g.corner.data() + g.size;
         if (std::find(g.corner.data(), end, p) != end || !seen.holds(g, p)) continue;
-        lines[made.size()] = seen.edges_through(g, p) | seen.edges_through(h, p) << 3;
-        made.add_corner(p);
+        lines[common.size()] = seen.edges_through(g, p) | seen.edges_through(h, p) << 3;
+        common.add_corner(p);
     }
     for (int i = 0; i < view::edges_of(g); ++i)
         for (int j = 0; j < view::edges_of(h); ++j) {
@@ -143,28 +144,28 @@ triangle_intersection flat_intersection(const hull& g, const hull& h, const view
             const vec3d& c = view::from(h, j);
             const vec3d& d = view::to(h, j);
             if (seen.turn(c, d, a) * seen.turn(c, d, b) >= 0 || seen.turn(a, b, c) * seen.turn(a, b, d) >= 0) continue;
-            lines[made.size()] = 1U << i | 8U << j;
-            made.add_crossing(a, b, exact_area(c, d, a, seen.axis), exact_area(c, d, b, seen.axis));
+            lines[common.size()] = 1U << i | 8U << j;
+            common.add_crossing(a, b, exact_area(c, d, a, seen.axis), exact_area(c, d, b, seen.axis));
         }
-    if (made.size() > 3) {
-        // Neighbours around the polygon, and no others, lie on the line of one edge.
+    if (common.size() > 3) {
+        // Two corners are adjacent in the polygon if and only if they share the line of an edge.
         std::array<std::uint32_t, 6> order{};
         unsigned placed = 1;
-        for (std::size_t i = 1; i < made.size(); ++i)
-            for (std::uint32_t next = 1; next < made.size(); ++next)
+        for (std::size_t i = 1; i < common.size(); ++i)
+            for (std::uint32_t next = 1; next < common.size(); ++next)
                 if ((placed >> next & 1) == 0 && (lines[order[i - 1]] & lines[next]) != 0) {
                     order[i] = next;
                     placed |= 1U << next;
                     break;
                 }
-        made.reorder(order);
+        common.reorder(order);
     }
-    return made.by_size();
+    return common.by_size();
 }
 
 triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
     if (g.size < 3 && h.size < 3) {
-        // Along a line nothing can be seen edge-on but the line itself; two that cross span a plane.
+        // Two crossing segments span a plane; otherwise everything is on one line.
         for (int axis = 0; axis < 3; ++axis) {
             const hull& longer = g.size > h.size ? g : h;
             const hull& other = g.size > h.size ? h : g;
@@ -173,16 +174,16 @@ triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
                     0)
                     return flat_intersection(g, h, {axis});
         }
-        result made;
+        result common;
         const view along{0};
         for (const auto& [own, others] : {std::pair(&g, &h), std::pair(&h, &g)})
             for (std::size_t i = 0; i < static_cast<std::size_t>(own->size); ++i) {
                 const vec3d& p = own->corner[i];
                 const auto* const end = g.corner.data() + g.size;
                 if (own == &h && std::find(g.corner.data(), end, p) != end) continue;
-                if (along.between(p, others->corner[0], others->corner[1])) made.add_corner(p);
+                if (along.between(p, others->corner[0], others->corner[1])) common.add_corner(p);
             }
-        return made.by_size();
+        return common.by_size();
     }
     const hull& area = g.size == 3 ? g : h;
     for (int axis = 0; axis < 3; ++axis)
@@ -191,24 +192,24 @@ triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
     return {};
 }
 
-/// A segment meets a triangle whose plane it crosses in one point.
+/// Intersects a segment with a triangle whose plane it crosses in one point.
 triangle_intersection pierced(const hull& segment, const triangle3d& t) {
-    result made;
+    result common;
     for (const vec3d& corner : t.corner) {
         const auto is_straight = [&](int axis) {
             return exact_turn(segment.corner[0], segment.corner[1], corner, axis) == 0;
         };
         if (!is_straight(0) || !is_straight(1) || !is_straight(2)) continue;
-        made.add_corner(corner);
-        return made.as(intersection_kind::point);
+        common.add_corner(corner);
+        return common.as(intersection_kind::point);
     }
     const auto height = [&](const vec3d& p) { return exact_volume(t[0], t[1], t[2], p); };
-    made.add_crossing(segment.corner[0], segment.corner[1], height(segment.corner[0]), height(segment.corner[1]));
-    return made.as(intersection_kind::point);
+    common.add_crossing(segment.corner[0], segment.corner[1], height(segment.corner[0]), height(segment.corner[1]));
+    return common.as(intersection_kind::point);
 }
 
-/// Corner 0 is what the other plane cuts off, at least one other corner being on the other side or on the plane; or it
-/// lies on the plane alone.
+/// Rotates the triangle until corner 0 is the apex: alone on its side of the other plane, or alone on the plane.
+/// @param up receives the sign of the apex's side
 triangle3d turned_to_apex(const triangle3d& s, const signs_of_corners& d, int& up) {
     for (int i = 0; i < 3; ++i)
         for (const int side : {1, -1}) {
@@ -221,15 +222,15 @@ triangle3d turned_to_apex(const triangle3d& s, const signs_of_corners& d, int& u
     return s;
 }
 
-/// Planes that differ, both triangles with area, and they intersect: the part that the intervals share in which each
-/// cuts the common line. With each turned so that the other's apex lies above it, the one runs from the cut on edge 01
-/// to that on edge 02, the other against it.
-triangle_intersection crossing_intersection(const triangle3d& given_s, const signs_of_corners& s_to_t,
-                                            const triangle3d& given_t, const signs_of_corners& t_to_s) {
+/// Intersects triangles with area in different planes that are known to intersect: returns the overlap of their
+/// intervals on the common line. Each is flipped so that the other's apex lies above it; then the interval of s runs
+/// from the cut on edge 01 to that on edge 02, and the interval of t in the opposite direction.
+triangle_intersection crossing_intersection(const triangle3d& original_s, const signs_of_corners& s_to_t,
+                                            const triangle3d& original_t, const signs_of_corners& t_to_s) {
     int s_up = 1;
     int t_up = 1;
-    triangle3d s = turned_to_apex(given_s, s_to_t, s_up);
-    triangle3d t = turned_to_apex(given_t, t_to_s, t_up);
+    triangle3d s = turned_to_apex(original_s, s_to_t, s_up);
+    triangle3d t = turned_to_apex(original_t, t_to_s, t_up);
     if (t_up < 0) std::swap(s[1], s[2]);
     if (s_up < 0) std::swap(t[1], t[2]);
     const auto heights_over = [](const triangle3d& plane, const triangle3d& of) {
@@ -238,38 +239,38 @@ triangle_intersection crossing_intersection(const triangle3d& given_s, const sig
     };
     const auto s_heights = heights_over(t, s);
     const auto t_heights = heights_over(s, t);
-    // The cut on edge 0i is a corner, so nothing rounds it.
+    // The cut on edge 0i is a corner, which is not rounded.
     const auto is_corner = [](const std::array<scaled_double, 3>& heights, std::size_t i) {
         return heights[0].mantissa == 0 || heights[i].mantissa == 0;
     };
-    // Of where edge 0i of s lies to where edge 0j of t does.
+    // Compares the cut on edge 0i of s with that on edge 0j of t.
     const auto order = [&](int i, int j) { return exact_side(s[0], s[i], t[0], t[j]); };
     const int low = order(1, 2);
     const int high = order(2, 1);
     const bool low_is_of_s = low > 0 || (low == 0 && is_corner(s_heights, 1));
     const bool high_is_of_s = high < 0 || (high == 0 && is_corner(s_heights, 2));
     const auto on_plane = [](const signs_of_corners& d) { return std::ranges::count(d, 0); };
-    // One corner on the plane, the others on one side.
+    // The triangle touches the plane in one corner, with the others on one side.
     const auto is_point = [&](const signs_of_corners& d) { return on_plane(d) == 1 && d[0] + d[1] + d[2] != 0; };
     const bool is_single = low_is_of_s == high_is_of_s ? is_point(low_is_of_s ? s_to_t : t_to_s)
                            : low_is_of_s               ? order(1, 1) == 0
                                                        : order(2, 2) == 0;
-    result made;
+    result common;
     const auto add = [&](const triangle3d& of, const std::array<scaled_double, 3>& heights, int end) {
-        made.add_crossing(of[0], of[end], heights[0], heights[static_cast<std::size_t>(end)]);
+        common.add_crossing(of[0], of[end], heights[0], heights[static_cast<std::size_t>(end)]);
     };
     low_is_of_s ? add(s, s_heights, 1) : add(t, t_heights, 2);
-    if (is_single) return made.as(intersection_kind::point);
+    if (is_single) return common.as(intersection_kind::point);
     high_is_of_s ? add(s, s_heights, 2) : add(t, t_heights, 1);
     const bool an_edge_touches = on_plane(s_to_t) == 2 || on_plane(t_to_s) == 2;
-    return made.as(an_edge_touches ? intersection_kind::segment : intersection_kind::transversal);
+    return common.as(an_edge_touches ? intersection_kind::segment : intersection_kind::transversal);
 }
 
 }  // namespace
 
 triangle_intersection intersection_of(const triangle3d& s, const triangle3d& t) {
     require_ieee_arithmetic();
-    // A corner in common is a hit, but what else is common must still be found.
+    // A shared corner is a hit, but the rest of the intersection must still be computed.
     if (!orientation_test<orientations>::intersects(s, t)) return {};
     const hull g = hull_of(s);
     const hull h = hull_of(t);
@@ -277,7 +278,7 @@ triangle_intersection intersection_of(const triangle3d& s, const triangle3d& t) 
         const auto side = [&](int i) { return exact_side(plane[0], plane[1], plane[2], of[i]); };
         return signs_of_corners{side(0), side(1), side(2)};
     };
-    // Without an area there is no plane, and all sides are zero.
+    // A zero-area triangle has no plane, so that all sides are zero.
     const signs_of_corners s_to_t = sides(s, t);
     const signs_of_corners t_to_s = sides(t, s);
     const bool s_on_t = s_to_t == signs_of_corners{};

@@ -1,20 +1,20 @@
-/// The geometry of a hit: what two triangles have in common, not only whether.
+/// The geometry of a hit: the intersection of two triangles.
 export module aabb.triangle.intersection;
 
 export import aabb.geometry;
 
 export namespace aabb {
 
-/// What two closed triangles have in common. Kind and number of corners are exact for any finite triangles, zero-area
-/// ones included, which are the segments and points that they are: a segment through a triangle has a point in common
-/// with it. Coordinates are rounded:
+/// The intersection of two closed triangles. Kind and number of corners are exact for all finite triangles. Zero-area
+/// triangles count as segments or points: a segment that pierces a triangle shares one point with it. Coordinates are
+/// rounded:
 ///
-/// A corner that is none of the triangles' is where an edge from a to b meets the other's plane or edge, of which a and
-/// b lie at signed distances proportional to determinants p and q of opposite signs. These are computed exactly and
-/// rounded once, p (1 + δ) with |δ| <= 1.001 u, u = 2^-53. Then a + (b - a) t with t = p / (p - q), a the nearer end:
-/// p - q adds what has one sign, so t carries less than 4.1 u, the difference b - a one u and the product another: 6.2
-/// u of |b - a| t, where t <= 1/2; the last sum rounds once more. On each axis the error is at most 4 u |b - a| + u
-/// |corner|, and the smallest denormal for what underflows.
+/// A corner that is not a corner of either triangle is where an edge from a to b crosses the other's plane or edge,
+/// from which a and b have signed distances proportional to determinants p and q of opposite signs. These are computed
+/// exactly and rounded once, p (1 + δ) with |δ| <= 1.001 u, u = 2^-53. The corner is a + (b - a) t with t = p / (p -
+/// q), a the nearer end. p - q has no cancellation, so that t has a relative error below 4.1 u, b - a one u and the
+/// product another: 6.2 u of |b - a| t, where t <= 1/2; the last sum rounds once more. On each axis the error is at
+/// most 4 u |b - a| + u |corner|, plus the smallest denormal for underflow.
 /// @throws input_error as `require_ieee_arithmetic`.
 [[nodiscard]] triangle_intersection intersection_of(const triangle3d& s, const triangle3d& t);
 [[nodiscard]] inline triangle_intersection intersection_of(const triangle3f& s, const triangle3f& t) {

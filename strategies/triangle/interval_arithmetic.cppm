@@ -4,18 +4,18 @@ import aabb.local_detection;
 import aabb.std;
 import aabb.triangle.orientation_test;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb::detail {
 
-/// Holds the value that exact arithmetic would give. Rounding stays to nearest: each end moves outward by at least what
-/// an operation can be off.
+/// An interval that contains the exact value. The rounding mode stays to nearest: each end moves outward by at least
+/// the rounding error of the operation.
 struct bracket {
     double low;
     double high;
 
-    /// p - q of two numbers.
+    /// Encloses p - q.
     [[nodiscard]] static inline bracket difference(double p, double q) noexcept { return widened(p - q, p - q, 0); }
 
     friend inline bracket operator+(const bracket& p, const bracket& q) noexcept {
@@ -31,15 +31,15 @@ struct bracket {
         const double c = p.high * q.low;
         const double d = p.high * q.high;
         // After an overflow a product may be NaN, which `min` and `max` would hide.
-        if (const double all = a + b + c + d; std::isnan(all)) return {all, all};
+        if (const double sum = a + b + c + d; std::isnan(sum)) return {sum, sum};
         return widened(std::min(std::min(a, b), std::min(c, d)), std::max(std::max(a, b), std::max(c, d)),
                        std::numeric_limits<double>::denorm_min());
     }
     [[nodiscard]] inline bool is_zero() const noexcept { return low == 0 && high == 0; }
 
 private:
-    /// Half a unit in the last place is at most half an epsilon of the result. A sum below the normal numbers is exact;
-    /// a product there may be off by half the smallest denormal.
+    /// Half a unit in the last place is at most half an epsilon of the result. Denormal sums are exact; a denormal
+    /// product has an error of up to half the smallest denormal.
     [[nodiscard]] static inline bracket widened(double low, double high, double least) noexcept {
         const auto beyond = [&](double x) { return std::abs(x) * std::numeric_limits<double>::epsilon() + least; };
         return {low - beyond(low), high + beyond(high)};
@@ -58,8 +58,8 @@ using bracket3 = std::array<bracket, 3>;
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-/// Signs by intervals.
-/// @tparam Exact whether a sign that they leave open is computed exactly
+/// Signs by interval arithmetic.
+/// @tparam Exact whether an undecided sign is computed exactly
 template <bool Exact>
 class interval_signs {
 public:
@@ -102,7 +102,7 @@ private:
         const auto of = [&](const vec3d& p) {
             return sign(dot(normal, difference(p, t[0])), [&] { return exact_side(t[0], t[1], t[2], p); });
         };
-        // Braces are evaluated from left to right.
+        // Braced lists are evaluated from left to right.
         return corner_sides(std::array{of(s[0]), of(s[1]), of(s[2])});
     }
 
@@ -127,16 +127,16 @@ private:
 
 export namespace aabb {
 
-/// What happens where an interval holds zero, so that it leaves a sign open.
+/// The fallback if an interval contains zero, so that the sign is undecided.
 enum class fallback_choice : std::uint8_t {
-    exact,      ///< it is computed exactly
+    exact,      ///< the sign is computed exactly
     intersects  ///< the triangles count as intersecting
 };
 
-/// `orientation_test` by signs of interval arithmetic, without a bound derived by hand. With `fallback=exact` exact
-/// like `exact_triangle`; with `fallback=intersects` it never misses a pair, but takes for hits what it cannot rule
-/// out, near misses within rounding. When to use: to see what a dynamic filter costs
-/// beside the semi-static one, and as a test that can only err one way.
+/// `orientation_test` with signs by interval arithmetic, which needs no error bound derived by hand. It is exact with
+/// `fallback=exact`; with `fallback=intersects` it has no false negatives, but false positives where rounding leaves a
+/// near miss undecided. When to use: to measure what a dynamic filter costs compared with the semi-static one, and as a
+/// conservative test.
 class interval_arithmetic_triangle {
 public:
     static constexpr std::string_view name = "interval_arithmetic";

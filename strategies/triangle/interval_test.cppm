@@ -3,14 +3,14 @@ export module aabb.triangle.interval_test;
 export import aabb.local_detection;
 import aabb.std;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
 
-/// Below which signed distance from a plane, scaled by the length of its normal, a corner counts as lying in the plane.
+/// The distance from a plane, scaled by the length of its normal, below which a corner counts as lying in the plane.
 enum class epsilon_choice : std::uint8_t {
-    absolute,  ///< 1e-6, as in the original: large against small triangles
+    absolute,  ///< 1e-6, as in the original: too large for small triangles
     none,      ///< 0
     scaled     ///< 1e-6 times the pair's longest extent and the length of the normal
 };
@@ -18,7 +18,7 @@ enum class epsilon_choice : std::uint8_t {
 /// How the ends of two intervals are compared.
 enum class division_choice : std::uint8_t {
     yes,  ///< by quotients, as in the paper
-    no    ///< by products with all denominators, as in the author's later code; they leave the range of Real sooner
+    no    ///< by products with all denominators, as in the author's later code; they overflow and underflow sooner
 };
 
 struct interval_config {
@@ -34,8 +34,8 @@ inline constexpr std::tuple interval_parameters{
     choice_parameter{"division", &interval_config::division, std::array<std::string_view, 2>{"yes", "no"},
                      "whether ends of intervals are quotients, or are compared as products with all denominators"}};
 
-/// Möller's interval test ("A fast triangle-triangle intersection test", 1997) in the arithmetic of Real. Sums keep the
-/// original's order, ties its choice of axis, and products that underflow or overflow its answers.
+/// Möller's interval test ("A fast triangle-triangle intersection test", 1997) in the arithmetic of Real. It reproduces
+/// the original's order of summation, its choice of axis in ties, and its results after underflow and overflow.
 template <class Real>
 class interval_test {
 public:
@@ -56,8 +56,8 @@ public:
         if (on_one_side(t_to_s)) return false;
         if (s_to_t == std::array<Real, 3>{} || t_to_s == std::array<Real, 3>{})
             return coplanar_intersects(s, t, normal_s);
-        // Both triangles cut the line of the two planes; the test compares their intervals on the axis along which the
-        // line runs furthest.
+        // Both triangles cut the common line of the planes; the test compares their intervals on the dominant axis of
+        // the line.
         const int axis = largest(cross(normal_s, normal_t));
         const cut_edges of_s(s, s_to_t, axis);
         const cut_edges of_t(t, t_to_s, axis);
@@ -65,11 +65,11 @@ public:
             config_.division == division_choice::yes ? of_s.quotients() : of_s.products(of_t.denominators());
         const auto [t_low, t_high] =
             config_.division == division_choice::yes ? of_t.quotients() : of_t.products(of_s.denominators());
-        return !(s_high < t_low || t_high < s_low);  // not `>=`: after an overflow to NaN the original says yes
+        return !(s_high < t_low || t_high < s_low);  // not `>=`: after an overflow to NaN the original accepts
     }
 
 private:
-    /// Signed distances below this count as zero. In double: the float next to 1e-6 lies below it.
+    /// Distances below this count as zero. It is a double, because the float nearest to 1e-6 is less than 1e-6.
     [[nodiscard]] double zero_below(const triangle3<Real>& s, const triangle3<Real>& t,
                                     const vec3<Real>& normal) const noexcept {
         constexpr double epsilon = 1e-6;
@@ -107,12 +107,12 @@ private:
         return std::abs(v[2]) > std::abs(v[k]) ? 2 : k;
     }
 
-    /// The two edges of a triangle that the line of the planes cuts, in the coordinate `axis`.
+    /// The two edges of a triangle that the common line cuts, projected to `axis`.
     class cut_edges {
     public:
-        /// @param d the distances of the corners from the other plane: not all zero, not all of one sign
+        /// @param d the signed distances of the corners from the other plane, not all zero and not all of one sign
         cut_edges(const triangle3<Real>& s, const std::array<Real, 3>& d, int axis) noexcept {
-            // The corner that the plane cuts off from the other two.
+            // The corner that the plane separates from the other two.
             int alone = 0;
             if (d[0] * d[1] > 0)
                 alone = 2;
@@ -131,7 +131,7 @@ private:
             second_ = edge_to(alone == 2 ? 1 : 2);
         }
 
-        /// Where they are cut, the lower end first.
+        /// The ends of the interval, the lower one first.
         [[nodiscard]] std::pair<Real, Real> quotients() const noexcept {
             return ordered(from_ + first_.numerator / first_.denominator,
                            from_ + second_.numerator / second_.denominator);
@@ -139,7 +139,7 @@ private:
 
         [[nodiscard]] Real denominators() const noexcept { return first_.denominator * second_.denominator; }
 
-        /// The same times both own denominators and `factor`, the other triangle's.
+        /// The ends times both own denominators and `factor`, the other triangle's denominators.
         [[nodiscard]] std::pair<Real, Real> products(Real factor) const noexcept {
             const Real shared = from_ * (denominators() * factor);
             return ordered(shared + first_.numerator * second_.denominator * factor,
@@ -161,11 +161,11 @@ private:
         edge second_{};
     };
 
-    /// Both triangles in the plane of the normal: edges against edges, then each triangle's corner in the other, on the
-    /// axis plane in which their area is largest.
+    /// Tests coplanar triangles in the axis plane in which their area is largest: edges against edges, then a corner of
+    /// each triangle against the other triangle.
     [[nodiscard]] static bool coplanar_intersects(const triangle3<Real>& s, const triangle3<Real>& t,
                                                   const vec3<Real>& normal) noexcept {
-        // Of equal components the original drops the later axis, but y rather than z.
+        // In ties the original drops the later axis, but y rather than z.
         const vec3<Real> length{std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2])};
         const int rest = length[2] > length[1] ? 2 : 1;
         const int dropped = length[0] > length[1] ? (length[0] > length[2] ? 0 : 2) : rest;
@@ -192,7 +192,7 @@ private:
         return f < 0 && d <= 0 && d >= f && e <= 0 && e >= f;
     }
 
-    /// Strictly inside, by the lines of the edges. The products of small triangles underflow, and the answer is no.
+    /// Whether p is strictly inside all edges. For tiny triangles the products underflow, and the result is no.
     [[nodiscard]] static bool corner_inside(const vec3<Real>& p, const triangle3<Real>& t, int x, int y) noexcept {
         std::array<Real, 3> side{};
         for (int i = 0; i < 3; ++i) {

@@ -5,8 +5,8 @@ import aabb.triangle.interval_test;
 
 export namespace aabb {
 
-/// Möller's `interval_test` in float. Inexact: the original's absolute epsilon takes near misses of small triangles for
-/// hits, and without it rounding loses pairs that touch. When to use: as the classic baseline.
+/// Möller's `interval_test` in float. Inexact: the original's absolute epsilon causes false positives for small
+/// triangles, and without it rounding causes false negatives for touching pairs. When to use: as the classic baseline.
 struct moller_triangle : interval_test<float> {
     using interval_test::interval_test;
 

@@ -5,7 +5,7 @@ import aabb.triangle.interval_test;
 
 export namespace aabb {
 
-/// Möller's `interval_test` in double. Still inexact. When to use: to tell what of `moller`'s error is its precision.
+/// Möller's `interval_test` in double. Still inexact. When to use: to see how many errors of `moller` are due to float.
 struct moller_double_triangle : interval_test<double> {
     using interval_test::interval_test;
 

@@ -7,10 +7,10 @@ export namespace aabb {
 
 /// Do two closed triangles share a point, zero-area ones included? The signs of at most eight orientations decide
 /// (Devillers and Guigue, "Faster triangle-triangle intersection tests", INRIA RR-4488, 2002).
-/// @tparam Signs how they are found: made from the triangles and the lowest and the highest corner of their box, with
-/// `part`, `side`, `in_order`, `turn` and `beyond` as `orientations` has them. The answer is exact where they are. One
-/// that may fail to find a sign returns 0 and has `unsure()`, which is true from then on; what cannot be ruled out then
-/// counts as a hit.
+/// @tparam Signs computes the signs: constructed from the triangles and the lowest and highest corner of their box,
+/// with `part`, `side`, `in_order`, `turn` and `beyond` as in `orientations`. The test is exact if the signs are. A
+/// type that may fail to decide a sign returns 0 and has `unsure()`, which is true from then on; undecided pairs then
+/// count as hits.
 template <class Signs>
 class orientation_test {
 public:
@@ -56,23 +56,23 @@ private:
         return false;
     }
 
-    /// The boxes of `s` and `t` overlap.
+    /// Tests triangles whose boxes overlap.
     [[nodiscard]] static inline bool near_intersects(const triangle3d& s, const triangle3d& t, Signs& signs) noexcept {
         sides s_to_t;
         sides t_to_s;
         if (signs.part(s_to_t, t_to_s)) return false;
-        const bool found = crossing_intersects(s, s_to_t, t, t_to_s, signs);
+        const bool crossing = crossing_intersects(s, s_to_t, t, t_to_s, signs);
         if constexpr (requires { signs.unsure(); })
-            return found || signs.unsure();
+            return crossing || signs.unsure();
         else
-            return found;
+            return crossing;
     }
 
-    /// Neither triangle lies strictly on one side of the other's plane.
+    /// Tests triangles of which neither lies strictly on one side of the other's plane.
     [[nodiscard]] static inline bool crossing_intersects(const triangle3d& s, const sides& s_to_t, const triangle3d& t,
                                                          const sides& t_to_s, Signs& signs) noexcept {
-        // All sides are zero when the planes are the same, or when the other triangle has no plane: zero area. A side
-        // that is not zero proves that the other triangle has one.
+        // All sides are zero if the triangles are coplanar, or if the other one has zero area and thus no plane. A
+        // nonzero side proves that the other triangle has a plane.
         const bool s_on_t = s_to_t.on_plane();
         const bool t_on_s = t_to_s.on_plane();
         if (s_on_t && t_on_s) return flat_intersects(signs, s, t);
@@ -81,15 +81,14 @@ private:
         return intervals_meet(signs, s, s_to_t, t, t_to_s);
     }
 
-    /// The corner that the other plane cuts off from the two that follow it in the triangle's order, and whether it is
-    /// cut off on the negative side.
+    /// The corner that the other plane separates from the other two corners, and whether it is on the negative side.
     struct apex {
         std::uint8_t corner;
         bool negative;
     };
 
-    /// By 8 above + below. An apex either lies off the plane, the others not on its side of it, or on the plane with
-    /// the others off it on one side. Rows of sides that are all equal are not used.
+    /// Indexed by 8 above + below. An apex is either alone on its side of the plane, or on the plane with both other
+    /// corners on one side. Rows with three equal sides are not used.
     static constexpr std::array<apex, 64> apices = [] {
         std::array<apex, 64> rows{};
         for (unsigned row = 0; row < 64; ++row) {
@@ -108,8 +107,8 @@ private:
 
     [[nodiscard]] static inline apex apex_of(const sides& d) noexcept { return apices[8 * d.above + d.below]; }
 
-    /// Both triangles cut the line in which their planes meet, each in an interval between the edges at its apex. With
-    /// each triangle turned so that the other's apex lies above it, the intervals run against each other, and two
+    /// Each triangle cuts the common line of the planes in an interval between the edges at its apex. With each
+    /// triangle flipped so that the other's apex lies above it, the intervals run in opposite directions, and two
     /// orientations compare their ends.
     [[nodiscard]] static inline bool intervals_meet(Signs& signs, const triangle3d& s, const sides& s_to_t,
                                                     const triangle3d& t, const sides& t_to_s) noexcept {
@@ -127,7 +126,7 @@ private:
         return signs.in_order(s0, s1, s2, t0, t1, t2);
     }
 
-    /// `s` has zero area and reaches the plane of `t`, which it crosses in one point: is that point in `t`?
+    /// `s` has zero area and crosses the plane of `t` in one point: is that point in `t`?
     [[nodiscard]] static inline bool line_meets(Signs& signs, const triangle3d& s, const sides& s_to_t,
                                                 const triangle3d& t) noexcept {
         const int other = s_to_t[0] != s_to_t[1] ? 1 : 2;
@@ -141,9 +140,9 @@ private:
         return !(left && right);
     }
 
-    /// Both lie in one plane, or both have zero area. Seen along an axis, two convex sets that are apart are separated
-    /// by the line of an edge, or lie on one line, where their boxes would be apart. Apart in a view is apart; what
-    /// meets in a view in which the common plane is not seen edge-on meets.
+    /// Tests coplanar triangles, or two of zero area. In a projection along an axis, disjoint convex sets are separated
+    /// by the line of an edge, or they are collinear and their boxes are disjoint. Sets with disjoint projections are
+    /// disjoint; sets that intersect in a projection in which their plane is not edge-on do intersect.
     [[nodiscard]] static inline bool flat_intersects(Signs& signs, const triangle3d& s, const triangle3d& t) noexcept {
         for (int axis = 0; axis < 3; ++axis) {
             const int s_turn = signs.turn(s[0], s[1], s[2], axis);
@@ -151,7 +150,7 @@ private:
             if (s_turn != 0 || t_turn != 0)
                 return !edge_separates(signs, s, s_turn, t, axis) && !edge_separates(signs, t, t_turn, s, axis);
         }
-        // Two segments or points, each on one line. Where they lie in one plane, do they meet in all views?
+        // Two segments or points. If they are coplanar, do they intersect in all three projections?
         const vec3d& s_end = s[1] == s[0] ? s[2] : s[1];
         const vec3d& t_end = t[1] == t[0] ? t[2] : t[1];
         if (signs.side(s[0], s_end, t[0], t_end) != 0) return false;
@@ -160,7 +159,7 @@ private:
         return true;
     }
 
-    /// Does the line of an edge of `s` have `s` on one side and `t` strictly on the other? `turn` is that of `s`.
+    /// Does the line of an edge of `s` have `s` on one side and `t` strictly on the other? `turn` is the sign of `s`.
     [[nodiscard]] static inline bool edge_separates(Signs& signs, const triangle3d& s, int turn, const triangle3d& t,
                                                     int axis) noexcept {
         for (int i = 0; i < 3; ++i)

@@ -5,7 +5,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The numbers that an inexact test computes with.
+/// The floating-point type of an inexact test.
 enum class precision_choice : std::uint8_t { float32, float64 };
 
 template <precision_choice Usual>
@@ -13,7 +13,7 @@ struct precision_config {
     precision_choice precision = Usual;
 };
 
-/// Base of an inexact test in the precision that is chosen.
+/// The base of inexact tests with a configurable precision.
 template <precision_choice Usual>
 class test_in_precision {
 public:
@@ -28,7 +28,7 @@ public:
     explicit test_in_precision(const config& c) : config_(c) {}
 
 protected:
-    /// Calls `test` with both triangles in that precision.
+    /// Calls `test` with both triangles converted to the configured precision.
     template <class Real, class Test>
     [[nodiscard]] inline bool in_precision(const triangle3<Real>& s, const triangle3<Real>& t, Test test) const {
         if (config_.precision == precision_choice::float32) return test(in_float(s), in_float(t));

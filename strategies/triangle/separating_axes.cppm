@@ -3,15 +3,15 @@ export module aabb.triangle.separating_axes;
 import aabb.std;
 import aabb.triangle.precision;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
 
-/// Two convex sets are apart where an axis separates them (Gottschalk, Lin and Manocha, "OBBTree", 1996; Ericson,
-/// "Real-Time Collision Detection", 2005, section 5.2.10): the normals, the cross products of edges, and within a plane
-/// the normals of edges, 17 axes. Inexact: what touches is told from what is apart by rounded projections.
-/// When to use: as the test that most engines use, to hold others against.
+/// The separating axis test (Gottschalk, Lin and Manocha, "OBBTree", 1996; Ericson, "Real-Time Collision Detection",
+/// 2005, section 5.2.10) on 17 axes: the normals, the cross products of edges and, for coplanar triangles, the normals
+/// of edges. Inexact: rounded projections decide whether triangles touch. When to use: as the test of most engines, for
+/// comparison.
 class separating_axes_triangle : public test_in_precision<precision_choice::float32> {
 public:
     using test_in_precision::test_in_precision;
@@ -45,16 +45,16 @@ private:
         return true;
     }
 
-    /// An axis of length zero separates nothing.
+    /// Whether the axis separates the triangles; an axis of length zero never does.
     template <class Real>
     [[nodiscard]] static inline bool apart(const triangle3<Real>& s, const triangle3<Real>& t,
                                            const vec3<Real>& axis) noexcept {
-        // From a corner of `s`, so that what is far from the origin keeps its digits.
-        const auto reach = [&](const triangle3<Real>& of) {
+        // Relative to a corner of `s`, which avoids cancellation far from the origin.
+        const auto projection = [&](const triangle3<Real>& of) {
             return std::minmax({dot(axis, of[0] - s[0]), dot(axis, of[1] - s[0]), dot(axis, of[2] - s[0])});
         };
-        const auto [s_low, s_high] = reach(s);
-        const auto [t_low, t_high] = reach(t);
+        const auto [s_low, s_high] = projection(s);
+        const auto [t_low, t_high] = projection(t);
         return s_high < t_low || t_high < s_low;
     }
 };
