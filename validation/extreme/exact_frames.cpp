@@ -6,7 +6,7 @@ namespace aabb {
 
 namespace {
 
-/// Two closed boxes overlap where on every axis some number lies in both intervals.
+/// Two closed boxes overlap if on each axis some number lies in both intervals.
 bool share_a_point(const box& a, const box& b) {
     for (int k = 0; k < 3; ++k) {
         const bool meet =
@@ -26,34 +26,34 @@ void add_changes(exact_box_frame& frame, std::vector<std::uint8_t>& was, const s
     was = is;
 }
 
-/// Every two triangles, the second one's mesh carried by `to_a`, until `take` says that it has enough.
+/// Calls `take` for all intersecting pairs, with b transformed by `to_a`, until it returns true.
 template <class Take>
 void for_each_true_pair(const mesh& a, const mesh& b, const relative_pose& to_a, Take take) {
     for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
-        const triangle3f carried = to_a(b.triangle(t));
+        const triangle3f transformed = to_a(b.triangle(t));
         for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
-            if (exactly_intersect(a.triangle(s), carried) && take(index_pair{s, t})) return;
+            if (exactly_intersect(a.triangle(s), transformed) && take(index_pair{s, t})) return;
     }
 }
 
 exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>& poses, index_pair objects,
                                extreme_query asked) {
-    exact_objects made{objects.a, objects.b, {}, false};
+    exact_objects result{objects.a, objects.b, {}, false};
     const mesh& a = scene.meshes[scene.mesh_of[objects.a]];
     const mesh& b = scene.meshes[scene.mesh_of[objects.b]];
     for_each_true_pair(a, b, {poses[objects.a], poses[objects.b], bounds_of(b)}, [&](index_pair pair) {
-        made.meet = true;
-        if (asked != extreme_query::first_pair) made.pairs.push_back(pair);
+        result.meet = true;
+        if (asked != extreme_query::first_pair) result.pairs.push_back(pair);
         return asked == extreme_query::first_pair;
     });
-    std::ranges::sort(made.pairs);
-    return made;
+    std::ranges::sort(result.pairs);
+    return result;
 }
 
 }  // namespace
 
 exact_boxes exact_boxes_of(box_scene& scene) {
-    exact_boxes all;
+    exact_boxes frames;
     std::vector<std::uint8_t> before;
     for (exact_box_frame frame; scene.next(frame.boxes); frame = {}) {
         std::vector<std::uint8_t> present(scene.present().begin(), scene.present().end());
@@ -63,25 +63,25 @@ exact_boxes exact_boxes_of(box_scene& scene) {
             for (std::uint32_t b = a + 1; b < frame.boxes.size(); ++b)
                 if (present[a] && present[b] && share_a_point(frame.boxes[a], frame.boxes[b]))
                     frame.pairs.push_back({a, b});
-        all.push_back(frame);
+        frames.push_back(frame);
     }
-    return all;
+    return frames;
 }
 
 exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query asked) {
-    exact_meshes all;
+    exact_meshes truth;
     for (exact_mesh_frame frame; scene.next(frame.poses); frame = {}) {
         for (std::uint32_t a = 0; a < frame.poses.size(); ++a)
             for (std::uint32_t b = a + 1; b < frame.poses.size(); ++b)
                 frame.objects.push_back(exact_objects_of(scene, frame.poses, {a, b}, asked));
-        all.frames.push_back(frame);
+        truth.frames.push_back(frame);
     }
-    if (scene.meshes.size() != 1 || asked != extreme_query::all_pairs) return all;
+    if (scene.meshes.size() != 1 || asked != extreme_query::all_pairs) return truth;
     const mesh& m = scene.meshes[0];
     for (std::uint32_t a = 0; a < m.triangle_count(); ++a)
         for (std::uint32_t b = a + 1; b < m.triangle_count(); ++b)
-            if (exactly_intersect(m.triangle(a), m.triangle(b))) all.self_pairs.push_back({a, b});
-    return all;
+            if (exactly_intersect(m.triangle(a), m.triangle(b))) truth.self_pairs.push_back({a, b});
+    return truth;
 }
 
 bool is_true_pair(const mesh_scene& scene, const exact_mesh_frame& frame, const exact_objects& objects,

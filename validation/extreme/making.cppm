@@ -1,7 +1,7 @@
 module;
 #include <random>
 
-/// What lists of scenes are written with.
+/// Helpers to define the extreme scenes.
 module aabb.extreme:making;
 
 import aabb.extreme;
@@ -10,41 +10,41 @@ import aabb.std;
 
 namespace aabb {
 
-// What the list of all is made of.
+// The parts of the list of extreme scenes.
 [[nodiscard]] std::vector<extreme_scene> box_scenes();
 [[nodiscard]] std::vector<extreme_scene> bad_box_scenes();
 [[nodiscard]] std::vector<extreme_scene> mesh_scenes(extreme_size size);
-/// Poses at the limit of what is refused, too.
+/// Includes valid poses close to the limit of rejection.
 [[nodiscard]] std::vector<extreme_scene> bad_mesh_scenes();
 [[nodiscard]] std::vector<extreme_scene> other_arithmetic_scenes();
 
 using box_frames = std::vector<std::vector<box>>;
 using pose_frames = std::vector<std::vector<pose>>;
 
-/// A scene of these frames, in which all objects are there all the time.
+/// A scene of these frames, in which all objects are always present.
 [[nodiscard]] inline extreme_scene scene_of_boxes(std::string name, std::string summary,
                                                   std::function<box_frames()> make) {
-    extreme_scene made{.name = std::move(name), .summary = std::move(summary)};
-    made.make_boxes = [make = std::move(make)]() -> std::unique_ptr<box_scene> {
+    extreme_scene scene{.name = std::move(name), .summary = std::move(summary)};
+    scene.make_boxes = [make = std::move(make)]() -> std::unique_ptr<box_scene> {
         return std::make_unique<known_boxes>(make());
     };
-    return made;
+    return scene;
 }
 
 [[nodiscard]] inline extreme_scene scene_of_meshes(std::string name, std::string summary,
                                                    std::function<std::unique_ptr<mesh_scene>()> make) {
-    extreme_scene made{.name = std::move(name), .summary = std::move(summary)};
-    made.make_meshes = std::move(make);
-    return made;
+    extreme_scene scene{.name = std::move(name), .summary = std::move(summary)};
+    scene.make_meshes = std::move(make);
+    return scene;
 }
 
-/// Meshes at these poses; of one mesh as many objects as there are poses.
+/// Meshes at these poses; a single mesh is shared by all objects.
 template <class Meshes>
 [[nodiscard]] std::unique_ptr<mesh_scene> posed(Meshes meshes, pose_frames frames) {
     return std::make_unique<known_poses>(std::move(meshes), std::move(frames));
 }
 
-/// The same scene, to be refused by a sentence that says this.
+/// Marks the scene as invalid: it must be rejected with a message that contains `refusal`.
 [[nodiscard]] inline extreme_scene refused(extreme_scene scene, std::string refusal) {
     scene.refusal = std::move(refusal);
     return scene;
@@ -61,7 +61,7 @@ template <class Meshes>
     return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {x, y, z}};
 }
 
-/// Random numbers that are the same in every standard library, which fixes the engine but not its distributions.
+/// Random numbers that do not depend on the standard library, which specifies engines but not distributions.
 class draws {
 public:
     explicit draws(std::uint32_t seed) : engine_(seed) {}
@@ -74,7 +74,7 @@ public:
     [[nodiscard]] std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(engine_() % count); }
     /// Each coordinate in [low, high).
     [[nodiscard]] vec3f point(float low, float high) {
-        // Braces are evaluated from left to right.
+        // Braced lists are evaluated from left to right.
         return vec3f{between(low, high), between(low, high), between(low, high)};
     }
 
@@ -84,7 +84,7 @@ private:
 
 // Small meshes.
 
-/// Each triangle with corners of its own.
+/// A mesh in which no two triangles share vertices.
 [[nodiscard]] inline mesh soup_of(const std::vector<triangle3f>& triangles) {
     mesh m;
     for (const triangle3f& t : triangles) {
@@ -95,7 +95,7 @@ private:
     return m;
 }
 
-/// The cube from 0 to 2, each face cut into 8 triangles; corners are whole numbers.
+/// The cube from 0 to 2 with 8 triangles per face; coordinates are integers.
 [[nodiscard]] inline mesh cube() {
     mesh m;
     for (int axis = 0; axis < 3; ++axis)
@@ -116,7 +116,7 @@ private:
     return m;
 }
 
-/// About the origin, of `rings` rings; of the squares at the poles one half has no area.
+/// A sphere around the origin with `rings` rings; half of the triangles at the poles have zero area.
 [[nodiscard]] inline mesh ball(std::uint32_t rings, double radius) {
     mesh m;
     const std::uint32_t around = 2 * rings;
@@ -138,7 +138,7 @@ private:
     return m;
 }
 
-/// A turn about z by an angle, in double, then a shift.
+/// A rotation about z, computed in double, then a translation.
 [[nodiscard]] inline pose turned(double angle, const vec3d& shift) {
     const double c = std::cos(angle);
     const double s = std::sin(angle);

@@ -8,11 +8,10 @@ namespace {
 
 // Meshes that touch.
 
-/// A quarter turn about z, which rounds nothing.
+/// A quarter turn about z, which is exact.
 constexpr pose quarter_turn{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {0, 0, 0}};
 
-/// Two cubes of edge 2; in the second frame both stand elsewhere, and the second is turned so that it fills the same
-/// space.
+/// Two cubes of edge 2. In the second frame both are moved, and the second is rotated so that it fills the same space.
 std::unique_ptr<mesh_scene> two_cubes(const vec3d& between) {
     const pose turned_second{quarter_turn.rotation, {between[0] + 2 + 7, between[1] + 5, between[2] - 3}};
     return posed(cube(), {{{}, shifted(between[0], between[1], between[2])}, {shifted(7, 5, -3), turned_second}});
@@ -23,19 +22,19 @@ std::unique_ptr<mesh_scene> same_place() {
     return posed(ball(4, 1), {{{}, {}}, {anywhere, anywhere}});
 }
 
-/// A corner of one stands on a face of the other, then on an edge.
+/// A corner of one mesh touches a face of the other, then an edge, then a vertex.
 std::unique_ptr<mesh_scene> corner_on_face() {
     const mesh corner = soup_of({{{{0, 0, 0}, {1, 1, 1}, {2, 1, 1}}}, {{{0, 0, 0}, {1, 1, 1}, {1, 2, 1}}}});
     return posed(std::vector{cube(), corner},
                  {{{}, shifted(0.5, 0.75, 2)}, {{}, shifted(0.5, 2, 2)}, {{}, shifted(1, 1, 2)}});
 }
 
-// Triangles in one place.
+// Coincident triangles.
 
-constexpr triangle3f one{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}};
-constexpr triangle3f across{{{0.5F, 0.5F, -1}, {0.5F, 0.5F, 1}, {0.25F, 3, 0}}};
+constexpr triangle3f flat_triangle{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}};
+constexpr triangle3f crossing_triangle{{{0.5F, 0.5F, -1}, {0.5F, 0.5F, 1}, {0.25F, 3, 0}}};
 
-/// No build can part them.
+/// No build can separate these triangles by their centroids.
 std::unique_ptr<mesh_scene> same_centroid() {
     draws random(41);
     std::vector<triangle3f> triangles;
@@ -48,31 +47,31 @@ std::unique_ptr<mesh_scene> same_centroid() {
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1, 0, 0)}, {{}, turned(1, {0, 0, 5})}});
 }
 
-/// Each four times, one after the other, and once more with its corners in another order.
+/// Each triangle four times, and once more with permuted corners.
 std::unique_ptr<mesh_scene> duplicates() {
     mesh m = cube();
-    // Those of one face and a half.
+    // One face and a half.
     m.triangles.resize(12);
-    const auto once = m.triangles;
-    for (int i = 0; i < 3; ++i) m.triangles.insert(m.triangles.end(), once.begin(), once.end());
-    for (const auto& t : once) m.triangles.push_back({t[2], t[0], t[1]});
+    const auto originals = m.triangles;
+    for (int i = 0; i < 3; ++i) m.triangles.insert(m.triangles.end(), originals.begin(), originals.end());
+    for (const auto& t : originals) m.triangles.push_back({t[2], t[0], t[1]});
     return posed(std::move(m), {{{}, shifted(1, 1, 1)}, {{}, turned(0.5, {1, 0, 1})}});
 }
 
 std::unique_ptr<mesh_scene> one_triangle_each() {
-    return posed(std::vector{soup_of({one}), soup_of({across})},
+    return posed(std::vector{soup_of({flat_triangle}), soup_of({crossing_triangle})},
                  {{{}, {}}, {{}, shifted(0, 0, 1)}, {{}, shifted(0, 0, 1.5)}, {shifted(3, 3, 3), shifted(3, 3, 3)}});
 }
 
 mesh coincident(std::uint32_t count) {
-    mesh m = soup_of({one});
+    mesh m = soup_of({flat_triangle});
     m.triangles.resize(count, m.triangles[0]);
     return m;
 }
 
-// Triangles that are hardly any.
+// Degenerate and nearly degenerate triangles.
 
-/// @param height of a triangle over its length
+/// @param height the height of a triangle relative to its length
 std::unique_ptr<mesh_scene> needles(float height) {
     draws random(51);
     std::vector<triangle3f> triangles;
@@ -86,7 +85,7 @@ std::unique_ptr<mesh_scene> needles(float height) {
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1e-7, 0, 0)}, {{}, turned(1e-6, {0, 0, 0})}});
 }
 
-/// Segments and points among triangles of whole numbers, so that they meet.
+/// Triangles, segments and points with integer coordinates, so that they intersect.
 std::unique_ptr<mesh_scene> zero_areas() {
     draws random(52);
     std::vector<triangle3f> triangles;
@@ -101,21 +100,21 @@ std::unique_ptr<mesh_scene> zero_areas() {
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1, 0, 0)}});
 }
 
-// Balls of every size, and far out.
+// Spheres of all sizes, and far from the origin.
 
-/// Two balls of that radius that pass through each other.
+/// Two intersecting spheres of this radius.
 std::unique_ptr<mesh_scene> balls_of(double radius) {
     return posed(ball(5, radius), {{{}, turned(0.4, {0.8 * radius, 0.5 * radius, 0.1 * radius})},
                                    {turned(-1, {radius, 0, 0}), turned(2, {0.5 * radius, 0, radius})}});
 }
 
-/// One of radius 1, the other of that radius, on the first one's surface.
+/// A sphere of radius 1, and one of this radius on its surface.
 std::unique_ptr<mesh_scene> ball_on_ball(double radius) {
     return posed(std::vector{ball(5, 1), ball(5, radius)},
                  {{{}, shifted(0, 0, 1 + radius / 2)}, {{}, shifted(0, 1, 0)}});
 }
 
-/// Both moved that far, and as much apart as ever.
+/// Both spheres moved by this distance, with the same distance between them.
 std::unique_ptr<mesh_scene> balls_moved(double far) {
     return posed(ball(5, 1), {{shifted(far, -far, far), turned(0.4, {far + 1, -far, far + 0.5})},
                               {shifted(-far, far, 0), shifted(-far, far, 0)}});
@@ -125,17 +124,17 @@ std::unique_ptr<mesh_scene> balls_moved(double far) {
 
 std::vector<extreme_scene> mesh_scenes(extreme_size size) {
     const std::uint32_t many = size == extreme_size::small ? 300U : size == extreme_size::quick ? 20'000U : 1'000'000U;
-    extreme_scene against_one =
-        scene_of_meshes("many_against_one", std::to_string(many) + " times the same triangle, against one",
-                        [many] { return posed(std::vector{coincident(many), soup_of({across})}, {{{}, {}}}); });
+    extreme_scene against_one = scene_of_meshes(
+        "many_against_one", std::to_string(many) + " times the same triangle, against one",
+        [many] { return posed(std::vector{coincident(many), soup_of({crossing_triangle})}, {{{}, {}}}); });
     against_one.asked = extreme_query::count_pairs;
     extreme_scene against_itself =
         scene_of_meshes("many_against_many", "the same against itself: any one pair",
                         [many] { return posed(coincident(many), {{{}, shifted(0.5, 0.5, 0)}}); });
     against_itself.asked = extreme_query::first_pair;
-    // The largest layout has an internal node of 32 bytes and a leaf of 28 for each triangle; the rest is for stacks.
+    // The largest layout has an internal node of 32 bytes and a leaf of 28 per triangle; the rest is for stacks.
     for (extreme_scene* scene : {&against_one, &against_itself}) scene->most_bytes = std::size_t{many} * 64 + 65'536;
-    std::vector<extreme_scene> all{
+    std::vector<extreme_scene> scenes{
         scene_of_meshes("same_place", "a mesh in the place of its twin", same_place),
         scene_of_meshes("touch_at_vertices", "two cubes that share a corner", [] { return two_cubes({2, 2, 2}); }),
         scene_of_meshes("touch_along_edges", "two cubes that share an edge", [] { return two_cubes({2, 2, 0}); }),
@@ -157,15 +156,15 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
                                        {"scale_1e10", 1e10},
                                        {"scale_1e30", 1e30},
                                        {"scale_1e37", 1e37}})
-        all.push_back(scene_of_meshes(name, "two balls of that radius through each other",
-                                      [size = radius] { return balls_of(size); }));
+        scenes.push_back(scene_of_meshes(name, "two balls of that radius through each other",
+                                         [size = radius] { return balls_of(size); }));
     for (const auto& [name, radius] : {std::pair{"beside_1e-6", 1e-6}, {"beside_1e6", 1e6}, {"beside_1e-38", 1e-38}})
-        all.push_back(scene_of_meshes(name, "a ball of that radius on one of radius 1",
-                                      [size = radius] { return ball_on_ball(size); }));
+        scenes.push_back(scene_of_meshes(name, "a ball of that radius on one of radius 1",
+                                         [size = radius] { return ball_on_ball(size); }));
     for (const auto& [name, far] : {std::pair{"moved_1e6", 1e6}, {"moved_1e9", 1e9}, {"moved_1e15", 1e15}})
-        all.push_back(scene_of_meshes(name, "both moved that far, as near to each other as ever",
-                                      [way = far] { return balls_moved(way); }));
-    return all;
+        scenes.push_back(scene_of_meshes(name, "both moved that far, as near to each other as ever",
+                                         [distance = far] { return balls_moved(distance); }));
+    return scenes;
 }
 
 }  // namespace aabb

@@ -9,18 +9,18 @@ namespace {
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// A good frame, then one in which box 7 is bad.
+/// A valid frame, then one in which box 7 is invalid.
 extreme_scene with_box(const char* name, const char* summary, const box& bad, const char* refusal) {
     const auto make = [bad] {
         std::vector<box> boxes(20, {{0, 0, 0}, {1, 1, 1}});
-        box_frames all{boxes, boxes};
-        all[1][7] = bad;
-        return all;
+        box_frames frames{boxes, boxes};
+        frames[1][7] = bad;
+        return frames;
     };
     return refused(scene_of_boxes(name, summary, make), refusal);
 }
 
-/// A good mesh, and a bad one.
+/// A valid mesh, and an invalid one.
 template <class Spoil>
 extreme_scene with_mesh(const char* name, const char* summary, Spoil spoil, const char* refusal) {
     const auto make = [spoil] {
@@ -31,27 +31,27 @@ extreme_scene with_mesh(const char* name, const char* summary, Spoil spoil, cons
     return refused(scene_of_meshes(name, summary, make), refusal);
 }
 
-/// @param refusal empty where the pose is good
+/// @param refusal empty if the pose is valid
 extreme_scene with_pose(const char* name, const char* summary, const pose& second, const std::string& refusal = {}) {
     const auto make = [second] { return posed(ball(4, 1), {{{}, second}}); };
     return refused(scene_of_meshes(name, summary, make), refusal);
 }
 
-/// A pose whose rotation has this entry in place of that of the identity.
+/// The identity pose with one entry of the rotation replaced.
 pose with_entry(std::size_t entry, double value) {
     pose p = shifted(0, 0, 0);
     p.rotation[entry] = value;
     return p;
 }
 
-/// Off a rotation by that much in the product of its first two rows.
+/// A pose with this error in the product of its first two rows.
 pose skewed(double error) {
     pose p = shifted(0.7, 0.2, 0.1);
     p.rotation[1] = error;
     return p;
 }
 
-/// Longer by half of the error, so that the square of a row is off by it.
+/// A pose scaled by half of the error, so that the squared length of a row has this error.
 pose stretched(double error) {
     pose p = shifted(0.7, 0.2, 0.1);
     for (const std::size_t i : {0, 4, 8}) p.rotation[i] = 1 + error / 2;
@@ -63,7 +63,7 @@ extreme_scene computed_in(arithmetic kind, extreme_scene scene, std::string refu
     return refused(std::move(scene), std::move(refusal));
 }
 
-/// Scenes of boxes and of meshes in which nothing is wrong but the arithmetic.
+/// Valid scenes of boxes and of meshes in a wrong floating-point mode.
 std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name, const std::string& summary,
                                        const std::string& refusal) {
     const auto boxes = [] {
@@ -120,22 +120,22 @@ std::vector<extreme_scene> bad_mesh_scenes() {
 }
 
 std::vector<extreme_scene> other_arithmetic_scenes() {
-    std::vector<extreme_scene> all = computed_in(arithmetic::rounded_upward, "upward", "a thread that rounds upward",
-                                                 "this thread does not round to nearest");
-    if (!can_flush_denormals()) return all;
+    std::vector<extreme_scene> scenes = computed_in(arithmetic::rounded_upward, "upward", "a thread that rounds upward",
+                                                    "this thread does not round to nearest");
+    if (!can_flush_denormals()) return scenes;
     const std::vector<extreme_scene> flushed =
         computed_in(arithmetic::denormals_flushed, "flushed", "a thread that takes denormal numbers for zero",
                     "this thread flushes denormal numbers to zero");
-    all.insert(all.begin(), flushed.begin(), flushed.end());
-    return all;
+    scenes.insert(scenes.begin(), flushed.begin(), flushed.end());
+    return scenes;
 }
 
 std::vector<extreme_scene> extreme_scenes(extreme_size size) {
-    std::vector<extreme_scene> all;
-    for (const std::vector<extreme_scene>& some :
+    std::vector<extreme_scene> scenes;
+    for (const std::vector<extreme_scene>& part :
          {box_scenes(), bad_box_scenes(), mesh_scenes(size), bad_mesh_scenes(), other_arithmetic_scenes()})
-        all.insert(all.end(), some.begin(), some.end());
-    return all;
+        scenes.insert(scenes.end(), part.begin(), part.end());
+    return scenes;
 }
 
 }  // namespace aabb

@@ -15,13 +15,13 @@ using exact_triangle = triangle3<rational>;
 
 template <class Real>
 triangle3<Real> converted(const triangle3f& t) {
-    triangle3<Real> all;
+    triangle3<Real> result;
     for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) all[i][k] = Real(double{t[i][k]});
-    return all;
+        for (int k = 0; k < 3; ++k) result[i][k] = Real(double{t[i][k]});
+    return result;
 }
 
-/// The triangle in the world, where the pose puts it without any rounding.
+/// The triangle in world coordinates, transformed without rounding.
 exact_triangle placed(const triangle3f& t, const pose& p) {
     exact_triangle world;
     for (int i = 0; i < 3; ++i)
@@ -59,8 +59,8 @@ bool are_coplanar(const exact_triangle& s, const exact_triangle& t) {
     return true;
 }
 
-/// Normals of the facets of the triangles' Minkowski difference: two triangles that do not lie in one plane come apart
-/// along one of these first. Zero vectors (parallel edges) are left out.
+/// Normals of the facets of the triangles' Minkowski difference: the directions of least penetration of triangles that
+/// are not coplanar are among these. Zero vectors (parallel edges) are left out.
 template <class Real>
 std::vector<vec3<Real>> facet_axes(const triangle3<Real>& s, const triangle3<Real>& t) {
     std::vector<vec3<Real>> axes = {normal_of(s), normal_of(t)};
@@ -70,7 +70,7 @@ std::vector<vec3<Real>> facet_axes(const triangle3<Real>& s, const triangle3<Rea
     return axes;
 }
 
-/// How far the projections on an axis are apart, times the axis' length; below zero the depth to which they overlap.
+/// The distance of the projections on an axis, times the axis' length; negative if they overlap.
 template <class Real>
 Real gap(const triangle3<Real>& s, const triangle3<Real>& t, const vec3<Real>& axis) {
     const Real on_s[3] = {dot(axis, s[0]), dot(axis, s[1]), dot(axis, s[2])};
@@ -80,13 +80,13 @@ Real gap(const triangle3<Real>& s, const triangle3<Real>& t, const vec3<Real>& a
     return std::max(t_above, s_above);
 }
 
-/// For triangles that share points and do not lie in one plane.
+/// Whether intersecting triangles that are not coplanar touch without crossing.
 bool only_touch(const exact_triangle& s, const exact_triangle& t) {
     return std::ranges::any_of(facet_axes(s, t), [&](const auto& axis) { return gap(s, t, axis) == 0; });
 }
 
-/// The distance of two triangles, or below zero the depth to which they pass through each other: the greatest gap over
-/// all directions in which two of their corners, edges or faces can be nearest to each other.
+/// The distance of two triangles, or the negative penetration depth: the greatest gap over all directions in which two
+/// of their corners, edges or faces can be closest.
 double separation(const triangle3d& s, const triangle3d& t) {
     std::vector<vec3d> axes = facet_axes(s, t);
     for (int i = 0; i < 3; ++i)
@@ -110,7 +110,7 @@ bool are_near(const triangle3f& s, const triangle3f& t) {
     const box both = merged(bounds_of(s), bounds_of(t));
     const int axis = longest_axis(both);
     const double extent = double{both.max[axis]} - double{both.min[axis]};
-    // Seen from a corner, so that far from the origin no digits are lost.
+    // Relative to a corner, which avoids cancellation far from the origin.
     triangle3d s_here = converted<double>(s);
     triangle3d t_here = converted<double>(t);
     const vec3d origin = s_here[0];
@@ -121,7 +121,7 @@ bool are_near(const triangle3f& s, const triangle3f& t) {
     return std::abs(separation(s_here, t_here)) <= 1e-6 * extent;
 }
 
-/// @param engine_says the engine's answer on the two triangles, which the exact answer contradicts.
+/// @param engine_says the engine's result for the two triangles, which differs from the ground truth.
 difference_class class_of_difference(const triangle3f& s, const pose& pose_s, const triangle3f& t, const pose& pose_t,
                                      const triangle3f& t_seen_from_s, bool engine_says) {
     if (has_no_area(s) || has_no_area(t) || has_no_area(t_seen_from_s)) return difference_class::degenerate;
@@ -144,29 +144,29 @@ differences& differences::operator+=(const differences& other) {
     return *this;
 }
 
-differences compare_triangle_pairs(std::span<const index_pair> exact, std::span<const index_pair> found, const mesh& a,
-                                   const pose& pose_a, const mesh& b, const pose& pose_b) {
+differences compare_triangle_pairs(std::span<const index_pair> exact, std::span<const index_pair> reported,
+                                   const mesh& a, const pose& pose_a, const mesh& b, const pose& pose_b) {
     const relative_pose to_a(pose_a, pose_b, bounds_of(b));
-    differences all;
+    differences counts;
     const auto count = [&](index_pair pair, bool engine_says) {
         const triangle3f s = a.triangle(pair.a);
         const triangle3f t = b.triangle(pair.b);
-        auto& classes = engine_says ? all.invented : all.missing;
+        auto& classes = engine_says ? counts.invented : counts.missing;
         ++classes[static_cast<std::size_t>(class_of_difference(s, pose_a, t, pose_b, to_a(t), engine_says))];
     };
     auto next_exact = exact.begin();
-    auto next_found = found.begin();
-    while (next_exact != exact.end() || next_found != found.end()) {
-        if (next_found == found.end() || (next_exact != exact.end() && *next_exact < *next_found))
+    auto next_reported = reported.begin();
+    while (next_exact != exact.end() || next_reported != reported.end()) {
+        if (next_reported == reported.end() || (next_exact != exact.end() && *next_exact < *next_reported))
             count(*next_exact++, false);
-        else if (next_exact == exact.end() || *next_found < *next_exact)
-            count(*next_found++, true);
+        else if (next_exact == exact.end() || *next_reported < *next_exact)
+            count(*next_reported++, true);
         else {
             ++next_exact;
-            ++next_found;
+            ++next_reported;
         }
     }
-    return all;
+    return counts;
 }
 
 }  // namespace aabb

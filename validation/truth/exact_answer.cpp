@@ -40,11 +40,11 @@ void exact_answer::play(const scene_frame& frame) {
     if (!triangles_) return;
     follow_meshes();
     const std::vector<std::uint32_t>& mesh_of = meshes_->mesh_of;
-    std::vector<index_pair> found;
+    std::vector<index_pair> hits;
     for (const auto [a, b] : near_objects(frame.poses)) {
-        found.clear();
-        triangles_->all_pairs(mesh_of[a], frame.poses[a], mesh_of[b], frame.poses[b], found);
-        for (const auto [s, t] : found) contacts_.push_back({a, b, s, t});
+        hits.clear();
+        triangles_->all_pairs(mesh_of[a], frame.poses[a], mesh_of[b], frame.poses[b], hits);
+        for (const auto [s, t] : hits) contacts_.push_back({a, b, s, t});
     }
     std::ranges::sort(contacts_);
 }
@@ -62,14 +62,14 @@ exact_answer::sphere exact_answer::sphere_around(const mesh& m) {
     const box bounds = bounds_of(m);
     sphere around{};
     for (int k = 0; k < 3; ++k) around.centre[k] = (double{bounds.min[k]} + double{bounds.max[k]}) / 2;
-    double reach = 0;
+    double extent = 0;
     for (const vec3f& v : m.vertices) {
         const vec3d p{v[0], v[1], v[2]};
         around.radius = std::max(around.radius, length_of(p - around.centre));
-        reach = std::max(reach, length_of(p));
+        extent = std::max(extent, length_of(p));
     }
-    // Generous: all that rounding and a pose's distance from a rotation can do is less than a 100,000th of the reach.
-    around.radius += 0.01 * reach;
+    // A generous margin: the effect of rounding and of inexact rotations is less than a 100,000th of the extent.
+    around.radius += 0.01 * extent;
     return around;
 }
 
@@ -89,10 +89,10 @@ std::vector<index_pair> exact_answer::near_objects(std::span<const pose> poses) 
     std::ranges::sort(by_low, {}, low);
     std::vector<index_pair> near;
     for (std::size_t i = 0; i < by_low.size(); ++i) {
-        const sphere& one = placed[by_low[i]];
-        for (std::size_t j = i + 1; j < by_low.size() && low(by_low[j]) <= one.centre[0] + one.radius; ++j) {
-            const sphere& other = placed[by_low[j]];
-            if (length_of(one.centre - other.centre) <= one.radius + other.radius)
+        const sphere& first = placed[by_low[i]];
+        for (std::size_t j = i + 1; j < by_low.size() && low(by_low[j]) <= first.centre[0] + first.radius; ++j) {
+            const sphere& second = placed[by_low[j]];
+            if (length_of(first.centre - second.centre) <= first.radius + second.radius)
                 near.push_back(ordered_pair(by_low[i], by_low[j]));
         }
     }

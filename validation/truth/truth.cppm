@@ -1,4 +1,4 @@
-/// The exact answer on a scene, and why another may differ from it. No header of CGAL reaches an importer.
+/// The ground truth of a scene, and the classification of differences from it. CGAL's headers stay internal.
 export module aabb.truth;
 
 import aabb.pipeline;
@@ -6,33 +6,33 @@ import aabb.std;
 
 export namespace aabb {
 
-/// What a reported set and the exact one do not have in common, both sorted, the exact one with each once.
+/// The differences between a reported set and the ground truth; both are sorted, the latter without repetitions.
 template <class T>
 struct set_difference {
-    set_difference(const std::vector<T>& exact, const std::vector<T>& found) {
-        std::ranges::set_difference(exact, found, std::back_inserter(missing));
-        std::ranges::set_difference(found, exact, std::back_inserter(invented));
+    set_difference(const std::vector<T>& exact, const std::vector<T>& reported) {
+        std::ranges::set_difference(exact, reported, std::back_inserter(missing));
+        std::ranges::set_difference(reported, exact, std::back_inserter(invented));
         repeated = !invented.empty() && std::ranges::binary_search(exact, invented[0]);
     }
 
-    std::vector<T> missing;
-    std::vector<T> invented;  ///< what is reported again, too
-    bool repeated = false;    ///< the first of these is such a one
+    std::vector<T> missing;   ///< false negatives
+    std::vector<T> invented;  ///< false positives and repetitions
+    bool repeated = false;    ///< whether the first of `invented` is a repetition
 };
 
-/// Why an engine's answer on two triangles may differ from the exact one; the first that applies.
+/// Why an engine's result for two triangles differs from the ground truth; the first class that applies.
 enum class difference_class : std::uint8_t {
     degenerate,     ///< one of the triangles has zero area
-    pose_rounding,  ///< with the raw pose, before vertices are rounded to float, the exact answer is the engine's
-    coplanar,       ///< the triangles lie in one plane
-    touching,       ///< they share points, but neither passes through the other; an engine can only miss such a pair
-    near,           ///< moving one by a millionth of the pair's extent changes the exact answer
-    other,          ///< the engine is wrong for no such reason
+    pose_rounding,  ///< the engine is right for the raw pose, before vertices are rounded to float
+    coplanar,       ///< the triangles are coplanar
+    touching,       ///< they touch without crossing; only false negatives
+    near,           ///< a displacement of a millionth of the pair's extent changes the ground truth
+    other,          ///< the engine is wrong for another reason
 };
 inline constexpr std::array<std::string_view, 6> difference_class_names = {"degenerate", "pose_rounding", "coplanar",
                                                                            "touching",   "near",          "other"};
 
-/// Pairs that an engine missed or invented, by class.
+/// False negatives (missing) and false positives (invented) of an engine, by class.
 struct differences {
     std::array<std::size_t, difference_class_names.size()> missing{};
     std::array<std::size_t, difference_class_names.size()> invented{};
@@ -40,36 +40,37 @@ struct differences {
     differences& operator+=(const differences& other);
 };
 
-/// Compares the pair sets of triangles of two posed meshes. Both are sorted, each pair once.
-[[nodiscard]] differences compare_triangle_pairs(std::span<const index_pair> exact, std::span<const index_pair> found,
-                                                 const mesh& a, const pose& pose_a, const mesh& b, const pose& pose_b);
+/// Compares two sets of pairs of triangles of two posed meshes. Both are sorted, without repetitions.
+[[nodiscard]] differences compare_triangle_pairs(std::span<const index_pair> exact,
+                                                 std::span<const index_pair> reported, const mesh& a,
+                                                 const pose& pose_a, const mesh& b, const pose& pose_b);
 
-/// What a scene shows at one time.
+/// One frame of a scene.
 struct scene_frame {
-    std::span<const box> boxes;   ///< of the objects, in the world
+    std::span<const box> boxes;   ///< of the objects, in world coordinates
     std::span<const pose> poses;  ///< of the objects; empty in a scene of boxes
-    /// Objects of a scene of boxes that are in this frame and were not in the one before, and the other way round. A
-    /// scene of meshes has all its objects all the time.
+    /// Objects of a scene of boxes that are new in this frame, and those that left since the previous one. In a scene
+    /// of meshes all objects are always present.
     std::span<const std::uint32_t> arrivals;
     std::span<const std::uint32_t> departures;
 };
 
-/// The exact pairs and contacts of a scene, frame by frame. Pairs of boxes: brute force up to 20,000 objects, CGAL
-/// above. Contacts: CGAL's exact kernel on every two objects whose bounding spheres meet; the boxes of global search
-/// have no part in them, so that a pair of objects that wrong boxes lose shows up as missing.
+/// The ground truth of a scene, frame by frame. Pairs of boxes: brute force up to 20,000 objects, CGAL above. Contacts:
+/// CGAL's exact kernel on all objects with overlapping bounding spheres. They do not depend on the boxes of the broad
+/// phase, so that a pair of objects that is lost by wrong boxes shows up as a false negative.
 class exact_answer {
 public:
-    /// @param objects of the scene, absent ones included
-    /// @param meshes  of the scene, which must outlive this; null for one of boxes
+    /// @param objects the number of objects, including absent ones
+    /// @param meshes  the scene, which must outlive this; null for a scene of boxes
     exact_answer(std::size_t objects, const mesh_scene* meshes);
 
-    /// Says what gives it: "brute_force for boxes, cgal on all pairs of objects for triangles".
+    /// Names the methods: "brute_force for boxes, cgal on all pairs of objects for triangles".
     [[nodiscard]] std::string name() const;
 
-    /// Goes to a frame, to which meshes that deform have been brought already.
+    /// Computes a frame; deforming meshes must be up to date.
     void play(const scene_frame& frame);
 
-    /// Of the frame, sorted, each once.
+    /// The overlapping pairs of the frame, sorted, without repetitions.
     [[nodiscard]] const std::vector<index_pair>& pairs() const { return pairs_; }
     [[nodiscard]] const std::vector<contact>& contacts() const { return contacts_; }
 
