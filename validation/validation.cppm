@@ -1,4 +1,4 @@
-/// Reference systems in place of our pipeline, the exact answer, and what theirs differ in from it.
+/// Reference systems that replace our stages, the ground truth, and the differences of their results from it.
 export module aabb.validation;
 
 export import aabb.engines;

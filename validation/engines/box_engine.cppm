@@ -5,7 +5,8 @@ import aabb.std;
 
 namespace aabb {
 
-/// What every engine of boxes does alike: who is present, and what a composed stage refuses. None counts its work.
+/// The base of all box engines: tracks which objects are present and rejects the same input as a composed stage.
+/// Engines count no work.
 class box_engine : public global_stage {
 public:
     void insert(std::uint32_t id) final { objects_.insert(id); }
@@ -38,7 +39,7 @@ public:
 protected:
     [[nodiscard]] inline bool is_present(std::uint32_t id) const { return objects_.contains(id); }
 
-    /// Calls `drop` with what there is of objects that are absent now, by id.
+    /// Calls `drop` for the entries of objects that left, and clears them.
     void drop_absent(auto& by_id, auto drop) const {
         for (std::uint32_t id = 0; id < by_id.size(); ++id)
             if (by_id[id] && !is_present(id)) {
@@ -47,9 +48,9 @@ protected:
             }
     }
 
-    /// Takes the boxes of the present objects, whose ids are ascending.
+    /// Takes the boxes of the present objects, in ascending order of ids.
     virtual void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) = 0;
-    /// Appends the overlapping pairs of what was taken.
+    /// Appends the overlapping pairs of these boxes.
     virtual void find(std::vector<index_pair>& pairs) = 0;
 
 private:
@@ -58,7 +59,7 @@ private:
     frame_state frame_;
 };
 
-/// What a library has found so far, which hands it over by a callback: no exception may pass through it.
+/// Collects pairs in a library's callback, through which no exception may propagate.
 struct finding {
     std::vector<index_pair>& pairs;
     bool out_of_memory = false;
@@ -71,12 +72,12 @@ struct finding {
             out_of_memory = true;
         }
     }
-    /// When the library has returned.
-    /// @throws std::bad_alloc where memory ran out meanwhile.
+    /// Call it after the library has returned.
+    /// @throws std::bad_alloc if memory ran out in a callback.
     void require_all() const {
         if (out_of_memory) throw std::bad_alloc();
     }
-    /// Drops those of the pairs from place `known` on that are not wanted.
+    /// Removes unwanted pairs from index `known` on.
     void drop(std::size_t known, auto unwanted) const {
         const auto from = pairs.begin() + static_cast<std::ptrdiff_t>(known);
         pairs.erase(std::remove_if(from, pairs.end(), unwanted), pairs.end());

@@ -1,4 +1,4 @@
-/// What a file in NAME/ says of the engine NAME; seen by this module only.
+/// The description of an engine, which a file in NAME/ returns; internal to the module.
 module aabb.engines:engine;
 
 import aabb.pipeline;
@@ -6,7 +6,7 @@ import aabb.std;
 
 namespace aabb {
 
-/// A triangle test of an engine's library, without its type.
+/// A type-erased triangle test of an engine's library.
 struct library_test {
     std::string name;
     std::string summary;
@@ -28,19 +28,19 @@ template <class Test>
 struct engine {
     std::string name;
     std::string summary;
-    bool exact = true;                                   ///< its pair sets equal the exact ones on every input
-    std::unique_ptr<global_stage> (*boxes)() = nullptr;  ///< null where it cannot stand in for global search
-    std::unique_ptr<local_stage> (*meshes)() = nullptr;  ///< null where it cannot stand in for local detection
-    std::vector<library_test> triangles = {};            ///< tests that its library has
+    bool exact = true;                                   ///< its pair sets equal the ground truth for all input
+    std::unique_ptr<global_stage> (*boxes)() = nullptr;  ///< null if it has no broad phase
+    std::unique_ptr<local_stage> (*meshes)() = nullptr;  ///< null if it has no narrow phase
+    std::vector<library_test> triangles = {};            ///< the tests of its library
 };
 
-/// @tparam Arguments of its constructor
+/// @tparam Arguments the arguments of the engine's constructor
 template <class Stage, class Engine, auto... Arguments>
 [[nodiscard]] std::unique_ptr<Stage> made() {
     return std::make_unique<Engine>(Arguments...);
 }
 
-/// Those that this build has, in the order of their lines in CMakeLists.txt. Defined in a generated unit.
+/// The engines of this build, in the order of CMakeLists.txt. Defined in a generated unit.
 [[nodiscard]] std::vector<engine> built_engines();
 
 }  // namespace aabb

@@ -7,35 +7,36 @@ namespace aabb {
 namespace {
 
 const std::vector<engine>& all_engines() {
-    static const std::vector<engine> all = built_engines();
-    return all;
+    static const std::vector<engine> engines_of_build = built_engines();
+    return engines_of_build;
 }
 
-/// @throws input_error where there is none of this name.
+/// @throws input_error if there is no such engine.
 const engine& engine_named(std::string_view name) {
-    const auto found = std::ranges::find(all_engines(), name, &engine::name);
-    if (found == all_engines().end()) throw input_error(refusal_of_engine(name));
-    return *found;
+    const auto position = std::ranges::find(all_engines(), name, &engine::name);
+    if (position == all_engines().end()) throw input_error(refusal_of_engine(name));
+    return *position;
 }
 
 }  // namespace
 
 std::span<const engine_info> engines() {
     static const std::vector<engine_info> infos = [] {
-        std::vector<engine_info> all;
+        std::vector<engine_info> list;
         for (const engine& e : all_engines())
-            all.push_back({e.name, e.summary, e.boxes != nullptr, e.meshes != nullptr, e.exact});
-        return all;
+            list.push_back({e.name, e.summary, e.boxes != nullptr, e.meshes != nullptr, e.exact});
+        return list;
     }();
     return infos;
 }
 
 std::span<const library_test_info> library_tests() {
     static const std::vector<library_test_info> infos = [] {
-        std::vector<library_test_info> all;
+        std::vector<library_test_info> list;
         for (const engine& e : all_engines())
-            for (const library_test& t : e.triangles) all.push_back({t.name, t.summary, e.name, t.exact, t.parameters});
-        return all;
+            for (const library_test& t : e.triangles)
+                list.push_back({t.name, t.summary, e.name, t.exact, t.parameters});
+        return list;
     }();
     return infos;
 }
@@ -69,19 +70,19 @@ bool is_exact_engine(std::string_view name) {
 }
 
 std::unique_ptr<global_stage> make_box_engine(std::string_view name) {
-    const engine& found = engine_named(name);
-    if (!found.boxes)
-        throw input_error("the engine '" + found.name +
+    const engine& e = engine_named(name);
+    if (!e.boxes)
+        throw input_error("the engine '" + e.name +
                           "' has no broad phase, so it cannot search boxes; it only collides meshes");
-    return found.boxes();
+    return e.boxes();
 }
 
 std::unique_ptr<local_stage> make_mesh_engine(std::string_view name) {
-    const engine& found = engine_named(name);
-    if (!found.meshes)
-        throw input_error("the engine '" + found.name +
+    const engine& e = engine_named(name);
+    if (!e.meshes)
+        throw input_error("the engine '" + e.name +
                           "' has no narrow phase, so it cannot collide meshes; it only searches boxes");
-    return found.meshes();
+    return e.meshes();
 }
 
 }  // namespace aabb

@@ -1,4 +1,4 @@
-/// Reference systems in place of our pipeline. Behind plain types: no header of any library reaches an importer.
+/// Reference systems as replacements for our stages, behind plain types: no library header reaches an importer.
 export module aabb.engines;
 
 export import aabb.exact_intersection;
@@ -7,44 +7,44 @@ import aabb.std;
 
 export namespace aabb {
 
-/// A whole reference system, by the name it has in configs and tables.
+/// A reference system, with its name in configs and tables.
 struct engine_info {
     std::string name;
     std::string summary;
-    bool searches_boxes;   ///< can stand in for global search
-    bool collides_meshes;  ///< can stand in for local detection
-    bool exact;  ///< its pair sets equal the exact ones on every input; others' differences are listed by class
+    bool searches_boxes;   ///< has a broad phase
+    bool collides_meshes;  ///< has a narrow phase
+    bool exact;  ///< its pair sets equal the ground truth for all input; otherwise differences are listed by class
 };
 
-/// Those of this build.
+/// The engines of this build.
 [[nodiscard]] std::span<const engine_info> engines();
 
-/// An engine that this build lacks, because its library was not there.
+/// An engine that this build lacks because its library was not found.
 struct left_out_engine {
     std::string name;
     std::string library;
 };
 [[nodiscard]] std::span<const left_out_engine> left_out_engines();
 
-/// Why there is no engine of this name: it was left out, or nobody knows it, which names the nearest. Empty where there
-/// is one.
+/// The reason why there is no engine of this name: it was left out, or it is unknown, in which case the nearest name is
+/// suggested. Empty if there is one.
 [[nodiscard]] std::string refusal_of_engine(std::string_view name, std::span<const engine_info> built = engines(),
                                             std::span<const left_out_engine> left_out = left_out_engines());
 
 /// Whether this engine is exact.
-/// @throws input_error where there is none of this name.
+/// @throws input_error if there is no such engine.
 [[nodiscard]] bool is_exact_engine(std::string_view name);
 
-/// The engine in place of a global search. Differs from a composed stage in nothing but speed and counters.
-/// @throws input_error where there is none of this name, or it has no broad phase.
+/// The engine as a broad phase. It differs from a composed stage only in speed and counters.
+/// @throws input_error if there is no such engine, or it has no broad phase.
 [[nodiscard]] std::unique_ptr<global_stage> make_box_engine(std::string_view name);
 
-/// The engine in place of a local detection.
-/// @throws input_error where there is none of this name, or it has no narrow phase.
+/// The engine as a narrow phase.
+/// @throws input_error if there is no such engine, or it has no narrow phase.
 [[nodiscard]] std::unique_ptr<local_stage> make_mesh_engine(std::string_view name);
 
-/// A triangle test of an engine's library. It is chosen and configured like a strategy of the kind triangle, but is no
-/// part of a composition.
+/// A triangle test of an engine's library. It is chosen and configured like a strategy of the kind triangle, but cannot
+/// be part of a composition.
 struct library_test_info {
     std::string name;
     std::string summary;
@@ -55,10 +55,10 @@ struct library_test_info {
 
 [[nodiscard]] std::span<const library_test_info> library_tests();
 
-/// @throws input_error where there is none of this name, and on settings that it has not.
+/// @throws input_error if there is no such test, or it does not have these settings.
 [[nodiscard]] std::unique_ptr<triangle_test> make_library_test(const strategy_choice& choice);
 
-/// Do two closed triangles share a point? By CGAL's exact kernel; zero-area ones as the segments or points they are.
+/// Do two closed triangles share a point? By CGAL's exact kernel; zero-area ones count as segments or points.
 [[nodiscard]] bool exactly_intersect(const triangle3f& s, const triangle3f& t);
 [[nodiscard]] bool exactly_intersect(const triangle3d& s, const triangle3d& t);
 

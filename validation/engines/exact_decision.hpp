@@ -9,8 +9,8 @@
 
 namespace aabb {
 
-/// Calls `visit` with what three points span, and returns what it returns. CGAL's tests of triangles and segments
-/// exclude degenerate ones.
+/// Calls `visit` with the triangle, segment or point that three points span, since CGAL's tests exclude degenerate
+/// triangles and segments. Returns its result.
 template <class Kernel>
 [[nodiscard]] auto with_hull(const typename Kernel::Point_3 (&p)[3], const auto& visit) {
     if (!CGAL::collinear(p[0], p[1], p[2])) return visit(typename Kernel::Triangle_3(p[0], p[1], p[2]));
@@ -20,7 +20,7 @@ template <class Kernel>
     return visit(typename Kernel::Segment_3(*first, *last));
 }
 
-/// Do the hulls share a point? Exact in CGAL's kernels with exact predicates.
+/// Do the hulls share a point? Exact with CGAL's kernels with exact predicates.
 template <class Kernel>
 [[nodiscard]] bool hulls_intersect(const typename Kernel::Point_3 (&p)[3], const typename Kernel::Point_3 (&q)[3]) {
     return with_hull<Kernel>(p, [&](const auto& s) {
@@ -28,7 +28,7 @@ template <class Kernel>
     });
 }
 
-/// Do two triangles, zero-area ones as the segments or points they are?
+/// Do two triangles share a point? Zero-area ones count as segments or points.
 template <class Kernel>
 [[nodiscard]] bool triangles_intersect(const auto& s, const auto& t) {
     const auto point = [](const auto& p) { return typename Kernel::Point_3(p[0], p[1], p[2]); };

@@ -37,7 +37,7 @@ struct corners_in_shape {
     result_type operator()(const point_3& p) const { return {p}; }
     result_type operator()(const segment_3& s) const { return {s.source(), s.target()}; }
     result_type operator()(const triangle_3& t) const { return {t[0], t[1], t[2]}; }
-    result_type operator()(const result_type& all) const { return all; }
+    result_type operator()(const result_type& polygon) const { return polygon; }
 };
 
 /// CGAL 6 returns variants of the standard library, CGAL 5 those of Boost.
@@ -49,19 +49,19 @@ std::vector<point_3> corners_in(const Variant& shape) {
         return std::visit(corners_in_shape{}, shape);
 }
 
-/// The corners of what two hulls have in common.
+/// The corners of the intersection of two hulls.
 struct common_corners {
     using corners = std::vector<point_3>;
     corners operator()(const point_3& s, const point_3& t) const { return s == t ? corners{s} : corners{}; }
     corners operator()(const point_3& s, const auto& t) const { return t.has_on(s) ? corners{s} : corners{}; }
     corners operator()(const auto& s, const point_3& t) const { return (*this)(t, s); }
     corners operator()(const auto& s, const auto& t) const {
-        const auto found = CGAL::intersection(s, t);
-        if (!found) return {};
-        corners once;
-        for (const point_3& p : corners_in(*found))
-            if (std::ranges::find(once, p) == once.end()) once.push_back(p);
-        return once;
+        const auto shape = CGAL::intersection(s, t);
+        if (!shape) return {};
+        corners distinct;
+        for (const point_3& p : corners_in(*shape))
+            if (std::ranges::find(distinct, p) == distinct.end()) distinct.push_back(p);
+        return distinct;
     }
 };
 
@@ -83,7 +83,7 @@ intersection_kind kind_of(const std::vector<point_3>& corners, const exact_hull&
                                                             : intersection_kind::segment;
 }
 
-/// Takes the errors of a computed corner.
+/// Adds the errors of a computed corner.
 void add_errors(corner_errors& errors, const vec3d& computed, const exact_point& corner, const vec3d& stated) {
     for (int k = 0; k < 3; ++k) {
         const exact_number off = CGAL::abs(exact_number(computed[k]) - corner[static_cast<std::size_t>(k)]);
@@ -107,32 +107,32 @@ struct exact_intersection::construction {
 };
 
 exact_intersection::exact_intersection(const triangle3d& s, const triangle3d& t)
-    : made_(std::make_unique<construction>()) {
+    : construction_(std::make_unique<construction>()) {
     const exact_hull g = exact_hull_of(s);
     const exact_hull h = exact_hull_of(t);
     const std::vector<point_3> corners = std::visit(common_corners{}, g, h);
-    made_->kind = kind_of(corners, g, h);
+    construction_->kind = kind_of(corners, g, h);
     for (const point_3& p : corners) {
         const auto& exact = CGAL::exact(p);
-        made_->corners.push_back({exact.x(), exact.y(), exact.z()});
+        construction_->corners.push_back({exact.x(), exact.y(), exact.z()});
     }
 }
 
 exact_intersection::~exact_intersection() = default;
 
 intersection_kind exact_intersection::kind() const {
-    return made_->kind;
+    return construction_->kind;
 }
 
 triangle_intersection exact_intersection::rounded() const {
     triangle_intersection common;
-    common.kind = made_->kind;
-    for (const exact_point& corner : made_->corners) {
+    common.kind = construction_->kind;
+    for (const exact_point& corner : construction_->corners) {
         vec3d& at = common.corners[common.size++];
         for (int k = 0; k < 3; ++k) {
             const auto [low, high] = CGAL::to_interval(corner[static_cast<std::size_t>(k)]);
             at[k] = low / 2 + high / 2;
-            // Halves of the smallest numbers are rounded too.
+            // Halves of the smallest denormals are rounded.
             if (at[k] < low || at[k] > high) at[k] = low;
             common.error[k] = std::max(common.error[k], high - low);
         }
@@ -142,16 +142,17 @@ triangle_intersection exact_intersection::rounded() const {
 
 corner_errors exact_intersection::errors_of(const triangle_intersection& computed) const {
     corner_errors best;
-    const std::size_t size = made_->corners.size();
-    best.same = computed.kind == made_->kind && computed.size == size;
+    const std::size_t size = construction_->corners.size();
+    best.same = computed.kind == construction_->kind && computed.size == size;
     best.within = best.same && size == 0;
     if (!best.same || size == 0) return best;
     best.of_bound = std::numeric_limits<double>::infinity();
     std::array<vec3d, 6> approximate{};
     for (std::size_t i = 0; i < size; ++i)
-        for (std::size_t k = 0; k < 3; ++k) approximate[i][static_cast<int>(k)] = CGAL::to_double(made_->corners[i][k]);
-    // Every first corner and both ways round, the nearest by doubles first, which is the one but where corners lie as
-    // near to each other as the error.
+        for (std::size_t k = 0; k < 3; ++k)
+            approximate[i][static_cast<int>(k)] = CGAL::to_double(construction_->corners[i][k]);
+    // Tries all first corners and both orientations, the nearest in double first. That is the right one unless corners
+    // are as close to each other as the error.
     struct alignment {
         double distance;
         std::size_t first, step;
@@ -171,7 +172,7 @@ corner_errors exact_intersection::errors_of(const triangle_intersection& compute
     for (const alignment& a : alignments) {
         corner_errors errors{.same = true, .within = true};
         for (std::size_t i = 0; i < size; ++i)
-            add_errors(errors, computed.corners[i], made_->corners[a(i, size)], computed.error);
+            add_errors(errors, computed.corners[i], construction_->corners[a(i, size)], computed.error);
         if (errors.within || errors.of_bound < best.of_bound) best = errors;
         if (best.within) break;
     }

@@ -9,7 +9,7 @@ namespace aabb {
 
 namespace {
 
-// Its predicates are exact for every finite double, and the decision needs no constructions.
+// Its predicates are exact for all finite doubles, and the test needs no constructions.
 using kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 }  // namespace

@@ -5,8 +5,8 @@ import aabb.std;
 
 namespace aabb {
 
-/// The vertices of B seen from A, by number. Those outside B's box, which no triangle uses, stay as they are.
-/// @param bounds of B, in its own frame
+/// The vertices of B in A's frame, by index. Unused vertices outside B's box stay unchanged.
+/// @param bounds the box of B, in B's frame
 [[nodiscard]] std::vector<vec3f> moved_vertices(const pose& pose_a, const pose& pose_b, const mesh& b,
                                                 const box& bounds) {
     const relative_pose to_a(pose_a, pose_b, bounds);
@@ -16,11 +16,11 @@ namespace aabb {
     return moved;
 }
 
-/// The poses of two models at which something is built; none at first.
+/// A cache key: the poses of two models for which something was built.
 class posed_pair {
 public:
     void forget() { poses_.reset(); }
-    /// Builds it where they are others, or an earlier build broke off.
+    /// Rebuilds if the poses changed or the previous build failed.
     void renew(const pose& a, const pose& b, auto build) {
         const std::array poses{a, b};
         if (poses_ == poses) return;
@@ -33,7 +33,7 @@ private:
     std::optional<std::array<pose, 2>> poses_;
 };
 
-/// What every engine of meshes does alike, in terms of all pairs of two models. None counts its work or shows a tree.
+/// The base of all mesh engines, in terms of all pairs of two models. Engines count no work and expose no tree.
 class mesh_engine : public local_stage {
 public:
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
@@ -63,15 +63,15 @@ protected:
                       std::vector<index_pair>& pairs) = 0;
 };
 
-/// What every model has.
+/// The common part of all models.
 struct engine_model {
     const mesh* source;
-    std::size_t count;  ///< of triangles, which may not change
+    std::size_t count;  ///< the number of triangles, which must not change
     box bounds;
     mesh_fit fit{};
 };
 
-/// An engine that holds a model of each mesh, and refuses what a composed stage refuses.
+/// An engine with a model of each mesh; it rejects the same input as a composed stage.
 /// @tparam Model derived from engine_model
 template <class Model>
 class model_engine : public mesh_engine {
@@ -79,9 +79,9 @@ public:
     std::uint32_t add_model(const mesh& m) final {
         require_ieee_arithmetic();
         require_valid(m);
-        Model made{{&m, m.triangles.size(), bounds_of(m)}};
-        follow(made);
-        models_.push_back(std::move(made));
+        Model model{{&m, m.triangles.size(), bounds_of(m)}};
+        follow(model);
+        models_.push_back(std::move(model));
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
@@ -101,13 +101,13 @@ public:
     }
 
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
-        std::size_t all = 0;
-        for (const Model& m : models_) all += m.bytes();
-        return {{"engine", all}};
+        std::size_t total = 0;
+        for (const Model& m : models_) total += m.bytes();
+        return {{"engine", total}};
     }
 
 protected:
-    /// Two models that are as their meshes.
+    /// A query of two models that are up to date.
     struct asked {
         const Model& a;
         const pose& pose_a;
@@ -115,7 +115,7 @@ protected:
         const pose& pose_b;
     };
 
-    /// Makes of the mesh what is made of it: at first, and where vertices went elsewhere.
+    /// Builds or updates the model, initially and after vertices moved.
     virtual void follow(Model& changed) = 0;
     virtual void append_pairs(const asked& q, std::vector<index_pair>& pairs) = 0;
     [[nodiscard]] virtual std::optional<index_pair> any_pair(const asked& q) = 0;

@@ -6,9 +6,8 @@ import :mesh_engine;
 
 namespace aabb {
 
-/// A box as CGAL's algorithm takes it. Two boxes with one number count as the same box, which is never reported.
-/// Coordinates are handed over in double: the algorithm takes the greatest value of their type for infinity, and boxes
-/// may end at the greatest float.
+/// A box for CGAL's algorithm, which never reports pairs of boxes with the same number. Coordinates are doubles,
+/// because the algorithm uses the greatest value of their type as infinity, and boxes may end at the greatest float.
 struct numbered_box {
     using NT = double;         // NOLINT(readability-identifier-naming)
     using ID = std::uint64_t;  // NOLINT(readability-identifier-naming)
@@ -22,12 +21,12 @@ struct numbered_box {
     [[nodiscard]] inline NT max_coord(int axis) const { return bounds.max[axis]; }
 };
 
-/// Finds pairs of triangles whose boxes overlap: triangle i of `a` and t of `b` as {i, t}, in any order.
+/// Finds pairs of overlapping boxes: {i, t} for box i of `a` and t of `b`, in any order.
 using candidate_search = std::vector<index_pair>(std::span<const box> a, std::span<const box> b);
-/// By CGAL's intersection of box sequences.
+/// CGAL's intersection of box sequences (Zomorodian and Edelsbrunner, 2000).
 candidate_search candidates_by_cgal;
 
-/// Decides on two triangles in one frame.
+/// Tests two triangles in the same frame.
 using triangle_decision = bool(const triangle3f&, const triangle3f&);
 
 struct boxed_model : engine_model {
@@ -48,22 +47,22 @@ private:
     }
 
     void append_pairs(const asked& q, std::vector<index_pair>& pairs) override {
-        decide(q, [&](index_pair found) {
-            pairs.push_back(found);
+        decide(q, [&](index_pair pair) {
+            pairs.push_back(pair);
             return false;
         });
     }
 
     [[nodiscard]] std::optional<index_pair> any_pair(const asked& q) override {
         std::optional<index_pair> first;
-        decide(q, [&](index_pair found) {
-            first = found;
+        decide(q, [&](index_pair pair) {
+            first = pair;
             return true;
         });
         return first;
     }
 
-    /// `emit` takes an intersecting pair and says whether to stop.
+    /// Calls `emit` for intersecting pairs until it returns true.
     template <class Emit>
     void decide(const asked& q, Emit emit) const {
         const mesh& b = *q.b.source;
@@ -78,7 +77,7 @@ private:
     triangle_decision& decide_;
 };
 
-/// An engine that takes B's triangles into A's frame (`relative_pose`), finds candidates by boxes and decides them.
+/// An engine that transforms B's triangles into A's frame (`relative_pose`), finds candidates by boxes and tests them.
 std::unique_ptr<local_stage> make_pairwise_engine(candidate_search& search, triangle_decision& decide) {
     return std::make_unique<pairwise_engine>(search, decide);
 }

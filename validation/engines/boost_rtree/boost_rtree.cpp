@@ -16,19 +16,19 @@ namespace {
 
 namespace index = boost::geometry::index;
 
-/// Knows how many bytes it gave away.
+/// Counts the allocated bytes.
 template <class T>
 struct counting_allocator {
     using value_type = T;
 
-    explicit counting_allocator(std::size_t& all) : bytes(&all) {}
+    explicit counting_allocator(std::size_t& account) : bytes(&account) {}
     template <class Other>
     explicit(false) counting_allocator(const counting_allocator<Other>& other) : bytes(other.bytes) {}
 
     [[nodiscard]] T* allocate(std::size_t n) {
-        T* made = std::allocator<T>().allocate(n);
+        T* memory = std::allocator<T>().allocate(n);
         *bytes += n * sizeof(T);
-        return made;
+        return memory;
     }
     void deallocate(T* at, std::size_t n) {
         *bytes -= n * sizeof(T);
@@ -45,7 +45,7 @@ struct counting_allocator {
 using corner = boost::geometry::model::point<float, 3, boost::geometry::cs::cartesian>;
 using bounds = boost::geometry::model::box<corner>;
 using entry = std::pair<bounds, std::uint32_t>;
-// Packing fills nodes whatever splits them later; with 8 to 16 entries a node it is fastest.
+// Packing fills nodes whatever the split algorithm; 8 to 16 entries per node are fastest.
 using tree =
     index::rtree<entry, index::linear<16>, index::indexable<entry>, index::equal_to<entry>, counting_allocator<entry>>;
 
@@ -63,16 +63,17 @@ private:
             const box& b = boxes[id];
             entries_.push_back({{{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}}, id});
         }
-        // From a range of all its entries the tree is packed.
+        // Constructed from a range, the tree is packed.
         tree_.emplace(entries_.begin(), entries_.end(), index::linear<16>(), index::indexable<entry>(),
                       index::equal_to<entry>(), counting_allocator<entry>(tree_bytes_));
     }
 
     void find(std::vector<index_pair>& pairs) override {
-        // In the order of the leaves, so that a query finds in the caches what the one before it read.
-        for (const entry& one : *tree_)
-            tree_->query(index::intersects(one.first), boost::make_function_output_iterator([&](const entry& other) {
-                             if (one.second < other.second) pairs.push_back({one.second, other.second});
+        // In the order of the leaves, so that successive queries share cached nodes.
+        for (const entry& queried : *tree_)
+            tree_->query(index::intersects(queried.first),
+                         boost::make_function_output_iterator([&](const entry& other) {
+                             if (queried.second < other.second) pairs.push_back({queried.second, other.second});
                          }));
     }
 

@@ -8,7 +8,7 @@ namespace aabb {
 
 namespace {
 
-/// Every pair, in the plainest loop that vectorises: no order of the boxes, no data structure to get wrong.
+/// Tests all pairs in the simplest loop that vectorises: without sorting or data structures, which could have bugs.
 class brute_force_boxes final : public box_engine {
 public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"engine", bytes_of(ids_, min_, max_)}}; }
@@ -37,21 +37,21 @@ private:
             }
     }
 
-    /// Tests box i against `count` boxes from `begin` on; says whether any overlaps.
+    /// Tests box i against `count` boxes from `begin` on. @return whether any overlaps.
     [[nodiscard]] bool test_block(std::size_t i, std::size_t begin, std::size_t count,
                                   std::array<std::uint32_t, 512>& hits) const {
-        const box one{{min_[0][i], min_[1][i], min_[2][i]}, {max_[0][i], max_[1][i], max_[2][i]}};
+        const box tested{{min_[0][i], min_[1][i], min_[2][i]}, {max_[0][i], max_[1][i], max_[2][i]}};
         const std::array<const float*, 3> low = {&min_[0][begin], &min_[1][begin], &min_[2][begin]};
         const std::array<const float*, 3> high = {&max_[0][begin], &max_[1][begin], &max_[2][begin]};
         std::uint32_t any = 0;
         for (std::size_t j = 0; j < count; ++j) {
-            hits[j] = overlaps(one, {{low[0][j], low[1][j], low[2][j]}, {high[0][j], high[1][j], high[2][j]}});
+            hits[j] = overlaps(tested, {{low[0][j], low[1][j], low[2][j]}, {high[0][j], high[1][j], high[2][j]}});
             any |= hits[j];
         }
         return any != 0;
     }
 
-    // Bounds of the present objects by axis, in the order of their ids.
+    // The bounds of the present objects by axis, in ascending order of ids.
     std::vector<std::uint32_t> ids_;
     std::array<std::vector<float>, 3> min_;
     std::array<std::vector<float>, 3> max_;

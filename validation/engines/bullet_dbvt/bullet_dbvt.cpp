@@ -14,7 +14,7 @@ btDbvtVolume volume_of(const box& b) {
     return btDbvtVolume::FromMM({b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]});
 }
 
-/// Driven as Bullet's own broad phase drives it: a leaf is a little larger than its box and stays while it holds it.
+/// Used as in Bullet's own broad phase: a leaf is slightly larger than its box and stays while it contains it.
 class bullet_dbvt final : public box_engine {
 public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
@@ -45,7 +45,7 @@ private:
         tree_.optimizeIncremental(1);
     }
 
-    /// Bullet's margin of 0.05, where objects are about 1 in size.
+    /// Bullet's margin of 0.05, which is meant for objects of about size 1, scaled to the mean extent.
     [[nodiscard]] btScalar margin_for(std::span<const std::uint32_t> ids) const {
         double extents = 0;
         for (const std::uint32_t id : ids)
@@ -56,11 +56,11 @@ private:
 
     void find(std::vector<index_pair>& pairs) override {
         struct collector final : btDbvt::ICollide {
-            collector(const std::vector<box>& all, std::vector<index_pair>& found) : boxes(all), pairs(found) {}
+            collector(const std::vector<box>& tested, std::vector<index_pair>& to) : boxes(tested), pairs(to) {}
             using btDbvt::ICollide::Process;
-            void Process(const btDbvtNode* one, const btDbvtNode* other) override {
-                const auto a = static_cast<std::uint32_t>(one->dataAsInt);
-                const auto b = static_cast<std::uint32_t>(other->dataAsInt);
+            void Process(const btDbvtNode* first, const btDbvtNode* second) override {
+                const auto a = static_cast<std::uint32_t>(first->dataAsInt);
+                const auto b = static_cast<std::uint32_t>(second->dataAsInt);
                 if (overlaps(boxes[a], boxes[b])) pairs.push_back(ordered_pair(a, b));
             }
             const std::vector<box>& boxes;

@@ -10,8 +10,8 @@ namespace aabb {
 
 namespace {
 
-/// The greatest floats moved to where no extent of a world is infinite. All ends keep their order, if not strictly.
-box in_reach(box b) {
+/// Clamps coordinates so that no extent of a world overflows. Their order is preserved, though not strictly.
+box clamped(box b) {
     constexpr float most = 1e37F;
     for (int k = 0; k < 3; ++k) {
         b.min[k] = std::clamp(b.min[k], -most, most);
@@ -20,12 +20,12 @@ box in_reach(box b) {
     return b;
 }
 
-/// With half as much again on each side, and more than nothing where all lie in a plane.
-box world_around(const box& all) {
-    box world = all;
+/// Inflates the box by half on each side, and by more than zero for coplanar boxes.
+box world_around(const box& bounds) {
+    box world = bounds;
     for (int k = 0; k < 3; ++k) {
-        const float far = std::max(std::abs(all.min[k]), std::abs(all.max[k]));
-        const float margin = (all.max[k] - all.min[k]) / 2 + far / 1024 + 1e-20F;
+        const float far = std::max(std::abs(bounds.min[k]), std::abs(bounds.max[k]));
+        const float margin = (bounds.max[k] - bounds.min[k]) / 2 + far / 1024 + 1e-20F;
         world.min[k] -= margin;
         world.max[k] += margin;
     }
@@ -36,37 +36,37 @@ btVector3 corner_of(const vec3f& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// Bullet counts coordinates in whole steps of a world that it wants to know in advance. That keeps their order, if not
-/// strictly, and in one step lower ends come before upper ones: it finds all that overlaps, and some that does not.
+/// Bullet quantises coordinates within a world box that it needs in advance. That preserves their order, though not
+/// strictly, and lower ends precede upper ends in the same step: there are false positives, but no false negatives.
 class bullet_sap final : public box_engine {
 public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
-        std::size_t all = bytes_of(boxes_, proxies_, objects_);
+        std::size_t total = bytes_of(boxes_, proxies_, objects_);
         if (sweep_) {
             using handle = bt32BitAxisSweep3::Handle;
             using edge = bt32BitAxisSweep3::Edge;
             const auto pairs = static_cast<std::size_t>(sweep_->getOverlappingPairCache()->getNumOverlappingPairs());
-            all += objects_.size() * (sizeof(handle) + 6 * sizeof(edge));
-            all += pairs * (sizeof(btBroadphasePair) + 2 * sizeof(int));  // with their places in the hash table
+            total += objects_.size() * (sizeof(handle) + 6 * sizeof(edge));
+            total += pairs * (sizeof(btBroadphasePair) + 2 * sizeof(int));  // with the hash table
         }
-        return {{"engine", all}};
+        return {{"engine", total}};
     }
 
 private:
     void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         boxes_.assign(boxes.begin(), boxes.end());
-        box all = empty_box();
-        for (const std::uint32_t id : ids) all = merged(all, in_reach(boxes[id]));
-        if (proxies_.size() < boxes.size() || (!ids.empty() && !contains(world_, all))) begin(all, boxes.size());
+        box bounds = empty_box();
+        for (const std::uint32_t id : ids) bounds = merged(bounds, clamped(boxes[id]));
+        if (proxies_.size() < boxes.size() || (!ids.empty() && !contains(world_, bounds))) begin(bounds, boxes.size());
         drop_absent(proxies_, [&](btBroadphaseProxy* proxy) { sweep_->destroyProxy(proxy, nullptr); });
-        for (const std::uint32_t id : ids) place(id, in_reach(boxes[id]));
+        for (const std::uint32_t id : ids) place(id, clamped(boxes[id]));
     }
 
-    void begin(const box& all, std::size_t objects) {
-        world_ = world_around(all);
+    void begin(const box& bounds, std::size_t objects) {
+        world_ = world_around(bounds);
         proxies_.assign(objects, nullptr);
         objects_.assign(objects + 1, 0);
-        // Without the tree that Bullet keeps beside it for rays.
+        // Without the tree that Bullet would keep for ray casts.
         sweep_ = std::make_unique<bt32BitAxisSweep3>(corner_of(world_.min), corner_of(world_.max),
                                                      static_cast<unsigned>(objects), nullptr, true);
     }
@@ -86,9 +86,9 @@ private:
         btOverlappingPairCache& cache = *sweep_->getOverlappingPairCache();
         const auto count = static_cast<std::size_t>(cache.getNumOverlappingPairs());
         if (count == 0) return;
-        for (const btBroadphasePair& found : std::span(cache.getOverlappingPairArrayPtr(), count)) {
-            const std::uint32_t a = objects_[number_of(found.m_pProxy0)];
-            const std::uint32_t b = objects_[number_of(found.m_pProxy1)];
+        for (const btBroadphasePair& overlap : std::span(cache.getOverlappingPairArrayPtr(), count)) {
+            const std::uint32_t a = objects_[number_of(overlap.m_pProxy0)];
+            const std::uint32_t b = objects_[number_of(overlap.m_pProxy1)];
             if (overlaps(boxes_[a], boxes_[b])) pairs.push_back(ordered_pair(a, b));
         }
     }

@@ -28,8 +28,8 @@ private:
         const auto collect = [&](const numbered_box& a, const numbered_box& b) {
             pairs.push_back(ordered_pair(static_cast<std::uint32_t>(a.number), static_cast<std::uint32_t>(b.number)));
         };
-        // So few boxes CGAL scans in place of dividing them further. Its default of 10 takes up to three times as long
-        // on 1,000 to 100,000 cubes; and with boxes this small, pointers to them are not faster than they are.
+        // CGAL's brute-force threshold. Its default of 10 takes up to three times as long on 1,000 to 100,000 cubes;
+        // pointers to the boxes, which are small, would not be faster.
         const auto cutoff = static_cast<std::ptrdiff_t>(3 * std::sqrt(static_cast<double>(boxes_.size())));
         CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), collect, cutoff);
     }

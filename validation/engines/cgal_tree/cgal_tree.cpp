@@ -24,25 +24,25 @@ using primitive = CGAL::AABB_triangle_primitive<kernel, kernel_triangles::const_
     return {point(t[0]), point(t[1]), point(t[2])};
 }
 
-/// A triangle to be held against those in a tree.
-struct asked_triangle {
-    explicit asked_triangle(const triangle3f& t) : triangle(in_kernel(t)), bounds(triangle.bbox()) {}
+/// A triangle to be tested against a tree.
+struct query_triangle {
+    explicit query_triangle(const triangle3f& t) : triangle(in_kernel(t)), bounds(triangle.bbox()) {}
 
     kernel::Triangle_3 triangle;
     CGAL::Bbox_3 bounds;
 };
 
-/// CGAL's but for what is tested: boxes against the triangle's box, which is faster than against the triangle; and
-/// triangles only where their boxes overlap, those without area as the segments or points they are.
+/// CGAL's traits with other tests: nodes against the triangle's box, which is faster than against the triangle, and
+/// triangles only if their boxes overlap, with zero-area ones as segments or points.
 struct tree_traits : CGAL::AABB_traits<kernel, primitive> {
     struct Do_intersect {  // NOLINT(readability-identifier-naming)
-        [[nodiscard]] bool operator()(const asked_triangle& asked, const CGAL::Bbox_3& bounds) const {
-            return CGAL::do_overlap(asked.bounds, bounds);
+        [[nodiscard]] bool operator()(const query_triangle& query, const CGAL::Bbox_3& bounds) const {
+            return CGAL::do_overlap(query.bounds, bounds);
         }
-        [[nodiscard]] bool operator()(const asked_triangle& asked, const primitive& one) const {
-            const kernel::Triangle_3& s = *one.id();
-            const kernel::Triangle_3& t = asked.triangle;
-            return CGAL::do_overlap(asked.bounds, s.bbox()) &&
+        [[nodiscard]] bool operator()(const query_triangle& query, const primitive& leaf) const {
+            const kernel::Triangle_3& s = *leaf.id();
+            const kernel::Triangle_3& t = query.triangle;
+            return CGAL::do_overlap(query.bounds, s.bbox()) &&
                    hulls_intersect<kernel>({s[0], s[1], s[2]}, {t[0], t[1], t[2]});
         }
     };
@@ -51,7 +51,7 @@ struct tree_traits : CGAL::AABB_traits<kernel, primitive> {
 
 struct tree_model : engine_model {
     kernel_triangles triangles{};
-    CGAL::AABB_tree<tree_traits> tree{};  // goes first: it points to the triangles
+    CGAL::AABB_tree<tree_traits> tree{};  // destroyed first: it points to the triangles
 
     [[nodiscard]] std::uint32_t number_of(kernel_triangles::const_iterator t) const {
         return static_cast<std::uint32_t>(t - triangles.begin());
@@ -62,7 +62,8 @@ struct tree_model : engine_model {
     }
 };
 
-/// A tree of A's triangles is asked for each of B's. It knows no poses: B's vertices are moved.
+/// Queries a tree of A's triangles with each triangle of B. The tree has no poses, so that B's vertices are
+/// transformed.
 class cgal_tree final : public model_engine<tree_model> {
     void follow(tree_model& changed) override {
         changed.triangles.clear();
@@ -76,20 +77,20 @@ class cgal_tree final : public model_engine<tree_model> {
         const mesh& b = *q.b.source;
         const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
-            if (const auto hit = q.a.tree.any_intersected_primitive(asked_triangle(to_a(b.triangle(t)))))
+            if (const auto hit = q.a.tree.any_intersected_primitive(query_triangle(to_a(b.triangle(t)))))
                 return index_pair{q.a.number_of(*hit), t};
         return std::nullopt;
     }
 
     void append_pairs(const asked& q, std::vector<index_pair>& pairs) override {
         const mesh& b = *q.b.source;
-        // Each vertex once, since triangles share them.
+        // Transforms each vertex once, since triangles share vertices.
         const std::vector<vec3f> moved = moved_vertices(q.pose_a, q.pose_b, b, q.b.bounds);
         std::vector<kernel_triangles::const_iterator> hits;
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
             const auto& [i, j, k] = b.triangles[t];
             hits.clear();
-            q.a.tree.all_intersected_primitives(asked_triangle({moved[i], moved[j], moved[k]}),
+            q.a.tree.all_intersected_primitives(query_triangle({moved[i], moved[j], moved[k]}),
                                                 std::back_inserter(hits));
             for (const auto hit : hits) pairs.push_back({q.a.number_of(hit), t});
         }

@@ -22,7 +22,7 @@ public:
     }
 
 private:
-    /// There is nothing to gain, and Embree fails an assertion where so few boxes are all one point.
+    /// A brute-force threshold; Embree also fails an assertion if so few boxes are all the same point.
     static constexpr std::size_t few = 4;
 
     void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
@@ -35,8 +35,8 @@ private:
         }
         if (ids_.size() <= few) return;
         const charge_to here(held_);
-        const auto bounds_of_one = [](const RTCBoundsFunctionArguments* asked) {
-            *asked->bounds_o = static_cast<const RTCBounds*>(asked->geometryUserPtr)[asked->primID];
+        const auto bounds_of_one = [](const RTCBoundsFunctionArguments* request) {
+            *request->bounds_o = static_cast<const RTCBounds*>(request->geometryUserPtr)[request->primID];
         };
         if (!scene_.scene) scene_.begin(quality_, true, bounds_of_one);
         scene_.commit(bounds_.data(), bounds_.size());
@@ -45,12 +45,12 @@ private:
     void find(std::vector<index_pair>& pairs) override {
         if (ids_.size() <= few) return find_among_few(pairs);
         const std::size_t known = pairs.size();
-        finding found{pairs};  // numbers of boxes, not yet ids
-        rtcCollide(scene_.scene.get(), scene_.scene.get(), collect, &found);
+        finding collected{pairs};  // indices of boxes, not yet ids
+        rtcCollide(scene_.scene.get(), scene_.scene.get(), collect, &collected);
         require_success(the_device());
-        found.require_all();
-        // Only now: while it searches, Embree may still take denormals for zero.
-        found.drop(known, [&](index_pair p) { return !overlaps(boxes_[p.a], boxes_[p.b]); });
+        collected.require_all();
+        // Filtered only after the search, during which Embree may flush denormals.
+        collected.drop(known, [&](index_pair p) { return !overlaps(boxes_[p.a], boxes_[p.b]); });
         for (index_pair& p : std::span(pairs).subspan(known)) p = {ids_[p.a], ids_[p.b]};
     }
 
@@ -60,12 +60,12 @@ private:
                 if (overlaps(boxes_[i], boxes_[j])) pairs.push_back({ids_[i], ids_[j]});
     }
 
-    /// Embree reports all pairs in the leaves that overlap, each from both sides.
+    /// Embree reports all pairs in overlapping leaves, in both orders.
     static void collect(void* to, RTCCollision* collisions, unsigned count) {
-        finding& found = *static_cast<finding*>(to);
-        found.note([&] {
+        finding& collected = *static_cast<finding*>(to);
+        collected.note([&] {
             for (const RTCCollision& c : std::span(collisions, count))
-                if (c.primID0 < c.primID1) found.pairs.push_back({c.primID0, c.primID1});
+                if (c.primID0 < c.primID1) collected.pairs.push_back({c.primID0, c.primID1});
         });
     }
 

@@ -23,14 +23,14 @@ struct release {
 using scene_pointer = std::unique_ptr<RTCSceneTy, release>;
 using geometry_pointer = std::unique_ptr<RTCGeometryTy, release>;
 
-/// Embree's calls throw nothing: it is asked afterwards what failed first.
+/// Embree's calls do not throw; this throws the first error since the last call.
 inline void require_success(RTCDevice device) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree fails with its error " + std::to_string(error));
 }
 
-/// Where what Embree allocates and gives back is added up; null when nobody asks.
+/// The account to which Embree's allocations are charged; null if they are not counted.
 inline thread_local std::ptrdiff_t* charged = nullptr;
 
 class charge_to {
@@ -41,10 +41,10 @@ public:
     ~charge_to() { charged = nullptr; }
 };
 
-/// The only device of the process, never given back. With the last one would go Embree's limit of one thread, and a
-/// second thread begin, which takes time from whoever is timed next.
+/// The only device of the process, which is never released. Releasing the last device would reset Embree's limit of one
+/// thread, and a second thread would disturb later timings.
 inline RTCDevice the_device() {
-    static const RTCDevice made = [] {
+    static const RTCDevice the_only = [] {
         const RTCDevice device = rtcNewDevice("threads=1");
         require_success(device);
         const auto note = [](void*, std::ptrdiff_t bytes, bool) {
@@ -54,16 +54,16 @@ inline RTCDevice the_device() {
         rtcSetDeviceMemoryMonitorFunction(device, note, nullptr);
         return device;
     }();
-    return made;
+    return the_only;
 }
 
-/// Boxes of the user's, alone in a scene.
+/// A scene with a single geometry of user-defined boxes.
 struct user_scene {
     geometry_pointer geometry;
     scene_pointer scene;
 
-    /// Anew, without boxes.
-    /// @param bounds of one of them
+    /// Creates an empty scene.
+    /// @param bounds returns the bounds of a box
     void begin(RTCBuildQuality quality, bool is_dynamic, RTCBoundsFunction bounds) {
         scene.reset();
         geometry.reset(rtcNewGeometry(the_device(), RTC_GEOMETRY_TYPE_USER));
@@ -72,13 +72,13 @@ struct user_scene {
         rtcSetGeometryBoundsFunction(geometry.get(), bounds, nullptr);
         scene.reset(rtcNewScene(the_device()));
         require_success(the_device());
-        // Embree heeds the quality of a geometry in scenes of low quality only, and can refit it in dynamic ones.
+        // Embree respects the quality of a geometry only in low-quality scenes, and refits only in dynamic scenes.
         rtcSetSceneBuildQuality(scene.get(), quality == RTC_BUILD_QUALITY_REFIT ? RTC_BUILD_QUALITY_LOW : quality);
         if (is_dynamic) rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_DYNAMIC);
         rtcAttachGeometry(scene.get(), geometry.get());
     }
 
-    /// @param data that the function of bounds is given
+    /// @param data passed to the bounds function
     void commit(void* data, std::size_t boxes) {
         rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(boxes));
         rtcSetGeometryUserData(geometry.get(), data);
@@ -88,8 +88,8 @@ struct user_scene {
     }
 };
 
-/// Embree builds with denormals taken for zero, and leaves out what reaches beyond 1.844e18. Moved to what it can work
-/// with, all coordinates keep their order, if not strictly: what overlaps still does.
+/// Embree builds with flushed denormals and ignores boxes beyond 1.844e18. Clamping to its range preserves the order of
+/// coordinates, though not strictly, so that there are no false negatives.
 inline float workable(float x) {
     constexpr float most = 1e18F;
     return std::abs(x) < std::numeric_limits<float>::min() ? 0 : std::clamp(x, -most, most);
@@ -97,14 +97,14 @@ inline float workable(float x) {
 
 template <class Box>
 RTCBounds workable(const Box& b) {
-    RTCBounds made{};
-    made.lower_x = workable(b.min[0]);
-    made.lower_y = workable(b.min[1]);
-    made.lower_z = workable(b.min[2]);
-    made.upper_x = workable(b.max[0]);
-    made.upper_y = workable(b.max[1]);
-    made.upper_z = workable(b.max[2]);
-    return made;
+    RTCBounds bounds{};
+    bounds.lower_x = workable(b.min[0]);
+    bounds.lower_y = workable(b.min[1]);
+    bounds.lower_z = workable(b.min[2]);
+    bounds.upper_x = workable(b.max[0]);
+    bounds.upper_y = workable(b.max[1]);
+    bounds.upper_z = workable(b.max[2]);
+    return bounds;
 }
 
 }  // namespace aabb::embree

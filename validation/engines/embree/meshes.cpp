@@ -15,7 +15,7 @@ namespace {
 
 using namespace embree;
 
-/// Triangles, and their boxes in a scene.
+/// Triangles, and a scene of their boxes.
 class triangle_scene {
 public:
     triangle_scene() = default;
@@ -29,25 +29,25 @@ public:
         scene_ = user_scene();
     }
 
-    /// Anew; or refitted, where the quality is that and was before.
+    /// Builds the scene, or refits it if both this quality and the previous one are for refitting.
     /// @param m always the same mesh
-    /// @param held where what Embree allocates is added up; always the same
+    /// @param held the account of Embree's allocations; always the same
     void build(RTCBuildQuality quality, const mesh& m, std::span<const vec3f> vertices,
                const std::shared_ptr<std::ptrdiff_t>& held) {
         held_ = held;
         triangles_.clear();
         triangles_.reserve(m.triangles.size());
         for (const auto& t : m.triangles) triangles_.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]]});
-        // For so few there is nothing to gain, and of low quality Embree fails an assertion where all are one point.
+        // With low quality, Embree fails an assertion if so few boxes are all the same point.
         if (triangles_.size() <= 4) quality = RTC_BUILD_QUALITY_MEDIUM;
         const charge_to here(*held_);
         const bool refits = quality == RTC_BUILD_QUALITY_REFIT;
-        const auto bounds_of_one = [](const RTCBoundsFunctionArguments* asked) {
-            const auto* triangles = static_cast<const triangle3f*>(asked->geometryUserPtr);
-            *asked->bounds_o = workable(bounds_of(triangles[asked->primID]));
+        const auto bounds_of_one = [](const RTCBoundsFunctionArguments* request) {
+            const auto* triangles = static_cast<const triangle3f*>(request->geometryUserPtr);
+            *request->bounds_o = workable(bounds_of(triangles[request->primID]));
         };
         if (!refits || built_ != quality) scene_.begin(quality, refits, bounds_of_one);
-        built_.reset();  // what a failure leaves half-made is not refitted
+        built_.reset();  // so that a failed build is not refitted
         scene_.commit(triangles_.data(), triangles_.size());
         built_ = quality;
     }
@@ -67,26 +67,27 @@ private:
 struct embree_model : engine_model {
     triangle_scene still{};
     triangle_scene moved{};  ///< in the frame of another model
-    posed_pair poses{};      ///< of that model and this one there
+    posed_pair poses{};      ///< of that model and this one
 
     [[nodiscard]] std::size_t bytes() const { return bytes_of(still, moved); }
 };
 
-/// Embree knows no poses: the second mesh is moved, and its scene built or refitted, for every new one, and then kept.
+/// Embree has no poses: for each new pose, the second mesh is transformed and its scene rebuilt or refitted, then
+/// cached.
 class embree_meshes final : public model_engine<embree_model> {
 public:
     explicit embree_meshes(RTCBuildQuality quality) : quality_(quality) {}
 
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
-        std::vector<part_bytes> all = model_engine::bytes();
-        all[0].bytes += static_cast<std::size_t>(*held_);
-        return all;
+        std::vector<part_bytes> parts = model_engine::bytes();
+        parts[0].bytes += static_cast<std::size_t>(*held_);
+        return parts;
     }
 
 private:
     void follow(embree_model& changed) override {
         changed.poses.forget();
-        // Most meshes never deform, so only what is moved begins as one that refits.
+        // Most meshes never deform, so that only transformed meshes start with a refittable scene.
         const bool is_first = changed.still.is_new() && quality_ == RTC_BUILD_QUALITY_REFIT;
         changed.still.build(is_first ? RTC_BUILD_QUALITY_MEDIUM : quality_, *changed.source, changed.source->vertices,
                             held_);
@@ -104,21 +105,22 @@ private:
             q.b.moved.build(quality_, *q.b.source, moved_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds), held_);
         });
         const std::size_t known = pairs.size();
-        finding found{pairs};
-        rtcCollide(q.a.still.get(), q.b.moved.get(), collect, &found);
+        finding collected{pairs};
+        rtcCollide(q.a.still.get(), q.b.moved.get(), collect, &collected);
         require_success(the_device());
-        found.require_all();
-        // Only now: while it searches, Embree may take denormals for zero.
+        collected.require_all();
+        // Tested only after the search, during which Embree may flush denormals.
         const devillers_guigue_triangle test;
         const std::span<const triangle3f> of_a = q.a.still.triangles();
         const std::span<const triangle3f> of_b = q.b.moved.triangles();
-        found.drop(known, [&](index_pair p) { return !test.intersects(of_a[p.a], of_b[p.b]); });
+        collected.drop(known, [&](index_pair p) { return !test.intersects(of_a[p.a], of_b[p.b]); });
     }
 
     static void collect(void* to, RTCCollision* collisions, unsigned count) {
-        finding& found = *static_cast<finding*>(to);
-        found.note([&] {
-            for (const RTCCollision& c : std::span(collisions, count)) found.pairs.push_back({c.primID0, c.primID1});
+        finding& collected = *static_cast<finding*>(to);
+        collected.note([&] {
+            for (const RTCCollision& c : std::span(collisions, count))
+                collected.pairs.push_back({c.primID0, c.primID1});
         });
     }
 

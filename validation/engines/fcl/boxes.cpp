@@ -11,10 +11,10 @@ namespace aabb {
 
 namespace {
 
-// The size in Debian's libfcl. Wider Eigen alignment than EIGEN_MAX_ALIGN_BYTES=16 gives 256 and corrupts memory.
+// The size in Debian's libfcl. An Eigen alignment above EIGEN_MAX_ALIGN_BYTES=16 gives 256 and corrupts memory.
 static_assert(sizeof(fcl::CollisionObjectd) == 224);
 
-/// An object without geometry, whose box is ours to the bit: FCL would compute boxes of geometries anew, with rounding.
+/// An object without geometry, which keeps our exact box: FCL would recompute boxes of geometries, with rounding.
 class fcl_object final : public fcl::CollisionObjectd {
 public:
     explicit fcl_object(std::uint32_t id) : fcl::CollisionObjectd(nullptr), id_(id) {}
@@ -31,7 +31,7 @@ private:
 
 class fcl_boxes final : public box_engine {
 public:
-    /// Objects and nodes of the tree; FCL's table from one to the other is left out.
+    /// Counts objects and nodes of the tree, but not FCL's map from objects to nodes.
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         const std::size_t n = manager_.size();
         using node = fcl::DynamicAABBTreeCollisionManagerd::DynamicAABBNode;
@@ -55,15 +55,15 @@ private:
     }
 
     void find(std::vector<index_pair>& pairs) override {
-        manager_.collide(&pairs, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* found) {
-            static_cast<std::vector<index_pair>*>(found)->push_back(
+        manager_.collide(&pairs, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* to) {
+            static_cast<std::vector<index_pair>*>(to)->push_back(
                 ordered_pair(static_cast<fcl_object*>(a)->id(), static_cast<fcl_object*>(b)->id()));
             return false;
         });
     }
 
     std::vector<std::unique_ptr<fcl_object>> objects_;  // by id; null where absent
-    fcl::DynamicAABBTreeCollisionManagerd manager_;     // goes first: it points to the objects
+    fcl::DynamicAABBTreeCollisionManagerd manager_;     // destroyed first: it points to the objects
 };
 
 }  // namespace

@@ -13,29 +13,29 @@ namespace aabb {
 
 namespace {
 
-/// A mesh in FCL's tree of bounding volumes.
+/// A mesh as FCL's bounding volume hierarchy.
 template <class Volume>
 class fcl_tree {
 public:
-    /// Refitted where there is one already of these triangles.
+    /// Builds the tree, or refits it if it has the same triangles.
     void build(const mesh& m, std::span<const vec3f> vertices) {
-        // Gone meanwhile: a tree whose refit broke off FCL would take for one amid it, and write beyond its vertices.
-        std::unique_ptr<tree> made = std::move(tree_);
-        if (made && is_of(*made, m)) {
-            require_done(made->beginReplaceModel());
-            for (const vec3f& v : vertices) require_done(made->replaceVertex(in_double(v)));
-            require_done(made->endReplaceModel(true, true));
+        // Removed during the refit: after a failure, FCL would continue it and write beyond the vertices.
+        std::unique_ptr<tree> built = std::move(tree_);
+        if (built && is_of(*built, m)) {
+            require_done(built->beginReplaceModel());
+            for (const vec3f& v : vertices) require_done(built->replaceVertex(in_double(v)));
+            require_done(built->endReplaceModel(true, true));
         } else {
-            std::vector<fcl::Vector3d> at;
-            for (const vec3f& v : vertices) at.push_back(in_double(v));
+            std::vector<fcl::Vector3d> points;
+            for (const vec3f& v : vertices) points.push_back(in_double(v));
             std::vector<fcl::Triangle> triangles;
             for (const auto& t : m.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-            made = std::make_unique<tree>();
-            require_done(made->beginModel(static_cast<int>(triangles.size()), static_cast<int>(at.size())));
-            require_done(made->addSubModel(at, triangles));
-            require_done(made->endModel());
+            built = std::make_unique<tree>();
+            require_done(built->beginModel(static_cast<int>(triangles.size()), static_cast<int>(points.size())));
+            require_done(built->addSubModel(points, triangles));
+            require_done(built->endModel());
         }
-        tree_ = std::move(made);
+        tree_ = std::move(built);
     }
 
     [[nodiscard]] fcl::BVHModel<Volume>& get() const { return *tree_; }
@@ -50,43 +50,43 @@ public:
 private:
     using tree = fcl::BVHModel<Volume>;
 
-    /// FCL would take other vertices for the same ones.
-    [[nodiscard]] static bool is_of(const tree& made, const mesh& m) {
-        const auto same = [](const fcl::Triangle& held, const std::array<std::uint32_t, 3>& t) {
-            return held[0] == t[0] && held[1] == t[1] && held[2] == t[2];
+    /// Whether the tree has the same triangles as the mesh, which FCL does not check in a refit.
+    [[nodiscard]] static bool is_of(const tree& built, const mesh& m) {
+        const auto same = [](const fcl::Triangle& indices, const std::array<std::uint32_t, 3>& t) {
+            return indices[0] == t[0] && indices[1] == t[1] && indices[2] == t[2];
         };
-        const std::span held(made.tri_indices, static_cast<std::size_t>(made.num_tris));
-        return static_cast<std::size_t>(made.num_vertices) == m.vertices.size() &&
-               std::ranges::equal(held, m.triangles, same);
+        const std::span indices(built.tri_indices, static_cast<std::size_t>(built.num_tris));
+        return static_cast<std::size_t>(built.num_vertices) == m.vertices.size() &&
+               std::ranges::equal(indices, m.triangles, same);
     }
 
     [[nodiscard]] static fcl::Vector3d in_double(const vec3f& v) { return {v[0], v[1], v[2]}; }
 
-    /// FCL says by a number that memory ran out, and would go on with half a tree.
+    /// FCL reports a lack of memory by an error code, and would continue with an incomplete tree.
     static void require_done(int code) {
         if (code != fcl::BVH_OK) throw std::bad_alloc();
     }
 
-    std::unique_ptr<tree> tree_;  // none after a build that broke off
+    std::unique_ptr<tree> tree_;  // null after a failed build
 };
 
 template <class Volume>
 struct fcl_model : engine_model {
     fcl_tree<Volume> still{};
-    fcl_tree<Volume> moved{};  ///< in the frame of another model, where FCL takes no poses
-    posed_pair poses{};        ///< of that model and this one there
+    fcl_tree<Volume> moved{};  ///< in the frame of another model, for trees without poses
+    posed_pair poses{};        ///< of that model and this one
 
     [[nodiscard]] std::size_t bytes() const { return bytes_of(still, moved); }
 };
 
-/// What the engines do alike.
+/// The common part of both engines.
 template <class Volume>
 class fcl_meshes : public model_engine<fcl_model<Volume>> {
 protected:
     using model = fcl_model<Volume>;
     using asked = typename model_engine<model>::asked;
 
-    /// Adds what intersects to the result.
+    /// Adds the intersecting pairs to the result.
     virtual void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) = 0;
 
 private:
@@ -110,7 +110,7 @@ private:
         return {static_cast<std::uint32_t>(contact.b1), static_cast<std::uint32_t>(contact.b2)};
     }
 
-    /// Without contact points each pair of triangles is reported once.
+    /// Contact points are disabled, so that each pair of triangles is reported once.
     [[nodiscard]] fcl::CollisionResultd collision(const asked& q, std::size_t most) {
         fcl::CollisionRequestd request;
         request.num_max_contacts = most;
@@ -121,24 +121,24 @@ private:
     }
 };
 
-/// Oriented boxes. FCL takes the raw poses, so that no vertex is rounded to float.
+/// Oriented boxes. FCL uses the raw poses, so that no vertex is rounded to float.
 class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
     void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
         fcl::collide(&q.a.still.get(), transform(q.pose_a), &q.b.still.get(), transform(q.pose_b), request, result);
     }
 
     [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
-        fcl::Transform3d all = fcl::Transform3d::Identity();
+        fcl::Transform3d result = fcl::Transform3d::Identity();
         for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j) all.linear()(i, j) = p.rotation[static_cast<std::size_t>(3 * i + j)];
-            all.translation()[i] = p.translation[i];
+            for (int j = 0; j < 3; ++j) result.linear()(i, j) = p.rotation[static_cast<std::size_t>(3 * i + j)];
+            result.translation()[i] = p.translation[i];
         }
-        return all;
+        return result;
     }
 };
 
-/// Axis-aligned boxes, which want both trees in one frame. For these FCL's own call copies and builds them anew in
-/// every query, so its parts are called one by one: B's tree is refitted for each new pose, and kept while that stays.
+/// Axis-aligned boxes, which need both trees in one frame. FCL's own call would copy and rebuild them in each query, so
+/// that this engine calls its parts: B's tree is refitted for each new pose and cached until the pose changes.
 class fcl_axis_aligned final : public fcl_meshes<fcl::AABBd> {
     void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {

@@ -12,15 +12,14 @@ namespace {
 
 struct ccd_triangle {
     ccd_vec3_t corners[3];
-    mutable std::uint32_t questions_left;
+    mutable std::uint32_t calls_left;
 
     template <class Real>
-    explicit ccd_triangle(const triangle3<Real>& t, std::uint32_t questions = 0xffffffff)
-        : corners{}, questions_left(questions) {
+    explicit ccd_triangle(const triangle3<Real>& t, std::uint32_t calls = 0xffffffff) : corners{}, calls_left(calls) {
         for (int i = 0; i < 3; ++i) ccdVec3Set(&corners[i], t[i][0], t[i][1], t[i][2]);
     }
 
-    /// The corner furthest in a direction.
+    /// The support function: the furthest corner in a direction.
     static void support(const void* triangle, const ccd_vec3_t* direction, ccd_vec3_t* furthest) {
         const auto& corners = static_cast<const ccd_triangle*>(triangle)->corners;
         const ccd_vec3_t* best = &corners[0];
@@ -29,11 +28,11 @@ struct ccd_triangle {
         ccdVec3Copy(furthest, best);
     }
 
-    /// The same until it has been asked too often; then a point so far behind that nothing can meet. Without it MPR
-    /// looks for its first portal for ever where both lie in one plane.
+    /// The support function with a limit on calls, after which it returns a point so far behind that no intersection is
+    /// found. Otherwise MPR would search for its first portal forever if the triangles are coplanar.
     static void limited_support(const void* triangle, const ccd_vec3_t* direction, ccd_vec3_t* furthest) {
         support(triangle, direction, furthest);
-        std::uint32_t& left = static_cast<const ccd_triangle*>(triangle)->questions_left;
+        std::uint32_t& left = static_cast<const ccd_triangle*>(triangle)->calls_left;
         if (left > 0) {
             --left;
             return;
@@ -52,10 +51,10 @@ struct ccd_triangle {
     }
 };
 
-/// Without a limit both may cycle on flat differences of triangles; a decision takes about ten iterations.
+/// Without a limit both algorithms may cycle on flat Minkowski differences; a test takes about ten iterations.
 constexpr std::uint32_t enough_iterations = 1000;
 
-[[nodiscard]] ccd_t questions(std::uint32_t iterations) {
+[[nodiscard]] ccd_t settings_for(std::uint32_t iterations) {
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = &ccd_triangle::support;
@@ -79,7 +78,7 @@ public:
     static constexpr std::tuple parameters{integer_parameter{"iterations", &config::iterations, 1U, 1000000U,
                                                              "after which it says that they do not meet"}};
 
-    explicit gjk_test(const config& c) : ccd_(questions(c.iterations)) {}
+    explicit gjk_test(const config& c) : ccd_(settings_for(c.iterations)) {}
 
     template <class Real>
     [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const {
@@ -100,7 +99,7 @@ public:
     static constexpr bool exact = false;
 
     struct config {
-        double tolerance = 1e-4;  ///< libccd's own
+        double tolerance = 1e-4;  ///< libccd's default
         std::uint32_t iterations = enough_iterations;
     };
     static constexpr std::tuple parameters{
@@ -108,7 +107,7 @@ public:
         integer_parameter{"iterations", &config::iterations, 1U, 1000000U,
                           "after which it says that they do not meet"}};
 
-    explicit mpr_test(const config& c) : ccd_(questions(c.iterations)), iterations_(c.iterations) {
+    explicit mpr_test(const config& c) : ccd_(settings_for(c.iterations)), iterations_(c.iterations) {
         ccd_.mpr_tolerance = c.tolerance;
         ccd_.support1 = &ccd_triangle::limited_support;
     }

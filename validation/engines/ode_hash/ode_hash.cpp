@@ -10,7 +10,7 @@ namespace aabb {
 
 namespace {
 
-/// A box as ODE has boxes: the lower and the upper end on each axis in turn.
+/// A box in ODE's layout: the lower and the upper end for each axis.
 struct numbered {
     std::array<dReal, 6> ends;
     std::uint32_t id;
@@ -20,10 +20,10 @@ numbered& data_of(dGeomID geom) {
     return *static_cast<numbered*>(dGeomGetClassData(geom));
 }
 
-/// A class of objects whose boxes are ours to the bit: of its own, ODE would compute boxes with rounding. ODE has room
-/// for few classes, and keeps them while the process lives.
+/// A geometry class that keeps our exact boxes: for its own classes, ODE would compute boxes with rounding. ODE
+/// supports few classes and keeps them for the lifetime of the process.
 int class_of_boxes() {
-    static const int made = [] {
+    static const int box_class = [] {
         if (!dInitODE2(0) || !dAllocateODEDataForThread(dAllocateMaskAll)) throw std::bad_alloc();
         dGeomClass boxes{};
         boxes.bytes = sizeof(numbered);
@@ -31,7 +31,7 @@ int class_of_boxes() {
         boxes.aabb = [](dGeomID geom, dReal* ends) { std::ranges::copy(data_of(geom).ends, ends); };
         return dCreateGeomClass(&boxes);
     }();
-    return made;
+    return box_class;
 }
 
 struct release {
@@ -40,23 +40,23 @@ struct release {
 };
 using space_handle = std::unique_ptr<dxSpace, release>;
 
-/// Boxes in a space of ODE's, which compares them as they are, in double.
+/// Boxes in one of ODE's spaces, which compares them exactly, in double.
 class ode_boxes : public box_engine {
 public:
-    /// @param unit of the coordinates that ODE sees, a power of two, so that nothing is rounded.
+    /// @param unit scales the coordinates for ODE; a power of two, so that scaling is exact.
     explicit ode_boxes(dReal unit) : unit_(unit) {}
 
-    /// Without what ODE's classes hold beside position, rotation, box and our data, which it does not say.
+    /// Counts position, rotation, box and our data, but not ODE's other members, whose size is not public.
     [[nodiscard]] std::vector<part_bytes> bytes() const final {
-        constexpr std::size_t one = sizeof(dVector3) + sizeof(dMatrix3) + 6 * sizeof(dReal) + sizeof(numbered);
-        const std::size_t all = space_ ? static_cast<std::size_t>(dSpaceGetNumGeoms(space_.get())) : 0;
-        return {{"engine", bytes_of(boxes_, geoms_) + all * one}};
+        constexpr std::size_t per_box = sizeof(dVector3) + sizeof(dMatrix3) + 6 * sizeof(dReal) + sizeof(numbered);
+        const std::size_t boxes = space_ ? static_cast<std::size_t>(dSpaceGetNumGeoms(space_.get())) : 0;
+        return {{"engine", bytes_of(boxes_, geoms_) + boxes * per_box}};
     }
 
 protected:
     /// Makes an empty space for boxes like these.
     [[nodiscard]] virtual space_handle make_space(std::span<const numbered> boxes) const = 0;
-    /// Before each search.
+    /// Called before each search.
     virtual void prepare(dSpaceID space, std::span<const numbered> boxes) const = 0;
 
 private:
@@ -72,7 +72,7 @@ private:
         fill();
     }
 
-    /// Brings the space up to the boxes.
+    /// Updates the space to the boxes.
     void fill() {
         if (boxes_.empty()) return;
         if (!space_) {
@@ -80,14 +80,14 @@ private:
             dSpaceSetCleanup(space_.get(), 0);
         }
         if (geoms_.size() <= boxes_.back().id) geoms_.resize(std::size_t{boxes_.back().id} + 1);
-        for (const numbered& one : boxes_) {
-            auto& geom = geoms_[one.id];
+        for (const numbered& entry : boxes_) {
+            auto& geom = geoms_[entry.id];
             if (!geom) {
                 geom.reset(dCreateGeom(class_of_boxes()));
                 dSpaceAdd(space_.get(), geom.get());
             }
-            data_of(geom.get()) = one;
-            // Tells ODE to ask for the box again.
+            data_of(geom.get()) = entry;
+            // Marks the box as changed.
             dGeomSetPosition(geom.get(), 0, 0, 0);
         }
         prepare(space_.get(), boxes_);
@@ -96,24 +96,24 @@ private:
     void find(std::vector<index_pair>& pairs) final {
         if (!space_) fill();
         if (boxes_.size() < 2) return;
-        finding found{pairs};
+        finding collected{pairs};
         try {
-            dSpaceCollide(space_.get(), &found, collect);
+            dSpaceCollide(space_.get(), &collected, collect);
         } catch (...) {
             abandon();
             throw;
         }
-        found.require_all();
+        collected.require_all();
     }
 
-    /// Where an exception passed through it, ODE would stay locked.
+    /// Must not throw, since ODE would stay locked.
     static void collect(void* to, dGeomID a, dGeomID b) {
-        finding& found = *static_cast<finding*>(to);
-        found.note([&] { found.pairs.push_back(ordered_pair(data_of(a).id, data_of(b).id)); });
+        finding& collected = *static_cast<finding*>(to);
+        collected.note([&] { collected.pairs.push_back(ordered_pair(data_of(a).id, data_of(b).id)); });
     }
 
-    /// A space that ran out of memory while it searched stays locked, and ODE ends the process of who touches it or its
-    /// objects again. So they are left as they are, and the next search begins with others.
+    /// A space that runs out of memory in a search stays locked, and ODE aborts the process on any further access to it
+    /// or its objects. So they are leaked, and the next search creates new ones.
     void abandon() {
         // NOLINTBEGIN(bugprone-unused-return-value)
         for (auto& geom : geoms_) (void)geom.release();
@@ -124,12 +124,12 @@ private:
     dReal unit_;
     std::vector<numbered> boxes_;
     space_handle space_;
-    std::vector<std::unique_ptr<dxGeom, release>> geoms_;  // by id; null where absent. Go first: they leave the space
+    std::vector<std::unique_ptr<dxGeom, release>> geoms_;  // by id, null if absent; destroyed before the space
 };
 
-/// In a unit in which every cell is smaller than 1. Where they are not, ODE may store a box in one place and look for
-/// it in another: it computes the place of the first cell of a column, and that of the next by adding 1, which is not
-/// the same where the first number is below zero and without a sign.
+/// The hashed grid, in a unit in which all cells are smaller than 1. With larger cells, ODE may store a box in one
+/// place and look it up in another: it computes the first cell of a column and increments for the next ones, which
+/// gives another place if the first number is negative but unsigned.
 class ode_hash final : public ode_boxes {
 public:
     ode_hash() : ode_boxes(dReal{0x1p-160}) {}
@@ -139,7 +139,7 @@ private:
         return space_handle(dHashSpaceCreate(nullptr));
     }
 
-    /// Cells as large as objects, from the smallest to the largest, and large enough to be counted by an int.
+    /// Cell sizes from the smallest to the largest object, limited so that cell indices fit into an int.
     void prepare(dSpaceID space, std::span<const numbered> boxes) const override {
         constexpr std::size_t most = (std::size_t{1} << 17) - 1;
         if (boxes.size() > most)
@@ -151,7 +151,7 @@ private:
         for (const auto& [ends, id] : boxes) {
             for (const dReal end : ends) farthest = std::max(farthest, std::abs(end));
             const dReal extent = std::max({ends[1] - ends[0], ends[3] - ends[2], ends[5] - ends[4]});
-            // Points have no size; ODE compares each with all.
+            // Points have no size; ODE compares each with all boxes.
             if (extent == 0) continue;
             least = std::min(least, level_of(extent));
             greatest = std::max(greatest, level_of(extent));
@@ -160,7 +160,7 @@ private:
         dHashSpaceSetLevels(space, least, std::max(least, greatest));
     }
 
-    /// Of cells of 2^level: the least that is greater than this.
+    /// The level of the smallest cells, of edge 2^level, that are larger than the extent.
     static int level_of(dReal extent) { return std::ilogb(extent) + 1; }
 };
 
@@ -169,13 +169,13 @@ public:
     ode_sap() : ode_boxes(1) {}
 
 private:
-    /// Sweeps along the axis on which most is to be told apart.
+    /// Sweeps along the axis with the largest extent of the scene.
     [[nodiscard]] space_handle make_space(std::span<const numbered> boxes) const override {
         std::array<dReal, 3> extents{};
         std::array<int, 3> axes{};
         for (int k = 0; k < 3; ++k) {
             const std::size_t low = 2 * static_cast<std::size_t>(k);
-            const auto lower_end = [&](const numbered& one) { return one.ends[low]; };
+            const auto lower_end = [&](const numbered& entry) { return entry.ends[low]; };
             const auto [first, last] = std::ranges::minmax_element(boxes, {}, lower_end);
             extents[static_cast<std::size_t>(k)] = lower_end(*last) - lower_end(*first);
             axes[static_cast<std::size_t>(k)] = k;
