@@ -8,7 +8,7 @@ selection limited(const std::string& limit, const std::string& segments) {
     return {{kind::partition, "axial_cut:axes=2,limit=" + limit + ",segments=" + segments}};
 }
 
-/// Where no box would be cut twice, the limit changes nothing.
+/// Whether the limit changes the cut: no box might be cut twice anyway.
 bool limit_acts(const condition& c, const std::string& segments) {
     const auto with = median_of(c, limited("on", segments), measured("segments_got"));
     const auto without = median_of(c, limited("off", segments), measured("segments_got"));
@@ -18,28 +18,28 @@ bool limit_acts(const condition& c, const std::string& segments) {
 }  // namespace
 
 draft c10_claim(const measurements& m) {
-    draft made{{.claim = "Cutting a box more than once on an axis does not pay",
-                .measured = "time a frame of axial_cut with its limit over that without, where the limit acts",
-                .experiments = {"c10"}},
-               {{{"span", "0.5"}, {"huge", "10"}}}};
+    draft c10{{.claim = "Cutting a box more than once on an axis does not pay",
+               .measured = "time a frame of axial_cut with its limit over that without, where the limit acts",
+               .experiments = {"c10"}},
+              {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.of("c10"))
         for (const std::string segments : {"auto", "32"}) {
             if (!limit_acts(c, segments)) continue;
             const std::string subject = value_of(c.of(), "span").empty() ? "with that limit on mixed sizes"
                                                                          : "with at most one cut of huge boxes";
-            made.add(told(endpoint_of(c, limited("on", segments), limited("off", segments), "frame_cpu_ms",
-                                      {{"segments", segments}}),
-                          subject + (segments == "auto" ? "" : " and 32 segments")));
+            c10.add(told(endpoint_of(c, limited("on", segments), limited("off", segments), "frame_cpu_ms",
+                                     {{"segments", segments}}),
+                         subject + (segments == "auto" ? "" : " and 32 segments")));
         }
-    figure& f = made.claim.figures.emplace_back(log_log(
+    figure& f = c10.claim.figures.emplace_back(log_log(
         "c10",
         "Time of global search with at most one cut of a box on an axis, over that without the limit (the level "
         "1), with the automatic number of segments, against the number of huge objects, by their edge over the side "
         "of the world; 95 % intervals.",
         "huge objects", "time with the limit over that without"));
-    f.lines = lines_by_span(made.endpoints, {{"segments", "auto"}});
+    f.lines = lines_by_span(c10.endpoints, {{"segments", "auto"}});
     f.lines.push_back(level_of("any number of cuts"));
-    return made;
+    return c10;
 }
 
 }  // namespace aabblab

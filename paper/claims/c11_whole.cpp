@@ -11,7 +11,7 @@ const std::vector<method> methods{{"traditional in both stages", traditional.wit
                                   {"improved local detection", traditional.with(kind::tree, compressed)},
                                   {"improved in both", improved.with(kind::tree, compressed)}};
 
-/// Of the traditional method's time, in per cent.
+/// The broad phase's share of the traditional method's time, in percent.
 std::optional<double> global_share(const condition& c) {
     return median_of(c, methods[0].who, measured("global_share"));
 }
@@ -30,33 +30,33 @@ std::string share_text(const condition& c) {
     return share ? fmt::format("{:.2g} %", *share) : "an unknown share";
 }
 
-/// Simple models, as many as there are in both sizes.
+/// The condition with simple models, which both experiment sizes have.
 const factors far_apart{{"density", "0.001"}, {"objects", "100000"}};
 
 }  // namespace
 
 draft c11_claim(const measurements& m) {
-    draft made{{.claim = "The whole improved algorithm takes less time than the traditional one on the same models",
-                .measured = "time a frame of both stages, shell + axial_cut + compressed over insertion + none + "
-                            "canonical",
-                .experiments = {"c11"}},
-               {large_crowd, far_apart}};
-    claim_result& claim = made.claim;
+    draft c11{{.claim = "The whole improved algorithm takes less time than the traditional one on the same models",
+               .measured = "time a frame of both stages, shell + axial_cut + compressed over insertion + none + "
+                           "canonical",
+               .experiments = {"c11"}},
+              {large_crowd, far_apart}};
+    claim_result& claim = c11.claim;
     const std::vector<condition>& conditions = m.of("c11");
     for (const condition& c : conditions) {
         const std::string density = value_of(c.of(), "density");
-        made.add(told(endpoint_of(c, methods[3].who, methods[0].who, "frame_cpu_ms"),
-                      density == "0.3"    ? "where detailed models touch"
-                      : density == "0.05" ? "with many small models"
-                                          : "with simple models far apart",
-                      "objects"));
+        c11.add(told(endpoint_of(c, methods[3].who, methods[0].who, "frame_cpu_ms"),
+                     density == "0.3"    ? "where detailed models touch"
+                     : density == "0.05" ? "with many small models"
+                                         : "with simple models far apart",
+                     "objects"));
         if (has(c.of(), large_crowd))
             claim.remark =
                 "Of the traditional method's time global search takes " + share_text(c) + " where models touch";
         else if (has(c.of(), far_apart) && !claim.remark.empty())
             claim.remark += ", and " + share_text(c) + " with 100,000 simple ones far apart";
     }
-    if (conditions.empty()) return made;
+    if (conditions.empty()) return c11;
     if (!claim.remark.empty()) claim.remark += ".";
     claim.tables.push_back(
         {"c11_stages", "Time a frame of both stages over that of the traditional method.", half_steps(conditions)});
@@ -67,7 +67,7 @@ draft c11_claim(const measurements& m) {
                 "objects", "time a frame (ms)"));
     f.lines = series_of(methods, having(conditions, {{"meshes", mesh_of(conditions.back())}}), "objects",
                         measured("frame_cpu_ms"));
-    return made;
+    return c11;
 }
 
 }  // namespace aabblab

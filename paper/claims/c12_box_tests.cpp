@@ -3,24 +3,24 @@ module aabblab.claims;
 namespace aabblab {
 
 draft c12_claim(const measurements& m) {
-    draft made{{.claim = "The axial cut avoids needless tests of boxes",
-                .measured = "tests of two boxes in a frame, axial_cut over none, both with shell",
-                .experiments = {"figure1", "three_lists"}},
-               {drifting}};
+    draft c12{{.claim = "The axial cut avoids needless tests of boxes",
+               .measured = "tests of two boxes in a frame, axial_cut over none, both with shell",
+               .experiments = {"figure1", "three_lists"}},
+              {drifting}};
     for (const condition& c : m.of("figure1"))
-        made.add(told(endpoint_of(c, improved, uncut, "box_tests"),
-                      is_brownian(c) ? "on drifting boxes" : "in other scenes", "", quantity::box_tests));
+        c12.add(told(endpoint_of(c, improved, uncut, "box_tests"),
+                     is_brownian(c) ? "on drifting boxes" : "in other scenes", "", quantity::box_tests));
     for (const condition& c : m.of("three_lists"))
-        made.add(told(endpoint_of(c, improved.with(kind::sweep, "all_axes"), uncut.with(kind::sweep, "all_axes"),
-                                  "box_tests", {{"sweep", "all_axes"}}),
-                      "with three sorted lists", "", quantity::box_tests));
-    figure& f = made.claim.figures.emplace_back(
+        c12.add(told(endpoint_of(c, improved.with(kind::sweep, "all_axes"), uncut.with(kind::sweep, "all_axes"),
+                                 "box_tests", {{"sweep", "all_axes"}}),
+                     "with three sorted lists", "", quantity::box_tests));
+    figure& f = c12.claim.figures.emplace_back(
         log_log("c12", "Tests of two boxes in a frame against the number of objects, with the axial cut and without.",
                 "objects", "box tests a frame"));
     const method methods[] = {{"no cut", uncut}, {"axial cut", improved}};
     f.lines = series_of(methods, having(m.of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}}), "objects",
                         measured("box_tests"));
-    return made;
+    return c12;
 }
 
 }  // namespace aabblab

@@ -4,37 +4,37 @@ namespace aabblab {
 
 namespace {
 
-/// As SMB has it: lists sorted by diminishing increments, every axis cut.
+/// The composition of SMB: lists sorted by diminishing increments, every axis cut.
 const selection smb{{kind::sort, "shell"}, {kind::partition, "axial_cut:axes=3"}, {kind::sweep, "one_axis"}};
 
-/// A box's share in one condition over that in another, both with the same method.
+/// The cost per box in one condition over that in another, both with the same composition.
 endpoint compared(const condition& large, const condition& small, const std::string& factor, quantity what) {
     const bool is_time = what == quantity::time;
     const row_value a_box =
         an_object(is_time ? measured("frame_cpu_ms") : bytes_of({"projections", "partition", "sweep"}));
-    endpoint made;
-    made.where = large.of();
-    made.where.emplace_back("quantity", is_time ? "time" : "memory");
-    made.where.emplace_back("over", factor + " " + value_of(small.of(), factor));
-    made.log_ratios = {between(large.logs(smb, a_box), small.logs(smb, a_box))};
-    made.source = large.experiment() + (is_time ? ": frame_cpu_ms" : ": bytes") + " an object of " + text_of(smb);
-    return made;
+    endpoint ratio;
+    ratio.where = large.of();
+    ratio.where.emplace_back("quantity", is_time ? "time" : "memory");
+    ratio.where.emplace_back("over", factor + " " + value_of(small.of(), factor));
+    ratio.log_ratios = {between(large.logs(smb, a_box), small.logs(smb, a_box))};
+    ratio.source = large.experiment() + (is_time ? ": frame_cpu_ms" : ": bytes") + " an object of " + text_of(smb);
+    return ratio;
 }
 
 }  // namespace
 
 draft c13_claim(const measurements& m) {
-    // What is allocated grows in steps, so that ratios of bytes say less.
-    draft made{{.claim = "Sorted and cut lists take time and memory in proportion to N, whatever sizes, space and "
-                         "density, up to ten times",
-                .measured = "time a frame and box, and bytes a box, of shell + axial_cut on three axes with more "
-                            "boxes, denser ones, or sizes more unlike, over those with the least (SMB: Li, Feng and "
-                            "Owen 2006)",
-                .lead = "For each box",
-                .experiments = {"smb_objects", "smb_density", "smb_sizes"}},
-               {{{"quantity", "time"}, {"objects", "100000"}, {"over", "objects 1000"}},
-                {{"quantity", "time"}, {"density", "0.1"}, {"over", "density 0.01"}},
-                {{"quantity", "time"}, {"ratio", "10"}, {"over", "ratio 1.01"}}}};
+    // Allocations grow in steps, so that ratios of bytes are less precise and only secondary.
+    draft c13{{.claim = "Sorted and cut lists take time and memory in proportion to N, whatever sizes, space and "
+                        "density, up to ten times",
+               .measured = "time a frame and box, and bytes a box, of shell + axial_cut on three axes with more "
+                           "boxes, denser ones, or sizes more unlike, over those with the least (SMB: Li, Feng and "
+                           "Owen 2006)",
+               .lead = "For each box",
+               .experiments = {"smb_objects", "smb_density", "smb_sizes"}},
+              {{{"quantity", "time"}, {"objects", "100000"}, {"over", "objects 1000"}},
+               {{"quantity", "time"}, {"density", "0.1"}, {"over", "density 0.01"}},
+               {{"quantity", "time"}, {"ratio", "10"}, {"over", "ratio 1.01"}}}};
     const struct {
         const char* experiment;
         const char* factor;
@@ -48,17 +48,17 @@ draft c13_claim(const measurements& m) {
             std::ranges::min_element(conditions, {}, [&](const condition& c) { return number_of(c.of(), factor); });
         for (const quantity what : {quantity::time, quantity::bytes})
             for (const condition& c : conditions)
-                if (&c != &*least) made.add(told(compared(c, *least, factor, what), subject, factor, what));
+                if (&c != &*least) c13.add(told(compared(c, *least, factor, what), subject, factor, what));
     }
-    figure& f = made.claim.figures.emplace_back(
+    figure& f = c13.claim.figures.emplace_back(
         log_log("c13",
                 "Time of global search a box against the number of boxes, with every axis cut and without a cut; a "
                 "level line is O(N). Medians and quartiles.",
                 "objects", "time a frame and box (ms)"));
     const method methods[] = {{"every axis cut", smb}, {"no cut", uncut}};
-    if (const std::vector<condition>& all = m.of("smb_objects"); !all.empty())
-        f.lines = series_of(methods, having(all, {}), "objects", an_object(measured("frame_cpu_ms")));
-    return made;
+    if (const std::vector<condition>& conditions = m.of("smb_objects"); !conditions.empty())
+        f.lines = series_of(methods, having(conditions, {}), "objects", an_object(measured("frame_cpu_ms")));
+    return c13;
 }
 
 }  // namespace aabblab

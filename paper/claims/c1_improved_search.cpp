@@ -4,7 +4,7 @@ namespace aabblab {
 
 namespace {
 
-/// The classic sort and sweep, which keeps its pairs from frame to frame.
+/// The classic incremental sweep and prune (Cohen et al., I-COLLIDE, 1995), which keeps its pairs from frame to frame.
 const selection incremental = traditional.with(kind::sweep, "incremental");
 
 const std::vector<method> methods{{"insertion sort (traditional)", traditional},
@@ -13,7 +13,7 @@ const std::vector<method> methods{{"insertion sort (traditional)", traditional},
                                   {"Shell sort, axial cut (improved)", improved},
                                   {"insertion sort, incremental", incremental}};
 
-/// Where a scene that is not the drifting one is told.
+/// The phrase for scenes other than the drifting one.
 std::string subject_of(const condition& c) {
     const std::string scene = value_of(c.of(), "scene");
     return scene == "clustered"     ? "in clusters"
@@ -23,7 +23,7 @@ std::string subject_of(const condition& c) {
                                     : "where every box jumps";
 }
 
-/// Which half brings the gain: the ratio of every method to the traditional one.
+/// The ratio of every method to the traditional one, which shows the gain of each half-step.
 table half_steps(const std::vector<condition>& conditions) {
     table t = place_table(places_of(conditions));
     add_ratios(t, conditions, methods);
@@ -33,12 +33,12 @@ table half_steps(const std::vector<condition>& conditions) {
 }  // namespace
 
 draft c1_claim(const measurements& m) {
-    draft made{{.claim = "Shell sort with axial cut takes less time in global search than insertion sort without",
-                .measured = "time a frame of shell + axial_cut over that of insertion + none, both swept with "
-                            "one_axis, or both with all_axes; and over that of insertion + incremental",
-                .experiments = {"figure1", "three_lists"}},
-               {{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}, {"over", ""}},
-                {{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.001"}, {"over", "incremental"}}}};
+    draft c1{{.claim = "Shell sort with axial cut takes less time in global search than insertion sort without",
+              .measured = "time a frame of shell + axial_cut over that of insertion + none, both swept with "
+                          "one_axis, or both with all_axes; and over that of insertion + incremental",
+              .experiments = {"figure1", "three_lists"}},
+             {{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}, {"over", ""}},
+              {{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.001"}, {"over", "incremental"}}}};
     const std::vector<condition>& conditions = m.of("figure1");
     const auto over_traditional = [](const condition& c, const std::string& subject, const std::string& along = "") {
         return told(endpoint_of(c, improved, traditional, "frame_cpu_ms"), subject, along);
@@ -46,32 +46,32 @@ draft c1_claim(const measurements& m) {
     const std::vector<const condition*> of_all_sizes =
         having(conditions, {{"scene", "brownian"}, {"displacement", "0.1"}});
     const std::vector<const condition*> large = having(conditions, {{"scene", "brownian"}, {"objects", "10000"}});
-    for (const condition* c : of_all_sizes) made.add(over_traditional(*c, "on drifting boxes", "objects"));
+    for (const condition* c : of_all_sizes) c1.add(over_traditional(*c, "on drifting boxes", "objects"));
     for (const condition* c : large)
-        if (!has(c->of(), drifting)) made.add(over_traditional(*c, "on 10,000 drifting boxes", "displacement"));
-    // Both with the paper's three lists, each sorted and swept.
+        if (!has(c->of(), drifting)) c1.add(over_traditional(*c, "on 10,000 drifting boxes", "displacement"));
+    // Both compositions with the paper's three lists, each sorted and swept.
     for (const condition& c : m.of("three_lists"))
-        made.add(told(endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
-                                  "frame_cpu_ms", {{"sweep", "all_axes"}}),
-                      "with three sorted lists", "displacement"));
+        c1.add(told(endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
+                                "frame_cpu_ms", {{"sweep", "all_axes"}}),
+                    "with three sorted lists", "displacement"));
     for (const condition* c : large)
-        made.add(told(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
-                      "against the classic incremental sweep", "displacement"));
+        c1.add(told(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
+                    "against the classic incremental sweep", "displacement"));
     for (const condition& c : conditions)
-        if (!is_brownian(c)) made.add(over_traditional(c, subject_of(c)));
+        if (!is_brownian(c)) c1.add(over_traditional(c, subject_of(c)));
     for (const condition* c : having(conditions, drifting))
-        made.beside = {
+        c1.beside = {
             told(endpoint_of(*c, methods[1].who, traditional, "frame_cpu_ms"), "with the cut alone at 10,000 boxes"),
             told(endpoint_of(*c, methods[2].who, traditional, "frame_cpu_ms"), "with Shell sort alone")};
-    made.claim.tables.push_back(
+    c1.claim.tables.push_back(
         {"figure1", "Time a frame as a ratio to the traditional method, with 95 % intervals.", half_steps(conditions)});
-    figure& f = made.claim.figures.emplace_back(log_log(
+    figure& f = c1.claim.figures.emplace_back(log_log(
         "figure1",
         "Time of global search against the number of objects: the traditional method, the improved one, and the "
         "half-steps between. Cubes that drift up to a tenth of their edge in a frame; medians and quartiles.",
         "objects", "time a frame (ms)"));
     f.lines = series_of(methods, of_all_sizes, "objects", measured("frame_cpu_ms"));
-    return made;
+    return c1;
 }
 
 }  // namespace aabblab

@@ -8,7 +8,7 @@ namespace {
 
 const std::vector<std::string> gap_sequences{"ciura", "ciura_eight", "four_one", "tokuda", "shell"};
 
-/// 0 where they were not counted.
+/// Inversions per element; 0 if they were not counted.
 double disorder_of(const condition& c) {
     return inversions_of(c).value_or(0);
 }
@@ -20,7 +20,7 @@ endpoint over_insertion(const condition& c, const std::string& gaps) {
     return ratio;
 }
 
-/// Every sequence of gaps in every condition, by inversions.
+/// All gap sequences in all conditions, ordered by inversions.
 table map_of(const std::vector<condition>& conditions) {
     std::vector<const condition*> ordered = having(conditions, {});
     std::ranges::stable_sort(ordered, {}, [](const condition* c) { return disorder_of(*c); });
@@ -60,25 +60,25 @@ figure figure_of(const std::vector<condition>& conditions) {
 }  // namespace
 
 draft c3_claim(const measurements& m) {
-    // Few inversions and many. As many as boxes on a line that move by 300 edges have 100,000 in space that move by one
-    // (186 an element, in full runs), for a hundredth of the time.
-    draft made{{.claim = "Shell sort beats insertion sort under temporal coherence",
-                .measured = "time to take and sort the boxes of a frame, shell with Ciura's gaps over insertion",
-                .experiments = {"c3"}},
-               {drifting, {{"scene", "line"}, {"objects", "100000"}, {"displacement", "300"}}}};
+    // Few inversions and many. Boxes on a line that move by 300 edges have as many as 100,000 boxes in space that move
+    // by one (186 per element in full runs), and take a hundredth of the time.
+    draft c3{{.claim = "Shell sort beats insertion sort under temporal coherence",
+              .measured = "time to take and sort the boxes of a frame, shell with Ciura's gaps over insertion",
+              .experiments = {"c3"}},
+             {drifting, {{"scene", "line"}, {"objects", "100000"}, {"displacement", "300"}}}};
     const std::vector<condition>& conditions = m.of("c3");
     for (const bool in_space : {true, false})
         for (const condition& c : conditions)
             if (is_brownian(c) == in_space)
-                made.add(told(over_insertion(c, "ciura"),
-                              "on " + number_text(value_of(c.of(), "objects")) +
-                                  (in_space ? " boxes in space" : " boxes on a line"),
-                              "inversions"));
-    if (conditions.empty()) return made;
-    made.claim.tables.push_back(
+                c3.add(told(over_insertion(c, "ciura"),
+                            "on " + number_text(value_of(c.of(), "objects")) +
+                                (in_space ? " boxes in space" : " boxes on a line"),
+                            "inversions"));
+    if (conditions.empty()) return c3;
+    c3.claim.tables.push_back(
         {"c3_map", "Time over that of insertion sort, with each sequence of gaps, by inversions.", map_of(conditions)});
-    made.claim.figures.push_back(figure_of(conditions));
-    return made;
+    c3.claim.figures.push_back(figure_of(conditions));
+    return c3;
 }
 
 }  // namespace aabblab

@@ -14,17 +14,17 @@ selection cut_into(int axes, const std::string& segments) {
             {kind::sweep, "one_axis"}};
 }
 
-/// Segments on each axis that was cut; empty where it was not measured.
+/// The segments per cut axis; empty if not measured.
 std::optional<double> segments_got(const condition& c, int axes, int wanted) {
     const auto got = median_of(c, cut_into(axes, std::to_string(wanted)), measured("segments_got"));
     return got ? std::optional(*got / axes) : std::nullopt;
 }
 
-/// The limit leaves a finer cut as it is: it makes hardly a segment more.
+/// Whether more wanted segments give more real ones, which the limit of one cut per box may prevent.
 bool is_finer(const condition& c, int axes, int wanted, int before) {
-    const auto now = segments_got(c, axes, wanted);
-    const auto then = segments_got(c, axes, before);
-    return now && then && *now > 1.1 * *then;
+    const auto segments = segments_got(c, axes, wanted);
+    const auto coarser = segments_got(c, axes, before);
+    return segments && coarser && *segments > 1.1 * *coarser;
 }
 
 figure figure_of(const std::string& name, const condition& c) {
@@ -48,7 +48,7 @@ figure figure_of(const std::string& name, const condition& c) {
     return f;
 }
 
-/// Segments need not be tiny: what the automatic choice leaves on the table.
+/// The automatic number of segments compared with the limit: segments need not be tiny.
 table automatic(const std::vector<condition>& conditions) {
     table t = place_table(places_of(conditions));
     const std::vector<std::vector<std::string>> places = std::exchange(t.rows, {});
@@ -70,60 +70,60 @@ table automatic(const std::vector<condition>& conditions) {
 }  // namespace
 
 draft c4_claim(const measurements& m) {
-    draft made{{.claim = "The more segments, the faster, up to the limit; and segments need not be tiny",
-                .measured = "time a frame at the limit of one cut a box over that with eight segments on each axis; "
-                            "with more segments over that with the next fewer, up to the limit; and with the automatic "
-                            "number over that at the limit",
-                .experiments = {"c4"}},
-               {{{"scene", "brownian"}, {"axes", "2"}, {"segments", "the limit"}},
-                {{"scene", "brownian"}, {"axes", "3"}, {"segments", "the limit"}},
-                {{"scene", "brownian"}, {"axes", "2"}, {"segments", "auto"}},
-                {{"scene", "brownian"}, {"axes", "3"}, {"segments", "auto"}}}};
+    draft c4{{.claim = "The more segments, the faster, up to the limit; and segments need not be tiny",
+              .measured = "time a frame at the limit of one cut a box over that with eight segments on each axis; "
+                          "with more segments over that with the next fewer, up to the limit; and with the automatic "
+                          "number over that at the limit",
+              .experiments = {"c4"}},
+             {{{"scene", "brownian"}, {"axes", "2"}, {"segments", "the limit"}},
+              {{"scene", "brownian"}, {"axes", "3"}, {"segments", "the limit"}},
+              {{"scene", "brownian"}, {"axes", "2"}, {"segments", "auto"}},
+              {{"scene", "brownian"}, {"axes", "3"}, {"segments", "auto"}}}};
     const std::vector<condition>& conditions = m.of("c4");
     const auto for_each_cut = [&](auto take) {
         for (const condition& c : conditions)
             for (int axes = 1; axes <= 3; ++axes) take(c, axes);
     };
-    /// What stands for a number of segments among its factors is the number, or "the limit".
+    /// A number of segments and its name among the factors: the number itself, or "the limit".
     struct segments {
         std::string number;
         std::string name;
     };
     const segments limit{"256", "the limit"};
-    const auto ratio = [](const condition& c, int axes, const segments& now, const segments& before) {
-        return endpoint_of(c, cut_into(axes, now.number), cut_into(axes, before.number), "frame_cpu_ms",
-                           {{"axes", std::to_string(axes)}, {"segments", now.name}, {"over", before.name}});
+    const auto ratio = [](const condition& c, int axes, const segments& finer, const segments& coarser) {
+        return endpoint_of(c, cut_into(axes, finer.number), cut_into(axes, coarser.number), "frame_cpu_ms",
+                           {{"axes", std::to_string(axes)}, {"segments", finer.name}, {"over", coarser.name}});
     };
     for_each_cut([&](const condition& c, int axes) {
-        made.add(told(ratio(c, axes, limit, {"8", "8"}),
-                      is_brownian(c) ? "on drifting boxes at the limit of one cut a box, against eight segments an axis"
-                                     : "in clusters",
-                      "axes"));
+        c4.add(told(ratio(c, axes, limit, {"8", "8"}),
+                    is_brownian(c) ? "on drifting boxes at the limit of one cut a box, against eight segments an axis"
+                                   : "in clusters",
+                    "axes"));
     });
     for_each_cut([&](const condition& c, int axes) {
         for (std::size_t i = 1; i < segments_wanted.size(); ++i) {
             const int wanted = segments_wanted[i];
             const int before = segments_wanted[i - 1];
-            const std::string now = std::to_string(wanted);
-            const std::string then = std::to_string(before);
-            if (is_finer(c, axes, wanted, before)) made.add(ratio(c, axes, {now, now}, {then, then}));
+            const std::string finer = std::to_string(wanted);
+            const std::string coarser = std::to_string(before);
+            if (is_finer(c, axes, wanted, before)) c4.add(ratio(c, axes, {finer, finer}, {coarser, coarser}));
         }
     });
-    // Segments need not be tiny: those that the automatic choice makes are as good as all that the limit allows.
+    // Segments need not be tiny: the automatic number is as good as the most that the limit allows.
     for_each_cut([&](const condition& c, int axes) {
-        made.add(told(ratio(c, axes, {"auto", "auto"}, limit),
-                      is_brownian(c) ? "with the automatic number of segments, against the limit"
-                                     : "in clusters with the automatic number",
-                      "axes"))
+        c4.add(told(ratio(c, axes, {"auto", "auto"}, limit),
+                    is_brownian(c) ? "with the automatic number of segments, against the limit"
+                                   : "in clusters with the automatic number",
+                    "axes"))
             .expected = expectation::not_more;
     });
-    if (conditions.empty()) return made;
-    made.claim.tables.push_back({"c4_auto",
-                                 "Segments on each axis, and time, with the automatic choice and at the limit.",
-                                 automatic(conditions)});
+    if (conditions.empty()) return c4;
+    c4.claim.tables.push_back({"c4_auto",
+                               "Segments on each axis, and time, with the automatic choice and at the limit.",
+                               automatic(conditions)});
     for (const condition& c : conditions)
-        made.claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.of(), "scene"), c));
-    return made;
+        c4.claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.of(), "scene"), c));
+    return c4;
 }
 
 }  // namespace aabblab

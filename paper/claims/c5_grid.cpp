@@ -13,19 +13,19 @@ selection grid(const std::string& cell) {
     return {{kind::sort, "insertion"}, {kind::partition, "uniform_grid:cell_size=" + cell}, {kind::sweep, "one_axis"}};
 }
 
-/// Those of the config. Not what there are rows of: a size that was wrong everywhere would be forgotten.
+/// The cell sizes of the config. Not those of the rows, which lack a size that was wrong everywhere.
 const std::vector<std::string> cell_sizes{"4", "8", "16", "32", "64"};
 
 row_value all_bytes() {
     return bytes_of({"projections", "partition", "sweep"});
 }
 
-/// A grid of one cell is none.
+/// Whether the grid has more than one cell.
 bool is_grid(const condition& c, const std::string& size) {
     return median_of(c, grid(size), measured("subsets")).value_or(2) > 1;
 }
 
-/// Times of every cell size over that of the axial cut, scene by scene.
+/// Times of all cell sizes over that of the axial cut, by scene.
 class scenes_and_cells {
 public:
     explicit scenes_and_cells(const std::vector<const condition*>& conditions) {
@@ -39,7 +39,7 @@ public:
         }
     }
 
-    /// Those that are a grid in every scene: one of them is the safest.
+    /// The sizes that give a grid in all scenes, among which is the safest one.
     [[nodiscard]] const std::vector<std::string>& sizes() const { return everywhere_; }
 
     [[nodiscard]] double worst_regret(const std::string& size, const resample& d) const {
@@ -48,24 +48,24 @@ public:
     [[nodiscard]] double worst_regret_of_cut(const resample& d) const {
         return worst([&](const auto& scene) { return -best(scene, d); });
     }
-    /// That of the cell size whose worst scene is the least bad.
+    /// The worst regret of the safest cell size.
     [[nodiscard]] double least_worst_regret(const resample& d) const {
         return least_of(everywhere_, [&](const std::string& size) { return worst_regret(size, d); });
     }
 
 private:
-    /// NaN where any is, which was not measured: the others would look better than they are.
-    template <class All, class Value>
-    [[nodiscard]] static double least_of(const All& all, Value value) {
+    /// NaN if any value is NaN, which was not measured: ignoring it would be too optimistic.
+    template <class Range, class Value>
+    [[nodiscard]] static double least_of(const Range& range, Value value) {
         double least = std::numeric_limits<double>::infinity();
-        for (const auto& one : all) {
-            const double here = value(one);
+        for (const auto& element : range) {
+            const double here = value(element);
             if (std::isnan(here)) return here;
             least = std::min(least, here);
         }
         return least;
     }
-    /// Of the cell sizes that are a grid in the scene.
+    /// The best of the cell sizes that give a grid in the scene.
     [[nodiscard]] static double best(const std::map<std::string, cells>& scene, const resample& d) {
         return least_of(scene, [&](const auto& over_cut) { return d.mean_of(over_cut.second); });
     }
@@ -75,7 +75,7 @@ private:
     }
 
     std::vector<std::string> everywhere_;
-    std::vector<std::map<std::string, cells>> over_cut_;  // by scene, of its grids by size
+    std::vector<std::map<std::string, cells>> over_cut_;  // by scene, then cell size
 };
 
 table times(const std::vector<condition>& conditions) {
@@ -94,20 +94,20 @@ table times(const std::vector<condition>& conditions) {
     return t;
 }
 
-/// How bytes, and times over those of the cut, grow with the world. A world that is sparser has fewer pairs, so that
-/// all times fall: only beside another method's can one be said to grow.
-void add_growth(const std::vector<condition>& worlds, draft& made) {
+/// The growth of bytes, and of times relative to the cut, with the world. A sparser world has fewer pairs, so that all
+/// times fall: only relative to another method can they grow.
+void add_growth(const std::vector<condition>& worlds, draft& c5) {
     if (worlds.size() < 2) return;
     const condition& small = worlds.front();
     const condition& large = worlds.back();
     const auto add = [&](const std::string& what, const std::string& subject, const cells& above, const cells& below,
                          quantity compared, expectation expected) {
-        made.add({.where = {{"scene", "brownian"}, {"comparison", what}},
-                  .log_ratios = {between(above, below)},
-                  .expected = expected,
-                  .compared = compared,
-                  .subject = subject,
-                  .source = "c5_world: growth"});
+        c5.add({.where = {{"scene", "brownian"}, {"comparison", what}},
+                .log_ratios = {between(above, below)},
+                .expected = expected,
+                .compared = compared,
+                .subject = subject,
+                .source = "c5_world: growth"});
     };
     const row_value bytes = all_bytes();
     for (const auto& [label, size] : {std::pair{"cells of 2", "2"}, {"cells chosen anew", "auto"}}) {
@@ -123,7 +123,7 @@ void add_growth(const std::vector<condition>& worlds, draft& made) {
         large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
-/// A panel for each number of objects.
+/// A figure with one panel per number of objects.
 figure cell_figure(const std::map<double, std::vector<const condition*>>& by_objects) {
     figure f = log_log(
         "c5",
@@ -147,7 +147,7 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
     return f;
 }
 
-/// How something grows with the world, of a grid and of the cut.
+/// A quantity of a grid and of the cut against the size of the world.
 figure world_figure(const std::string& name, const std::string& what, const std::string& axis,
                     const std::vector<condition>& worlds, const row_value& of) {
     figure f = log_log(name,
@@ -155,8 +155,8 @@ figure world_figure(const std::string& name, const std::string& what, const std:
                            " of global search against the side of the world, for the same 2,000 cubes: a grid of "
                            "one cell size, one that chooses it anew, and the axial cut; medians and quartiles.",
                        "side of the world (edges)", axis);
-    const method all[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
-    for (const auto& [label, who] : all) {
+    const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
+    for (const auto& [label, who] : methods) {
         series s{label};
         for (const condition& c : worlds) {
             const double side = std::cbrt(number_of(c.of(), "objects") / number_of(c.of(), "density"));
@@ -171,51 +171,50 @@ figure world_figure(const std::string& name, const std::string& what, const std:
 
 draft c5_claim(const measurements& m) {
     const std::string over_safest = "axial_cut over the safest cell size";
-    draft made{
-        {.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the "
-                  "space",
-         .measured = "the worst slowdown over four scenes of as many objects, each against its best cell size, "
-                     "of axial_cut over that of the cell size whose worst is the least; a grid of one cell is "
-                     "none",
-         .experiments = {"c5", "c5_world"}},
-        {{{"objects", "1000"}, {"comparison", over_safest}}, {{"objects", "10000"}, {"comparison", over_safest}}}};
+    draft c5{{.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the "
+                       "space",
+              .measured = "the worst slowdown over four scenes of as many objects, each against its best cell size, "
+                          "of axial_cut over that of the cell size whose worst is the least; a grid of one cell is "
+                          "none",
+              .experiments = {"c5", "c5_world"}},
+             {{{"objects", "1000"}, {"comparison", over_safest}}, {{"objects", "10000"}, {"comparison", over_safest}}}};
     std::map<double, std::vector<const condition*>> by_objects;
     for (const condition& c : m.of("c5")) by_objects[number_of(c.of(), "objects")].push_back(&c);
     for (const auto& [number, conditions] : by_objects) {
         const std::string objects = value_of(conditions.front()->of(), "objects");
-        const scenes_and_cells all(conditions);
-        if (all.sizes().empty()) continue;
+        const scenes_and_cells scenes(conditions);
+        if (scenes.sizes().empty()) continue;
         const sample_size size =
-            conditions.front()->log_ratios(grid(all.sizes().front()), cut, measured("frame_cpu_ms")).size();
+            conditions.front()->log_ratios(grid(scenes.sizes().front()), cut, measured("frame_cpu_ms")).size();
         const auto add = [&](const std::string& comparison, const std::string& subject, auto log_ratio,
                              quantity compared, expectation expected) {
-            made.add({.where = {{"scene", "the worst of all"}, {"objects", objects}, {"comparison", comparison}},
-                      .log_ratios = {bootstrap(size, log_ratio)},
-                      .expected = expected,
-                      .compared = compared,
-                      .subject = subject,
-                      .along = "objects",
-                      .source = "c5: regret"});
+            c5.add({.where = {{"scene", "the worst of all"}, {"objects", objects}, {"comparison", comparison}},
+                    .log_ratios = {bootstrap(size, log_ratio)},
+                    .expected = expected,
+                    .compared = compared,
+                    .subject = subject,
+                    .along = "objects",
+                    .source = "c5: regret"});
         };
         add(
             over_safest, "with the cut against the safest cell size, in the worst of four scenes",
-            [&](const resample& d) { return all.worst_regret_of_cut(d) - all.least_worst_regret(d); },
+            [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(
             "axial_cut over each scene's best cell size", "with the cut against each scene's best cell size",
-            [&](const resample& d) { return all.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
+            [&](const resample& d) { return scenes.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
         const resample as_measured(size.processes, size.seeds, level::none, 0);
-        made.claim.remark = fmt::format(
+        c5.claim.remark = fmt::format(
             "With {} objects the safest of the cell sizes takes {:.1f} times the time of the best one in the scene "
             "that suits it least.",
-            number_text(objects), std::exp(all.least_worst_regret(as_measured)));
+            number_text(objects), std::exp(scenes.least_worst_regret(as_measured)));
     }
     const std::vector<condition>& worlds = m.of("c5_world");
-    add_growth(worlds, made);
-    made.claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", times(m.of("c5"))});
-    made.claim.figures = {cell_figure(by_objects), world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()),
-                          world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, measured("frame_cpu_ms"))};
-    return made;
+    add_growth(worlds, c5);
+    c5.claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", times(m.of("c5"))});
+    c5.claim.figures = {cell_figure(by_objects), world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()),
+                        world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, measured("frame_cpu_ms"))};
+    return c5;
 }
 
 }  // namespace aabblab

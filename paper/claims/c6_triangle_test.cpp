@@ -16,15 +16,15 @@ void read_process(const std::filesystem::path& file, std::size_t process, test_t
     const std::string otherwise = "is not a result of Google Benchmark (remove it to measure again)";
     const json_value results(file.string(), text_of_file(file), otherwise);
     if (!results.has("benchmarks")) throw aabb::input_error(file.string() + " " + otherwise);
-    for (const json_value& one : results.objects("benchmarks")) {
-        if (one.text("run_type") != "iteration") continue;
-        const std::string unit = one.text("time_unit").value_or("ns");
-        const json_value time = one.needed("cpu_time");
+    for (const json_value& run : results.objects("benchmarks")) {
+        if (run.text("run_type") != "iteration") continue;
+        const std::string unit = run.text("time_unit").value_or("ns");
+        const json_value time = run.needed("cpu_time");
         const double ns = time.number() * (unit == "us" ? 1e3 : unit == "ms" ? 1e6 : 1);
-        // Ratios are formed of it.
+        // Its logarithm is taken for ratios.
         if (!(ns > 0)) time.fail("must be more than 0");
-        // The names of repetitions end alike; "run_name" has none of that.
-        auto& processes = times[one.needed(one.has("run_name") ? "run_name" : "name").text()];
+        // "run_name" lacks the suffix of repetitions.
+        auto& processes = times[run.needed(run.has("run_name") ? "run_name" : "name").text()];
         processes.resize(std::max(processes.size(), process + 1));
         processes[process].push_back(ns);
     }
@@ -45,22 +45,22 @@ cells ratios_of(const test_times& times, const std::string& arm, const std::stri
     const auto b = times.find(base);
     if (a == times.end() || b == times.end()) return {0, 0};
     const std::size_t processes = std::min(a->second.size(), b->second.size());
-    cells all(processes, 1);
+    cells log_ratios(processes, 1);
     for (std::size_t process = 0; process < processes; ++process)
         for (std::size_t i = 0; i < std::min(a->second[process].size(), b->second[process].size()); ++i)
-            all.add(process, 0, std::log(a->second[process][i] / b->second[process][i]));
-    return all;
+            log_ratios.add(process, 0, std::log(a->second[process][i] / b->second[process][i]));
+    return log_ratios;
 }
 
 quartiles spread_of(const std::vector<std::vector<double>>& processes) {
-    std::vector<double> all;
-    for (const std::vector<double>& one : processes) all.insert(all.end(), one.begin(), one.end());
-    return quartiles_of(all);
+    std::vector<double> times;
+    for (const std::vector<double>& process : processes) times.insert(times.end(), process.begin(), process.end());
+    return quartiles_of(times);
 }
 
-/// The leaf of A that is tested as it is, in place of one of B that is carried into A's frame.
+/// The suffix of tests of a leaf of A, which is not transformed, unlike one of B.
 constexpr std::string_view in_place = "/frame:a";
-/// Where it is not.
+/// The factor's value for leaves of B.
 constexpr const char* in_frame_of_a = "B, carried into A's frame";
 
 table table_of(const test_times& times) {
@@ -88,9 +88,9 @@ figure figure_of(const test_times& times) {
         const auto place = static_cast<double>(f.x.names.size());
         f.x.names.emplace_back(place, name.substr(name.find('/') + 1));
         const auto add = [&](series& to, const std::string& test) {
-            const auto found = times.find(test);
-            if (found == times.end()) return;
-            const quartiles q = spread_of(found->second);
+            const auto position = times.find(test);
+            if (position == times.end()) return;
+            const quartiles q = spread_of(position->second);
             to.points.push_back({place, q.median, q.low, q.high});
         };
         add(carried, name);
@@ -103,26 +103,26 @@ figure figure_of(const test_times& times) {
 }  // namespace
 
 draft c6_claim(const measurements& m) {
-    draft made{{.claim = "Testing the triangle of a leaf costs what testing its box costs",
-                .measured = "time of a triangle-box test over that of a box test: of a box that is carried into the "
-                            "other frame and boxed anew, and of one that stays rotated, by six axes or all fifteen; in "
-                            "whole queries, of leafless over canonical",
-                .experiments = {"figure2"}},
-               {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", in_frame_of_a}},
-                {{"leaf_test", "triangle_box"}, {"over", "rotated_box_6"}},
-                {{"leaf_test", "triangle_box"}, {"over", "rotated_box_15"}}}};
+    draft c6{{.claim = "Testing the triangle of a leaf costs what testing its box costs",
+              .measured = "time of a triangle-box test over that of a box test: of a box that is carried into the "
+                          "other frame and boxed anew, and of one that stays rotated, by six axes or all fifteen; in "
+                          "whole queries, of leafless over canonical",
+              .experiments = {"figure2"}},
+             {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", in_frame_of_a}},
+              {{"leaf_test", "triangle_box"}, {"over", "rotated_box_6"}},
+              {{"leaf_test", "triangle_box"}, {"over", "rotated_box_15"}}}};
     const test_times times = read_tests(m.folder());
     const auto add_test = [&](const std::string& test, const std::string& over, const std::string& subject,
                               const std::string& frame = "") {
         const cells ratios = ratios_of(times, "test/" + test + frame, "test/" + over + frame);
         if (ratios.empty()) return;
-        made.add({.where = {{"quantity", "one test"},
-                            {"leaf_test", test},
-                            {"over", over},
-                            {"leaf of", frame.empty() ? in_frame_of_a : "A"}},
-                  .log_ratios = {bootstrap(ratios)},
-                  .subject = subject,
-                  .source = "c6: test/" + test + frame + " over test/" + over + frame});
+        c6.add({.where = {{"quantity", "one test"},
+                          {"leaf_test", test},
+                          {"over", over},
+                          {"leaf of", frame.empty() ? in_frame_of_a : "A"}},
+                .log_ratios = {bootstrap(ratios)},
+                .subject = subject,
+                .source = "c6: test/" + test + frame + " over test/" + over + frame});
     };
     add_test("triangle_box", "box", "for a leaf's triangle against its box, made anew after the motion");
     add_test("triangle_box", "rotated_box_6", "against a box that stays rotated, by six axes");
@@ -138,16 +138,16 @@ draft c6_claim(const measurements& m) {
         {"none", "in whole queries without a test at leaves"}};
     for (const condition& c : m.of("figure2"))
         for (const auto& [test, subject] : queries) {
-            endpoint one = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},
-                                       "detect_cpu_ms");
-            one.where = {{"quantity", "a query"}, {"leaf_test", test}, {"meshes", mesh_of(c)}};
-            made.add(told(std::move(one), subject));
+            endpoint ratio = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},
+                                         "detect_cpu_ms");
+            ratio.where = {{"quantity", "a query"}, {"leaf_test", test}, {"meshes", mesh_of(c)}};
+            c6.add(told(std::move(ratio), subject));
         }
-    made.claim.tables.push_back({"tests",
-                                 "Time of one elementary test, and its ratio to that of a box test, in either frame.",
-                                 table_of(times)});
-    made.claim.figures.push_back(figure_of(times));
-    return made;
+    c6.claim.tables.push_back({"tests",
+                               "Time of one elementary test, and its ratio to that of a box test, in either frame.",
+                               table_of(times)});
+    c6.claim.figures.push_back(figure_of(times));
+    return c6;
 }
 
 }  // namespace aabblab

@@ -9,14 +9,14 @@ selection tree(const std::string& name) {
 }
 
 std::vector<const condition*> all_sizes(const measurements& m) {
-    std::vector<const condition*> all;
+    std::vector<const condition*> conditions;
     for (const char* experiment : {"figure2", "figure2_million"})
-        for (const condition& c : m.of(experiment)) all.push_back(&c);
-    std::ranges::stable_sort(all, {}, &condition::triangles);
-    return all;
+        for (const condition& c : m.of(experiment)) conditions.push_back(&c);
+    std::ranges::stable_sort(conditions, {}, &condition::triangles);
+    return conditions;
 }
 
-/// Of generated meshes.
+/// A figure against the number of triangles of generated meshes.
 figure size_figure(const measurements& m, const std::string& name, const std::string& caption, const std::string& y,
                    const row_value& of) {
     const method layouts[] = {{"canonical", tree("canonical")},
@@ -38,36 +38,36 @@ endpoint compressed_over_canonical(const condition& c, const std::string& metric
 }  // namespace
 
 draft c7a_claim(const measurements& m) {
-    draft made{{.claim = "Compressed storage takes less memory",
-                .measured = "bytes of the compressed tree over those of the canonical one",
-                .experiments = {"figure2", "figure2_million"}},
-               {large_spheres}};
+    draft c7a{{.claim = "Compressed storage takes less memory",
+               .measured = "bytes of the compressed tree over those of the canonical one",
+               .experiments = {"figure2", "figure2_million"}},
+              {large_spheres}};
     for (const condition* c : all_sizes(m))
-        made.add(told(compressed_over_canonical(*c, "tree_bytes", "triangle_box"), "", "", quantity::bytes));
-    made.claim.figures.push_back(size_figure(m, "figure2_bytes", "Bytes of trees for each triangle, as allocated.",
-                                             "bytes a triangle", measured("tree_bytes")));
-    made.claim.figures.back().y.logarithmic = false;
-    return made;
+        c7a.add(told(compressed_over_canonical(*c, "tree_bytes", "triangle_box"), "", "", quantity::bytes));
+    c7a.claim.figures.push_back(size_figure(m, "figure2_bytes", "Bytes of trees for each triangle, as allocated.",
+                                            "bytes a triangle", measured("tree_bytes")));
+    c7a.claim.figures.back().y.logarithmic = false;
+    return c7a;
 }
 
 draft c7b_claim(const measurements& m) {
-    draft made{{.claim = "Compressed storage takes less time",
-                .measured = "time a query of the compressed tree over that of the canonical one",
-                .experiments = {"figure2", "figure2_million"}},
-               {{large_spheres.front(), {"leaf_test", "triangle_box"}}}};
+    draft c7b{{.claim = "Compressed storage takes less time",
+               .measured = "time a query of the compressed tree over that of the canonical one",
+               .experiments = {"figure2", "figure2_million"}},
+              {{large_spheres.front(), {"leaf_test", "triangle_box"}}}};
     const std::pair<const char*, const char*> leaf_tests[] = {
         {"triangle_box", ""},
         {"triangle_aabb", "where a box is made of the leaf's triangle on the fly"},
         {"none", "where the leaf's triangle goes straight to the triangle test"}};
     for (const auto& [leaf_test, subject] : leaf_tests)
         for (const condition* c : all_sizes(m))
-            made.add(told(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject));
-    made.claim.figures.push_back(
+            c7b.add(told(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject));
+    c7b.claim.figures.push_back(
         size_figure(m, "figure2",
                     "Time of local detection against the number of triangles: the canonical tree, the compressed one, "
                     "and the half-steps between. Two noise spheres; medians and quartiles.",
                     "time a query (ms)", measured("detect_cpu_ms")));
-    return made;
+    return c7b;
 }
 
 }  // namespace aabblab

@@ -8,7 +8,7 @@ selection canonical(const std::string& build) {
     return {{kind::tree, "canonical"}, {kind::build, build}};
 }
 
-/// What each build costs and brings.
+/// The cost of each build and its effect on queries.
 table builds(const std::vector<condition>& conditions) {
     table t =
         empty_table({"meshes", "build"}, {"build (ms)", "query (ms)", "box tests a query", "triangle tests a query"});
@@ -30,11 +30,11 @@ endpoint median_over(const condition& c, const std::string& build) {
 }  // namespace
 
 draft c8_claim(const measurements& m) {
-    draft made{{.claim = "The balanced (median) tree is searched faster than an unbalanced one",
-                .measured = "time a query, canonical tree split at the median over the same split otherwise",
-                .lead = "Split at the median",
-                .experiments = {"table1"}},
-               {{{"meshes", "noise_sphere:triangles=20000"}}}};
+    draft c8{{.claim = "The balanced (median) tree is searched faster than an unbalanced one",
+              .measured = "time a query, canonical tree split at the median over the same split otherwise",
+              .lead = "Split at the median",
+              .experiments = {"table1"}},
+             {{{"meshes", "noise_sphere:triangles=20000"}}}};
     const std::vector<condition>& conditions = m.of("table1");
     figure f{"c8",
              "Time of a query in the canonical tree split at the median, over that of one split at the mean, at the "
@@ -46,17 +46,17 @@ draft c8_claim(const measurements& m) {
     for (const auto& [build, subject] : others) {
         series& s = f.lines.emplace_back(series{std::string("over ") + build, series_style::points});
         for (const condition& c : conditions) {
-            const endpoint& ratio = made.add(told(median_over(c, build), subject));
+            const endpoint& ratio = c8.add(told(median_over(c, build), subject));
             if (ratio.known()) s.points.push_back(point_of(static_cast<double>(&c - conditions.data()), ratio));
         }
     }
-    made.claim.tables.push_back(
+    c8.claim.tables.push_back(
         {"c8_builds", "Medians of time and work of canonical trees, by where nodes are split.", builds(conditions)});
     for (std::size_t i = 0; i < conditions.size(); ++i)
         f.x.names.emplace_back(static_cast<double>(i), mesh_of(conditions[i]));
     f.lines.push_back(level_of("equal", 0));
-    made.claim.figures.push_back(f);
-    return made;
+    c8.claim.figures.push_back(f);
+    return c8;
 }
 
 }  // namespace aabblab

@@ -10,43 +10,44 @@ selection splitting(const std::string& strategy, const std::string& size) {
     return {{kind::prepare, strategy + ":size=" + size}};
 }
 
-/// No box may be as long as that.
-bool splits_something(const condition& c, const selection& who) {
-    return median_of(c, who, measured("pieces")).value_or(0) > 0;
+/// Whether any object is split; all may be shorter than the limit.
+bool splits_something(const condition& c, const selection& composition) {
+    return median_of(c, composition, measured("pieces")).value_or(0) > 0;
 }
 
 }  // namespace
 
 draft c9_claim(const measurements& m) {
-    draft made{{.claim = "Splitting large objects before the search pays off",
-                .measured = "time of global search a frame with large objects split over that without, both with "
-                            "axial_cut: their boxes, or the geometry of their meshes",
-                .experiments = {"c9", "c9_geometry"}},
-               {{{"span", "0.5"}, {"huge", "10"}, {"split_large", "4"}},
-                {{"huge", "2"}, {"split_mesh", "4"}, {"time of", "global search"}}}};
+    draft c9{{.claim = "Splitting large objects before the search pays off",
+              .measured = "time of global search a frame with large objects split over that without, both with "
+                          "axial_cut: their boxes, or the geometry of their meshes",
+              .experiments = {"c9", "c9_geometry"}},
+             {{{"span", "0.5"}, {"huge", "10"}, {"split_large", "4"}},
+              {{"huge", "2"}, {"split_mesh", "4"}, {"time of", "global search"}}}};
     for (const condition& c : m.of("c9"))
         for (const char* size : {"4", "8"})
-            if (const selection who = splitting("split_large", size); splits_something(c, who))
-                made.add(
-                    told(endpoint_of(c, who, whole, "frame_cpu_ms", {{"split_large", size}}), "where boxes are split"));
+            if (const selection composition = splitting("split_large", size); splits_something(c, composition))
+                c9.add(told(endpoint_of(c, composition, whole, "frame_cpu_ms", {{"split_large", size}}),
+                            "where boxes are split"));
     for (const condition& c : m.of("c9_geometry"))
         for (const char* size : {"2", "4", "8"}) {
-            const selection who = splitting("split_mesh", size);
-            if (!splits_something(c, who)) continue;
+            const selection composition = splitting("split_mesh", size);
+            if (!splits_something(c, composition)) continue;
             const auto add = [&](const std::string& metric, const std::string& of, const std::string& subject) {
-                made.add(told(endpoint_of(c, who, whole, metric, {{"split_mesh", size}, {"time of", of}}), subject));
+                c9.add(
+                    told(endpoint_of(c, composition, whole, metric, {{"split_mesh", size}, {"time of", of}}), subject));
             };
             add("global_cpu_ms", "global search", "of global search where meshes are split");
             add("frame_cpu_ms", "both stages", "of both stages there");
         }
-    figure& f = made.claim.figures.emplace_back(
+    figure& f = c9.claim.figures.emplace_back(
         log_log("c9",
                 "Time of global search with boxes split that are longer than four mean extents, over that without (the "
                 "level 1), against the number of huge boxes, by their edge over the side of the world; 95 % intervals.",
                 "huge boxes", "time over that without splitting"));
-    f.lines = lines_by_span(made.endpoints, {{"split_large", "4"}});
+    f.lines = lines_by_span(c9.endpoints, {{"split_large", "4"}});
     f.lines.push_back(level_of("not split"));
-    return made;
+    return c9;
 }
 
 }  // namespace aabblab

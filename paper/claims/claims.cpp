@@ -6,19 +6,19 @@ namespace aabblab {
 
 namespace {
 
-/// What every machine finds of endpoints that are decided together; where machines differ, nothing is decided.
-void settle(std::span<endpoint* const> all, double band) {
-    if (all.empty()) return;
-    for (std::size_t machine = 0; machine < all.front()->log_ratios.size(); ++machine) {
+/// Decides endpoints together; where machines disagree, the outcome is undecided.
+void settle(std::span<endpoint* const> endpoints, double band) {
+    if (endpoints.empty()) return;
+    for (std::size_t machine = 0; machine < endpoints.front()->log_ratios.size(); ++machine) {
         std::vector<tested> evidence;
-        for (const endpoint* e : all)
+        for (const endpoint* e : endpoints)
             evidence.push_back({e->expected.value_or(expectation::less), tails_of(e->log_ratios[machine], band)});
         const std::vector<double> levels = levels_together(evidence);
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            endpoint& e = *all[i];
-            const support found = support_of(evidence[i].expected, evidence[i].p, levels[i]);
+        for (std::size_t i = 0; i < endpoints.size(); ++i) {
+            endpoint& e = *endpoints[i];
+            const support outcome_here = support_of(evidence[i].expected, evidence[i].p, levels[i]);
             const outcome direction = direction_of(evidence[i].p, levels[i]);
-            e.found = machine == 0 || e.found == found ? found : support::undecided;
+            e.found = machine == 0 || e.found == outcome_here ? outcome_here : support::undecided;
             e.direction = machine == 0 || e.direction == direction ? direction : outcome::undecided;
         }
     }
@@ -31,11 +31,11 @@ std::string word_of(const endpoint& e) {
     return words[static_cast<std::size_t>(e.direction)];
 }
 
-/// Every primary ratio, and how many others say what.
-std::string figures_of(std::span<const endpoint> all) {
+/// All primary ratios, and the number of other endpoints by outcome.
+std::string figures_of(std::span<const endpoint> endpoints) {
     std::string text;
     std::vector<endpoint> others;
-    for (const endpoint& e : all) {
+    for (const endpoint& e : endpoints) {
         if (!e.is_primary) {
             others.push_back(e);
             continue;
@@ -52,23 +52,23 @@ std::string figures_of(std::span<const endpoint> all) {
                       count_of(others, support::no_difference), count_of(others, support::undecided));
 }
 
-/// Judged.
-claim_result finished(const draft& made, const std::vector<endpoint>& all) {
-    claim_result claim = made.claim;
-    claim.verdict = verdict_of(all);
-    claim.sentence = sentence_of(all, claim.lead);
+/// Turns a draft and its decided endpoints into a result.
+claim_result finished(const draft& source, const std::vector<endpoint>& endpoints) {
+    claim_result claim = source.claim;
+    claim.verdict = verdict_of(endpoints);
+    claim.sentence = sentence_of(endpoints, claim.lead);
     std::vector<endpoint> of_primary_lines;
-    std::ranges::copy_if(all, std::back_inserter(of_primary_lines), [&](const endpoint& e) {
-        return std::ranges::any_of(all, [&](const endpoint& p) { return p.is_primary && is_same_line(p, e); });
+    std::ranges::copy_if(endpoints, std::back_inserter(of_primary_lines), [&](const endpoint& e) {
+        return std::ranges::any_of(endpoints, [&](const endpoint& p) { return p.is_primary && is_same_line(p, e); });
     });
     claim.brief = sentence_of(of_primary_lines, claim.lead);
     std::vector<endpoint> beside;
-    for (const endpoint& e : made.beside)
+    for (const endpoint& e : source.beside)
         if (e.known()) beside.push_back(decided_alone(e));
     if (!beside.empty()) claim.sentence += " " + sentence_of(beside);
     if (!claim.remark.empty()) claim.sentence += " " + claim.remark;
-    claim.because = figures_of(all);
-    std::vector<endpoint> ordered = all;
+    claim.because = figures_of(endpoints);
+    std::vector<endpoint> ordered = endpoints;
     std::ranges::stable_partition(ordered, &endpoint::is_primary);
     claim.has_primary = !ordered.empty() && ordered.front().is_primary;
     if (claim.has_primary) claim.primary = ordered.front();
@@ -86,24 +86,24 @@ claim_result finished(const draft& made, const std::vector<endpoint>& all) {
     return claim;
 }
 
-/// The drafts of all claims, from one machine.
+/// The drafts of all claims, from the results of one machine.
 std::vector<draft> drafts_of(const measurements& m) {
-    std::vector<draft> all;
+    std::vector<draft> drafts;
     for (const claim_source& source : claim_sources()) {
-        draft& made = all.emplace_back(source.make(m));
-        claim_result& claim = made.claim;
+        draft& added = drafts.emplace_back(source.make(m));
+        claim_result& claim = added.claim;
         claim.id = source.listed.id;
         claim.expected = source.listed.expected;
-        for (std::vector<endpoint>* some : {&made.endpoints, &made.beside})
-            for (endpoint& e : *some) e.expected = e.expected.value_or(claim.expected);
+        for (std::vector<endpoint>* endpoints : {&added.endpoints, &added.beside})
+            for (endpoint& e : *endpoints) e.expected = e.expected.value_or(claim.expected);
         for (const std::string& experiment : claim.experiments)
             std::ranges::move(places_of(m.of(experiment)), std::back_inserter(claim.scenes));
     }
-    return all;
+    return drafts;
 }
 
-/// Puts what another machine measured beside it. What it did not measure is not known of all machines.
-void add_machine(std::vector<draft>& all, const std::vector<draft>& more) {
+/// Adds another machine's measurements. Endpoints that it lacks become unknown.
+void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
     const auto add = [](std::vector<endpoint>& to, const std::vector<endpoint>& from) {
         for (endpoint& e : to) {
             const auto same = std::ranges::find_if(
@@ -111,9 +111,9 @@ void add_machine(std::vector<draft>& all, const std::vector<draft>& more) {
             e.log_ratios.push_back(same == from.end() ? estimate{std::nan("")} : same->log_ratios.front());
         }
     };
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        add(all[i].endpoints, more[i].endpoints);
-        add(all[i].beside, more[i].beside);
+    for (std::size_t i = 0; i < drafts.size(); ++i) {
+        add(drafts[i].endpoints, more[i].endpoints);
+        add(drafts[i].beside, more[i].beside);
     }
 }
 
@@ -131,22 +131,22 @@ endpoint decided_alone(endpoint e, double band) {
 }
 
 std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band) {
-    std::vector<std::vector<endpoint>> all(drafts.size());
+    std::vector<std::vector<endpoint>> by_claim(drafts.size());
     std::vector<endpoint*> primaries;
     for (std::size_t i = 0; i < drafts.size(); ++i) {
         for (const endpoint& e : drafts[i].endpoints)
-            if (e.known()) all[i].push_back(decided_alone(e, band));
+            if (e.known()) by_claim[i].push_back(decided_alone(e, band));
         std::vector<endpoint*> others;
-        for (endpoint& e : all[i]) (e.is_primary ? primaries : others).push_back(&e);
+        for (endpoint& e : by_claim[i]) (e.is_primary ? primaries : others).push_back(&e);
         settle(others, band);
     }
     settle(primaries, band);
-    return all;
+    return by_claim;
 }
 
-verdict_kind verdict_of(std::span<const endpoint> all) {
+verdict_kind verdict_of(std::span<const endpoint> endpoints) {
     std::vector<support> primary;
-    for (const endpoint& e : all)
+    for (const endpoint& e : endpoints)
         if (e.is_primary) primary.push_back(e.found);
     return verdict_of(primary);
 }
@@ -158,22 +158,22 @@ factors place_of(const endpoint& e) {
 }
 
 std::vector<endpoint> primaries_of(const claim_result& claim) {
-    std::vector<endpoint> all;
-    if (claim.has_primary) all.push_back(claim.primary);
-    std::ranges::copy_if(claim.secondary, std::back_inserter(all), &endpoint::is_primary);
-    return all;
+    std::vector<endpoint> primaries;
+    if (claim.has_primary) primaries.push_back(claim.primary);
+    std::ranges::copy_if(claim.secondary, std::back_inserter(primaries), &endpoint::is_primary);
+    return primaries;
 }
 
 std::vector<endpoint> secondaries_of(const claim_result& claim) {
-    std::vector<endpoint> all;
-    std::ranges::remove_copy_if(claim.secondary, std::back_inserter(all), &endpoint::is_primary);
-    return all;
+    std::vector<endpoint> secondaries;
+    std::ranges::remove_copy_if(claim.secondary, std::back_inserter(secondaries), &endpoint::is_primary);
+    return secondaries;
 }
 
 std::vector<listed_claim> listed_claims() {
-    std::vector<listed_claim> all;
-    for (const claim_source& source : claim_sources()) all.push_back(source.listed);
-    return all;
+    std::vector<listed_claim> listed;
+    for (const claim_source& source : claim_sources()) listed.push_back(source.listed);
+    return listed;
 }
 
 reproduction judged(const measurements& m) {
@@ -184,16 +184,16 @@ reproduction judged(std::span<const measurements> machines) {
     const measurements& first = machines.front();
     std::vector<draft> drafts = drafts_of(first);
     for (const measurements& m : machines.subspan(1)) add_machine(drafts, drafts_of(m));
-    reproduction all;
+    reproduction results;
     const std::vector<std::vector<endpoint>> endpoints = decided(drafts, equivalence_band);
-    for (std::size_t i = 0; i < drafts.size(); ++i) all.claims.push_back(finished(drafts[i], endpoints[i]));
-    all.headline = headline_of(all.claims);
-    all.disturbance = disturbance_of(machines);
-    all.choices = open_choices(first);
-    all.tables = table1(first);
-    all.bands = bands_table(drafts);
-    all.null_control = null_control(first);
-    return all;
+    for (std::size_t i = 0; i < drafts.size(); ++i) results.claims.push_back(finished(drafts[i], endpoints[i]));
+    results.headline = headline_of(results.claims);
+    results.disturbance = disturbance_of(machines);
+    results.choices = open_choices(first);
+    results.tables = table1(first);
+    results.bands = bands_table(drafts);
+    results.null_control = null_control(first);
+    return results;
 }
 
 }  // namespace aabblab

@@ -5,14 +5,14 @@ import aabblab.numbers;
 namespace aabblab {
 
 bool has(const factors& place, const factors& wanted) {
-    return std::ranges::all_of(wanted, [&](const auto& one) { return value_of(place, one.first) == one.second; });
+    return std::ranges::all_of(wanted, [&](const auto& f) { return value_of(place, f.first) == f.second; });
 }
 
-std::vector<const condition*> having(const std::vector<condition>& all, const factors& wanted) {
-    std::vector<const condition*> found;
-    for (const condition& c : all)
-        if (has(c.of(), wanted)) found.push_back(&c);
-    return found;
+std::vector<const condition*> having(const std::vector<condition>& conditions, const factors& wanted) {
+    std::vector<const condition*> matching;
+    for (const condition& c : conditions)
+        if (has(c.of(), wanted)) matching.push_back(&c);
+    return matching;
 }
 
 std::string mesh_of(const condition& c) {
@@ -25,13 +25,13 @@ bool is_brownian(const condition& c) {
 
 endpoint endpoint_of(const condition& c, const selection& arm, const selection& base, const std::string& metric,
                      factors more) {
-    endpoint made;
-    made.where = c.of();
-    made.where.insert(made.where.end(), more.begin(), more.end());
-    made.source = c.experiment() + ": " + metric + " of " + text_of(arm) + " over " + text_of(base);
+    endpoint ratio;
+    ratio.where = c.of();
+    ratio.where.insert(ratio.where.end(), more.begin(), more.end());
+    ratio.source = c.experiment() + ": " + metric + " of " + text_of(arm) + " over " + text_of(base);
     const cells ratios = c.log_ratios(arm, base, measured(metric));
-    made.log_ratios = {ratios.empty() ? estimate{std::nan("")} : bootstrap(ratios)};
-    return made;
+    ratio.log_ratios = {ratios.empty() ? estimate{std::nan("")} : bootstrap(ratios)};
+    return ratio;
 }
 
 estimate between(const cells& above, const cells& below) {
@@ -69,10 +69,10 @@ std::string ratio_cell(const endpoint& e) {
 }
 
 void add_ratios(table& t, const std::vector<condition>& conditions, std::span<const method> methods) {
-    for (const method& one : methods.subspan(1)) {
-        t.columns.push_back({one.label});
+    for (const method& m : methods.subspan(1)) {
+        t.columns.push_back({m.label});
         for (std::size_t i = 0; i < conditions.size(); ++i)
-            t.rows[i].push_back(ratio_cell(endpoint_of(conditions[i], one.who, methods.front().who, "frame_cpu_ms")));
+            t.rows[i].push_back(ratio_cell(endpoint_of(conditions[i], m.who, methods.front().who, "frame_cpu_ms")));
     }
 }
 
@@ -103,9 +103,9 @@ series series_of(const std::string& label, std::span<const condition* const> con
 
 std::vector<series> series_of(std::span<const method> methods, std::span<const condition* const> conditions,
                               const std::string& x, const row_value& of) {
-    std::vector<series> all;
-    for (const method& one : methods) all.push_back(series_of(one.label, conditions, x, one.who, of));
-    return all;
+    std::vector<series> lines;
+    for (const method& m : methods) lines.push_back(series_of(m.label, conditions, x, m.who, of));
+    return lines;
 }
 
 std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted) {

@@ -6,48 +6,49 @@ namespace {
 
 using alternative = open_choice::alternative;
 
-/// What a claim's ratio is under each of several choices.
+/// A claim's ratio under each of several choices.
 struct measured_choices {
-    std::string where;               ///< they were measured
-    std::string ours;                ///< the label of what we chose
-    std::vector<alternative> all{};  ///< that were measured
+    std::string where;               ///< the condition of the measurements
+    std::string ours;                ///< the label of our choice
+    std::vector<alternative> all{};  ///< the measured ones
 
     void add(const std::string& label, const endpoint& measured) {
         if (measured.known()) all.push_back({label, measured});
     }
-    /// Claim C1's ratio.
+    /// Adds claim C1's ratio.
     void add_search(const std::string& label, const condition& c) {
         add(label, endpoint_of(c, improved, traditional, "frame_cpu_ms"));
     }
 };
 
-/// Two compositions as the ratio of a choice.
+/// The two compositions whose ratio is measured under a choice.
 struct arms {
     std::string label;
     selection arm;
     selection base;
 };
 
-/// Ratios of time in one condition; ours is the first.
+/// Ratios of time in a single condition; the first is our choice.
 measured_choices in_one(const std::vector<const condition*>& conditions, const std::string& metric,
-                        const std::string& note, const std::vector<arms>& named) {
-    measured_choices found{"", named.front().label};
+                        const std::string& note, const std::vector<arms>& compositions) {
+    measured_choices measured{"", compositions.front().label};
     for (const condition* c : conditions) {
-        found.where = text_of(c->of()) + note;
-        for (const arms& one : named) found.add(one.label, endpoint_of(*c, one.arm, one.base, metric));
+        measured.where = text_of(c->of()) + note;
+        for (const arms& a : compositions) measured.add(a.label, endpoint_of(*c, a.arm, a.base, metric));
     }
-    return found;
+    return measured;
 }
 
-/// Claim C1 in the one condition of the experiment on choices: time of Shell sort with a cut over insertion sort
+/// Claim C1 in the only condition of the experiment on choices: time of Shell sort with a cut over insertion sort
 /// without.
-measured_choices of_search(const measurements& m, const std::vector<arms>& named) {
-    return in_one(having(m.of("choices"), {}), "frame_cpu_ms", " (a run of its own)", named);
+measured_choices of_search(const measurements& m, const std::vector<arms>& compositions) {
+    return in_one(having(m.of("choices"), {}), "frame_cpu_ms", " (a run of its own)", compositions);
 }
 
 /// Query times of a tree over those of the canonical one, on the generated mesh of table 1.
-measured_choices over_trees(const measurements& m, const std::vector<arms>& named) {
-    return in_one(having(m.of("table1"), {{"meshes", "noise_sphere:triangles=20000"}}), "detect_cpu_ms", "", named);
+measured_choices over_trees(const measurements& m, const std::vector<arms>& compositions) {
+    return in_one(having(m.of("table1"), {{"meshes", "noise_sphere:triangles=20000"}}), "detect_cpu_ms", "",
+                  compositions);
 }
 
 selection search(const std::string& sort, const std::string& partition, const std::string& sweep = "one_axis") {
@@ -55,17 +56,17 @@ selection search(const std::string& sort, const std::string& partition, const st
 }
 
 measured_choices over_displacements(const measurements& m) {
-    measured_choices found{"brownian, objects 10,000", "0.1"};
+    measured_choices measured{"brownian, objects 10,000", "0.1"};
     for (const condition* c : having(m.of("figure1"), {{"scene", "brownian"}, {"objects", "10000"}}))
-        found.add_search(value_of(c->of(), "displacement"), *c);
-    return found;
+        measured.add_search(value_of(c->of(), "displacement"), *c);
+    return measured;
 }
 
-/// Other scenes of that displacement beside the drifting one that is nearest to them in size.
+/// Other scenes with this displacement, and the drifting scene of the nearest size.
 measured_choices over_scenes(const measurements& m) {
-    measured_choices found{"displacement 0.1 of the extent", ""};
+    measured_choices measured{"displacement 0.1 of the extent", ""};
     std::vector<const condition*> scenes = having(m.of("figure1"), {{"displacement", "0.1"}, {"unit", "extent"}});
-    if (scenes.empty()) return found;
+    if (scenes.empty()) return measured;
     const double objects = number_of(scenes.front()->of(), "objects");
     const std::vector<const condition*> drifts =
         having(m.of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}});
@@ -76,10 +77,10 @@ measured_choices over_scenes(const measurements& m) {
     };
     if (nearest != drifts.end()) {
         scenes.insert(scenes.begin(), *nearest);
-        found.ours = label_of(**nearest);
+        measured.ours = label_of(**nearest);
     }
-    for (const condition* c : scenes) found.add_search(label_of(*c), *c);
-    return found;
+    for (const condition* c : scenes) measured.add_search(label_of(*c), *c);
+    return measured;
 }
 
 measured_choices over_leaf_tests(const measurements& m) {
@@ -89,61 +90,61 @@ measured_choices over_leaf_tests(const measurements& m) {
     return in_one(having(m.of("figure2"), large_spheres), "detect_cpu_ms", "", tests);
 }
 
-/// Growth of work an element, as claim C2 has it.
+/// The growth of work per element, as in claim C2.
 measured_choices over_numbers_of_gaps(const measurements& m) {
-    measured_choices found{"line, displacement 0.1", "as many as N asks for"};
+    measured_choices measured{"line, displacement 0.1", "as many as N asks for"};
     for (endpoint e : c2_claim(m).endpoints) {
         e.expected = expectation::not_more;
         const std::string sort = value_of(e.where, "sort");
         if (value_of(e.where, "displacement") != "0.1" || sort == "insertion") continue;
-        found.add(sort == "shell:gaps=ciura"         ? "as many as N asks for"
-                  : sort == "shell:gaps=ciura_eight" ? "Ciura's eight"
-                  : sort == "shell:gaps=four_one"    ? "two: 4 and 1"
-                                                     : sort,
-                  e);
+        measured.add(sort == "shell:gaps=ciura"         ? "as many as N asks for"
+                     : sort == "shell:gaps=ciura_eight" ? "Ciura's eight"
+                     : sort == "shell:gaps=four_one"    ? "two: 4 and 1"
+                                                        : sort,
+                     e);
     }
-    return found;
+    return measured;
 }
 
 measured_choices over_models(const measurements& m) {
-    measured_choices found{"displacement 0.05", ""};
+    measured_choices measured{"displacement 0.05", ""};
     for (const condition& c : m.of("c11")) {
         const std::string label =
             value_of(c.of(), "objects") + " of " + mesh_of(c) + ", density " + value_of(c.of(), "density");
-        if (has(c.of(), large_crowd)) found.ours = label;
-        found.add(label, endpoint_of(c, improved.with(kind::tree, compressed),
-                                     traditional.with(kind::tree, "canonical"), "frame_cpu_ms"));
+        if (has(c.of(), large_crowd)) measured.ours = label;
+        measured.add(label, endpoint_of(c, improved.with(kind::tree, compressed),
+                                        traditional.with(kind::tree, "canonical"), "frame_cpu_ms"));
     }
-    return found;
+    return measured;
 }
 
 measured_choices with_first_frame(const measurements& m) {
-    measured_choices found{"", "without it"};
+    measured_choices measured{"", "without it"};
     for (const condition* c : having(m.of("figure1"), drifting)) {
-        found.where = text_of(c->of());
-        found.add_search("without it", *c);
-        found.add("with it", endpoint_of(*c, improved, traditional, "whole_cpu_ms"));
+        measured.where = text_of(c->of());
+        measured.add_search("without it", *c);
+        measured.add("with it", endpoint_of(*c, improved, traditional, "whole_cpu_ms"));
     }
-    return found;
+    return measured;
 }
 
-/// Ours stands first and is decided by itself, the others together, as the endpoints of a claim are. Where ours was not
-/// measured, there is nothing to hold the others against.
+/// Puts our choice first and decides it alone, the others together, like the endpoints of a claim. Without a
+/// measurement of our choice there are no alternatives, since nothing can be compared.
 open_choice choice(const std::string& question, const std::string& ours, const std::string& why,
                    const std::string& claim, measured_choices measured) {
-    open_choice made{question, ours, why, claim, measured.where, {}};
+    open_choice result{question, ours, why, claim, measured.where, {}};
     std::ranges::stable_partition(measured.all, [&](const alternative& a) { return a.label == measured.ours; });
-    if (measured.all.empty() || measured.all.front().label != measured.ours) return made;
+    if (measured.all.empty() || measured.all.front().label != measured.ours) return result;
     std::vector<tested> others;
     for (const alternative& a : measured.all) {
-        if (!made.alternatives.empty())
+        if (!result.alternatives.empty())
             others.push_back({a.measured.expected.value_or(expectation::less), tails_of(a.measured.log_ratio())});
-        made.alternatives.push_back({a.label, decided_alone(a.measured)});
+        result.alternatives.push_back({a.label, decided_alone(a.measured)});
     }
     const std::vector<double> levels = levels_together(others);
     for (std::size_t i = 0; i < levels.size(); ++i)
-        made.alternatives[i + 1].measured.found = support_of(others[i].expected, others[i].p, levels[i]);
-    return made;
+        result.alternatives[i + 1].measured.found = support_of(others[i].expected, others[i].p, levels[i]);
+    return result;
 }
 
 }  // namespace

@@ -7,10 +7,10 @@ namespace aabblab {
 
 namespace {
 
-/// From here on a ratio is told as so many times, below it in per cent.
-constexpr double told_as_times = 1.5;
-/// Ratios that differ by no more are told as one.
-constexpr double told_as_one = 1.1;
+/// Ratios from here on are reported as factors, smaller ones in percent.
+constexpr double factor_threshold = 1.5;
+/// Ratios within this factor are reported as a single one.
+constexpr double equality_threshold = 1.1;
 
 std::string_view noun_of(quantity compared) {
     constexpr std::array nouns{"time", "bytes", "box tests", "work", "worst slowdown"};
@@ -21,23 +21,23 @@ std::string times_text(double factor) {
     return factor < 9.95 ? fmt::format("{:.1f}", factor) : grouped(static_cast<std::size_t>(std::llround(factor)));
 }
 
-/// "12", or "1.2" where it is little.
+/// "12", or "1.2" for small shares.
 std::string percent_text(double share) {
     const double percent = 100 * share;
     return percent < 1.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
 }
 
-/// "1.2 to 3.4", or one of them where both read alike or are nearly the same.
+/// "1.2 to 3.4", or a single number if both are equal or nearly equal.
 std::string span_text(const std::string& low, const std::string& high, bool nearly_one) {
     return low == high || nearly_one ? high : low + " to " + high;
 }
 
-/// Ratios below 1, or above it, as factors above 1: the mildest and the strongest.
+/// The least and the greatest of several ratios on one side of 1, as factors above 1.
 struct extent {
     double mild;
     double strong;
 
-    [[nodiscard]] bool is_narrow() const { return strong / mild <= told_as_one; }
+    [[nodiscard]] bool is_narrow() const { return strong / mild <= equality_threshold; }
     [[nodiscard]] double middle() const { return std::sqrt(mild * strong); }
     [[nodiscard]] std::string times() const {
         return is_narrow() ? times_text(middle()) : span_text(times_text(mild), times_text(strong), false);
@@ -45,54 +45,54 @@ struct extent {
 };
 
 std::string less_of_time(const extent& e) {
-    if (e.mild >= told_as_times) return e.times() + " times as fast";
-    if (e.strong >= told_as_times) return "up to " + times_text(e.strong) + " times as fast";
+    if (e.mild >= factor_threshold) return e.times() + " times as fast";
+    if (e.strong >= factor_threshold) return "up to " + times_text(e.strong) + " times as fast";
     return span_text(percent_text(1 - 1 / e.mild), percent_text(1 - 1 / e.strong), false) + " % less time";
 }
 
-/// The strongest first: fewer is what is hoped for.
+/// The strongest reduction comes first.
 std::string less_of(const extent& e, std::string_view noun) {
     return span_text(percent_text(1 / e.strong), percent_text(1 / e.mild), false) + " % of the " + std::string(noun);
 }
 
 std::string more_of(const extent& e, std::string_view noun) {
-    if (e.mild >= told_as_times) return fmt::format("{} times the {}", e.times(), noun);
-    if (e.strong >= told_as_times) return fmt::format("up to {} times the {}", times_text(e.strong), noun);
+    if (e.mild >= factor_threshold) return fmt::format("{} times the {}", e.times(), noun);
+    if (e.strong >= factor_threshold) return fmt::format("up to {} times the {}", times_text(e.strong), noun);
     return fmt::format("{} % more {}", span_text(percent_text(e.mild - 1), percent_text(e.strong - 1), false), noun);
 }
 
-extent extent_of(std::span<const endpoint> all) {
-    extent found{std::max(all[0].ratio, 1 / all[0].ratio), 0};
-    for (const endpoint& e : all) {
+extent extent_of(std::span<const endpoint> endpoints) {
+    extent range{std::max(endpoints[0].ratio, 1 / endpoints[0].ratio), 0};
+    for (const endpoint& e : endpoints) {
         const double factor = std::max(e.ratio, 1 / e.ratio);
-        found = {std::min(found.mild, factor), std::max(found.strong, factor)};
+        range = {std::min(range.mild, factor), std::max(range.strong, factor)};
     }
-    return found;
+    return range;
 }
 
-/// What is found of an endpoint, as a sentence tells it.
-enum class told_as : unsigned char { less, same, more, not_more, open };
-told_as kind_of(const endpoint& e) {
-    if (e.direction != outcome::undecided) return static_cast<told_as>(e.direction);
-    return e.found == support::favours ? told_as::not_more : told_as::open;
+/// The outcome of an endpoint, as a sentence reports it.
+enum class wording : unsigned char { less, same, more, not_more, open };
+wording kind_of(const endpoint& e) {
+    if (e.direction != outcome::undecided) return static_cast<wording>(e.direction);
+    return e.found == support::favours ? wording::not_more : wording::open;
 }
 
-/// Time is what is compared where nothing else is said.
+/// Time is the default quantity and not mentioned.
 std::string of_what(quantity compared) {
     return compared == quantity::time ? "" : " in the " + std::string(noun_of(compared));
 }
 
-/// Endpoints that are all told alike: "up to 2.1 times as fast".
-std::string predicate_of(std::span<const endpoint> all, told_as how) {
-    const quantity compared = all.front().compared;
+/// The phrase for endpoints with the same outcome: "up to 2.1 times as fast".
+std::string predicate_of(std::span<const endpoint> endpoints, wording how) {
+    const quantity compared = endpoints.front().compared;
     const std::string_view noun = noun_of(compared);
+    const extent range = extent_of(endpoints);
     switch (how) {
-        case told_as::less:
-            return compared == quantity::time ? less_of_time(extent_of(all)) : less_of(extent_of(all), noun);
-        case told_as::more: return more_of(extent_of(all), noun);
-        case told_as::same: return "no difference" + of_what(compared);
-        case told_as::not_more: return fmt::format("no more {}", noun);
-        case told_as::open: break;
+        case wording::less: return compared == quantity::time ? less_of_time(range) : less_of(range, noun);
+        case wording::more: return more_of(range, noun);
+        case wording::same: return "no difference" + of_what(compared);
+        case wording::not_more: return fmt::format("no more {}", noun);
+        case wording::open: break;
     }
     return "undecided" + of_what(compared);
 }
@@ -105,29 +105,30 @@ std::string place_text(const std::string& factor, const std::string& value) {
     return "a " + factor + " of " + number_text(value);
 }
 
-/// Neighbours on a line that are told alike.
+/// Consecutive endpoints of a line with the same outcome.
 struct stretch {
-    told_as how;
+    wording how;
     std::vector<endpoint> endpoints;
 };
 
 std::vector<stretch> stretches_of(std::span<const endpoint> line) {
-    std::vector<stretch> all;
+    std::vector<stretch> stretches;
     for (const endpoint& e : line) {
-        if (all.empty() || all.back().how != kind_of(e)) all.push_back({kind_of(e), {}});
-        all.back().endpoints.push_back(e);
+        if (stretches.empty() || stretches.back().how != kind_of(e)) stretches.push_back({kind_of(e), {}});
+        stretches.back().endpoints.push_back(e);
     }
-    return all;
+    return stretches;
 }
 
 /// "at 100 objects", "up to 1,000 objects", "from 3,162 objects on", "from 10 to 100 objects".
-std::string where_text(const std::vector<stretch>& all, std::size_t i) {
-    const std::string& factor = all[i].endpoints.front().along;
-    const std::string first = value_of(place_of(all[i].endpoints.front()), factor);
-    const std::string last = value_of(place_of(all[i].endpoints.back()), factor);
-    if (all.size() == 1) return "";
-    if (i == 0 && all[i].endpoints.size() > 1) return " up to " + place_text(factor, last);
-    if (i + 1 == all.size() && all[i].endpoints.size() > 1) return " from " + place_text(factor, first) + " on";
+std::string where_text(const std::vector<stretch>& stretches, std::size_t i) {
+    const std::string& factor = stretches[i].endpoints.front().along;
+    const std::string first = value_of(place_of(stretches[i].endpoints.front()), factor);
+    const std::string last = value_of(place_of(stretches[i].endpoints.back()), factor);
+    if (stretches.size() == 1) return "";
+    if (i == 0 && stretches[i].endpoints.size() > 1) return " up to " + place_text(factor, last);
+    if (i + 1 == stretches.size() && stretches[i].endpoints.size() > 1)
+        return " from " + place_text(factor, first) + " on";
     if (first == last) return " at " + place_text(factor, first);
     return " from " + number_text(first) + " to " + place_text(factor, last);
 }
@@ -137,39 +138,39 @@ std::string subject_text(const endpoint& e) {
 }
 
 std::string ordered_clause(std::span<const endpoint> line) {
-    const std::vector<stretch> all = stretches_of(line);
+    const std::vector<stretch> stretches = stretches_of(line);
     std::string text;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        text += (i == 0 ? "" : ", ") + predicate_of(all[i].endpoints, all[i].how);
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+        text += (i == 0 ? "" : ", ") + predicate_of(stretches[i].endpoints, stretches[i].how);
         if (i == 0) text += subject_text(line.front());
-        text += where_text(all, i);
+        text += where_text(stretches, i);
     }
     return text;
 }
 
-/// The mildest and the strongest where they are not told alike; of those that are open, only that there are some.
+/// Reports the least and the greatest ratio if their outcomes differ, and only the number of open ones.
 std::string unordered_clause(std::vector<endpoint> line) {
     const std::string subject = subject_text(line.front());
     const std::size_t count = line.size();
-    const std::string undecided = predicate_of(line, told_as::open);
-    std::erase_if(line, [](const endpoint& e) { return kind_of(e) == told_as::open; });
+    const std::string undecided = predicate_of(line, wording::open);
+    std::erase_if(line, [](const endpoint& e) { return kind_of(e) == wording::open; });
     if (line.empty()) return undecided + subject;
     std::ranges::sort(line, {}, &endpoint::ratio);
-    const std::vector<stretch> all = stretches_of(line);
+    const std::vector<stretch> stretches = stretches_of(line);
     const auto text_of = [](const endpoint& e) { return predicate_of({&e, 1}, kind_of(e)); };
-    const std::string text = all.size() == 1
-                                 ? predicate_of(all.front().endpoints, all.front().how) + subject
+    const std::string text = stretches.size() == 1
+                                 ? predicate_of(stretches.front().endpoints, stretches.front().how) + subject
                                  : "from " + text_of(line.front()) + " to " + text_of(line.back()) + subject;
     return text +
            (line.size() == count ? "" : fmt::format(", {} of {} conditions undecided", count - line.size(), count));
 }
 
 const claim_result* claim_named(std::span<const claim_result> claims, const std::string& id) {
-    const auto found = std::ranges::find(claims, id, &claim_result::id);
-    return found != claims.end() ? &*found : nullptr;
+    const auto claim = std::ranges::find(claims, id, &claim_result::id);
+    return claim != claims.end() ? &*claim : nullptr;
 }
 
-/// What the classic sweep makes of the paper's own premise, that objects hardly move.
+/// The comparison with the classic sweep under the paper's own premise, that objects hardly move.
 std::string against_classic_sweep(std::span<const claim_result> claims) {
     const claim_result* claim = claim_named(claims, "C1");
     if (!claim) return "";
@@ -178,21 +179,21 @@ std::string against_classic_sweep(std::span<const claim_result> claims) {
     return "";
 }
 
-/// The clause on the line of a claim's first primary endpoint.
+/// The clause about the line of a claim's first primary endpoint.
 std::string first_clause(std::span<const claim_result> claims, const std::string& id) {
     const claim_result* claim = claim_named(claims, id);
     if (!claim || !claim->has_primary || !claim->primary.subject) return "not measured";
-    std::vector<endpoint> all{claim->primary};
-    all.insert(all.end(), claim->secondary.begin(), claim->secondary.end());
-    return clause_of(all, claim->primary);
+    std::vector<endpoint> endpoints{claim->primary};
+    endpoints.insert(endpoints.end(), claim->secondary.begin(), claim->secondary.end());
+    return clause_of(endpoints, claim->primary);
 }
 
 /// "Of 14 claims 2 hold, 6 hold in part, 5 do not hold and 1 is undecided."
 std::string counts_of(std::span<const claim_result> claims) {
     std::vector<std::string> parts;
-    const auto add = [&](verdict_kind verdict, const char* one, const char* many) {
+    const auto add = [&](verdict_kind verdict, const char* singular, const char* plural) {
         if (const auto count = std::ranges::count(claims, verdict, &claim_result::verdict); count > 0)
-            parts.push_back(fmt::format("{} {}", count, count == 1 ? one : many));
+            parts.push_back(fmt::format("{} {}", count, count == 1 ? singular : plural));
     };
     add(verdict_kind::holds, "holds", "hold");
     add(verdict_kind::in_part, "holds in part", "hold in part");
@@ -214,22 +215,23 @@ std::string number_text(const std::string& value) {
                                                                                                   : value;
 }
 
-std::string clause_of(std::span<const endpoint> all, const endpoint& one) {
+std::string clause_of(std::span<const endpoint> endpoints, const endpoint& member) {
     std::vector<endpoint> line;
-    std::ranges::copy_if(all, std::back_inserter(line), [&](const endpoint& e) { return is_same_line(e, one); });
-    const std::string& along = one.along;
+    std::ranges::copy_if(endpoints, std::back_inserter(line),
+                         [&](const endpoint& e) { return is_same_line(e, member); });
+    const std::string& along = member.along;
     if (along.empty()) return unordered_clause(std::move(line));
     std::ranges::stable_sort(line, {}, [&](const endpoint& e) { return number_of(place_of(e), along); });
     return ordered_clause(line);
 }
 
-std::string sentence_of(std::span<const endpoint> all, const std::string& lead) {
-    if (all.empty()) return "There are no measurements that decide it.";
+std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead) {
+    if (endpoints.empty()) return "There are no measurements that decide it.";
     std::string text;
-    for (auto e = all.begin(); e != all.end(); ++e) {
+    for (auto e = endpoints.begin(); e != endpoints.end(); ++e) {
         const auto is_of_its_line = [&](const endpoint& other) { return is_same_line(*e, other); };
-        if (!e->subject || std::any_of(all.begin(), e, is_of_its_line)) continue;
-        text += (text.empty() ? "" : "; ") + clause_of(all, *e);
+        if (!e->subject || std::any_of(endpoints.begin(), e, is_of_its_line)) continue;
+        text += (text.empty() ? "" : "; ") + clause_of(endpoints, *e);
     }
     if (!lead.empty()) text = lead + ": " + text;
     text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));

@@ -7,13 +7,13 @@ namespace aabblab {
 
 namespace {
 
-/// What nodes take on paper: n triangles have n - 1 internal nodes.
+/// The nominal size of nodes: n triangles have n - 1 internal nodes.
 struct layout {
     const char* name;
     const char* tree;  // with its parameters
     const char* internal;
     const char* leaf;
-    const char* bytes;  // for a triangle, of large trees
+    const char* bytes;  // per triangle, for large trees
 };
 constexpr layout layouts[] = {
     {"canonical", "canonical", "box 24, children 8", "box 24, triangle 4", "60"},
@@ -23,11 +23,11 @@ constexpr layout layouts[] = {
     {"compressed_literal", "compressed_literal:leaf_test=triangle_box", "scope 12, children 8, symbol 1", "none",
      "21"}};
 
-selection built(const layout& one, const std::string& build) {
-    return {{kind::tree, one.tree}, {kind::build, build}};
+selection built(const layout& l, const std::string& build) {
+    return {{kind::tree, l.tree}, {kind::build, build}};
 }
 
-/// The last condition has the largest mesh.
+/// The condition with the largest mesh, which is the last one.
 const condition* measured_on(const measurements& m) {
     const std::vector<condition>& conditions = m.of("table1");
     return conditions.empty() ? nullptr : &conditions.back();
@@ -36,14 +36,14 @@ const condition* measured_on(const measurements& m) {
 table bytes_table(const condition& c) {
     table t = empty_table({"tree", "internal node", "leaf"},
                           {"a triangle, on paper", "allocated", "of it boxes and symbols", "indices"});
-    for (const layout& one : layouts) {
-        const selection who = built(one, "median");
-        if (!c.value(who, measured("tree_bytes"))) continue;
+    for (const layout& l : layouts) {
+        const selection composition = built(l, "median");
+        if (!c.value(composition, measured("tree_bytes"))) continue;
         const auto text_of = [&](const row_value& bytes) {
-            const std::optional<double> each = c.value(who, a_triangle(bytes));
+            const std::optional<double> each = c.value(composition, a_triangle(bytes));
             return each ? fmt::format("{:.2f}", *each) : "-";
         };
-        t.rows.push_back({one.name, one.internal, one.leaf, one.bytes, text_of(bytes_of({"nodes", "indices"})),
+        t.rows.push_back({l.name, l.internal, l.leaf, l.bytes, text_of(bytes_of({"nodes", "indices"})),
                           text_of(bytes_of({"nodes"})), text_of(bytes_of({"indices"}))});
     }
     return t;
@@ -51,15 +51,15 @@ table bytes_table(const condition& c) {
 
 table cost_table(const condition& c) {
     table t = empty_table({"tree", "build"}, {"bytes a triangle", "boxes larger by (%)", "build time", "query time"});
-    for (const layout& one : layouts)
+    for (const layout& l : layouts)
         for (const char* build : {"median", "mean", "midpoint", "sah"}) {
-            const std::optional<double> bytes = c.value(built(one, build), measured("tree_bytes"));
+            const std::optional<double> bytes = c.value(built(l, build), measured("tree_bytes"));
             if (!bytes) continue;
             const auto ratio = [&](const std::string& metric) {
-                return ratio_cell(endpoint_of(c, built(one, build), built(layouts[0], "median"), metric));
+                return ratio_cell(endpoint_of(c, built(l, build), built(layouts[0], "median"), metric));
             };
-            t.rows.push_back({one.name, build, fmt::format("{:.2f}", *bytes),
-                              three_digits(100 * c.value(built(one, build), measured("box_inflation")).value_or(0)),
+            t.rows.push_back({l.name, build, fmt::format("{:.2f}", *bytes),
+                              three_digits(100 * c.value(built(l, build), measured("box_inflation")).value_or(0)),
                               ratio("build_cpu_ms"), ratio("detect_cpu_ms")});
         }
     return t;

@@ -7,45 +7,45 @@ namespace aabblab {
 
 namespace {
 
-/// "10,000"; what is shorter as it is.
+/// "10,000"; shorter text is unchanged.
 std::string grouped_if_long(const std::string& text) {
     return text.size() < 5 ? text : number_text(text);
 }
 
-/// From here on a direction is a difference: alone, it is found in one of twenty by chance.
+/// Whether the interval lies outside the band. A mere direction is found by chance in one of twenty.
 bool is_difference(const endpoint& e) {
     return e.range.low > 1 + equivalence_band || e.range.high < 1 / (1 + equivalence_band);
 }
 
-/// Of the time of all frames, in per cent. A quiet machine takes a thousandth away for its own needs.
+/// The waiting time in percent of all frames. A quiet machine takes a thousandth for itself.
 constexpr double most_waiting = 2;
-/// By which one repeat differs from the next in the median, in per cent.
+/// The median difference between successive repeats, in percent.
 constexpr double most_difference = 5;
 
 }  // namespace
 
-table endpoint_table(std::span<const endpoint> all, const std::function<std::string(const endpoint&)>& outcome) {
+table endpoint_table(std::span<const endpoint> endpoints, const std::function<std::string(const endpoint&)>& outcome) {
     std::vector<factors> places;
-    for (const endpoint& e : all) places.push_back(place_of(e));
+    for (const endpoint& e : endpoints) places.push_back(place_of(e));
     table t = place_table(places);
     t.columns.insert(t.columns.end(), {{"measured"}, {"95 %"}, {"outcome", false}});
-    for (std::size_t i = 0; i < all.size(); ++i)
-        t.rows[i].insert(
-            t.rows[i].end(),
-            {ratio_digits_of(all[i].ratio),
-             ratio_digits_of(all[i].range.low) + " to " + ratio_digits_of(all[i].range.high), outcome(all[i])});
+    for (std::size_t i = 0; i < endpoints.size(); ++i)
+        t.rows[i].insert(t.rows[i].end(),
+                         {ratio_digits_of(endpoints[i].ratio),
+                          ratio_digits_of(endpoints[i].range.low) + " to " + ratio_digits_of(endpoints[i].range.high),
+                          outcome(endpoints[i])});
     return t;
 }
 
 table place_table(std::span<const factors> places) {
     table t;
     t.rows.resize(places.size());
-    std::set<std::string> told;
+    std::set<std::string> named;
     for (const factors& place : places)
         for (const auto& [name, value] : place) {
             const auto differs = [n = name, v = value](const factors& other) { return value_of(other, n) != v; };
-            if (told.contains(name) || std::ranges::none_of(places, differs)) continue;
-            told.insert(name);
+            if (named.contains(name) || std::ranges::none_of(places, differs)) continue;
+            named.insert(name);
             t.columns.push_back({name, false});
             for (std::size_t i = 0; i < places.size(); ++i)
                 t.rows[i].push_back(grouped_if_long(value_of(places[i], name)));
@@ -92,10 +92,10 @@ std::string text_of(const claim_result& claim) {
     return text_of(claim.verdict);
 }
 
-table verdict_table(const reproduction& all) {
+table verdict_table(const reproduction& results) {
     table t =
         empty_table({"", "claim", "verdict", "in words"}, {"ratio", "95 %", "for", "against", "same", "undecided"});
-    for (const claim_result& c : all.claims) {
+    for (const claim_result& c : results.claims) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c), c.sentence});
         cells.push_back(c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
         cells.push_back(c.has_primary
@@ -108,9 +108,9 @@ table verdict_table(const reproduction& all) {
     return t;
 }
 
-table brief_table(const reproduction& all) {
+table brief_table(const reproduction& results) {
     table t{{{"", false}, {"claim", false}, {"verdict", false}, {"primary ratios", false}}, {}};
-    for (const claim_result& c : all.claims) {
+    for (const claim_result& c : results.claims) {
         std::string ratios;
         for (const endpoint& e : primaries_of(c)) ratios += (ratios.empty() ? "" : ", ") + ratio_digits_of(e.ratio);
         t.rows.push_back({c.id, c.claim, text_of(c), ratios.empty() ? "-" : ratios});
@@ -118,9 +118,9 @@ table brief_table(const reproduction& all) {
     return t;
 }
 
-table choice_table(const reproduction& all) {
+table choice_table(const reproduction& results) {
     table t = empty_table({"left open", "our choice", "why", "claim", "its ratio", "changes it"});
-    for (const open_choice& c : all.choices) {
+    for (const open_choice& c : results.choices) {
         std::string ratios;
         for (const open_choice::alternative& a : c.alternatives)
             ratios += (ratios.empty() ? "At " + c.where + ": " : "; ") + a.label + " " + ratio_text(a.measured);
@@ -142,33 +142,33 @@ named_table bands_table(std::span<const draft> drafts) {
 }
 
 named_table null_control(const measurements& m) {
-    // A composition, and the same with a default written out.
+    // A composition, and the same one with an explicit default.
     const std::pair<selection, selection> twins[] = {{traditional, traditional.with(kind::sweep, "one_axis:axis=auto")},
                                                      {improved, improved.with(kind::sort, "shell:gaps=ciura")}};
-    std::vector<endpoint> found;
+    std::vector<endpoint> ratios;
     for (const condition& c : m.of("null_control"))
         for (const auto& [plain, written_out] : twins) {
             const endpoint ratio = endpoint_of(c, written_out, plain, "frame_cpu_ms",
                                                {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
-            if (ratio.known()) found.push_back(decided_alone(ratio));
+            if (ratio.known()) ratios.push_back(decided_alone(ratio));
         }
-    const table t = endpoint_table(found, [&](const endpoint& e) {
+    const table t = endpoint_table(ratios, [&](const endpoint& e) {
         return is_difference(e)                    ? std::string("a difference")
                : e.found == support::no_difference ? text_of(e.found)
                                                    : "undecided";
     });
-    if (found.empty()) return {"null_control", "There are no measurements of a null control.", t};
+    if (ratios.empty()) return {"null_control", "There are no measurements of a null control.", t};
     const auto without_one =
-        std::ranges::count_if(found, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
+        std::ranges::count_if(ratios, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
     return {"null_control",
             fmt::format(
                 "Null control: time a frame of a composition under two names. Of {} intervals {} miss 1, where one in "
                 "twenty would be expected to. Each taken alone, {} are decided as a difference, {} as none, "
                 "and {} are undecided.",
-                found.size(), without_one, std::ranges::count_if(found, is_difference),
-                std::ranges::count(found, support::no_difference, &endpoint::found),
+                ratios.size(), without_one, std::ranges::count_if(ratios, is_difference),
+                std::ranges::count(ratios, support::no_difference, &endpoint::found),
                 std::ranges::count_if(
-                    found, [](const endpoint& e) { return !is_difference(e) && e.found != support::no_difference; })),
+                    ratios, [](const endpoint& e) { return !is_difference(e) && e.found != support::no_difference; })),
             t};
 }
 

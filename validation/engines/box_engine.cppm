@@ -5,8 +5,7 @@ import aabb.std;
 
 namespace aabb {
 
-/// The base of all box engines: tracks which objects are present and rejects the same input as a composed stage.
-/// Engines count no work.
+/// The base of box engines: tracks the present objects and rejects the same input as a composed stage. Counts no work.
 class box_engine : public global_stage {
 public:
     void insert(std::uint32_t id) final { objects_.insert(id); }

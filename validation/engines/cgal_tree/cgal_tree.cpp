@@ -62,8 +62,7 @@ struct tree_model : engine_model {
     }
 };
 
-/// Queries a tree of A's triangles with each triangle of B. The tree has no poses, so that B's vertices are
-/// transformed.
+/// Queries a tree of A's triangles with the triangles of B, transformed into A's frame.
 class cgal_tree final : public model_engine<tree_model> {
     void follow(tree_model& changed) override {
         changed.triangles.clear();

@@ -72,8 +72,7 @@ struct embree_model : engine_model {
     [[nodiscard]] std::size_t bytes() const { return bytes_of(still, moved); }
 };
 
-/// Embree has no poses: for each new pose, the second mesh is transformed and its scene rebuilt or refitted, then
-/// cached.
+/// Embree has no poses: for each new pose, the second mesh is transformed and its scene rebuilt or refitted.
 class embree_meshes final : public model_engine<embree_model> {
 public:
     explicit embree_meshes(RTCBuildQuality quality) : quality_(quality) {}
