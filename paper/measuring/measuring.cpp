@@ -20,7 +20,7 @@ namespace aabblab {
 
 namespace {
 
-/// The project's studies of error against run time, as far as they have something to plot.
+/// The project's studies of error against run time that have curves.
 std::vector<error_study> studies_with_curves(bool quick) {
     std::vector<error_study> studies;
     for (const std::filesystem::path& config : error_configs()) {
@@ -34,21 +34,21 @@ std::filesystem::path folder_of_study(const std::filesystem::path& folder, const
     return folder / "errors" / study.name;
 }
 
-/// The elementary tests of claim C6, timed by Google Benchmark in processes of their own. What is there of the same
-/// build and size stays.
-/// @returns a sentence where they are wrong
+/// Times the elementary tests of claim C6 by Google Benchmark in separate processes. Results of the same build and size
+/// are kept.
+/// @returns a sentence if a test is wrong
 std::vector<std::string> time_tests(const std::filesystem::path& folder, bool quick) {
     constexpr std::size_t processes = 5;
     const std::string repetitions = quick ? "3" : "9";
-    // Tests of leaves decide the claim; those of two triangles stand beside them in the table.
+    // Tests of leaves decide the claim; tests of two triangles are only in the table.
     const std::string filter = quick ? "^test/[^/]+(/frame:a)?$" : "^test/";
-    const std::string made = build_description() + "repetitions " + repetitions + " of " + filter + "\n";
+    const std::string description = build_description() + "repetitions " + repetitions + " of " + filter + "\n";
     const std::filesystem::path maker = folder / "made_by.txt";
     const auto file_of = [&](std::size_t process) { return folder / ("process-" + std::to_string(process) + ".json"); };
-    if (!std::filesystem::exists(maker) || bytes_of_file(maker) != made)
+    if (!std::filesystem::exists(maker) || bytes_of_file(maker) != description)
         for (std::size_t process = 0; std::filesystem::remove(file_of(process));) ++process;
     std::filesystem::create_directories(folder);
-    std::ofstream(maker, std::ios::binary) << made;
+    std::ofstream(maker, std::ios::binary) << description;
     for (std::size_t process = 0; process < processes; ++process) {
         if (std::filesystem::exists(file_of(process))) continue;
         const std::filesystem::path part = file_of(process).string() + ".part";
@@ -64,7 +64,7 @@ std::vector<std::string> time_tests(const std::filesystem::path& folder, bool qu
     return {};
 }
 
-/// What was wrong stands beside the results, a sentence a line, since a later judgement has to say it too.
+/// Errors are stored with the results, one sentence per line, because a later judgement must report them too.
 std::filesystem::path file_of_failures(const std::filesystem::path& folder) {
     return folder / "failures.txt";
 }
@@ -74,9 +74,9 @@ void keep_failures(const std::filesystem::path& folder, const std::vector<std::s
     write_file(file_of_failures(folder), text);
 }
 
-/// @returns what is not as it must be
-std::vector<std::string> play_suites(const std::filesystem::path& folder, bool quick) {
-    // Of an earlier version, it would stand before the rows.
+/// @returns the errors
+std::vector<std::string> run_suites(const std::filesystem::path& folder, bool quick) {
+    // The file of an earlier version would have priority over the rows.
     for (const char* suite : {"extreme", "stiff"}) std::filesystem::remove(folder / suite / "report.json");
     note("the extreme scenes");
     std::vector<std::string> failures = play_extreme_suite(folder / "extreme", usual_cases(), quick, false).failures;
@@ -85,7 +85,7 @@ std::vector<std::string> play_suites(const std::filesystem::path& folder, bool q
     return failures;
 }
 
-/// What was finished is not measured again, so it must be what was measured then. Experiments see to that themselves.
+/// Finished tests are not measured again, so that altered ones must be removed. Experiments check their own files.
 void forget_altered_tests(const std::filesystem::path& folder) {
     try {
         verify_record(folder);
@@ -95,7 +95,7 @@ void forget_altered_tests(const std::filesystem::path& folder) {
     }
 }
 
-/// Error against run time, from the results of the studies that are there.
+/// The section on error against run time, from the available studies.
 report_section errors_section(const std::filesystem::path& folder, bool quick) {
     report_section section{
         .id = "errors",
@@ -130,7 +130,7 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
     return section;
 }
 
-/// Of a suite, where it was played.
+/// Adds the section of a suite, if it was run.
 void add_suite(std::vector<report_section>& sections, const std::filesystem::path& folder, const std::string& suite,
                const std::string& title, const std::string& about) {
     const std::optional<suite_report> report = kept_report(folder / suite);
@@ -139,7 +139,7 @@ void add_suite(std::vector<report_section>& sections, const std::filesystem::pat
     std::ranges::copy(report->paragraphs, std::back_inserter(sections.back().paragraphs));
 }
 
-/// The small atlas, where it was measured.
+/// The section of the small atlas, if it was measured.
 std::optional<report_section> atlas_section(const std::filesystem::path& folder) {
     const std::vector<atlas_scene> atlas = measured_atlas(folder_of_atlas(folder));
     if (atlas.empty()) return std::nullopt;
@@ -157,7 +157,7 @@ std::optional<report_section> atlas_section(const std::filesystem::path& folder)
           regrets_table(atlas, span_of_time::whole)}}};
 }
 
-/// What was wrong, a sentence each.
+/// The stored errors, one sentence each.
 std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
     std::vector<std::string> failures;
     if (!std::filesystem::exists(file_of_failures(folder))) return failures;
@@ -165,42 +165,41 @@ std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
     return failures;
 }
 
-/// Plays every experiment of the paper, and the studies and suites of the report, into a folder, and keeps what is
-/// wrong as soon as it is found. What is there already of the same build and size stays. At the end the folder is
-/// sealed.
+/// Runs all experiments of the paper and the studies and suites of the report, and stores errors immediately. Results
+/// of the same build and size are kept. At the end the folder is sealed.
 void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     forget_altered_tests(folder);
     std::vector<experiment> experiments;
     for (const std::filesystem::path& config : configs_in(AABBLAB_CONFIGS))
         experiments.push_back(open_experiment(config.string(), quick));
     const std::vector<error_study> studies = studies_with_curves(quick);
-    const std::size_t all = experiments.size() + 1 + studies.size();
+    const std::size_t count = experiments.size() + 1 + studies.size();
     std::vector<std::string> failures;
-    const auto add = [&](const std::vector<std::string>& found) {
-        failures.insert(failures.end(), found.begin(), found.end());
+    const auto add = [&](const std::vector<std::string>& added) {
+        failures.insert(failures.end(), added.begin(), added.end());
         keep_failures(folder, failures);
     };
     unseal_record(folder);
     std::filesystem::remove(file_of_failures(folder));
     for (const experiment& e : experiments) {
-        note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, all, e.name));
+        note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, count, e.name));
         add(play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
     }
-    note(fmt::format("experiment {} of {}: c6, the elementary tests", experiments.size() + 1, all));
+    note(fmt::format("experiment {} of {}: c6, the elementary tests", experiments.size() + 1, count));
     add(time_tests(folder / "c6", quick));
     for (const error_study& study : studies) {
-        note(fmt::format("experiment {} of {}: errors of {}", experiments.size() + 2 + (&study - studies.data()), all,
+        note(fmt::format("experiment {} of {}: errors of {}", experiments.size() + 2 + (&study - studies.data()), count,
                          study.name));
         add(measure_study(study, folder_of_study(folder, study), printed::nothing));
     }
-    add(play_suites(folder, quick));
-    // Whatever the size of the run: the whole atlas takes half an hour by itself.
+    add(run_suites(folder, quick));
+    // Always the small atlas: the whole one takes half an hour.
     add(measure_atlas(folder_of_atlas(folder), true));
     seal_record(folder);
 }
 
-/// What the reports have behind the claims, from what was measured in the folder: errors against run time, the extreme
-/// scenes, the stiff ones, the atlas.
+/// The sections behind the claims, from the results in the folder: errors against run time, extreme scenes, stiff
+/// scenes and the atlas.
 std::vector<report_section> sections_of_reproduction(const std::filesystem::path& folder, bool quick) {
     std::vector<report_section> sections;
     if (report_section errors = errors_section(folder, quick); !errors.figures.empty())
@@ -228,8 +227,8 @@ void require_sense(const reproduce_request& request) {
         throw aabb::input_error("--archive takes the results of one run, and several are named");
 }
 
-/// The results of one run, read and verified.
-/// @param name as the user knows it
+/// Reads and verifies the results of one run.
+/// @param name the user's name for it
 measurements verified_measurements(const std::filesystem::path& folder, const std::string& name) {
     const std::vector<std::string> experiments = recorded_experiments(folder);
     if (experiments.empty()) throw aabb::input_error("there are no results of a reproduction in " + name);
@@ -240,25 +239,25 @@ measurements verified_measurements(const std::filesystem::path& folder, const st
     return results;
 }
 
-/// The verdicts as a terminal shows them.
-std::string verdict_text(const reproduction& all) {
+/// The verdicts for the terminal.
+std::string verdict_text(const reproduction& reproduced) {
     std::string text;
-    if (!all.disturbance.empty()) text += all.disturbance + "\n\n";
-    for (const std::string& sentence : all.headline) text += sentence + "\n";
+    if (!reproduced.disturbance.empty()) text += reproduced.disturbance + "\n\n";
+    for (const std::string& sentence : reproduced.headline) text += sentence + "\n";
     text += "\n";
-    for (const claim_result& c : all.claims)
+    for (const claim_result& c : reproduced.claims)
         text += fmt::format("{:<4} {}\n     {}. {}\n", c.id, c.claim, text_of(c), c.sentence);
     return text;
 }
 
-/// Which size of the paper's experiments a run has.
+/// Whether a run has the quick size of the experiments.
 bool is_quick(const std::filesystem::path& folder) {
     return read_manifest(folder / recorded_experiments(folder).front()).quick;
 }
 
-/// A run and its copy are no two machines that agree.
+/// Rejects copies of a run, which would count as agreeing machines.
 void require_different(std::span<const measurements> runs) {
-    std::map<std::string, std::string> names;  // by what seals them
+    std::map<std::string, std::string> names;  // by seal
     for (const measurements& run : runs) {
         if (!is_sealed_record(run.folder())) continue;
         const auto [known, is_new] = names.emplace(seal_of_record(run.folder()), run.name());
@@ -266,8 +265,8 @@ void require_different(std::span<const measurements> runs) {
     }
 }
 
-/// How verdicts compare with those of the published run of the same size; empty where it is not there, or damaged.
-std::string agreement_with_published(std::span<const measurements> runs, const reproduction& all) {
+/// The agreement of the verdicts with the published run of the same size; empty if that is missing or damaged.
+std::string agreement_with_published(std::span<const measurements> runs, const reproduction& reproduced) {
     const std::string name = is_quick(runs.front().folder()) ? "quick_run.tar.xz" : "full_run.tar.xz";
     const std::filesystem::path archive = std::filesystem::path(AABBLAB_ARCHIVES) / name;
     if (!std::filesystem::exists(archive)) return {};
@@ -281,14 +280,14 @@ std::string agreement_with_published(std::span<const measurements> runs, const r
             return is_sealed_record(run.folder()) && seal_of_record(run.folder()) == seal_of_record(source.folder);
         };
         if (std::ranges::all_of(runs, is_published)) return "These results are " + published + ".";
-        return agreement_of(all.claims, judged(results).claims, published);
+        return agreement_of(reproduced.claims, judged(results).claims, published);
     } catch (const aabb::input_error& error) {
         note("verdicts are not compared with the published ones: " + std::string(error.what()));
         return {};
     }
 }
 
-/// Judges what was measured and writes the report.
+/// Judges the results and writes the report.
 /// @returns the exit status
 int judge(const std::filesystem::path& out, std::span<const measurements> runs) {
     std::vector<std::string> failures;
@@ -299,11 +298,11 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
             throw aabb::input_error(first.name() + " and " + run.name() +
                                     " are of different sizes, quick and full, and cannot be judged together");
     require_different(runs);
-    const reproduction all = judged(runs);
-    const std::string agreement = agreement_with_published(runs, all);
-    write_reproduction(out, runs, all, sections_of_reproduction(first.folder(), is_quick(first.folder())), failures,
-                       agreement);
-    print(verdict_text(all));
+    const reproduction reproduced = judged(runs);
+    const std::string agreement = agreement_with_published(runs, reproduced);
+    write_reproduction(out, runs, reproduced, sections_of_reproduction(first.folder(), is_quick(first.folder())),
+                       failures, agreement);
+    print(verdict_text(reproduced));
     if (!failures.empty())
         print(fmt::format("\n{} answers were wrong; compositions among them have no times:\n", failures.size()));
     for (const std::string& failure : failures) print("  " + failure + "\n");
@@ -312,7 +311,7 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
     return failures.empty() ? 0 : 1;
 }
 
-/// Packs what a judgement reads, and says how large it is and what its checksum is.
+/// Archives the files that a judgement reads, and prints the archive's size and checksum.
 void archive_reproduction(const std::filesystem::path& folder, const std::filesystem::path& file) {
     write_archive(file, record_top, folder, archived_files(folder));
     const std::string bytes = bytes_of_file(file);

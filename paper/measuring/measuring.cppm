@@ -1,4 +1,4 @@
-/// The reproduction from its configs to its report: what is measured, and where it leaves what.
+/// The reproduction from its configs to its report.
 export module aabblab.measuring;
 
 import aabb.std;
@@ -9,15 +9,15 @@ export namespace aabblab {
 
 struct reproduce_request {
     std::optional<std::string> out;
-    std::optional<std::string> archive;  ///< to be written, of what was judged
-    std::vector<std::string> sources;    ///< folders and archives to judge, in place of the one of `out`
+    std::optional<std::string> archive;  ///< to be written, with the judged results
+    std::vector<std::string> sources;    ///< folders and archives to judge instead of `out`
     bool quick = false;
-    bool judge = false;  ///< results that are there
+    bool judge = false;  ///< judge existing results
 };
 
 /// Measures, judges and reports, and prints the verdicts.
-/// @returns the exit status: 1 where anything is wrong
-/// @throws aabb::input_error where results are not there, are damaged or do not go together.
+/// @returns the exit status: 1 if anything is wrong
+/// @throws aabb::input_error if results are missing, damaged or incompatible.
 [[nodiscard]] int reproduce(const reproduce_request& request);
 
 }  // namespace aabblab

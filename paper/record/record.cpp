@@ -9,7 +9,7 @@ namespace aabblab {
 
 namespace {
 
-/// The names of what is in a folder, in order; none where there is no such folder.
+/// The sorted names of a folder's entries; none if the folder does not exist.
 std::vector<std::string> names_in(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     if (!std::filesystem::is_directory(folder)) return names;
@@ -22,7 +22,7 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
 /// Checksums by file.
 using sums = std::map<std::string, std::string>;
 
-/// A copy may have come by a way that changes the ends of lines.
+/// The checksum of a file with normalised line endings, which copying may have changed.
 std::string sum_of(const std::filesystem::path& file) {
     const std::string bytes = bytes_of_file(file);
     std::string text;
@@ -31,17 +31,17 @@ std::string sum_of(const std::filesystem::path& file) {
     return sha256_of(text);
 }
 
-/// Of all files but the tables that a manifest speaks for.
+/// The checksums of all files except tables, whose checksums are in manifests.
 sums sums_of(const std::filesystem::path& folder) {
-    sums all;
+    sums checksums;
     for (const std::filesystem::path& file : recorded_files(folder))
         if (const std::string name = file.filename().string(); name != "results.csv" && name != "differences.csv")
-            all.emplace(file.generic_string(), sum_of(folder / file));
-    return all;
+            checksums.emplace(file.generic_string(), sum_of(folder / file));
+    return checksums;
 }
 
 sums stated_sums(const std::filesystem::path& file) {
-    sums all;
+    sums checksums;
     std::istringstream in(text_of_file(file));
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
@@ -50,9 +50,9 @@ sums stated_sums(const std::filesystem::path& file) {
         if (line.size() < 67 || line.substr(64, 2) != "  ")
             throw aabb::input_error(
                 fmt::format("{}:{}: expected a checksum of 64 digits, two blanks and a file", file.string(), number));
-        all[line.substr(66)] = line.substr(0, 64);
+        checksums[line.substr(66)] = line.substr(0, 64);
     }
-    return all;
+    return checksums;
 }
 
 }  // namespace
@@ -67,10 +67,10 @@ std::vector<std::string> recorded_experiments(const std::filesystem::path& folde
 }
 
 std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> all;
+    std::vector<std::filesystem::path> files;
     const auto add = [&](const std::filesystem::path& place, std::initializer_list<const char*> names) {
         for (const char* name : names)
-            if (std::filesystem::is_regular_file(folder / place / name)) all.push_back(place / name);
+            if (std::filesystem::is_regular_file(folder / place / name)) files.push_back(place / name);
     };
     for (const std::string& name : recorded_experiments(folder))
         add(name, {"manifest.json", "results.csv", "differences.csv"});
@@ -81,14 +81,14 @@ std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& f
     for (const std::string& name : names_in(folder / "atlas"))
         add("atlas/" + name, {"manifest.json", "results.csv", "differences.csv"});
     for (const std::string suite : {"extreme", "stiff"}) {
-        // Earlier versions sealed what they drew in place of rows.
+        // Earlier versions sealed their report instead of rows.
         const bool drawn = std::filesystem::exists(folder / suite / "report.json");
         for (const std::string& name : names_in(folder / suite))
             if (drawn ? name == "report.json" : name.ends_with(".csv")) add(suite, {name.c_str()});
     }
     add("", {"failures.txt"});
-    std::ranges::sort(all);
-    return all;
+    std::ranges::sort(files);
+    return files;
 }
 
 std::vector<std::filesystem::path> archived_files(const std::filesystem::path& folder) {
@@ -112,8 +112,8 @@ void source_list::add(const std::filesystem::path& folder) {
 int source_list::with_names_of_user(const std::function<int()>& work) const {
     try {
         return work();
-    } catch (const aabb::input_error& refused) {
-        std::string sentence = refused.what();
+    } catch (const aabb::input_error& error) {
+        std::string sentence = error.what();
         for (const results_source& source : all_)
             if (const std::size_t at = sentence.find(source.folder.string()); at != std::string::npos)
                 sentence.replace(at, source.folder.string().size(), source.name);
@@ -141,17 +141,17 @@ std::string seal_of_record(const std::filesystem::path& folder) {
 
 void verify_record(const std::filesystem::path& folder) {
     if (!is_sealed_record(folder)) return;
-    const sums found = sums_of(folder);
+    const sums actual = sums_of(folder);
     const sums stated = stated_sums(folder / sums_name);
     for (const auto& [file, sum] : stated) {
-        const auto there = found.find(file);
-        if (there == found.end())
+        const auto position = actual.find(file);
+        if (position == actual.end())
             throw aabb::input_error((folder / file).string() + " is missing; SHA256SUMS names it");
-        if (there->second != sum)
+        if (position->second != sum)
             throw aabb::input_error((folder / file).string() +
                                     " was altered after the run: it does not have the checksum that SHA256SUMS states");
     }
-    for (const auto& [file, sum] : found)
+    for (const auto& [file, sum] : actual)
         if (!stated.contains(file))
             throw aabb::input_error((folder / file).string() + " was added after the run: SHA256SUMS does not name it");
     for (const auto& [file, sum] : stated)

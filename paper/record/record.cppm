@@ -1,7 +1,7 @@
 module;
 #include <list>
 
-/// What of a reproduction's folder its report is made from, and whether it is as the run left it.
+/// The files of a reproduction's folder from which its report is made, and the check that they are unaltered.
 export module aabblab.record;
 
 import aabb.std;
@@ -9,51 +9,51 @@ import aabblab.archive;
 
 export namespace aabblab {
 
-/// The folder that they stand in in an archive.
+/// The folder of these files in an archive.
 inline constexpr const char* record_top = "reproduction";
 
-/// The experiments that a folder has, by name.
+/// The names of the experiments in a folder.
 [[nodiscard]] std::vector<std::string> recorded_experiments(const std::filesystem::path& folder);
 
-/// The files that a judgement reads, relative to the folder, in order.
+/// The files that a judgement reads, relative to the folder, sorted.
 [[nodiscard]] std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder);
 
-/// The same, and SHA256SUMS where there is one: what an archive holds.
+/// The files of an archive: the same, and SHA256SUMS if it exists.
 [[nodiscard]] std::vector<std::filesystem::path> archived_files(const std::filesystem::path& folder);
 
-/// Of a run that is finished: writes SHA256SUMS, which names every file that a judgement reads but the tables of
-/// results, whose checksums stand in their manifests, since their rows may stand in any order.
+/// Seals a finished run: writes SHA256SUMS, with every file that a judgement reads except the tables of results, whose
+/// checksums are in their manifests, since their rows may have any order.
 void seal_record(const std::filesystem::path& folder);
-/// Of a run that begins: takes it away.
+/// Unseals a run before it begins.
 void unseal_record(const std::filesystem::path& folder);
 [[nodiscard]] bool is_sealed_record(const std::filesystem::path& folder);
-/// Of a sealed one: the same for copies, and for nothing else.
+/// The seal of a sealed run, which identifies it: only copies have the same seal.
 [[nodiscard]] std::string seal_of_record(const std::filesystem::path& folder);
 
-/// Where it is sealed, every file is there and as it was, whatever the ends of its lines, and no other.
-/// @throws aabb::input_error where that is not so.
+/// Checks that a sealed run has exactly the sealed files, unaltered except for line endings.
+/// @throws aabb::input_error otherwise.
 void verify_record(const std::filesystem::path& folder);
 
-/// The small atlas that stands in the report.
+/// The folder of the small atlas, which the report includes.
 [[nodiscard]] inline std::filesystem::path folder_of_atlas(const std::filesystem::path& folder) {
     return folder / "atlas";
 }
 
 struct results_source {
-    std::string name;  ///< as the user gave it
+    std::string name;  ///< as given by the user
     std::filesystem::path folder;
 };
 
-/// Results to be judged, each in a folder; those of archives in temporary ones, gone with this.
+/// The folders of results to judge; archives are unpacked to temporary folders, which the destructor removes.
 class source_list {
 public:
-    /// @param names of folders and archives
-    /// @throws aabb::input_error where one is not there, or is no such archive.
+    /// @param names folders and archives
+    /// @throws aabb::input_error if one is missing, or is no such archive.
     explicit source_list(std::span<const std::string> names);
     void add(const std::filesystem::path& folder);
 
     [[nodiscard]] const std::vector<results_source>& all() const { return all_; }
-    /// Does the work; where it refuses a file of an archive, the sentence has the archive's name.
+    /// Runs the work; if it rejects a file of an archive, the message has the archive's name.
     [[nodiscard]] int with_names_of_user(const std::function<int()>& work) const;
 
 private:
@@ -61,12 +61,12 @@ private:
     std::vector<results_source> all_;
 };
 
-/// What a report says of results that are not sealed.
+/// The report's note about unsealed results.
 inline constexpr const char* unsealed_note =
     "the results are not sealed: the run was not finished, is of an earlier version, or lost its SHA256SUMS, and "
     "nothing shows whether rows are missing or were altered";
 
-/// SHA256SUMS and nothing else has this name.
+/// The name of the file of checksums.
 inline constexpr const char* sums_name = "SHA256SUMS";
 
 }  // namespace aabblab

@@ -14,7 +14,7 @@ namespace aabblab {
 
 namespace {
 
-// The scale that all claims share, logarithmic and with 1 in its middle.
+// The scale of all claims, logarithmic with 1 in the middle.
 const scale shared{0.2, 5, true};
 constexpr double margin = 4;  // at both ends, in percent, for arrows
 
@@ -22,7 +22,7 @@ double place_of(double ratio) {
     return margin + (100 - 2 * margin) * shared.place(std::clamp(ratio, shared.from, shared.to));
 }
 
-/// The band of no difference, and 1 in its middle.
+/// Draws the band of no difference, with 1 in the middle.
 void add_band(svg_picture& to, double low, double one, double high, double top, double bottom) {
     to.rectangle("band", {low, top, high - low, bottom - top});
     to.line("one", {one, top}, {one, bottom});
@@ -31,7 +31,7 @@ void add_band(svg_picture& to, double low, double one, double high, double top, 
 constexpr double first_row = 16;
 constexpr double row_height = 12;
 
-/// @param y how far down it is
+/// @param y the vertical position
 void add_axis(svg_picture& to, double y) {
     to.line("axis", {margin, y}, {100 - margin, y});
     for (const double ratio : {0.25, 0.5, 1., 2., 4.}) {
@@ -40,7 +40,7 @@ void add_axis(svg_picture& to, double y) {
     }
 }
 
-/// What lies beyond the scale is an arrow at its end, with the number.
+/// Draws a value beyond the scale as an arrow at its end, with the number.
 void add_arrow(svg_picture& to, bool to_left, double y, double number) {
     const double back = to_left ? 8 : -8;
     svg_picture head;
@@ -60,22 +60,22 @@ void add_interval(svg_picture& to, const endpoint& e, double y) {
     if (above) add_arrow(to, false, y, e.ratio > shared.to ? e.ratio : high);
 }
 
-/// Ratios with their intervals, below each other, against the band of no difference, as SVG for the page. All claims
-/// have the same scale; what lies beyond it is an arrow with its number.
-std::string interval_picture(std::span<const endpoint> all) {
-    const double axis = first_row + row_height * static_cast<double>(all.size());
+/// Ratios with their intervals, one per row, against the band of no difference, as SVG for the page. All claims share a
+/// scale; values beyond it are arrows with the number.
+std::string interval_picture(std::span<const endpoint> endpoints) {
+    const double axis = first_row + row_height * static_cast<double>(endpoints.size());
     std::string label;
     svg_picture drawn("%");
     add_band(drawn, place_of(1 / (1 + equivalence_band)), 50, place_of(1 + equivalence_band), 4, axis);
     add_axis(drawn, axis);
-    for (const endpoint& e : all) {
+    for (const endpoint& e : endpoints) {
         label += (label.empty() ? "ratio " : "; ") + ratio_text(e);
-        add_interval(drawn, e, first_row + row_height * static_cast<double>(&e - all.data()));
+        add_interval(drawn, e, first_row + row_height * static_cast<double>(&e - endpoints.data()));
     }
     return drawn.in_page("interval", label, axis + 16);
 }
 
-/// The rule as SVG for the page: where an interval may lie, and what that means.
+/// The rule as SVG for the page: example intervals and their outcomes.
 std::string rule_picture() {
     struct example {
         double low;
@@ -128,40 +128,40 @@ const verdict_word& word_of(verdict_kind verdict) {
     return verdict_words[static_cast<std::size_t>(verdict)];
 }
 
-/// How a verdict comes about, from rule.md: a paragraph each, without line breaks.
+/// The paragraphs of rule.md, without line breaks.
 std::vector<std::string> rule_paragraphs() {
-    std::vector<std::string> all;
+    std::vector<std::string> paragraphs;
     std::istringstream text{std::string(embedded::rule_md)};
     bool new_paragraph = true;
     for (std::string line; std::getline(text, line);) {
         if (line.empty())
             new_paragraph = true;
         else if (std::exchange(new_paragraph, false))
-            all.push_back(line);
+            paragraphs.push_back(line);
         else
-            all.back() += " " + line;
+            paragraphs.back() += " " + line;
     }
-    return all;
+    return paragraphs;
 }
 
 std::string paragraph(std::string_view kind, const std::string& markup) {
     return element("p", {{"class", kind}}, markup);
 }
 
-/// A verdict, and a sentence that says more.
+/// A verdict, followed by a sentence.
 std::string verdict_markup(const claim_result& c, const std::string& sentence) {
     return element("span", {{"class", "word"}}, std::string(word_of(c.verdict).word) + ":") + " " +
            markup_text(sentence);
 }
 
-void add_claim_rows(page& out, const reproduction& all) {
+void add_claim_rows(page& out, const reproduction& reproduced) {
     std::string rows = "\n";
-    for (const claim_result& c : all.claims) {
-        const std::string told = paragraph("said", markup_text(c.claim)) + paragraph("", verdict_markup(c, c.brief));
+    for (const claim_result& c : reproduced.claims) {
+        const std::string text = paragraph("said", markup_text(c.claim)) + paragraph("", verdict_markup(c, c.brief));
         const std::string measured = paragraph("ratio", c.has_primary ? ratio_text(c.primary) : "not measured") +
                                      (c.has_primary ? interval_picture(primaries_of(c)) : "");
         rows += element("a", {{"class", "claim " + std::string(word_of(c.verdict).kind)}, {"href", "#" + c.id}},
-                        element("b", {}, c.id) + element("div", {}, told) + element("div", {}, measured)) +
+                        element("b", {}, c.id) + element("div", {}, text) + element("div", {}, measured)) +
                 "\n";
     }
     out.add_html(element("div", {{"class", "claims"}}, rows) + "\n" +
@@ -170,15 +170,15 @@ void add_claim_rows(page& out, const reproduction& all) {
                            "interval, and all of them drawn, on one scale for all. Left of 1 favours the claim; the "
                            "shaded band makes no difference.") +
                  "\n");
-    out.add_markdown(to_markdown(brief_table(all)) + "\n");
-    for (const claim_result& c : all.claims)
+    out.add_markdown(to_markdown(brief_table(reproduced)) + "\n");
+    for (const claim_result& c : reproduced.claims)
         out.add_markdown("- " + c.id + ", " + text_of(c) + ": " + c.sentence + "\n");
     out.add_markdown("\n");
-    for (const figure& f : all.figures)
+    for (const figure& f : reproduced.figures)
         out.add_markdown("![" + f.caption + "](figures/" + f.name + ".svg)\n\n" + f.caption + "\n\n");
 }
 
-void add_rule(page& out, const reproduction& all) {
+void add_rule(page& out, const reproduction& reproduced) {
     out.heading("How a verdict comes about", "rule");
     out.add_html(rule_picture() + "\n");
     std::string words;
@@ -188,19 +188,19 @@ void add_rule(page& out, const reproduction& all) {
     out.add_html(element("dl", {{"class", "words"}}, words) + "\n");
     out.add_markdown(to_markdown(rule_table()) + "\n");
     std::string text;
-    for (const std::string& one : rule_paragraphs()) {
-        text += paragraph("", markup_text(one)) + "\n";
-        out.add_markdown(one + "\n\n");
+    for (const std::string& rule_paragraph : rule_paragraphs()) {
+        text += paragraph("", markup_text(rule_paragraph)) + "\n";
+        out.add_markdown(rule_paragraph + "\n\n");
     }
     out.folded("The rule in words", text);
-    out.add_html(paragraph("", markup_text(all.null_control.caption)));
-    out.folded("Every ratio of the null control", all.null_control);
+    out.add_html(paragraph("", markup_text(reproduced.null_control.caption)));
+    out.folded("Every ratio of the null control", reproduced.null_control);
 }
 
-void add_choices(page& out, const reproduction& all) {
+void add_choices(page& out, const reproduction& reproduced) {
     out.heading("What the paper leaves open", "open");
     std::string list;
-    for (const open_choice& c : all.choices) {
+    for (const open_choice& c : reproduced.choices) {
         list += element("dt", {}, markup_text(c.question)) +
                 element("dd", {}, markup_text("Here: " + c.choice + ". Why: " + c.why + ".")) + "\n";
         if (c.alternatives.empty()) continue;
@@ -215,7 +215,7 @@ void add_choices(page& out, const reproduction& all) {
         list += element("dd", {{"class", "soft"}}, markup_text(ratios)) + "\n";
     }
     out.add_html(element("dl", {}, list) + "\n");
-    out.add_markdown(to_markdown(choice_table(all)) + "\n");
+    out.add_markdown(to_markdown(choice_table(reproduced)) + "\n");
 }
 
 }  // namespace
@@ -226,35 +226,35 @@ table rule_table() {
     return t;
 }
 
-page report_of(const reproduction& all, std::span<const report_section> sections, const provenance& made,
+page report_of(const reproduction& reproduced, std::span<const report_section> sections, const provenance& origin,
                const std::vector<std::string>& failures) {
     page out("AABB Lab: the paper, put to the test", embedded::report_css);
-    if (!all.disturbance.empty()) out.paragraph(all.disturbance, "wrong");
+    if (!reproduced.disturbance.empty()) out.paragraph(reproduced.disturbance, "wrong");
     for (const std::string& failure : failures) {
         out.add_html(paragraph("wrong", markup_text("Wrong: " + failure + ".")) + "\n");
         out.add_markdown("**Wrong:** " + failure + ".\n\n");
     }
     out.title("The paper, put to the test");
     std::string headline;
-    for (const std::string& sentence : all.headline) {
+    for (const std::string& sentence : reproduced.headline) {
         headline += paragraph("", markup_text(sentence)) + "\n";
         out.add_markdown(sentence + "\n\n");
     }
     out.add_html(element("div", {{"class", "headline"}}, headline) + "\n");
-    if (!made.agreement.empty()) out.paragraph(made.agreement);
+    if (!origin.agreement.empty()) out.paragraph(origin.agreement);
     out.paragraph(fmt::format("\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures, "
                               "its claims and one of the method that it follows (SMB, 2006): {} in all. "
                               "{}, {} size. Commit {}, {}, {}. {} rows of {} "
                               "scenes; up to {} processes, {} seeds and {} repeats in all.",
-                              all.claims.size(), made.date, made.size, made.commit, made.compiler, made.cpu, made.rows,
-                              made.scenes, made.processes, made.seeds, made.repeats),
+                              reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler,
+                              origin.cpu, origin.rows, origin.scenes, origin.processes, origin.seeds, origin.repeats),
                   "soft");
-    for (const std::string& note : made.notes) out.paragraph("Note: " + note + ".", "soft");
-    add_claim_rows(out, all);
-    add_rule(out, all);
+    for (const std::string& note : origin.notes) out.paragraph("Note: " + note + ".", "soft");
+    add_claim_rows(out, reproduced);
+    add_rule(out, reproduced);
     out.heading("Under other bands of no difference", "bands");
-    out.add(all.bands);
-    for (const claim_result& c : all.claims) {
+    out.add(reproduced.bands);
+    for (const claim_result& c : reproduced.claims) {
         out.heading(c.id + ": " + c.claim, c.id);
         out.add_html(paragraph("verdict " + std::string(word_of(c.verdict).kind), verdict_markup(c, c.sentence)) +
                      "\n");
@@ -266,14 +266,14 @@ page report_of(const reproduction& all, std::span<const report_section> sections
             if (&t != c.tables.data()) out.add(t);
         if (!c.tables.empty()) out.folded("Every endpoint", c.tables.front());
         for (const std::string& experiment : c.experiments)
-            for (const provenance::config& config : made.configs)
+            for (const provenance::config& config : origin.configs)
                 if (config.experiment == experiment)
                     out.folded("The config that made it: " + experiment + ".toml",
                                element("pre", {}, markup_text(config.text)));
     }
     out.heading("Table 1: what nodes take", "table1");
-    for (const named_table& t : all.tables) out.add(t);
-    add_choices(out, all);
+    for (const named_table& t : reproduced.tables) out.add(t);
+    add_choices(out, reproduced);
     for (const report_section& section : sections) {
         out.heading(section.title, section.id);
         for (const std::string& text : section.paragraphs) out.paragraph(text);
@@ -281,7 +281,7 @@ page report_of(const reproduction& all, std::span<const report_section> sections
         for (const named_table& t : section.tables) out.add(t);
     }
     out.add_html(element("h2", {{"id", "manifest"}}, "What made it") + "\n");
-    for (const provenance::config& config : made.configs)
+    for (const provenance::config& config : origin.configs)
         out.folded(config.experiment + "/manifest.json", element("pre", {}, markup_text(config.manifest)));
     return out;
 }

@@ -10,7 +10,7 @@ namespace {
 
 class macros {
 public:
-    /// Text that is TeX already.
+    /// Sets text that is already TeX.
     void set_tex(const std::string& key, const std::string& tex) { text_ += "\\aabbset{" + key + "}{" + tex + "}\n"; }
     void set(const std::string& key, std::string_view text) { set_tex(key, tex_text(text)); }
     void set(const std::string& key, std::size_t number) { set(key, std::to_string(number)); }
@@ -20,7 +20,7 @@ private:
     std::string text_ = "% Written by ./aabblab reproduce: every number that the report names.\n";
 };
 
-/// The values of every factor over all scenes: "scene brownian, still; objects 100, 1000."
+/// The values of all factors over all scenes: "scene brownian, still; objects 100, 1000."
 std::string setup_of(const claim_result& c) {
     std::vector<std::pair<std::string, std::vector<std::string>>> values;
     for (const factors& scene : c.scenes)
@@ -40,11 +40,11 @@ std::string setup_of(const claim_result& c) {
     return text.empty() ? "none were measured." : text + ".";
 }
 
-/// Names with commas, which TeX takes as they are.
+/// The names, separated by commas, as TeX expects them.
 template <class Named>
-std::string list_of(const std::vector<Named>& all, std::size_t from = 0) {
+std::string list_of(const std::vector<Named>& entries, std::size_t from = 0) {
     std::string text;
-    for (std::size_t i = from; i < all.size(); ++i) text += (text.empty() ? "" : ",") + all[i].name;
+    for (std::size_t i = from; i < entries.size(); ++i) text += (text.empty() ? "" : ",") + entries[i].name;
     return text;
 }
 
@@ -56,7 +56,7 @@ void add_claim(macros& to, const claim_result& c) {
     set("sentence", c.sentence);
     set("because", c.because == c.sentence ? "" : c.because);
     to.set_tex(c.id + ".figures", list_of(c.figures));
-    // The first has the endpoints, and stands in the appendix.
+    // The first table has the endpoints and belongs to the appendix.
     to.set_tex(c.id + ".tables", list_of(c.tables, 1));
     set("setup", setup_of(c));
     set("favourable", c.expected == expectation::less ? "below 1" : "below 1.05");
@@ -81,7 +81,7 @@ std::string text_of(outcome direction) {
 }
 
 /// Every endpoint of every claim, for programs.
-table endpoints_of(const reproduction& all) {
+table endpoints_of(const reproduction& reproduced) {
     table t = empty_table({"claim", "endpoint", "where", "source", "expected"}, {"ratio", "low", "high"},
                           {"direction", "outcome"});
     const auto add = [&](const claim_result& c, const endpoint& e) {
@@ -92,7 +92,7 @@ table endpoints_of(const reproduction& all) {
                           e.expected == expectation::less ? "less" : "not more", digits(e.ratio), digits(e.range.low),
                           digits(e.range.high), text_of(e.direction), text_of(e.found)});
     };
-    for (const claim_result& c : all.claims) {
+    for (const claim_result& c : reproduced.claims) {
         if (c.has_primary) add(c, c.primary);
         for (const endpoint& e : c.secondary) add(c, e);
     }
@@ -100,7 +100,7 @@ table endpoints_of(const reproduction& all) {
 }
 
 /// The primary ratio of every claim against the band of no difference.
-figure verdict_figure(const reproduction& all) {
+figure verdict_figure(const reproduction& reproduced) {
     figure f{
         "verdicts",
         "The primary ratio of every claim with its 95 % interval, and the band in which there is no difference. Ratios "
@@ -108,10 +108,10 @@ figure verdict_figure(const reproduction& all) {
         {"claim", false},
         {"ratio", true}};
     series ratios{"primary ratio, 95 % interval", series_style::points};
-    for (std::size_t i = 0; i < all.claims.size(); ++i) {
-        f.x.names.emplace_back(static_cast<double>(i), all.claims[i].id);
-        if (!all.claims[i].has_primary || all.claims[i].primary.ratio < 0.2) continue;
-        const endpoint& e = all.claims[i].primary;
+    for (std::size_t i = 0; i < reproduced.claims.size(); ++i) {
+        f.x.names.emplace_back(static_cast<double>(i), reproduced.claims[i].id);
+        if (!reproduced.claims[i].has_primary || reproduced.claims[i].primary.ratio < 0.2) continue;
+        const endpoint& e = reproduced.claims[i].primary;
         ratios.points.push_back({static_cast<double>(i), e.ratio, e.range.low, e.range.high});
     }
     f.lines = {ratios,
@@ -125,25 +125,26 @@ void write_table(const std::filesystem::path& folder, const named_table& t) {
     write_file(folder / (t.name + ".tex"), to_tex(t.content));
 }
 
-std::string macros_of(const reproduction& all, const provenance& made, const std::vector<std::string>& failures) {
+std::string macros_of(const reproduction& reproduced, const provenance& origin,
+                      const std::vector<std::string>& failures) {
     macros to;
     // A layout that was wrong has no row in table 1.
     for (const char* tree : {"canonical", "leafless", "shared_planes", "compressed", "compressed_literal"})
         for (const char* bytes : {"paper", "allocated"}) to.set(std::string("table1.") + tree + "." + bytes, "-");
     for (const char* name : {"table1", "table1_builds"})
         to.set(std::string("table.") + name + ".caption", "There are no measurements.");
-    to.set("date", made.date);
-    to.set("commit", made.commit);
-    to.set("compiler", made.compiler);
-    to.set("flags", made.flags);
-    to.set("cpu", made.cpu);
-    to.set("size", made.size);
-    to.set("rows", made.rows);
-    to.set("compositions", made.compositions);
-    to.set("scenes", made.scenes);
-    to.set("processes", made.processes);
-    to.set("seeds", made.seeds);
-    to.set("repeats", made.repeats);
+    to.set("date", origin.date);
+    to.set("commit", origin.commit);
+    to.set("compiler", origin.compiler);
+    to.set("flags", origin.flags);
+    to.set("cpu", origin.cpu);
+    to.set("size", origin.size);
+    to.set("rows", origin.rows);
+    to.set("compositions", origin.compositions);
+    to.set("scenes", origin.scenes);
+    to.set("processes", origin.processes);
+    to.set("seeds", origin.seeds);
+    to.set("repeats", origin.repeats);
     to.set_tex("confidence", "95\\,\\%");
     to.set_tex("band", fmt::format("{:.0f}\\,\\%", 100 * equivalence_band));
     to.set("band.low", fmt::format("{:.3f}", 1 / (1 + equivalence_band)));
@@ -152,22 +153,22 @@ std::string macros_of(const reproduction& all, const provenance& made, const std
     to.set("failures",
            failures.empty() ? std::string("none") : std::to_string(failures.size()) + ", " + failures.front());
     std::string ids;
-    for (const claim_result& c : all.claims) ids += (ids.empty() ? "" : ",") + c.id;
+    for (const claim_result& c : reproduced.claims) ids += (ids.empty() ? "" : ",") + c.id;
     to.set_tex("claims", ids);
-    to.set("claims.count", all.claims.size());
+    to.set("claims.count", reproduced.claims.size());
     std::string headline;
-    for (const std::string& sentence : all.headline) headline += (headline.empty() ? "" : " ") + sentence;
+    for (const std::string& sentence : reproduced.headline) headline += (headline.empty() ? "" : " ") + sentence;
     to.set("headline", headline);
-    to.set("disturbance", all.disturbance);
-    to.set("table.bands.caption", all.bands.caption);
-    for (const claim_result& c : all.claims) {
+    to.set("disturbance", reproduced.disturbance);
+    to.set("table.bands.caption", reproduced.bands.caption);
+    for (const claim_result& c : reproduced.claims) {
         add_claim(to, c);
         for (const figure& f : c.figures) to.set("figure." + f.name + ".caption", f.caption);
         for (const named_table& t : c.tables) to.set("table." + t.name + ".caption", t.caption);
     }
-    to.set("table.null_control.caption", all.null_control.caption);
-    for (const figure& f : all.figures) to.set("figure." + f.name + ".caption", f.caption);
-    for (const named_table& t : all.tables) {
+    to.set("table.null_control.caption", reproduced.null_control.caption);
+    for (const figure& f : reproduced.figures) to.set("figure." + f.name + ".caption", f.caption);
+    for (const named_table& t : reproduced.tables) {
         to.set("table." + t.name + ".caption", t.caption);
         if (t.name != "table1") continue;
         for (const std::vector<std::string>& cells : t.content.rows) {
@@ -178,12 +179,12 @@ std::string macros_of(const reproduction& all, const provenance& made, const std
     return to.text();
 }
 
-provenance provenance_of(const measurements& results, const reproduction& all) {
-    provenance made;
+provenance provenance_of(const measurements& results, const reproduction& reproduced) {
+    provenance origin;
     const std::filesystem::path& folder = results.folder();
-    if (!is_sealed_record(folder)) made.notes.emplace_back(unsealed_note);
+    if (!is_sealed_record(folder)) origin.notes.emplace_back(unsealed_note);
     std::vector<std::string> experiments;
-    for (const claim_result& c : all.claims)
+    for (const claim_result& c : reproduced.claims)
         for (const std::string& experiment : c.experiments)
             if (std::ranges::find(experiments, experiment) == experiments.end() &&
                 std::filesystem::exists(folder / experiment / "manifest.json"))
@@ -192,24 +193,24 @@ provenance provenance_of(const measurements& results, const reproduction& all) {
         if (std::filesystem::exists(folder / experiment / "manifest.json")) experiments.emplace_back(experiment);
     for (const std::string& experiment : experiments) {
         const auto manifest = results.manifest(experiment);
-        made.configs.push_back({experiment, manifest.config, manifest.text});
-        made.size = manifest.quick ? "quick" : "full";
-        made.date = std::max(made.date, manifest.date.substr(0, 10));
-        made.commit = manifest.commit;
-        made.compiler = manifest.compiler;
-        made.flags = manifest.flags;
-        made.cpu = manifest.cpu;
+        origin.configs.push_back({experiment, manifest.config, manifest.text});
+        origin.size = manifest.quick ? "quick" : "full";
+        origin.date = std::max(origin.date, manifest.date.substr(0, 10));
+        origin.commit = manifest.commit;
+        origin.compiler = manifest.compiler;
+        origin.flags = manifest.flags;
+        origin.cpu = manifest.cpu;
         for (const std::string& note : manifest.notes)
-            if (std::ranges::find(made.notes, note) == made.notes.end()) made.notes.push_back(note);
+            if (std::ranges::find(origin.notes, note) == origin.notes.end()) origin.notes.push_back(note);
         const extent_of_results extent = results.extent(experiment);
-        made.rows += extent.rows;
-        made.compositions += extent.compositions;
-        made.scenes += extent.scenes;
-        made.processes = std::max(made.processes, extent.processes);
-        made.seeds = std::max(made.seeds, extent.seeds);
-        made.repeats = std::max(made.repeats, extent.repeats);
+        origin.rows += extent.rows;
+        origin.compositions += extent.compositions;
+        origin.scenes += extent.scenes;
+        origin.processes = std::max(origin.processes, extent.processes);
+        origin.seeds = std::max(origin.seeds, extent.seeds);
+        origin.repeats = std::max(origin.repeats, extent.repeats);
     }
-    return made;
+    return origin;
 }
 
 }  // namespace
@@ -217,26 +218,26 @@ provenance provenance_of(const measurements& results, const reproduction& all) {
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
                         const std::vector<std::string>& failures, const std::string& agreement) {
-    reproduction all = judged_claims;
-    all.figures.push_back(verdict_figure(all));
-    provenance made = provenance_of(runs.front(), all);
-    made.agreement = agreement;
+    reproduction reproduced = judged_claims;
+    reproduced.figures.push_back(verdict_figure(reproduced));
+    provenance origin = provenance_of(runs.front(), reproduced);
+    origin.agreement = agreement;
     for (const measurements& other : runs.subspan(1)) {
-        const provenance its = provenance_of(other, all);
-        made.notes.push_back("ratios and verdicts are of this run and of " + other.name() + " together (" + its.date +
-                             ", commit " + its.commit + ", " + its.cpu +
-                             "); figures, tables of times, the null control and open choices are of this one");
-        for (const std::string& note : its.notes) made.notes.push_back(other.name() + ": " + note);
+        const provenance other_origin = provenance_of(other, reproduced);
+        origin.notes.push_back("ratios and verdicts are of this run and of " + other.name() + " together (" +
+                               other_origin.date + ", commit " + other_origin.commit + ", " + other_origin.cpu +
+                               "); figures, tables of times, the null control and open choices are of this one");
+        for (const std::string& note : other_origin.notes) origin.notes.push_back(other.name() + ": " + note);
     }
     std::filesystem::create_directories(folder / "tables");
-    std::vector<named_table> tables = all.tables;
-    tables.push_back({"verdicts", "The verdicts.", verdict_table(all)});
-    tables.push_back(all.bands);
+    std::vector<named_table> tables = reproduced.tables;
+    tables.push_back({"verdicts", "The verdicts.", verdict_table(reproduced)});
+    tables.push_back(reproduced.bands);
     tables.push_back({"rule", "From endpoints to the verdict.", rule_table()});
-    tables.push_back(all.null_control);
-    tables.push_back({"open", "What the paper leaves open.", choice_table(all)});
-    std::vector<figure> figures = all.figures;
-    for (const claim_result& c : all.claims) {
+    tables.push_back(reproduced.null_control);
+    tables.push_back({"open", "What the paper leaves open.", choice_table(reproduced)});
+    std::vector<figure> figures = reproduced.figures;
+    for (const claim_result& c : reproduced.claims) {
         tables.insert(tables.end(), c.tables.begin(), c.tables.end());
         figures.insert(figures.end(), c.figures.begin(), c.figures.end());
     }
@@ -246,10 +247,10 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     }
     for (const named_table& t : tables) write_table(folder / "tables", t);
     draw(folder / "figures", figures);
-    write_file(folder / "verdicts.csv", to_csv(verdict_table(all)));
-    write_file(folder / "endpoints.csv", to_csv(endpoints_of(all)));
-    write_file(folder / "macros.tex", macros_of(all, made, failures));
-    const page report = report_of(all, sections, made, failures);
+    write_file(folder / "verdicts.csv", to_csv(verdict_table(reproduced)));
+    write_file(folder / "endpoints.csv", to_csv(endpoints_of(reproduced)));
+    write_file(folder / "macros.tex", macros_of(reproduced, origin, failures));
+    const page report = report_of(reproduced, sections, origin, failures);
     write_file(folder / "report.md", report.markdown());
     write_file(folder / "report.html", report.html());
 }

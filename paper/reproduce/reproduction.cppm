@@ -1,4 +1,4 @@
-/// The reproduction as files: tables, figures, a page, and what the LaTeX report takes its numbers from.
+/// The reproduction as files: tables, figures, a page, and the numbers of the LaTeX report.
 export module aabblab.reproduction;
 
 import aabb.std;
@@ -11,46 +11,46 @@ import aabblab.tables;
 
 export namespace aabblab {
 
-/// What stands in the reports behind the claims.
+/// A section of the reports behind the claims.
 struct report_section {
-    std::string id;  ///< "errors", as a link has it
+    std::string id;  ///< "errors", for links
     std::string title;
     std::vector<std::string> paragraphs;
     std::vector<figure> figures;
     std::vector<named_table> tables;
 };
 
-/// Writes into the folder:
+/// Writes to the folder:
 /// - verdicts.csv and endpoints.csv, all claims in one table each;
 /// - tables/NAME.csv, .md, .tex, and figures/NAME.csv, .svg, .pdf;
 /// - report.html, one page that needs no other file, and report.md;
-/// - macros.tex, every number that the LaTeX report names.
-/// @param runs what was judged; the report shows the first one's figures
-/// @param sections of the reports alone
-/// @param failures what validation found, a sentence each
-/// @param agreement how the verdicts compare with published ones; empty where they are compared with none
-/// @throws aabb::input_error where a file cannot be read or written.
+/// - macros.tex, all numbers of the LaTeX report.
+/// @param runs the judged runs; the report shows the figures of the first one
+/// @param sections sections of the reports only
+/// @param failures the errors that validation found, one sentence each
+/// @param agreement the comparison with published verdicts; empty without one
+/// @throws aabb::input_error if a file cannot be read or written.
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
-                        const reproduction& all, std::span<const report_section> sections,
+                        const reproduction& reproduced, std::span<const report_section> sections,
                         const std::vector<std::string>& failures, const std::string& agreement = {});
 
-/// Of two judgements: how many verdicts are the same, and each claim whose verdict differs, a sentence.
-/// @param other what the other one is called: "the published run"
+/// Compares two judgements in a sentence: the number of equal verdicts, and the claims whose verdicts differ.
+/// @param other the name of the other judgement: "the published run"
 [[nodiscard]] std::string agreement_of(std::span<const claim_result> here, std::span<const claim_result> there,
                                        const std::string& other);
 
 }  // namespace aabblab
 
-// What the parts of the module share.
+// Shared by the units of the module.
 namespace aabblab {
 
-/// How the results came to be, from the manifests and rows of all experiments.
+/// The origin of the results, from the manifests and rows of all experiments.
 struct provenance {
     std::string date, commit, compiler, flags, cpu;
     std::string size;  ///< "full" or "quick"
     std::size_t rows = 0, compositions = 0, scenes = 0, processes = 0, seeds = 0, repeats = 0;
     std::vector<std::string> notes;
-    std::string agreement;  ///< as `write_reproduction` was given it
+    std::string agreement;  ///< the parameter of `write_reproduction`
 
     struct config {
         std::string experiment;
@@ -60,9 +60,9 @@ struct provenance {
     std::vector<config> configs;
 };
 
-/// Verdicts in few words.
+/// The verdicts and their meanings.
 [[nodiscard]] table rule_table();
-[[nodiscard]] page report_of(const reproduction& all, std::span<const report_section> sections, const provenance& made,
-                             const std::vector<std::string>& failures);
+[[nodiscard]] page report_of(const reproduction& reproduced, std::span<const report_section> sections,
+                             const provenance& origin, const std::vector<std::string>& failures);
 
 }  // namespace aabblab
