@@ -11,8 +11,8 @@ selection splitting(const std::string& strategy, const std::string& size) {
 }
 
 /// Whether any object is split; all may be shorter than the limit.
-bool splits_something(const condition& c, const selection& composition) {
-    return median_of(c, composition, measured("pieces")).value_or(0) > 0;
+bool splits_something(const condition& c, const selection& split) {
+    return median_of(c, split, measured("pieces")).value_or(0) > 0;
 }
 
 }  // namespace
@@ -26,16 +26,15 @@ draft c9_claim(const measurements& m) {
               {{"huge", "2"}, {"split_mesh", "4"}, {"time of", "global search"}}}};
     for (const condition& c : m.of("c9"))
         for (const char* size : {"4", "8"})
-            if (const selection composition = splitting("split_large", size); splits_something(c, composition))
-                c9.add(told(endpoint_of(c, composition, whole, "frame_cpu_ms", {{"split_large", size}}),
+            if (const selection split = splitting("split_large", size); splits_something(c, split))
+                c9.add(told(endpoint_of(c, split, whole, "frame_cpu_ms", {{"split_large", size}}),
                             "where boxes are split"));
     for (const condition& c : m.of("c9_geometry"))
         for (const char* size : {"2", "4", "8"}) {
-            const selection composition = splitting("split_mesh", size);
-            if (!splits_something(c, composition)) continue;
+            const selection split = splitting("split_mesh", size);
+            if (!splits_something(c, split)) continue;
             const auto add = [&](const std::string& metric, const std::string& of, const std::string& subject) {
-                c9.add(
-                    told(endpoint_of(c, composition, whole, metric, {{"split_mesh", size}, {"time of", of}}), subject));
+                c9.add(told(endpoint_of(c, split, whole, metric, {{"split_mesh", size}, {"time of", of}}), subject));
             };
             add("global_cpu_ms", "global search", "of global search where meshes are split");
             add("frame_cpu_ms", "both stages", "of both stages there");

@@ -30,25 +30,24 @@ struct arms {
 
 /// Ratios of time in a single condition; the first is our choice.
 measured_choices in_one(const std::vector<const condition*>& conditions, const std::string& metric,
-                        const std::string& note, const std::vector<arms>& compositions) {
-    measured_choices measured{"", compositions.front().label};
+                        const std::string& note, const std::vector<arms>& tried) {
+    measured_choices measured{"", tried.front().label};
     for (const condition* c : conditions) {
         measured.where = text_of(c->of()) + note;
-        for (const arms& a : compositions) measured.add(a.label, endpoint_of(*c, a.arm, a.base, metric));
+        for (const arms& a : tried) measured.add(a.label, endpoint_of(*c, a.arm, a.base, metric));
     }
     return measured;
 }
 
 /// Claim C1 in the only condition of the experiment on choices: time of Shell sort with a cut over insertion sort
 /// without.
-measured_choices of_search(const measurements& m, const std::vector<arms>& compositions) {
-    return in_one(having(m.of("choices"), {}), "frame_cpu_ms", " (a run of its own)", compositions);
+measured_choices of_search(const measurements& m, const std::vector<arms>& tried) {
+    return in_one(having(m.of("choices"), {}), "frame_cpu_ms", " (a run of its own)", tried);
 }
 
 /// Query times of a tree over those of the canonical one, on the generated mesh of table 1.
-measured_choices over_trees(const measurements& m, const std::vector<arms>& compositions) {
-    return in_one(having(m.of("table1"), {{"meshes", "noise_sphere:triangles=20000"}}), "detect_cpu_ms", "",
-                  compositions);
+measured_choices over_trees(const measurements& m, const std::vector<arms>& tried) {
+    return in_one(having(m.of("table1"), {{"meshes", "noise_sphere:triangles=20000"}}), "detect_cpu_ms", "", tried);
 }
 
 selection search(const std::string& sort, const std::string& partition, const std::string& sweep = "one_axis") {

@@ -21,8 +21,7 @@ struct alignas(32) balanced_item {
     [[nodiscard]] inline float centre(std::size_t axis) const noexcept {
         return 0.5F * lower[axis] - 0.5F * negated_upper[axis];
     }
-    /// The centres along each axis, then padding. The shuffle drops the triangle's index: as a float it may be denormal
-    /// and slow.
+    /// The centres along each axis, then padding; not the triangle's index, which as a float may be a slow denormal.
     [[nodiscard]] inline simd::eight_floats centres() const noexcept {
         const auto bounds = std::bit_cast<simd::eight_floats>(*this);
         const auto half = 0.5F * __builtin_shufflevector(bounds, bounds, 0, 1, 2, 2, 4, 5, 6, 6);

@@ -14,8 +14,7 @@ struct quantized_config : leafless_config {
 /// Boxes are slightly larger than `canonical`'s, and always conservative. Nodes are stored depth first in one byte
 /// array, so that only the right child needs an index. A node above two leaves is their triangles, 8 bytes; any other
 /// node is an index, the symbol and six codes, 5 + 6 bits / 8 bytes. 8 bits take 9.5 bytes per triangle with paired
-/// leaves
-/// (`leaf_arrangement::pairs`). When to use: if a binary tree must be small.
+/// leaves (`leaf_arrangement::pairs`). When to use: if a binary tree must be small.
 class quantized_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "quantized";

@@ -10,8 +10,7 @@ export namespace aabb {
 
 /// The test by Devillers and Guigue ("Faster triangle-triangle intersection tests", INRIA RR-4488, 2002) with
 /// orientations in plain double, as it is commonly used, or float. Inexact: rounding decides signs near zero, and
-/// zero-area triangles get no special treatment. When to use: as the fastest well-known test, for comparison with
-/// `exact`.
+/// zero-area triangles get no special treatment. When to use: as the fastest well-known test beside `exact`.
 class devillers_guigue_triangle : public test_in_precision<precision_choice::float64> {
 public:
     using test_in_precision::test_in_precision;

@@ -17,8 +17,8 @@ class result {
 public:
     void add_corner(const vec3d& p) { common_.corners[common_.size++] = p; }
 
-    /// Adds the point where the edge from a to b crosses the other triangle's plane or edge, from which a and b have
-    /// distances p and q of opposite signs, or zero.
+    /// Adds where the edge ab crosses the other plane or edge, at distances p and q of opposite signs (or zero) from
+    /// it.
     void add_crossing(vec3d a, vec3d b, scaled_double p, scaled_double q) {
         if (p.mantissa == 0) return add_corner(a);
         if (q.mantissa == 0) return add_corner(b);

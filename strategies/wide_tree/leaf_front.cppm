@@ -43,14 +43,14 @@ public:
     [[nodiscard]] std::span<const kept_pair> pairs() const noexcept { return pairs_; }
 
     /// Whether the pairs include all that meet at this pose.
-    /// @param reach the box of B's vertices, in B's frame
-    [[nodiscard]] bool holds(const model_pair& of, const box_motion& at, const box& reach) const noexcept {
-        return margin_ >= 0 && made_states_ == of.states && most_apart(made_at_, at, reach) <= margin_;
+    /// @param bounds the box of B's vertices, in B's frame
+    [[nodiscard]] bool holds(const model_pair& of, const box_motion& at, const box& bounds) const noexcept {
+        return margin_ >= 0 && front_states_ == of.states && most_apart(front_motion_, at, bounds) <= margin_;
     }
     /// Whether the last query had the same models at a nearby pose.
-    [[nodiscard]] bool is_near(const model_pair& of, const box_motion& at, const box& reach,
+    [[nodiscard]] bool is_near(const model_pair& of, const box_motion& at, const box& bounds,
                                double near) const noexcept {
-        return numbers_ == of.numbers && most_apart(last_at_, at, reach) <= near;
+        return numbers_ == of.numbers && most_apart(last_at_, at, bounds) <= near;
     }
 
     struct outlook {
@@ -61,15 +61,15 @@ public:
     /// queries moved B little and changed neither mesh, unless earlier fronts were of no use. A larger margin lasts
     /// longer but has more pairs, so that the margin grows with the square root of the step.
     /// @param size the edge length of a leaf
-    [[nodiscard]] outlook note(const model_pair& of, const box_motion& at, const box& reach, double size) noexcept {
+    [[nodiscard]] outlook note(const model_pair& of, const box_motion& at, const box& bounds, double size) noexcept {
         const bool same_states = last_states_ == of.states;
         const box_motion before = std::exchange(last_at_, at);
         last_states_ = of.states;
-        if (holds(of, at, reach)) {
+        if (holds(of, at, bounds)) {
             ++served_;
             return {true, std::nullopt};
         }
-        const double step = same_states ? most_apart(before, at, reach) : std::numeric_limits<double>::infinity();
+        const double step = same_states ? most_apart(before, at, bounds) : std::numeric_limits<double>::infinity();
         near_queries_ = step <= most_step * size ? near_queries_ + 1 : 0;
         if (margin_ >= 0) fail_or_forgive();
         if (waits_ > 0) {
@@ -91,8 +91,8 @@ public:
             fail_or_forgive();
             return false;
         }
-        made_states_ = of.states;
-        made_at_ = at;
+        front_states_ = of.states;
+        front_motion_ = at;
         margin_ = margin;
         return true;
     }
@@ -117,8 +117,8 @@ private:
     std::array<std::uint64_t, 2> numbers_{};
     std::array<std::uint64_t, 2> last_states_{};  // of the last query; initially of no model
     box_motion last_at_{};
-    std::array<std::uint64_t, 2> made_states_{};
-    box_motion made_at_{};
+    std::array<std::uint64_t, 2> front_states_{};
+    box_motion front_motion_{};
     double margin_ = -1;  // negative without a front
     std::vector<kept_pair> pairs_;
     std::uint32_t near_queries_ = 0;  // in a row
@@ -135,12 +135,12 @@ public:
     static constexpr std::size_t most = 1024;
     static constexpr std::size_t least_leaves = 64;  ///< of both meshes: with fewer, a walk costs less than the lookup
 
-    /// @param reach the box of B's vertices, in B's frame
+    /// @param bounds the box of B's vertices, in B's frame
     /// @param near how far B may have moved since the front's last query
     /// @returns the cached front, or a new, empty one
-    [[nodiscard]] leaf_front& find(const model_pair& of, const box_motion& at, const box& reach, double near) {
-        const std::array<float, 3> centre = centre_of(at, reach);
-        const std::size_t place = place_of(of, at, reach, near, centre);
+    [[nodiscard]] leaf_front& find(const model_pair& of, const box_motion& at, const box& bounds, double near) {
+        const std::array<float, 3> centre = centre_of(at, bounds);
+        const std::size_t place = place_of(of, at, bounds, near, centre);
         for (std::size_t k = 0; k < 3; ++k) centres_[place / width][k][place % width] = centre[k];
         last_ = place;
         return fronts_[place];
@@ -157,19 +157,19 @@ private:
     using row = std::array<float, width>;
 
     /// The centre of B in A's frame, which moves no further than the furthest point of B.
-    [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& at, const box& reach) noexcept {
+    [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& at, const box& bounds) noexcept {
         vec3d centre = at.shift;
         for (int j = 0; j < 3; ++j)
             for (int k = 0; k < 3; ++k)
                 centre[k] +=
-                    at.columns[static_cast<std::size_t>(j)][k] * ((double{reach.min[j]} + double{reach.max[j]}) / 2);
+                    at.columns[static_cast<std::size_t>(j)][k] * ((double{bounds.min[j]} + double{bounds.max[j]}) / 2);
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])};
     }
 
-    [[nodiscard]] std::size_t place_of(const model_pair& of, const box_motion& at, const box& reach, double near,
+    [[nodiscard]] std::size_t place_of(const model_pair& of, const box_motion& at, const box& bounds, double near,
                                        const std::array<float, 3>& centre) {
         const auto is_it = [&](std::size_t place) {
-            return fronts_[place].holds(of, at, reach) || fronts_[place].is_near(of, at, reach, near);
+            return fronts_[place].holds(of, at, bounds) || fronts_[place].is_near(of, at, bounds, near);
         };
         const std::size_t next = last_ + 1 < fronts_.size() ? last_ + 1 : 0;
         if (next < fronts_.size() && is_it(next)) return found_again(next);

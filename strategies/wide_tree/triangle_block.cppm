@@ -101,8 +101,7 @@ struct corner_numbers {
         }
     }
 
-    /// Sets bit 8 j + i where triangle i of these shares a corner with triangle j of the others, so that they
-    /// intersect.
+    /// Sets bit 8 j + i where triangle i of these and triangle j of the others share a corner.
     [[nodiscard]] inline std::uint64_t shared_with(const corner_numbers& other) const noexcept {
         return simd::columns_of_eight_that_share(vertex[0].data(), other.vertex[0].data());
     }

@@ -5,8 +5,8 @@ export import aabb.wide_tree.eight_boxes;
 
 export namespace aabb {
 
-/// A node with up to eight children in 64 bytes: their boxes, rounded outward to a grid of the node's own, as in the
-/// compressed wide BVH (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs ...", HPG 2017).
+/// A node with up to eight children in 64 bytes: their boxes, rounded outward to the node's own grid, as in the
+/// compressed wide BVH (Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs", 2017).
 ///
 /// Along axis k the grid has planes at i * 2^exponent[k] for integers i, and code q, from 1 to 254, means i = origin[k]
 /// + q. Both are exact: |i| stays below 2^24, so that a plane within the range of float is a float.

@@ -70,10 +70,9 @@ private:
 
     void find(std::vector<index_pair>& pairs) override {
         // In the order of the leaves, so that successive queries share cached nodes.
-        for (const entry& queried : *tree_)
-            tree_->query(index::intersects(queried.first),
-                         boost::make_function_output_iterator([&](const entry& other) {
-                             if (queried.second < other.second) pairs.push_back({queried.second, other.second});
+        for (const entry& query : *tree_)
+            tree_->query(index::intersects(query.first), boost::make_function_output_iterator([&](const entry& other) {
+                             if (query.second < other.second) pairs.push_back({query.second, other.second});
                          }));
     }
 

@@ -29,7 +29,7 @@ public:
         scene_ = user_scene();
     }
 
-    /// Builds the scene, or refits it if both this quality and the previous one are for refitting.
+    /// Builds the scene, or refits it if this quality and the previous one say so.
     /// @param m always the same mesh
     /// @param held the account of Embree's allocations; always the same
     void build(RTCBuildQuality quality, const mesh& m, std::span<const vec3f> vertices,
