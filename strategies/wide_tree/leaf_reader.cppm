@@ -17,10 +17,10 @@ public:
     void begin(std::size_t numbers) {
         if (leaves_.size() < most_places && 2 * leaves_.size() <= numbers)
             leaves_.resize(std::min(most_places, std::bit_floor(numbers)));
-        if (++begun_ != 0) return;
+        if (++epoch_ != 0) return;
         // The 32-bit epoch wrapped around: entries of old epochs must not become valid again.
-        held_.fill(0);
-        begun_ = 1;
+        keys_.fill(0);
+        epoch_ = 1;
     }
 
     void release_claims() noexcept { ++claim_; }
@@ -28,15 +28,15 @@ public:
     /// @returns false if another claimed leaf occupies the place
     [[nodiscard]] inline bool claim(std::uint32_t number) noexcept {
         const std::size_t at = place(number);
-        const std::uint64_t held = std::uint64_t{begun_} << 32U | number;
-        const bool is_missing = held_[at] != held;
+        const std::uint64_t key = std::uint64_t{epoch_} << 32U | number;
+        const bool is_missing = keys_[at] != key;
         // One condition is mostly false, the other is hard to predict. Marked as unpredictable, the conjunction stays a
         // single branch; otherwise the compiler makes two.
         if (__builtin_unpredictable(static_cast<int>(is_missing) & static_cast<int>(claims_[at] == claim_)))
             return false;
         missing_[missing_count_] = number;
         missing_count_ += is_missing;
-        held_[at] = held;
+        keys_[at] = key;
         claims_[at] = claim_;
         return true;
     }
@@ -58,8 +58,8 @@ public:
 private:
     static constexpr std::size_t most_places = 256;
 
-    std::array<std::uint64_t, most_places> held_{};  // epoch, then the leaf's number
-    std::uint32_t begun_ = 0;                        // the epoch; 0 marks an empty place
+    std::array<std::uint64_t, most_places> keys_{};  // epoch, then the leaf's number
+    std::uint32_t epoch_ = 0;                        // the epoch; 0 marks an empty place
     std::array<std::uint64_t, most_places> claims_{};
     std::uint64_t claim_ = 1;
     std::array<std::uint32_t, most_claims + 1> missing_{};

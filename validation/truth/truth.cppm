@@ -81,7 +81,7 @@ private:
     };
     [[nodiscard]] static sphere sphere_around(const mesh& m);
     void follow_meshes();
-    /// Every two objects that can meet, and some that cannot.
+    /// The pairs of objects with overlapping bounding spheres.
     [[nodiscard]] std::vector<index_pair> near_objects(std::span<const pose> poses) const;
 
     const mesh_scene* meshes_;

@@ -36,8 +36,8 @@ btVector3 corner_of(const vec3f& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// Bullet quantises coordinates within a world box that it needs in advance. That preserves their order, though not
-/// strictly, and lower ends precede upper ends in the same step: there are false positives, but no false negatives.
+/// Sweep and prune (Cohen et al., I-COLLIDE, 1995) on coordinates that Bullet quantises within a world box. Their order
+/// is preserved, and lower ends precede upper ends in the same step: false positives, but no false negatives.
 class bullet_sap final : public box_engine {
 public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
