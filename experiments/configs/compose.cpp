@@ -8,10 +8,10 @@ namespace aabblab {
 
 namespace {
 
-/// @throws aabb::input_error where there is no such choice.
+/// A validator that throws aabb::input_error on an unknown or malformed choice.
 using choice_check = std::function<void(const aabb::strategy_choice&)>;
 
-/// One entry of a list: a name, or a table with a name and parameters, whose lists multiply.
+/// Adds the choices of one list entry: a name, or a table of a name and parameters, whose lists multiply.
 void add_strategies(const document& doc, const std::string& key, const node& value, const std::string& example,
                     const choice_check& require, each_once<aabb::strategy_choice>& choices) {
     const auto add = [&](const aabb::strategy_choice& choice) {
@@ -25,16 +25,16 @@ void add_strategies(const document& doc, const std::string& key, const node& val
     for (const node& entry : value.items)
         if (entry.key != "name") parameters.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
     const std::vector<located_text> names = doc.alternatives_of("name", name);
-    for (const located_text& one : names) doc.at(one.line, [&] { require({one.text, {}}); });
+    for (const located_text& strategy : names) doc.at(strategy.line, [&] { require({strategy.text, {}}); });
     std::vector<std::size_t> factors = sizes_of(parameters);
     factors.push_back(names.size());
     doc.require_few(value.line, "choices of " + key, factors, choices.all().size());
-    for (const located_text& one : names)
-        for (const std::vector<aabb::setting>& settings : multiplied(parameters)) add({one.text, settings});
+    for (const located_text& strategy : names)
+        for (const std::vector<aabb::setting>& settings : multiplied(parameters)) add({strategy.text, settings});
 }
 
-/// A name, a table of a name and parameters, whose lists multiply, or a list of both.
-/// @param example a name that there is
+/// Reads a name, a table of a name and parameters, or a list of both.
+/// @param example a valid name, for messages
 std::vector<aabb::strategy_choice> choices_of(const document& doc, const node& value, const std::string& example,
                                               const choice_check& require) {
     each_once<aabb::strategy_choice> choices;
@@ -48,15 +48,15 @@ std::vector<aabb::strategy_choice> choices_of(const document& doc, const node& v
 }
 
 struct listed_strategies {
-    std::vector<std::optional<aabb::strategy_choice>> choices;  ///< one that is not there where it says nothing
-    std::vector<std::string> others;                            ///< names of those that it plays without naming them
+    std::vector<std::optional<aabb::strategy_choice>> choices;  ///< nullopt if the config leaves the kind out
+    std::vector<std::string> others;                            ///< strategies that others_but adds
 };
 
-/// Adds what { others_but = […] } in the list of a kind stands for: whatever is named neither there nor in the list.
-void add_others(const document& doc, aabb::strategy_kind kind, const std::vector<located_text>& but,
+/// Expands { others_but = […] } to every strategy of the kind that is neither excluded nor listed by name.
+void add_others(const document& doc, aabb::strategy_kind kind, const std::vector<located_text>& excluded,
                 listed_strategies& listed) {
     std::set<std::string> named;
-    for (const located_text& name : but) {
+    for (const located_text& name : excluded) {
         doc.at(name.line, [&] { aabb::require_known(kind, {name.text, {}}); });
         named.insert(name.text);
     }
@@ -71,7 +71,7 @@ void add_others(const document& doc, aabb::strategy_kind kind, const std::vector
 listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, const node* value) {
     if (!value) return {{std::nullopt}, {}};
     node named = *value;
-    const auto but = doc.take_others(named);
+    const auto excluded = doc.take_others(named);
     const auto require = [kind](const aabb::strategy_choice& choice) {
         if (choice.name == "auto")
             throw aabb::input_error("auto is no " + std::string(name_of(kind)) + ": leave " +
@@ -79,14 +79,14 @@ listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, c
         aabb::require_known(kind, choice);
     };
     listed_strategies listed;
-    if (!but || !named.items.empty())
+    if (!excluded || !named.items.empty())
         for (const aabb::strategy_choice& choice : choices_of(doc, named, aabb::strategies(kind)[0].name, require))
             listed.choices.emplace_back(choice);
-    if (but) add_others(doc, kind, *but, listed);
+    if (excluded) add_others(doc, kind, *excluded, listed);
     return listed;
 }
 
-/// A key that nobody knows; the name of a strategy says of which kind it is.
+/// Rejects an unknown key; if it is the name of a strategy, the message suggests the strategy's kind.
 [[noreturn]] void fail_key(const document& doc, const node& entry, const std::vector<std::string>& known) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (std::ranges::find(aabb::strategies(kind), entry.key, &aabb::strategy_info::name) !=
@@ -120,32 +120,33 @@ void add_composition(const document& doc, int line, const aabb::composition& c, 
     if (!list.add(c, text_of(c))) doc.fail(line, "this composition is listed twice: " + text_of(c));
 }
 
-/// What the kinds name, every combination, the last kind fastest; without those refused that have what is not named.
+/// Every combination of the listed strategies, the last kind fastest. Invalid combinations are dropped if others_but
+/// contributes to them; those of named strategies only are kept, so that the caller can report them.
 std::vector<aabb::named_strategies> named_by(const document& doc, const node& compose, std::size_t listed) {
-    aabb::by_kind<listed_strategies> of;
+    aabb::by_kind<listed_strategies> strategies;
     std::vector<std::size_t> factors;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
-        of[kind] = strategies_of(doc, kind, compose.find(name_of(kind)));
-        factors.push_back(of[kind].choices.size());
+        strategies[kind] = strategies_of(doc, kind, compose.find(name_of(kind)));
+        factors.push_back(strategies[kind].choices.size());
     }
     doc.require_few(compose.line, "compositions", factors, listed);
     std::vector<aabb::named_strategies> products(1);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         std::vector<aabb::named_strategies> longer;
         for (const aabb::named_strategies& product : products)
-            for (const auto& choice : of[kind].choices) longer.emplace_back(product)[kind] = choice;
+            for (const auto& choice : strategies[kind].choices) longer.emplace_back(product)[kind] = choice;
         products = std::move(longer);
     }
     std::erase_if(products, [&](const aabb::named_strategies& product) {
         const bool is_named = std::ranges::none_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
-            return product[kind] && std::ranges::count(of[kind].others, product[kind]->name) > 0;
+            return product[kind] && std::ranges::count(strategies[kind].others, product[kind]->name) > 0;
         });
         return !is_named && is_refused(aabb::composition(product));
     });
     return products;
 }
 
-/// @param compose whose keys are kinds; its lists multiply
+/// @param compose a table whose keys are kinds; its lists multiply
 void add_compositions(const document& doc, const node& compose, each_once<aabb::composition>& list) {
     for (const aabb::named_strategies& named : named_by(doc, compose, list.all().size()))
         add_composition(doc, compose.line, aabb::composition(named), list);
@@ -156,7 +157,7 @@ bool is_automatic(const document& doc, const node& compose) {
     return value && doc.flag_of("auto", *value);
 }
 
-/// What is refused with what is named is refused whatever the scene.
+/// Rejects named strategies that no scene can use together, which selection without a scene shows.
 void add_automatic(const document& doc, const node& compose, std::vector<aabb::named_strategies>& automatic) {
     for (const aabb::named_strategies& named : named_by(doc, compose, automatic.size())) {
         each_once<aabb::composition> alone;
@@ -166,7 +167,7 @@ void add_automatic(const document& doc, const node& compose, std::vector<aabb::n
     }
 }
 
-/// What choices have in common: their names, and the settings that they share.
+/// Describes the choices by their names and the settings that they share.
 std::string common_text(std::span<const aabb::strategy_choice> choices) {
     std::string text;
     std::set<std::string> names;
@@ -180,7 +181,7 @@ std::string common_text(std::span<const aabb::strategy_choice> choices) {
     return text;
 }
 
-/// Of the kinds that the config names.
+/// A default label from the kinds that the config names.
 std::string label_of(const node& methods, const error_curve& curve) {
     if (!curve.triangles.empty()) return common_text(curve.triangles);
     std::string label;
@@ -195,25 +196,25 @@ std::string label_of(const node& methods, const error_curve& curve) {
 
 }  // namespace
 
-/// One [compose], or several [[compose]], whose lists multiply each for itself, or "auto".
-/// @param compose null where the config has none.
+/// Reads one [compose], several [[compose]], each of which multiplies separately, or "auto".
+/// @param compose null if the config has none
 void read_compositions(const document& doc, const node* compose, experiment& e) {
     static const node nothing{};
     each_once<aabb::composition> list;
-    const auto add = [&](const node& one) {
-        doc.require_table("compose", one);
-        require_kinds(doc, one);
-        if (is_automatic(doc, one))
-            add_automatic(doc, one, e.automatic);
+    const auto add = [&](const node& table) {
+        doc.require_table("compose", table);
+        require_kinds(doc, table);
+        if (is_automatic(doc, table))
+            add_automatic(doc, table, e.automatic);
         else
-            add_compositions(doc, one, list);
+            add_compositions(doc, table, list);
     };
     if (compose && compose->kind == node_kind::text) {
         if (compose->text != "auto")
             doc.fail(compose->line, "compose must be a table or \"auto\", not \"" + compose->text + "\"");
         e.automatic.emplace_back();
     } else if (compose && compose->kind == node_kind::list) {
-        for (const node& one : compose->items) add(one);
+        for (const node& table : compose->items) add(table);
     } else {
         add(compose ? *compose : nothing);
     }
@@ -222,7 +223,7 @@ void read_compositions(const document& doc, const node* compose, experiment& e) 
         doc.fail(compose->line, "compose is an empty list; expected a table");
 }
 
-/// A curve of a triangle test alone is measured on pairs of triangles, any other curve on whole scenes.
+/// A curve that names only triangle tests runs on triangle pairs; any other curve runs on whole scenes.
 error_curve curve_of(const document& doc, const node& written) {
     doc.require_table("curve", written);
     std::vector<std::string> known{"label"};

@@ -1,4 +1,4 @@
-/// Experiments as config files: which scenes, which compositions and engines, what to measure.
+/// Config files describe experiments: the scenes, the compositions and engines to run, and what to measure.
 export module aabblab.configs;
 
 import aabb.costs;
@@ -11,78 +11,78 @@ import aabblab.scenes;
 
 export namespace aabblab {
 
-/// A program of others, in a process of its own: it is given a recording, and writes pairs of boxes and its times.
+/// A third-party program that runs in its own process: it reads a recording and writes box pairs and timings.
 struct external_engine {
     std::string name;
-    std::vector<std::string> command;  ///< as it is written; the names of three files are added
-    std::string program;               ///< the first word of it, where it was found
-    std::string place;                 ///< where the command stands in the config, "FILE:LINE"
-    bool exact = true;                 ///< a difference from the exact answer is a failure, not a measurement
-    std::uint64_t timeout_s = 600;     ///< after which it is killed
+    std::vector<std::string> command;  ///< as written in the config; three file names are appended
+    std::string program;               ///< the resolved path of the command's first word
+    std::string place;                 ///< where the config defines the command, "FILE:LINE"
+    bool exact = true;                 ///< a difference from the ground truth is then a failure, not a measurement
+    std::uint64_t timeout_s = 600;     ///< the process is killed after this time
 };
 
-/// What is asked of local detection, and timed.
+/// The query that the narrow phase runs and that is timed.
 enum class question : std::uint8_t {
-    pairs,  ///< every pair of intersecting triangles
-    count,  ///< how many there are
-    first   ///< any one
+    pairs,  ///< report every pair of intersecting triangles
+    count,  ///< report only the number of such pairs
+    first   ///< stop at any such pair
 };
 inline constexpr std::array<std::string_view, 3> question_names{"pairs", "count", "first"};
 
-/// How the queries of a scene of meshes are timed.
+/// How the queries of a mesh scene are timed.
 struct asking {
     question ask = question::pairs;
-    bool cold = false;  ///< the processor's caches hold other things before each query
+    bool cold = false;  ///< the processor's caches hold other data before each query
 
     friend bool operator==(const asking&, const asking&) = default;
 };
 
-/// A config with its lists multiplied out. All names, values and combinations in it are known to be good.
+/// A config with its lists expanded to their Cartesian product. Every name, value and combination is validated.
 struct experiment {
     std::string name;
     std::string file;  ///< the config, as the user named it
-    std::string text;  ///< what stands in it
+    std::string text;  ///< its contents
     bool quick = false;
     std::vector<std::string> engines;
-    std::vector<external_engine> externals;  ///< have no part in scenes of meshes
+    std::vector<external_engine> externals;  ///< run on scenes of boxes only
     std::vector<scene_choice> scenes;
-    std::string content_digest;                   ///< of the scenes' meshes, and of the frames of files that they play
-    std::vector<aabb::composition> compositions;  ///< scenes of boxes use the global search of each only
-    /// What each `auto` names itself; the rest is selected scene by scene.
+    std::string content_digest;                   ///< of the scenes' meshes and of the frames of their files
+    std::vector<aabb::composition> compositions;  ///< scenes of boxes use only the broad phase of each
+    /// The strategies that each `auto` fixes; the others are selected per scene.
     std::vector<aabb::named_strategies> automatic;
     std::size_t repeats = 9;
-    std::size_t processes = 1;  ///< fresh ones, one after the other, that share the repeats
-    /// Who takes so many times as long as the fastest in the first repeat is not repeated.
+    std::size_t processes = 1;  ///< fresh processes, run one after another, that share the repeats
+    /// Early stopping: a candidate slower than this multiple of the fastest in the first repeat is not repeated.
     std::optional<std::uint64_t> patience;
     asking how;
-    /// What rows hold beside the pairs and their digest; compute metrics later what they will.
+    /// What each row records beside the pairs and their digest, so that metrics can be computed from it later.
     std::set<metric_group> recorded{metric_group::time, metric_group::counts, metric_group::bytes, metric_group::error};
-    std::vector<std::string> shown;  ///< metrics that tables have columns of beside the usual ones
-    std::vector<std::string> notes;  ///< what stands in for meshes that are not there, a sentence each
+    std::vector<std::string> shown;  ///< metrics that tables show in additional columns
+    std::vector<std::string> notes;  ///< one sentence per replacement for meshes that are not installed
 
     [[nodiscard]] bool records(metric_group group) const { return recorded.contains(group); }
 };
 
-/// All of it, that of each `auto` as it is for a scene of which nothing is known.
+/// Every composition of the experiment, with each `auto` as it is selected without knowledge of the scene.
 [[nodiscard]] std::vector<aabb::composition> every_composition(const experiment& e);
 
-/// `quick` takes what the config says under `quick`, for a first look.
+/// `quick` applies the config's `quick` settings, which make a short trial run.
 enum class experiment_size { full, quick };
 
-/// Reads a config and checks all of it, down to making each scene once.
-/// @throws aabb::input_error with file and line on malformed TOML (column too), an unknown key or name (with the
-/// nearest one), a value of a wrong type, a refused combination, a mesh or a file that is not there or cannot be played
-/// to its end. A relative path to such a file is taken as given, else from the folder of the config.
+/// Reads a config and validates it completely, which includes generating each scene once.
+/// @throws aabb::input_error with file and line on malformed TOML (and column), an unknown key or name (with the
+/// closest known one), a value of the wrong type, a rejected combination, or a mesh or recording that does not exist or
+/// is malformed. A relative path is resolved from the working directory, then from the folder of the config.
 [[nodiscard]] experiment read_experiment(const std::filesystem::path& file, experiment_size size);
 
-/// The same from text. `file` is for messages.
+/// Parses the text of a config. `file` appears only in messages.
 [[nodiscard]] experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size);
 
-/// A triangle test by the name and the settings that configs and options give it: a strategy, or one of a library.
-/// @throws aabb::input_error on an unknown name, with the nearest one, and on settings that it has not.
+/// Makes a triangle test, a strategy or one from a library, from the name and settings in a config or an option.
+/// @throws aabb::input_error on an unknown name, with the closest known one, and on settings that the test lacks.
 [[nodiscard]] std::unique_ptr<aabb::triangle_test> triangle_test_named(const aabb::strategy_choice& choice);
 
-/// Those that construct what two triangles have in common too: strategies, then tests of libraries.
+/// Names of the tests that also construct the intersection of two triangles: strategies first, then library tests.
 [[nodiscard]] std::vector<std::string> constructing_tests();
 
 struct pair_set {
@@ -92,26 +92,26 @@ struct pair_set {
     std::uint64_t seed = 1;
 };
 
-/// A method over its knob, with every value of the parameters that have several; one of the lists is empty.
+/// A method with its parameters swept, one point per combination of their values; one of the lists is empty.
 struct error_curve {
     std::string label;
-    std::vector<aabb::strategy_choice> triangles;  ///< tests that are held against pairs of triangles
-    std::vector<aabb::composition> compositions;   ///< that play scenes whole
+    std::vector<aabb::strategy_choice> triangles;  ///< tests that run on triangle pairs
+    std::vector<aabb::composition> compositions;   ///< compositions that run whole scenes
 };
 
-/// One metric of compositions over another, by their names.
+/// A plot of one metric of the compositions against another, by name.
 struct metric_plot {
     std::string x;
     std::string y;
 };
 
-/// A config of `errors`. Either what triangle tests get wrong, against the time they take, on generated pairs and on
-/// the triangles of meshes whose boxes overlap; or, with `whole`, metrics of compositions that play scenes.
+/// A config of `errors`. It measures the errors of triangle tests against their time, on generated pairs and on mesh
+/// triangles whose boxes overlap; or, with `whole`, it runs compositions on scenes and compares their metrics.
 struct error_study {
     std::string name;
-    std::string text;  ///< what stands in the config
+    std::string text;  ///< the contents of the config
     std::vector<error_curve> curves;
-    /// Whose hits, `count` of each, are held against CGAL's exact construction.
+    /// Classes of pairs; `count` hits of each are compared with CGAL's exact construction.
     std::vector<pair_set> hits;
     std::vector<std::string> notes;
     std::vector<pair_set> pairs;
@@ -120,53 +120,52 @@ struct error_study {
     std::vector<metric_plot> plots;
 };
 
-/// @throws aabb::input_error as `read_experiment`.
+/// @throws aabb::input_error like `read_experiment`.
 [[nodiscard]] error_study read_error_study(const std::filesystem::path& file, experiment_size size);
 [[nodiscard]] error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size);
 
-/// `[[case]]`s with name, source, about, class, first, second, intersect and, where doubles differ, intersect_double.
-/// @throws aabb::input_error with file and line on malformed TOML, an unknown or missing key, a name that stands twice,
-/// what is no triangle, or a coordinate beyond the range of float.
+/// Reads `[[case]]`s of name, source, about, class, first, second, intersect and, optionally, intersect_double.
+/// @throws aabb::input_error with file and line on malformed TOML, an unknown or missing key, a duplicate name, a
+/// malformed triangle, or a coordinate beyond the range of float.
 [[nodiscard]] std::vector<aabb::triangle_case> read_triangle_cases(const std::filesystem::path& file);
-/// The same from text. `file` is for messages.
 [[nodiscard]] std::vector<aabb::triangle_case> parse_triangle_cases(const std::string& text, const std::string& file);
 
-/// Costs that were measured, and on what: who computes otherwise has others.
+/// Measured costs with the program, processor and instruction set that they depend on.
 struct kept_costs {
-    std::string version;       ///< of the program that measured
+    std::string version;       ///< of the program that measured them
     std::string date;          ///< "2026-01-31T12:00:00Z"
-    std::string processor;     ///< its model
-    std::string instructions;  ///< "AVX-512"; what the program was built for
+    std::string processor;     ///< its model name
+    std::string instructions;  ///< the instruction set of the build, such as "AVX-512"
     aabb::cost_model costs;
 
-    /// Whether they hold for a program of that version, on that processor, built for those instructions.
+    /// Whether the costs apply to `here`: same version, processor and instruction set.
     [[nodiscard]] bool serve(const kept_costs& here) const {
         return version == here.version && processor == here.processor && instructions == here.instructions;
     }
 };
 
-/// Those of this program on this machine, dated now, with the costs that are given.
+/// Labels the costs with this program, this machine and the current time.
 [[nodiscard]] kept_costs costs_here(const aabb::cost_model& costs);
-/// As a TOML file.
+/// Formats the costs as a TOML file.
 [[nodiscard]] std::string text_of(const kept_costs& kept);
-/// @throws aabb::input_error with file and line on malformed TOML, an unknown key (with the nearest one), a cost that
-/// is not there or not a number above 0. Of another version, whose costs may be others, all but the costs is read.
+/// Reads the costs, or only the header of a file of another version, whose costs may differ in name and meaning.
+/// @throws aabb::input_error with file and line on malformed TOML, an unknown key, or a cost that is not positive.
 [[nodiscard]] kept_costs read_costs(const std::filesystem::path& file);
-/// The same from text. `file` is for messages.
+/// Parses the text of such a file. `file` appears only in messages.
 [[nodiscard]] kept_costs parse_costs(const std::string& text, const std::string& file);
 
-/// Where `calibrate` keeps the user's: $XDG_CONFIG_HOME/aabblab/costs.toml, else ~/.config/aabblab/costs.toml.
-/// @returns an empty path where the environment names neither folder.
+/// Where `calibrate` stores costs: $XDG_CONFIG_HOME/aabblab/costs.toml, else ~/.config/aabblab/costs.toml.
+/// @returns an empty path if the environment names neither folder.
 [[nodiscard]] std::filesystem::path kept_costs_file();
-/// Takes them, where there are any, for the whole process in place of those that the program was shipped with; a note
-/// says so of those that are of another machine.
-/// @throws aabb::input_error as `read_costs`.
+/// Replaces the shipped costs by the calibrated ones, if there are any, for the rest of the process. Costs of another
+/// version or machine are ignored with a note.
+/// @throws aabb::input_error like `read_costs`.
 void use_kept_costs();
-/// "costs as shipped", or "costs calibrated 2026-01-31T12:00:00Z (FILE)".
+/// Describes the costs in use: "costs as shipped", or "costs calibrated 2026-01-31T12:00:00Z (FILE)".
 [[nodiscard]] std::string costs_in_force();
 
-/// XXH3-64 of all that decides the results: compositions, engines, what is measured, the scenes and what is in their
-/// meshes and files. How the config is written, and its comments, do not matter. 16 hexadecimal digits.
+/// XXH3-64 of everything that determines the results: compositions, engines, measurements, scenes and the contents of
+/// their meshes and files. The layout and comments of the config do not matter. 16 hexadecimal digits.
 [[nodiscard]] std::string hash_of(const experiment& e);
 
 }  // namespace aabblab

@@ -20,12 +20,12 @@ std::string_view instructions() {
 }
 
 std::string toml_string(std::string_view text) {
-    std::string all = "\"";
+    std::string quoted = "\"";
     for (const char c : text) {
-        if (c == '"' || c == '\\') all += '\\';
-        all += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+        if (c == '"' || c == '\\') quoted += '\\';
+        quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
     }
-    return all + "\"";
+    return quoted + "\"";
 }
 
 std::string head_of(const document& doc, const std::string& key) {
@@ -54,14 +54,14 @@ aabb::cost_model costs_in(const document& doc) {
     return costs;
 }
 
-/// A folder that the environment names; empty where it does not, or not from the root on.
+/// The folder in an environment variable; empty if it is unset or relative.
 std::filesystem::path folder_in(const char* variable) {
     const char* value = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): the environment is never changed
     const std::filesystem::path folder = value ? value : "";
     return folder.is_absolute() ? folder : std::filesystem::path();
 }
 
-/// When the costs were measured that `use_kept_costs` took; empty where it took none.
+/// The date of the costs that `use_kept_costs` loaded; empty while the shipped costs are in use.
 std::string& date_taken() {
     static std::string date;
     return date;
@@ -112,7 +112,7 @@ std::filesystem::path kept_costs_file() {
 
 void use_kept_costs() {
     const std::filesystem::path file = kept_costs_file();
-    std::error_code ignored;  // what cannot be looked at is not there
+    std::error_code ignored;  // an inaccessible file counts as absent
     if (file.empty() || !std::filesystem::exists(file, ignored)) return;
     const kept_costs kept = [&] {
         try {

@@ -11,7 +11,7 @@ namespace aabblab {
 
 namespace {
 
-constexpr std::size_t most_parts = 16;  // of a dotted key; a config needs two
+constexpr std::size_t most_parts = 16;  // per dotted key; a config needs two
 constexpr std::size_t most_products = 100'000;
 
 node converted(const toml::node& value) {
@@ -19,7 +19,7 @@ node converted(const toml::node& value) {
     result.line = static_cast<int>(value.source().begin.line);
     if (const toml::table* table = value.as_table()) {
         result.kind = node_kind::table;
-        // The library sorts by key; a product of lists follows the file.
+        // toml++ sorts entries by key, but products of lists follow the order in the file.
         std::vector<std::pair<toml::source_position, node>> entries;
         for (const auto& [key, value_of_key] : *table) {
             node entry = converted(value_of_key);
@@ -51,7 +51,7 @@ node converted(const toml::node& value) {
     return result;
 }
 
-/// TOML knows one carriage return before a line feed; programs that convert text twice write two.
+/// Drops carriage returns before line feeds: TOML allows one, but programs that convert text twice write two.
 std::string without_returns_at_ends(std::string_view text) {
     std::string lines;
     for (std::size_t from = 0; from < text.size();) {
@@ -71,7 +71,7 @@ std::string_view name_of(node_kind kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
-/// The first line without which no assertion of the library fails.
+/// Bisects for the first line at which an assertion of toml++ fails.
 int line_of_failed_assertion(std::string_view text) {
     const auto fails = [&](std::size_t end) {
         try {
@@ -89,15 +89,15 @@ int line_of_failed_assertion(std::string_view text) {
     return static_cast<int>(first - ends.begin()) + 1;
 }
 
-/// Behind as many more of the quotes before `end` as there are, at most `most`: a string of several lines may end in
-/// quotes of its own, which stand before the closing ones.
+/// Skips up to `most` more quotes after `end`: a multi-line string may end in quotes of its own before the closing
+/// ones.
 std::size_t end_of_quotes(std::string_view text, std::size_t end, std::size_t most) {
     const std::size_t last = std::min(end + most, text.size());
     while (end < last && text[end] == text[end - 1]) ++end;
     return end;
 }
 
-/// Where the string that begins here ends: at its last quote, or where the text breaks off.
+/// The end of the string that begins here: its last quote, or the end of the text if it is unterminated.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
     const std::string_view quote = text.substr(begin, 1);
     const std::string triple(3, quote[0]);
@@ -114,8 +114,8 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     return text.size();
 }
 
-/// The line of a key of too many parts; 0 where there is none. Each part is a table in the one before, and the library
-/// follows them by recursion, however many there are.
+/// The line of a key with too many parts; 0 if there is none. Each part is a nested table, and toml++ recurses into
+/// them without a limit.
 int line_of_long_key(std::string_view text) {
     const auto joins = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '\t'; };
     std::size_t parts = 1;
@@ -137,8 +137,8 @@ int line_of_long_key(std::string_view text) {
 }  // namespace
 
 const node* node::find(std::string_view wanted) const {
-    const auto found = std::ranges::find(items, wanted, &node::key);
-    return found == items.end() ? nullptr : &*found;
+    const auto entry = std::ranges::find(items, wanted, &node::key);
+    return entry == items.end() ? nullptr : &*entry;
 }
 
 document::document(const std::string& as_written, std::string file, std::size_t most, std::string_view what)
@@ -212,10 +212,10 @@ std::uint64_t document::integer_of(const std::string& key, const node& value, st
     const bool parsed = value.kind == node_kind::integer &&
                         std::from_chars(value.text.data(), end, number) == std::from_chars_result{end, std::errc{}};
     if (!parsed || number < least) {
-        const std::string given = value.kind == node_kind::text ? "the text \"" + value.text + "\""
-                                  : value.is_scalar()           ? value.text
-                                                                : std::string(name_of(value.kind));
-        fail(value.line, key + " must be a whole number, at least " + std::to_string(least) + ", not " + given);
+        const std::string actual = value.kind == node_kind::text ? "the text \"" + value.text + "\""
+                                   : value.is_scalar()           ? value.text
+                                                                 : std::string(name_of(value.kind));
+        fail(value.line, key + " must be a whole number, at least " + std::to_string(least) + ", not " + actual);
     }
     return number;
 }
@@ -236,30 +236,30 @@ std::optional<std::vector<located_text>> document::take_others(node& list) const
     const auto others = std::ranges::find_if(list.items, stands_for_others);
     if (list.kind != node_kind::list || others == list.items.end()) return std::nullopt;
     require_keys(*others, " beside others_but", {"others_but"});
-    std::vector<located_text> but = texts_of("others_but", *others->find("others_but"));
+    std::vector<located_text> excluded = texts_of("others_but", *others->find("others_but"));
     list.items.erase(others);
-    return but;
+    return excluded;
 }
 
 std::vector<located_text> document::alternatives_of(const std::string& key, const node& value) const {
     if (value.is_scalar()) return {{value.text, value.line}};
     if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");
     if (value.items.empty()) fail(value.line, key + " is an empty list; expected at least one value");
-    std::vector<located_text> all;
+    std::vector<located_text> values;
     std::set<std::string_view> seen;
     for (const node& item : value.items) {
         if (!item.is_scalar()) fail_type("an entry of " + key, item, "a value");
         if (!seen.insert(item.text).second) fail(item.line, key + " lists '" + item.text + "' twice");
-        all.push_back({item.text, item.line});
+        values.push_back({item.text, item.line});
     }
-    return all;
+    return values;
 }
 
 void document::require_few(int line, std::string_view of, std::span<const std::size_t> factors,
                            std::size_t more) const {
-    auto all = static_cast<double>(more);
-    all += std::accumulate(factors.begin(), factors.end(), 1.0, std::multiplies{});
-    if (all > static_cast<double>(most_products))
+    auto products = static_cast<double>(more);
+    products += std::accumulate(factors.begin(), factors.end(), 1.0, std::multiplies{});
+    if (products > static_cast<double>(most_products))
         fail(line, "the lists multiply to more than " + std::to_string(most_products) + " " + std::string(of) +
                        ", the most that a config may have");
 }

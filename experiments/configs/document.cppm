@@ -1,4 +1,4 @@
-/// A TOML document as plain values that know their line, so that the rest of the config reader is free of TOML.
+/// A TOML document as plain values that know their line, so that no other part of the config reader needs toml++.
 module aabblab.configs:document;
 
 import aabb.policy;
@@ -6,7 +6,7 @@ import aabb.std;
 
 namespace aabblab {
 
-/// In bytes.
+/// In bytes: the largest config that is accepted.
 inline constexpr std::size_t longest_config = 262'144;
 
 enum class node_kind { text, integer, real, boolean, date, list, table };
@@ -14,11 +14,11 @@ enum class node_kind { text, integer, real, boolean, date, list, table };
 struct node {
     node_kind kind = node_kind::table;
     int line = 0;             ///< from 1
-    std::string key;          ///< of an entry of a table
-    std::string text;         ///< a scalar, as a setting takes it
-    std::vector<node> items;  ///< of a list, or the entries of a table in the order of the file
+    std::string key;          ///< set for the entries of a table
+    std::string text;         ///< the value of a scalar, as settings take it
+    std::vector<node> items;  ///< elements of a list, or entries of a table in file order
 
-    /// The value of a key; null where there is none.
+    /// The value of a key; null if the table lacks it.
     [[nodiscard]] const node* find(std::string_view wanted) const;
     [[nodiscard]] bool is_scalar() const { return kind < node_kind::date; }
 };
@@ -28,12 +28,12 @@ struct located_text {
     int line;
 };
 
-/// A config on its way from text to an experiment: makes its messages.
+/// A parsed config that converts values to types and reports errors with their file and line.
 class document {
 public:
-    /// @param most bytes that it may have
-    /// @param what it is, for messages
-    /// @throws aabb::input_error with line and column on malformed TOML, or text longer or keys deeper than any config.
+    /// @param most the maximum length in bytes
+    /// @param what the kind of document, for messages
+    /// @throws aabb::input_error with line and column on malformed TOML, too long a text or too deeply nested keys.
     document(const std::string& text, std::string file, std::size_t most = longest_config,
              std::string_view what = "a config");
 
@@ -47,7 +47,7 @@ public:
     /// "KEY is a number; expected WHAT".
     [[noreturn]] void fail_type(const std::string& key, const node& value, std::string_view expected) const;
 
-    /// Calls a function whose input_error lacks the place.
+    /// Calls the function and prefixes its input_error with the place.
     decltype(auto) at(int line, auto function) const {
         try {
             return function();
@@ -56,27 +56,27 @@ public:
         }
     }
 
-    /// Refuses keys of a table that are not known. `of` is what the keys belong to, as in " of [measure]".
+    /// Rejects unknown keys of a table. `of` names what the keys belong to, as in " of [measure]".
     void require_keys(const node& table, const std::string& of, const std::vector<std::string>& known) const;
     void require_table(const std::string& key, const node& value) const;
-    /// Refuses a table without this key by the sentence.
+    /// The value of a required key; without it, the table is rejected with the sentence.
     [[nodiscard]] const node& needed(const node& table, std::string_view key, const std::string& sentence) const;
-    /// Those of [[key]]; none where there is no such key.
+    /// The tables of [[key]]; empty if the key is absent.
     [[nodiscard]] std::span<const node> tables_of(const std::string& key) const;
     [[nodiscard]] bool flag_of(const std::string& key, const node& value) const;
     [[nodiscard]] const std::string& text_of(const std::string& key, const node& value) const;
     [[nodiscard]] std::uint64_t integer_of(const std::string& key, const node& value, std::uint64_t least) const;
-    /// A text or a list of texts.
+    /// Accepts a text or a list of texts.
     [[nodiscard]] std::vector<located_text> texts_of(const std::string& key, const node& value) const;
-    /// What a key multiplies by: a scalar, or the scalars of a list.
+    /// The alternatives of a key, a factor of the product: a scalar, or the scalars of a list.
     [[nodiscard]] std::vector<located_text> alternatives_of(const std::string& key, const node& value) const;
-    /// Takes { others_but = […] } out of a list.
-    /// @returns the names in it; nothing where the list has none
+    /// Removes { others_but = […] } from a list.
+    /// @returns the names in it; nullopt if the list has no such entry
     [[nodiscard]] std::optional<std::vector<located_text>> take_others(node& list) const;
-    /// Refuses lists that multiply to too much, before anything is made of them: a short text can ask for anything.
-    /// @param of what they multiply to, as in "compositions"
-    /// @param factors how long the lists are
-    /// @param more that are there already
+    /// Rejects a product that is too large before it is expanded, as a short config can describe an enormous one.
+    /// @param of what the product consists of, as in "compositions"
+    /// @param factors the lengths of the lists
+    /// @param more the number of products that exist already
     void require_few(int line, std::string_view of, std::span<const std::size_t> factors, std::size_t more) const;
 
 private:
@@ -84,34 +84,34 @@ private:
     node root_;
 };
 
-/// What a config lists, in its order, each once.
+/// The items of a list in order, without duplicates.
 template <class T>
 class each_once {
 public:
-    /// @param text equal for equal ones
-    /// @returns false where it is there already
-    bool add(const T& one, const std::string& text) {
+    /// @param text identifies the item: equal items have equal texts
+    /// @returns false if the item is a duplicate
+    bool add(const T& item, const std::string& text) {
         if (!texts_.insert(text).second) return false;
-        all_.push_back(one);
+        items_.push_back(item);
         return true;
     }
-    [[nodiscard]] const std::vector<T>& all() const { return all_; }
+    [[nodiscard]] const std::vector<T>& all() const { return items_; }
 
 private:
-    std::vector<T> all_;
+    std::vector<T> items_;
     std::set<std::string> texts_;
 };
 
-/// A key with what it multiplies by.
+/// A key with its alternatives.
 using alternatives = std::pair<std::string, std::vector<located_text>>;
 
-/// What stands in a file, at most one byte more than it may have, which shows that it is too long.
-/// @param what it is, for messages
-/// @throws aabb::input_error where it is not there, is a folder or cannot be read.
+/// Reads a file up to one byte beyond `most`, so that the caller can detect that it is too long.
+/// @param what the kind of file, for messages
+/// @throws aabb::input_error if the file does not exist, is a folder or cannot be read.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view what);
 
 [[nodiscard]] std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys);
-/// Every choice of one alternative a key; the first key varies slowest.
+/// The Cartesian product: one alternative per key; the first key varies slowest.
 [[nodiscard]] std::vector<std::vector<aabb::setting>> multiplied(const std::vector<alternatives>& keys);
 
 }  // namespace aabblab

@@ -15,7 +15,7 @@ const node* seed_of(const document& doc, experiment_size size);
 namespace {
 
 const std::vector<std::string> known_precisions = {"float", "double"};
-constexpr std::uint64_t quick_share = 20;  // of the pairs, unless the config says how many
+constexpr std::uint64_t quick_share = 20;  // a quick run takes 1/20 of the pairs by default
 
 std::uint64_t count_of(const document& doc, const node& pairs, experiment_size size) {
     const node* count = pairs.find("count");
@@ -30,32 +30,32 @@ std::uint64_t count_of(const document& doc, const node& pairs, experiment_size s
     return size == experiment_size::quick ? few : wanted;
 }
 
-/// @param key "pairs", or "hits", of which as many are counted as intersect
+/// @param key "pairs", or "hits", whose count includes only pairs that intersect
 void add_pairs(const document& doc, const std::string& key, const node& written, experiment_size size,
                std::uint64_t seed, each_once<pair_set>& sets) {
     doc.require_table(key, written);
     doc.require_keys(written, " of [[" + key + "]]", {"class", "precision", "count", "quick"});
     std::vector<located_text> classes;
-    if (const node* given = written.find("class")) {
-        classes = doc.alternatives_of("class", *given);
+    if (const node* listed = written.find("class")) {
+        classes = doc.alternatives_of("class", *listed);
     } else {
         for (const pair_class_info& c : pair_classes()) classes.push_back({std::string(c.name), written.line});
     }
     std::vector<located_text> precisions{{"float", written.line}};
-    if (const node* given = written.find("precision")) precisions = doc.alternatives_of("precision", *given);
+    if (const node* listed = written.find("precision")) precisions = doc.alternatives_of("precision", *listed);
     const std::uint64_t count = count_of(doc, written, size);
     for (const located_text& precision : precisions) {
         if (precision.text != "float" && precision.text != "double")
             doc.fail(precision.line, aabb::unknown_name("precision", precision.text, known_precisions));
-        for (const located_text& one : classes) {
-            doc.at(one.line, [&] { static_cast<void>(pair_source<float>(one.text, seed)); });
-            if (!sets.add({one.text, precision.text == "double", count, seed}, one.text + " in " + precision.text))
-                doc.fail(one.line, "these " + key + " are listed twice: " + one.text + " in " + precision.text);
+        for (const located_text& name : classes) {
+            doc.at(name.line, [&] { static_cast<void>(pair_source<float>(name.text, seed)); });
+            if (!sets.add({name.text, precision.text == "double", count, seed}, name.text + " in " + precision.text))
+                doc.fail(name.line, "these " + key + " are listed twice: " + name.text + " in " + precision.text);
         }
     }
 }
 
-/// Some tests take floats only.
+/// Notes which tests support only floats, and rejects pairs in double if no test supports them.
 void require_doubles_taken(const document& doc, error_study& study) {
     if (std::ranges::none_of(study.pairs, &pair_set::in_double)) return;
     std::size_t taking = 0;
@@ -80,21 +80,21 @@ void require_meshes(const document& doc, const node& scene) {
     }
 }
 
-/// All of one sort, each method in one of them.
+/// Reads the curves, which are either all of triangle tests or all of compositions, and share no method.
 std::vector<error_curve> curves_of(const document& doc) {
     std::vector<error_curve> curves;
     each_once<bool> methods;
-    for (const node& one : doc.tables_of("curve")) {
-        curves.push_back(curve_of(doc, one));
+    for (const node& table : doc.tables_of("curve")) {
+        curves.push_back(curve_of(doc, table));
         const error_curve& curve = curves.back();
         if (std::ranges::count(curves, curve.label, &error_curve::label) > 1)
-            doc.fail(one.line, "two curves have the label '" + curve.label + "'");
+            doc.fail(table.line, "two curves have the label '" + curve.label + "'");
         if (curve.triangles.empty() != curves[0].triangles.empty())
-            doc.fail(one.line, "'" + curve.label + "' and '" + curves[0].label +
-                                   "' do not go together: triangle tests alone are held against pairs of triangles, "
-                                   "other compositions play scenes; put them into two configs");
+            doc.fail(table.line, "'" + curve.label + "' and '" + curves[0].label +
+                                     "' do not go together: triangle tests alone are held against pairs of triangles, "
+                                     "other compositions play scenes; put them into two configs");
         const auto add = [&](const std::string& text) {
-            if (!methods.add(true, text)) doc.fail(one.line, "'" + text + "' is a point of two curves");
+            if (!methods.add(true, text)) doc.fail(table.line, "'" + text + "' is a point of two curves");
         };
         for (const aabb::strategy_choice& choice : curve.triangles) add(to_text(choice));
         for (const aabb::composition& c : curve.compositions)
@@ -103,23 +103,23 @@ std::vector<error_curve> curves_of(const document& doc) {
     return curves;
 }
 
-/// What only the other sort of study has.
+/// Rejects keys that belong only to the other sort of study.
 void refuse_keys(const document& doc, std::initializer_list<std::string_view> keys, const std::string& reason) {
     for (const std::string_view key : keys)
-        if (const node* found = doc.root().find(key)) {
+        if (const node* entry = doc.root().find(key)) {
             const std::string name = "[" + std::string(key) + "]";
-            doc.fail(found->line, (found->kind == node_kind::list ? "[" + name + "]" : name) + " " + reason);
+            doc.fail(entry->line, (entry->kind == node_kind::list ? "[" + name + "]" : name) + " " + reason);
         }
 }
 
 std::vector<metric_plot> plots_of(const document& doc) {
     std::vector<metric_plot> plots;
-    for (const node& one : doc.tables_of("plot")) {
-        doc.require_table("plot", one);
-        doc.require_keys(one, " of [[plot]]", {"x", "y"});
+    for (const node& table : doc.tables_of("plot")) {
+        doc.require_table("plot", table);
+        doc.require_keys(table, " of [[plot]]", {"x", "y"});
         const auto metric_of = [&](const char* key) {
             const node& value =
-                doc.needed(one, key, std::string("this plot has no ") + key + "; expected the name of a metric");
+                doc.needed(table, key, std::string("this plot has no ") + key + "; expected the name of a metric");
             const std::string& name = doc.text_of(key, value);
             doc.at(value.line, [&] { static_cast<void>(metric_named(name)); });
             return name;
@@ -130,7 +130,7 @@ std::vector<metric_plot> plots_of(const document& doc) {
     return plots;
 }
 
-/// Compositions that play scenes, as `run` would.
+/// The experiment in which compositions run whole scenes, as `run` does.
 experiment whole_of(const document& doc, const error_study& study, experiment_size size) {
     experiment e;
     if (study.whole) e.scenes = study.whole->scenes;
@@ -141,8 +141,8 @@ experiment whole_of(const document& doc, const error_study& study, experiment_si
     read_measure(doc, size, e);
     if (const node* measure = doc.root().find("measure"))
         for (const char* key : {"processes", "ask", "caches", "metrics"})
-            if (const node* found = measure->find(key))
-                doc.fail(found->line, std::string("errors has no ") + key + "; run has");
+            if (const node* entry = measure->find(key))
+                doc.fail(entry->line, std::string("errors has no ") + key + "; run has");
     for (const error_curve& curve : study.curves)
         e.compositions.insert(e.compositions.end(), curve.compositions.begin(), curve.compositions.end());
     for (const metric_plot& plot : study.plots)
@@ -158,27 +158,27 @@ std::vector<pair_set> pairs_of(const document& doc, const std::string& key, expe
     const node* seed = seed_of(doc, size);
     const std::uint64_t number = seed ? doc.integer_of("seed", *seed, 0) : 1;
     each_once<pair_set> sets;
-    for (const node& one : tables) add_pairs(doc, key, one, size, number, sets);
+    for (const node& table : tables) add_pairs(doc, key, table, size, number, sets);
     return sets.all();
 }
 
-/// Triangle tests and the pairs of triangles that they are held against.
+/// Reads the triangle pairs and the mesh scenes on which triangle tests are compared.
 void read_triangles(const document& doc, experiment_size size, error_study& study) {
     study.pairs = pairs_of(doc, "pairs", size);
     require_doubles_taken(doc, study);
-    for (const node& one : doc.tables_of("scene")) require_meshes(doc, one);
+    for (const node& table : doc.tables_of("scene")) require_meshes(doc, table);
     if (doc.root().find("scene")) {
-        experiment played;
-        played.scenes = study.scenes;
-        read_scenes(doc, size, played);
-        study.scenes = played.scenes;
-        study.notes.insert(study.notes.end(), played.notes.begin(), played.notes.end());
+        experiment with_scenes;
+        with_scenes.scenes = study.scenes;
+        read_scenes(doc, size, with_scenes);
+        study.scenes = with_scenes.scenes;
+        study.notes.insert(study.notes.end(), with_scenes.notes.begin(), with_scenes.notes.end());
     }
     if (study.pairs.empty() && study.scenes.empty())
         doc.fail(1, "this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
 }
 
-/// What another size may change.
+/// Reads everything that depends on the size of the experiment.
 void read_sized(const document& doc, experiment_size size, error_study& study) {
     study.hits = pairs_of(doc, "hits", size);
     if (study.curves.empty()) {

@@ -13,7 +13,7 @@ void read_scenes(const document& doc, experiment_size size, experiment& e);
 
 namespace {
 
-/// Files have names that begin with it.
+/// The name must be safe in file names, as those of the results begin with it.
 void require_plain_name(const document& doc, const node& name) {
     const std::string& text = doc.text_of("name", name);
     const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
@@ -28,22 +28,22 @@ std::vector<std::string> engines_of(const document& doc) {
     std::vector<std::string> names;
     const node* engines = doc.root().find("engines");
     if (!engines) return names;
-    for (const located_text& one : doc.texts_of("engines", *engines)) {
-        if (const std::string refusal = aabb::refusal_of_engine(one.text); !refusal.empty())
-            doc.fail(one.line, refusal);
-        if (std::ranges::find(names, one.text) != names.end())
-            doc.fail(one.line, "engines lists '" + one.text + "' twice");
-        names.push_back(one.text);
+    for (const located_text& engine : doc.texts_of("engines", *engines)) {
+        if (const std::string refusal = aabb::refusal_of_engine(engine.text); !refusal.empty())
+            doc.fail(engine.line, refusal);
+        if (std::ranges::find(names, engine.text) != names.end())
+            doc.fail(engine.line, "engines lists '" + engine.text + "' twice");
+        names.push_back(engine.text);
     }
     return names;
 }
 
-/// A program as it is named, or, as files are, from the folder of the config; without a slash one in PATH.
+/// Resolves a program like any file of the config; a name without a slash is left for PATH.
 std::string found_program(const document& doc, const std::string& name) {
     if (name.find('/') == std::string::npos) return name;
-    const std::filesystem::path found = found_file(name, doc.folder());
-    if (std::filesystem::is_directory(found)) throw aabb::input_error(name + " is a folder; expected a program");
-    return found.string();
+    const std::filesystem::path program = found_file(name, doc.folder());
+    if (std::filesystem::is_directory(program)) throw aabb::input_error(name + " is a folder; expected a program");
+    return program.string();
 }
 
 external_engine external_of(const document& doc, const node& table) {
@@ -73,17 +73,17 @@ external_engine external_of(const document& doc, const node& table) {
 }
 
 std::vector<external_engine> externals_of(const document& doc) {
-    std::vector<external_engine> all;
+    std::vector<external_engine> externals;
     for (const node& table : doc.tables_of("external")) {
         external_engine engine = external_of(doc, table);
-        if (std::ranges::find(all, engine.name, &external_engine::name) != all.end())
+        if (std::ranges::find(externals, engine.name, &external_engine::name) != externals.end())
             doc.fail(table.line, "two [[external]] have the name '" + engine.name + "'");
-        all.push_back(std::move(engine));
+        externals.push_back(std::move(engine));
     }
-    return all;
+    return externals;
 }
 
-/// Names of groups, all of whose numbers are recorded, and of metrics, whose groups are and which tables show.
+/// Reads names of groups and metrics. A group is recorded; a metric is also shown in the tables.
 void read_metrics(const document& doc, const node& value, experiment& e) {
     e.recorded.clear();
     std::vector<std::string> known;
@@ -92,32 +92,32 @@ void read_metrics(const document& doc, const node& value, experiment& e) {
     known.insert(known.end(), names.begin(), names.end());
     const std::vector<located_text> wanted = doc.texts_of("metrics", value);
     if (wanted.empty()) doc.fail(value.line, "metrics is an empty list; expected at least one metric");
-    for (const located_text& one : wanted) {
-        const auto group = std::ranges::find(metric_groups, one.text, &metric_group_info::name);
-        const auto found = std::ranges::find(names, one.text);
+    for (const located_text& name : wanted) {
+        const auto group = std::ranges::find(metric_groups, name.text, &metric_group_info::name);
+        const auto metric = std::ranges::find(names, name.text);
         if (group != metric_groups.end()) {
             e.recorded.insert(static_cast<metric_group>(group - metric_groups.begin()));
-        } else if (found != names.end()) {
-            e.recorded.insert(metric_named(one.text).group);
-            if (std::ranges::find(e.shown, one.text) == e.shown.end()) e.shown.push_back(one.text);
+        } else if (metric != names.end()) {
+            e.recorded.insert(metric_named(name.text).group);
+            if (std::ranges::find(e.shown, name.text) == e.shown.end()) e.shown.push_back(name.text);
         } else {
-            doc.fail(one.line, aabb::unknown_name("metric", one.text, known, "aabblab list metrics"));
+            doc.fail(name.line, aabb::unknown_name("metric", name.text, known, "aabblab list metrics"));
         }
     }
 }
 
-/// One of a few words.
-/// @returns its place among them
+/// Reads one of the known words.
+/// @returns its index
 std::size_t read_word(const document& doc, const char* key, const node& value,
                       std::span<const std::string_view> known) {
     if (value.kind != node_kind::text) doc.fail_type(key, value, "a word in quotes");
-    const auto found = std::ranges::find(known, value.text);
+    const auto word = std::ranges::find(known, value.text);
     const std::vector<std::string> names(known.begin(), known.end());
-    if (found == known.end()) doc.fail(value.line, aabb::unknown_name(key, value.text, names));
-    return static_cast<std::size_t>(found - known.begin());
+    if (word == known.end()) doc.fail(value.line, aabb::unknown_name(key, value.text, names));
+    return static_cast<std::size_t>(word - known.begin());
 }
 
-/// What is asked, of scenes of meshes, and with which caches.
+/// Reads the query and the state of the caches, which only mesh scenes support.
 void read_asking(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     if (!measure) return;
@@ -141,7 +141,7 @@ void read_asking(const document& doc, experiment& e) {
     if (e.how.cold) e.notes.emplace_back("before each query the caches hold other things");
 }
 
-/// Fresh processes share the repeats, so there are at most as many.
+/// Fresh processes share the repeats, so there cannot be more processes than repeats.
 void read_processes(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     const node* processes = measure ? measure->find("processes") : nullptr;
@@ -157,7 +157,7 @@ void read_processes(const document& doc, experiment& e) {
 
 }  // namespace
 
-/// Results stand in a folder of this name.
+/// The name of the experiment and of its results folder.
 std::string name_of(const document& doc) {
     const node& name = doc.needed(doc.root(), "name", "this config has no name; expected name = \"…\"");
     require_plain_name(doc, name);
@@ -186,7 +186,7 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
 
 namespace {
 
-/// What another size may change.
+/// Reads everything that depends on the size of the experiment.
 void read_sized(const document& doc, experiment_size size, experiment& e) {
     e.quick = size == experiment_size::quick;
     read_measure(doc, size, e);
@@ -210,7 +210,7 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     e.externals = externals_of(doc);
     read_compositions(doc, doc.root().find("compose"), e);
     read_sized(doc, size, e);
-    // What stands under quick is checked now, not when somebody first asks for it.
+    // The quick settings are validated in full runs too, so that mistakes in them surface early.
     experiment in_quick = e;
     if (size == experiment_size::full) read_sized(doc, experiment_size::quick, in_quick);
     return e;
@@ -236,34 +236,34 @@ experiment read_experiment(const std::filesystem::path& file, experiment_size si
 }
 
 std::vector<aabb::composition> every_composition(const experiment& e) {
-    std::vector<aabb::composition> all = e.compositions;
-    for (const aabb::named_strategies& named : e.automatic) all.push_back(select_composition(named, {}));
-    return all;
+    std::vector<aabb::composition> compositions = e.compositions;
+    for (const aabb::named_strategies& named : e.automatic) compositions.push_back(select_composition(named, {}));
+    return compositions;
 }
 
 std::string hash_of(const experiment& e) {
-    std::string all = e.name + " repeats=" + std::to_string(e.repeats) + " processes=" + std::to_string(e.processes);
-    if (e.patience) all += " patience=" + std::to_string(*e.patience);
-    for (std::size_t i = 0; i < metric_groups.size(); ++i) all += e.records(static_cast<metric_group>(i)) ? '+' : '-';
-    for (const std::string& engine : e.engines) all += "\n" + engine;
+    std::string text = e.name + " repeats=" + std::to_string(e.repeats) + " processes=" + std::to_string(e.processes);
+    if (e.patience) text += " patience=" + std::to_string(*e.patience);
+    for (std::size_t i = 0; i < metric_groups.size(); ++i) text += e.records(static_cast<metric_group>(i)) ? '+' : '-';
+    for (const std::string& engine : e.engines) text += "\n" + engine;
     for (const external_engine& engine : e.externals) {
-        all += "\n" + engine.name + (engine.exact ? " exact" : " inexact");
-        for (const std::string& word : engine.command) all += " + " + word;
+        text += "\n" + engine.name + (engine.exact ? " exact" : " inexact");
+        for (const std::string& word : engine.command) text += " + " + word;
     }
     for (const aabb::composition& c : e.compositions) {
-        all += "\n";
-        for (const aabb::strategy_kind kind : aabb::strategy_kinds) all += to_text(c[kind]) + " + ";
+        text += "\n";
+        for (const aabb::strategy_kind kind : aabb::strategy_kinds) text += to_text(c[kind]) + " + ";
     }
     for (const aabb::named_strategies& named : e.automatic) {
-        all += "\nauto";
+        text += "\nauto";
         for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-            if (named[kind]) all += " + " + to_text(*named[kind]);
+            if (named[kind]) text += " + " + to_text(*named[kind]);
     }
-    for (const scene_choice& scene : e.scenes) all += "\n" + scene.kind + " " + parameters_text(scene);
+    for (const scene_choice& scene : e.scenes) text += "\n" + scene.kind + " " + parameters_text(scene);
     if (e.how != asking{})
-        all +=
+        text +=
             "\n" + std::string(question_names[static_cast<std::size_t>(e.how.ask)]) + (e.how.cold ? " cold" : " warm");
-    return aabb::hash_of_text(all + "\n" + e.content_digest);
+    return aabb::hash_of_text(text + "\n" + e.content_digest);
 }
 
 }  // namespace aabblab

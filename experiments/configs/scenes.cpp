@@ -7,12 +7,12 @@ namespace aabblab {
 
 namespace {
 
-/// `quick = false`: the scene is left out of a first look.
+/// `quick = false` excludes the scene from quick runs.
 bool is_false(const node& value) {
     return value.kind == node_kind::boolean && value.text == "false";
 }
 
-/// The scene as this size of the experiment sees it: without `quick`, or with what stands in it.
+/// The scene at this size of the experiment: `quick` is removed, and its entries override the others in quick runs.
 node sized(const document& doc, const node& scene, experiment_size size) {
     node result = scene;
     std::erase_if(result.items, [](const node& entry) { return entry.key == "quick"; });
@@ -34,17 +34,17 @@ const scene_info& info_of(const document& doc, const located_text& kind) {
     return doc.at(kind.line, [&]() -> const scene_info& { return scene_named(kind.text); });
 }
 
-/// { others_but = […] } stands for every generated scene of boxes that is named neither there nor in the list.
+/// Expands { others_but = […] } to every generated scene of boxes that is neither excluded nor listed by name.
 std::vector<located_text> kinds_of(const document& doc, node list) {
-    const auto but = doc.take_others(list);
-    if (!but) return doc.alternatives_of("kind", list);
+    const auto excluded = doc.take_others(list);
+    if (!excluded) return doc.alternatives_of("kind", list);
     std::vector<located_text> names = doc.texts_of("kind", list);
-    for (const located_text& name : *but) info_of(doc, name);
+    for (const located_text& name : *excluded) info_of(doc, name);
     for (const scene_info& info : scene_kinds()) {
         const auto is_named = [&](const auto& in) {
             return std::ranges::count(in, info.name, &located_text::text) > 0;
         };
-        if (!info.has_meshes && !info.plays_file && !is_named(*but) && !is_named(names))
+        if (!info.has_meshes && !info.plays_file && !is_named(*excluded) && !is_named(names))
             names.push_back({info.name, list.line});
     }
     return names;
@@ -70,7 +70,7 @@ std::vector<std::string> names_of(const document& doc, const node& scene, const 
     std::vector<std::string> names;
     const node* value = scene.find(key);
     if (!value) return names;
-    for (located_text& one : doc.texts_of(key, *value)) names.push_back(std::move(one.text));
+    for (located_text& name : doc.texts_of(key, *value)) names.push_back(std::move(name.text));
     if (names.empty()) doc.fail(value->line, key + " is an empty list; expected at least one mesh");
     return names;
 }
@@ -90,7 +90,7 @@ std::vector<std::string> meshes_of(const document& doc, const node& scene, std::
     return instead;
 }
 
-/// The settings that a scene is made with, each with its alternatives.
+/// The settings of a scene, each with its alternatives.
 std::vector<alternatives> settings_of(const document& doc, const node& scene, bool plays_file) {
     std::vector<alternatives> settings;
     for (const node& entry : scene.items) {
@@ -109,10 +109,10 @@ std::vector<std::optional<std::uint64_t>> seeds_of(const document& doc, const no
     if (seed->items.empty()) doc.fail(seed->line, "seed is an empty list; expected at least one number");
     std::vector<std::optional<std::uint64_t>> seeds;
     std::set<std::uint64_t> seen;
-    for (const node& one : seed->items) {
-        const std::uint64_t number = doc.integer_of("seed", one, 0);
+    for (const node& item : seed->items) {
+        const std::uint64_t number = doc.integer_of("seed", item, 0);
         seeds.emplace_back(number);
-        if (!seen.insert(number).second) doc.fail(one.line, "seed lists '" + one.text + "' twice");
+        if (!seen.insert(number).second) doc.fail(item.line, "seed lists '" + item.text + "' twice");
     }
     return seeds;
 }
@@ -124,8 +124,8 @@ void add_meshes(aabb::digest& digest, std::span<const aabb::mesh> meshes) {
     }
 }
 
-/// What a file makes a scene play. Played to its end, a file that is malformed anywhere is refused now.
-/// @tparam Placed what a frame has of each object, a box or a pose
+/// Digests every frame of a file. Reading to the end also rejects a malformed file before the experiment starts.
+/// @tparam Placed the state of an object per frame, a box or a pose
 template <class Placed>
 void add_frames(aabb::digest& digest, auto& scene, std::size_t objects) {
     digest.add(std::array{static_cast<std::uint32_t>(objects), static_cast<std::uint32_t>(scene.frames())});
@@ -133,7 +133,7 @@ void add_frames(aabb::digest& digest, auto& scene, std::size_t objects) {
         for (const Placed& p : frame) digest.add(std::bit_cast<std::array<std::uint32_t, sizeof(Placed) / 4>>(p));
 }
 
-/// Makes the scene once and digests what stands in its meshes and its file.
+/// Generates the scene once and digests the contents of its meshes and its file.
 void add_content(aabb::digest& digest, const scene_choice& choice, const scene_info& info) {
     if (info.has_meshes) {
         const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
@@ -145,15 +145,15 @@ void add_content(aabb::digest& digest, const scene_choice& choice, const scene_i
     }
 }
 
-/// A scene of the config, before anything is made of it.
+/// A scene of the config that has not been generated yet.
 struct written_scene {
     scene_choice choice;
     const scene_info* info;
     int line;
-    int file_line = 0;  ///< of the name of the file that it plays
+    int file_line = 0;  ///< of the file's name; 0 if the scene has no file
 };
 
-/// The first line that names a strategy; 0 where none does.
+/// The first line that names the strategy; 0 if none does.
 int line_naming(const node& in, const std::string& strategy) {
     if (in.kind == node_kind::text && in.text.substr(0, in.text.find(':')) == strategy) return in.line;
     for (const node& item : in.items)
@@ -161,7 +161,7 @@ int line_naming(const node& in, const std::string& strategy) {
     return 0;
 }
 
-/// Refuses a composition that has no use for a scene of boxes.
+/// Rejects compositions with strategies that need meshes if the scene has only boxes.
 void require_playable(const document& doc, const written_scene& scene, const experiment& e) {
     if (scene.info->has_meshes) return;
     const node* compose = doc.root().find("compose");
@@ -174,7 +174,7 @@ void require_playable(const document& doc, const written_scene& scene, const exp
         }
 }
 
-/// Where the file that a scene plays is named; 0 where none is.
+/// The line that names the scene's file; 0 if it has none.
 int line_of_file(const scene_choice& choice, const std::vector<alternatives>& keys) {
     const auto file = std::ranges::find(choice.settings, "file", &aabb::setting::name);
     const auto key = std::ranges::find(keys, "file", &alternatives::first);
@@ -182,7 +182,7 @@ int line_of_file(const scene_choice& choice, const std::vector<alternatives>& ke
     return std::ranges::find(key->second, file->value, &located_text::text)->line;
 }
 
-/// Makes the scene once. What is wrong with the file that it plays begins with the file's name.
+/// Digests the scene; an error whose message begins with the file's name is reported at the line that names the file.
 void add_content(const document& doc, const written_scene& scene, aabb::digest& digest) {
     try {
         add_content(digest, scene.choice, *scene.info);
@@ -216,18 +216,18 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
         factors.push_back(seeds.size());
         doc.require_few(written.line, "scenes", factors, scenes.all().size());
         for (const std::vector<aabb::setting>& settings : multiplied(keys))
-            for (const std::optional<std::uint64_t> one : seeds) {
-                written_scene made{{kind.text, settings, meshes, one, doc.folder()}, &info, written.line};
-                made.file_line = line_of_file(made.choice, keys);
-                const std::string text = made.choice.kind + " " + parameters_text(made.choice);
-                if (!scenes.add(made, text)) doc.fail(written.line, "this scene is listed twice: " + text);
+            for (const std::optional<std::uint64_t> seed_value : seeds) {
+                written_scene resolved{{kind.text, settings, meshes, seed_value, doc.folder()}, &info, written.line};
+                resolved.file_line = line_of_file(resolved.choice, keys);
+                const std::string text = resolved.choice.kind + " " + parameters_text(resolved.choice);
+                if (!scenes.add(resolved, text)) doc.fail(written.line, "this scene is listed twice: " + text);
             }
     }
 }
 
 }  // namespace
 
-/// The seeds of scenes that have none of their own, for this size of the experiment.
+/// The default seeds of scenes at this size of the experiment.
 const node* seed_of(const document& doc, experiment_size size) {
     const node* quick = doc.root().find("quick");
     if (quick) {
@@ -238,7 +238,7 @@ const node* seed_of(const document& doc, experiment_size size) {
     return doc.root().find("seed");
 }
 
-/// Of another size, the experiment has scenes already: they are good, and are not made again.
+/// Scenes that the experiment already has, at another size, are valid and are not generated again.
 void read_scenes(const document& doc, experiment_size size, experiment& e) {
     const node& scenes = doc.needed(doc.root(), "scene", "this config has no scene; expected at least one [[scene]]");
     const std::span<const node> tables = doc.tables_of("scene");
@@ -248,12 +248,12 @@ void read_scenes(const document& doc, experiment_size size, experiment& e) {
     if (written.all().empty())
         doc.fail(scenes.line, tables.empty() ? "this config has no scene; expected at least one [[scene]]"
                                              : "every scene of this config is left out by quick = false");
-    const std::set<scene_choice> made(e.scenes.begin(), e.scenes.end());
+    const std::set<scene_choice> checked(e.scenes.begin(), e.scenes.end());
     e.scenes.clear();
     aabb::digest content;
     for (const written_scene& scene : written.all()) {
         require_playable(doc, scene, e);
-        if (!made.contains(scene.choice)) add_content(doc, scene, content);
+        if (!checked.contains(scene.choice)) add_content(doc, scene, content);
         e.scenes.push_back(scene.choice);
     }
     e.content_digest = content.text();

@@ -1,7 +1,7 @@
 #pragma once
 
-// toml++, made safe for text that nobody has checked: it asserts what malformed text can break, which aborts the
-// program, or is undefined where NDEBUG is defined. Here a failed assertion throws.
+// Makes toml++ safe for untrusted text: malformed text can fail its assertions, which aborts the program, or causes
+// undefined behaviour if NDEBUG is defined. Here a failed assertion throws.
 #undef NDEBUG
 
 namespace aabblab {
@@ -15,7 +15,7 @@ inline void require_toml(bool holds) {
 }  // namespace aabblab
 
 #define TOML_ASSERT(expression) ::aabblab::require_toml(static_cast<bool>(expression))
-// Tables and lists in each other; a config needs three.
+// The maximum nesting of tables and lists; a config needs three levels.
 #define TOML_MAX_NESTED_VALUES 16
 
 #include <toml++/toml.h>

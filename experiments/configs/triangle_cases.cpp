@@ -8,12 +8,12 @@ namespace {
 
 constexpr std::size_t longest_file = 16'777'216;
 
-const node& entry_of(const document& doc, const node& one, std::string_view key) {
-    return doc.needed(one, key, "this case has no " + std::string(key));
+const node& entry_of(const document& doc, const node& table, std::string_view key) {
+    return doc.needed(table, key, "this case has no " + std::string(key));
 }
 
-bool truth_of(const document& doc, const node& one, const std::string& key) {
-    return doc.flag_of(key, entry_of(doc, one, key));
+bool truth_of(const document& doc, const node& table, const std::string& key) {
+    return doc.flag_of(key, entry_of(doc, table, key));
 }
 
 double coordinate_of(const document& doc, const std::string& key, const node& value) {
@@ -26,37 +26,37 @@ double coordinate_of(const document& doc, const std::string& key, const node& va
     return number;
 }
 
-aabb::triangle3d triangle_of(const document& doc, const node& one, const std::string& key) {
-    const node& corners = entry_of(doc, one, key);
+aabb::triangle3d triangle_of(const document& doc, const node& table, const std::string& key) {
+    const node& corners = entry_of(doc, table, key);
     const auto require_three = [&](const node& list) {
         if (list.kind != node_kind::list || list.items.size() != 3)
             doc.fail(list.line, key + " must be three corners of three coordinates each");
     };
     require_three(corners);
-    aabb::triangle3d made{};
+    aabb::triangle3d triangle{};
     for (int i = 0; i < 3; ++i) {
         const node& corner = corners.items[static_cast<std::size_t>(i)];
         require_three(corner);
-        for (int k = 0; k < 3; ++k) made[i][k] = coordinate_of(doc, key, corner.items[static_cast<std::size_t>(k)]);
+        for (int k = 0; k < 3; ++k) triangle[i][k] = coordinate_of(doc, key, corner.items[static_cast<std::size_t>(k)]);
     }
-    return made;
+    return triangle;
 }
 
-aabb::triangle_case case_of(const document& doc, const node& one) {
-    doc.require_table("case", one);
-    doc.require_keys(one, " of [[case]]",
+aabb::triangle_case case_of(const document& doc, const node& table) {
+    doc.require_table("case", table);
+    doc.require_keys(table, " of [[case]]",
                      {"name", "source", "about", "class", "first", "second", "intersect", "intersect_double"});
-    const auto text = [&](const std::string& key) { return doc.text_of(key, entry_of(doc, one, key)); };
-    aabb::triangle_case made;
-    made.name = text("name");
-    made.source = text("source");
-    made.about = text("about");
-    made.kind = text("class");
-    made.first = triangle_of(doc, one, "first");
-    made.second = triangle_of(doc, one, "second");
-    made.intersect = truth_of(doc, one, "intersect");
-    made.intersect_double = one.find("intersect_double") ? truth_of(doc, one, "intersect_double") : made.intersect;
-    return made;
+    const auto text = [&](const std::string& key) { return doc.text_of(key, entry_of(doc, table, key)); };
+    aabb::triangle_case pair;
+    pair.name = text("name");
+    pair.source = text("source");
+    pair.about = text("about");
+    pair.kind = text("class");
+    pair.first = triangle_of(doc, table, "first");
+    pair.second = triangle_of(doc, table, "second");
+    pair.intersect = truth_of(doc, table, "intersect");
+    pair.intersect_double = table.find("intersect_double") ? truth_of(doc, table, "intersect_double") : pair.intersect;
+    return pair;
 }
 
 }  // namespace
@@ -66,9 +66,9 @@ std::vector<aabb::triangle_case> parse_triangle_cases(const std::string& text, c
     doc.require_keys(doc.root(), "", {"case"});
     if (!doc.root().find("case")) throw aabb::input_error(file + " has no cases; expected [[case]]");
     each_once<aabb::triangle_case> cases;
-    for (const node& one : doc.tables_of("case")) {
-        const aabb::triangle_case made = case_of(doc, one);
-        if (!cases.add(made, made.name)) doc.fail(one.line, "two cases have the name '" + made.name + "'");
+    for (const node& table : doc.tables_of("case")) {
+        const aabb::triangle_case pair = case_of(doc, table);
+        if (!cases.add(pair, pair.name)) doc.fail(table.line, "two cases have the name '" + pair.name + "'");
     }
     return cases.all();
 }
