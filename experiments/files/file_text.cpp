@@ -29,8 +29,8 @@ std::array<std::string, 2> different_sizes(double a, double b) {
 void require_memory(const std::string& what, double bytes) {
     const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
     if (bytes <= memory) return;
-    const auto [wanted, there] = different_sizes(bytes, memory);
-    throw aabb::input_error(what + " would take " + wanted + " of memory, but this machine has " + there);
+    const auto [needed, available] = different_sizes(bytes, memory);
+    throw aabb::input_error(what + " would take " + needed + " of memory, but this machine has " + available);
 }
 
 std::size_t size_of_file(const std::filesystem::path& file) {
@@ -55,9 +55,9 @@ whole_file::whole_file(const std::filesystem::path& file, std::size_t size)
 }
 
 bool whole_file::has_read(void* to, std::size_t bytes) {
-    const std::size_t got = std::fread(to, 1, bytes, file_.get());
-    done_ += got;
-    return got == bytes;
+    const std::size_t count = std::fread(to, 1, bytes, file_.get());
+    done_ += count;
+    return count == bytes;
 }
 
 void whole_file::read(void* to, std::size_t bytes) {

@@ -1,4 +1,4 @@
-/// A whole file in memory, and how its words are quoted to the user.
+/// A whole file in memory, and helpers that quote its contents in messages.
 module aabblab.files:file_text;
 
 import aabb.base;
@@ -12,13 +12,13 @@ namespace aabblab {
 }
 
 struct file_text {
-    std::string name;  ///< as the user gave it
+    std::string name;  ///< as the user wrote it
     std::string text;
 
     [[noreturn]] void fail(const std::string& sentence) const { refuse(name, sentence); }
 };
 
-/// The word in quotes, for a sentence: at most 40 bytes of it, and no part of a character.
+/// The word in quotes, for a message: at most 40 bytes of it, cut between characters.
 [[nodiscard]] inline std::string in_quotes(std::string_view word) {
     std::size_t end = std::min<std::size_t>(word.size(), 40);
     while (end > 0 && end < word.size() && (static_cast<unsigned char>(word[end]) & 0xc0U) == 0x80) --end;
@@ -26,21 +26,21 @@ struct file_text {
 }
 
 /// "1 vertex", "3 vertices"
-/// @param many where it is not `one` and an s
-[[nodiscard]] inline std::string counted(std::size_t count, std::string_view one, std::string_view many = {}) {
-    const std::string several = many.empty() ? std::string(one) + "s" : std::string(many);
-    return std::to_string(count) + " " + (count == 1 ? std::string(one) : several);
+/// @param plural if it is not the singular and an s
+[[nodiscard]] inline std::string counted(std::size_t count, std::string_view singular, std::string_view plural = {}) {
+    const std::string several = plural.empty() ? std::string(singular) + "s" : std::string(plural);
+    return std::to_string(count) + " " + (count == 1 ? std::string(singular) : several);
 }
 
-/// Two sizes in bytes for a sentence, each in a unit that fits it; in bytes where they would look alike.
+/// Formats two sizes in bytes, each in a suitable unit, or in bytes if they would round to the same text.
 [[nodiscard]] std::array<std::string, 2> different_sizes(double a, double b);
 
-/// Refuses what is not a regular file.
-/// @return its size in bytes.
-/// @throws aabb::input_error that says what it is instead.
+/// Rejects anything but a regular file.
+/// @return its size in bytes
+/// @throws aabb::input_error that says what the file is instead.
 [[nodiscard]] std::size_t size_of_file(const std::filesystem::path& file);
 
-/// Refuses what is not a file with something in it, as `size_of_file`.
+/// Like `size_of_file`, but also rejects empty files.
 [[nodiscard]] inline std::size_t require_file(const std::filesystem::path& file) {
     const std::size_t size = size_of_file(file);
     if (size == 0) refuse(file, "is empty");
@@ -54,15 +54,15 @@ using file_handle = std::unique_ptr<std::FILE, close_file>;
 
 [[nodiscard]] std::string system_error_text();
 
-/// A regular file that is read from its begin on, as often as is asked for.
+/// A regular file that is read sequentially from its beginning.
 class whole_file {
 public:
-    /// @param size what `require_file` says
-    /// @throws aabb::input_error when it cannot be opened.
+    /// @param size as returned by `require_file`
+    /// @throws aabb::input_error if the file cannot be opened.
     whole_file(const std::filesystem::path& file, std::size_t size);
-    /// False when there is not so much.
+    /// False if fewer bytes are left.
     [[nodiscard]] bool has_read(void* to, std::size_t bytes);
-    /// @throws aabb::input_error when there is not so much.
+    /// @throws aabb::input_error if fewer bytes are left.
     void read(void* to, std::size_t bytes);
 
 private:
@@ -72,22 +72,22 @@ private:
     file_handle file_;
 };
 
-/// All of a file.
-/// @param size what `require_file` says
-/// @param times how many times as much memory as the text what is read from it takes at most, the text included
-/// @throws aabb::input_error when it cannot be read or does not fit into memory.
+/// Reads a whole file.
+/// @param size as returned by `require_file`
+/// @param times the maximum memory of the text and everything parsed from it, as a multiple of the file size
+/// @throws aabb::input_error if the file cannot be read or does not fit into memory.
 [[nodiscard]] file_text read_whole(const std::filesystem::path& file, std::size_t size, double times);
 
-/// The text that the bytes of a file are, see `text_decoder`.
-/// @throws aabb::input_error where they are none.
+/// Decodes the bytes of a file with `text_decoder`.
+/// @throws aabb::input_error if they are not text.
 [[nodiscard]] inline file_text as_text(file_text file) {
     decoded_text text = decoded(std::move(file.text));
     if (!text.problem.empty()) file.fail(text.problem);
     return {std::move(file.name), std::move(text.text)};
 }
 
-/// The line without what a carriage return before its line feed leaves at its end.
-/// @param fail is called with a sentence where one stands alone
+/// The line without trailing carriage returns, which precede its line feed.
+/// @param fail is called with a message if a carriage return stands elsewhere in the line
 [[nodiscard]] inline std::string_view line_without_return(std::string_view line, auto fail) {
     while (line.ends_with('\r')) line.remove_suffix(1);
     if (line.find('\r') != std::string_view::npos)

@@ -1,5 +1,5 @@
-/// Files of the user: meshes, recordings of boxes, pairs. Everything wrong with one is an input_error whose sentence
-/// names the file, the line where there is one, and what was expected.
+/// Reads and writes the user's files: meshes, recordings of boxes, motions, pairs. Each error in a file is an
+/// input_error whose message names the file, the line if there is one, and what was expected.
 export module aabblab.files;
 
 import aabb.pipeline;
@@ -9,46 +9,46 @@ export import :loaded_mesh;
 
 export namespace aabblab {
 
-/// Reads OFF, OBJ, PLY, STL (text or binary) or glTF, by the file's ending.
-/// @throws aabb::input_error on a file that is missing, empty, malformed, truncated or without triangles, with NaN or
+/// Reads OFF, OBJ, PLY, STL (text or binary) or glTF; the file's extension selects the format.
+/// @throws aabb::input_error if the file is missing, empty, malformed, truncated or without triangles, has NaN or
 /// infinity in a vertex that a face uses, or an index out of range.
 [[nodiscard]] loaded_mesh read_mesh(const std::filesystem::path& file);
 
-/// The bytes of a regular file, of which there may be none.
-/// @throws aabb::input_error where it is something else or cannot be read.
+/// The contents of a regular file, which may be empty.
+/// @throws aabb::input_error if it is not a regular file or cannot be read.
 [[nodiscard]] std::string bytes_of_file(const std::filesystem::path& file);
 
-/// The text of a file as `bytes_of_file` reads it. Every reader of text reads what programs of many systems write: a
-/// byte order mark is dropped, UTF-16 that begins with one is converted, carriage returns become line feeds where lines
-/// end in them alone, and NULs and Ctrl-Z at the end of the file are dropped.
-/// @throws aabb::input_error where it is no such text, too.
+/// The text of a file. Every text reader accepts what programs on many systems write: a byte order mark is dropped,
+/// UTF-16 with a mark is converted, carriage returns become line feeds if lines end in them alone, and trailing NULs
+/// and Ctrl-Z are dropped.
+/// @throws aabb::input_error like `bytes_of_file`, and if the file is not such text.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file);
 
-/// The same of a file that may be a pipe or a device: at most one byte too many, which shows that it is too long.
-/// @throws aabb::input_error where nobody writes into a named pipe, too.
+/// Also reads pipes and devices, up to one byte beyond `most`, so that the caller can detect that the text is too long.
+/// @throws aabb::input_error also if a named pipe has no writer.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most);
 
-/// Lines of a file, a pipe, a device or standard input as they come, of which only some are held at a time: text as
-/// `text_of_file` reads it. All that reads throws aabb::input_error.
+/// Streams the lines of a file, a pipe, a device or standard input, decoded as by `text_of_file`, with bounded memory.
+/// Every member that reads throws aabb::input_error.
 class line_stream {
 public:
-    /// @param name for messages, in place of the file's
+    /// @param name replaces the file's name in messages
     explicit line_stream(const std::filesystem::path& file, const std::string& name = {});
-    /// Of standard input.
+    /// Reads standard input.
     line_stream();
     line_stream(line_stream&&) noexcept;
     ~line_stream();
 
-    /// Goes to the next line; false after the last.
+    /// Advances to the next line; false after the last one.
     bool next();
-    /// Without its end; as long as no other is asked for.
+    /// The line without its terminator; valid until the next call of `next`.
     [[nodiscard]] std::string_view line() const noexcept;
-    /// From 1.
+    /// The line number, from 1.
     [[nodiscard]] std::size_t number() const noexcept;
     /// "FILE:LINE: SENTENCE"
     [[noreturn]] void fail(const std::string& sentence) const;
 
-    /// Of its bytes; 0 where that is not known.
+    /// The file size in bytes; 0 if it is unknown.
     [[nodiscard]] std::uintmax_t size() const noexcept;
     [[nodiscard]] std::uintmax_t bytes_read() const noexcept;
 
@@ -57,51 +57,51 @@ private:
     std::unique_ptr<state> state_;
 };
 
-/// Refuses work that does not fit into the machine's memory, before anything is allocated.
-/// @throws aabb::input_error that says what takes how many bytes.
+/// Rejects work that does not fit into the machine's memory before anything is allocated.
+/// @throws aabb::input_error that names the work and its size.
 void require_memory(const std::string& what, double bytes);
 
-/// By which a mesh file's format is chosen, in lower case.
+/// The file's extension in lower case, which selects the mesh format.
 [[nodiscard]] std::string mesh_ending_of(const std::filesystem::path& file);
 
-/// The endings of mesh files, ".off" and so on.
+/// The extensions of the supported mesh formats, such as ".off".
 [[nodiscard]] std::vector<std::string> mesh_endings();
 
-/// Writes OFF with the shortest decimals that read back to the same floats.
+/// Writes OFF with the shortest decimals that round-trip to the same floats.
 void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
 
-/// Opens a motion file for playing with these meshes: object i is mesh i modulo their number. A line is a frame, an
-/// object and twelve numbers, the rows of its pose [R t]; `#` begins a comment. Frames are numbered from 0 and stand in
-/// order; frame 0 has every object, later ones those that have moved, so that one in which none has may be left out.
-/// @throws aabb::input_error, with file and line, on anything else, a pose that is not rigid, or more meshes than
+/// Opens a motion file that moves these meshes: object i has mesh i modulo their number. Each line holds a frame, an
+/// object and twelve numbers, the rows of its pose [R t]; `#` begins a comment. Frames count from 0 in ascending order;
+/// frame 0 places every object, later frames list only objects that moved, and frames without motion may be omitted.
+/// @throws aabb::input_error with file and line on malformed lines, a pose that is not rigid, or more meshes than
 /// objects.
 [[nodiscard]] std::unique_ptr<aabb::mesh_scene> open_motion(const std::filesystem::path& file,
                                                             std::vector<aabb::mesh> meshes);
 
-/// Opens a recording (.aabbs) for playing; frames are read one by one.
-/// @throws aabb::input_error where the header is cut off, is not one, lies about the file's size, or announces a
-/// million frames or more of nothing.
+/// Opens a recording (.aabbs) as a scene that reads one frame at a time.
+/// @throws aabb::input_error if the header is truncated, malformed or inconsistent with the file size, or announces
+/// more than a million frames without objects.
 [[nodiscard]] std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& file);
 
-/// Plays the scene to its end into a recording. `progress` hears frames done. Nothing half-written stays behind.
-/// @throws aabb::input_error when the file cannot be written or would not fit on the disk.
+/// Records the scene to its end. `progress` receives the number of frames done. A failure leaves no partial file.
+/// @throws aabb::input_error if the file cannot be written or would not fit on the disk.
 void write_recording(aabb::box_scene& scene, const std::string& name, const std::string& type,
                      const std::filesystem::path& file, const std::function<void(std::size_t)>& progress);
 
-/// A file that appears under its name only when it is complete; gone if not committed. Until then it has no name,
-/// or one beside it where the file system needs one, so that an interrupted process leaves nothing behind. What is no
-/// regular file, such as /dev/stdout, is written at once. Every member throws aabb::input_error when writing fails.
+/// An atomically written file: it appears under its name only on `commit`. Until then it is unnamed, or has a temporary
+/// name if the file system requires one, so that an interrupted process leaves nothing behind. Targets that are not
+/// regular files, such as /dev/stdout, are written directly. Every member throws aabb::input_error on failure.
 class output_file {
 public:
     explicit output_file(const std::filesystem::path& file);
     output_file(const output_file&) = delete;
     output_file& operator=(const output_file&) = delete;
     ~output_file();
-    /// Refuses, before anything is written, what the disk has no room for.
+    /// Rejects output for which the disk has no space before anything is written.
     void require_space(double bytes) const;
     void write(const void* data, std::size_t bytes);
     void write(const std::string& text);
-    /// Replaces bytes already written; what is written next still goes to the end.
+    /// Replaces bytes that are already written; later writes still append.
     void overwrite(std::uint64_t offset, const void* data, std::size_t bytes);
     void commit();
 
@@ -110,10 +110,10 @@ private:
     std::unique_ptr<state> state_;
 };
 
-/// Writes a text file, whole or not at all.
+/// Writes a text file atomically.
 void write_file(const std::filesystem::path& file, const std::string& text);
 
-/// A motion file in the making: every object in every frame, in the shortest decimals that read back to the doubles.
+/// Writes a motion file: every object in every frame, in the shortest decimals that round-trip to the doubles.
 class motion_file {
 public:
     explicit motion_file(const std::filesystem::path& file) : out_(file) {}

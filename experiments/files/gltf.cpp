@@ -11,16 +11,16 @@ namespace aabblab {
 
 namespace {
 
-/// How the corners of a primitive make faces, by the number of its mode.
+/// The topology of a primitive, by its code in the format.
 enum class gltf_mode : std::uint8_t { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
 
 gltf_matrix combined(const gltf_matrix& parent, const gltf_matrix& child) {
-    gltf_matrix all;
+    gltf_matrix transform;
     for (int column = 0; column < 4; ++column)
-        // Added to zero, no sum is a negative zero.
-        all.col(column) = product(parent, child.col(column)) + Eigen::Vector3d::Zero();
-    all.col(3) += parent.col(3);
-    return all;
+        // Adding zero turns a negative zero into a positive one.
+        transform.col(column) = product(parent, child.col(column)) + Eigen::Vector3d::Zero();
+    transform.col(3) += parent.col(3);
+    return transform;
 }
 
 Eigen::Vector3d moved(const gltf_matrix& m, const Eigen::Vector3d& p) {
@@ -50,7 +50,7 @@ private:
         return gltf_element(file_, asset_.accessors, "accessors", index);
     }
 
-    /// The nodes of the scene in the order of the file, a node before its children; where each stands is known then.
+    /// Computes the world transform of each node of the scene. Returns the nodes in preorder, children in file order.
     [[nodiscard]] std::vector<std::size_t> placed_nodes() {
         struct waiting_node {
             std::size_t node;
@@ -98,11 +98,11 @@ private:
         if (a.type != "SCALAR" || (a.component != gltf_component::u8 && a.component != gltf_component::u16 &&
                                    a.component != gltf_component::u32))
             fail_accessor(index, "of whole numbers and SCALAR, as it has indices");
-        const std::vector<double> read = numbers(index);
-        return {read.begin(), read.end()};
+        const std::vector<double> values = numbers(index);
+        return {values.begin(), values.end()};
     }
 
-    /// What moves a vertex of the skin from where it was bound to where each joint has taken it.
+    /// The skinning matrices: each maps a vertex from the bind pose to the current pose of a joint.
     [[nodiscard]] std::vector<gltf_matrix> joint_matrices(std::size_t index) const {
         const gltf_skin& skin = gltf_element(file_, asset_.skins, "skins", index);
         const std::string name = gltf_place("skins", index);
@@ -125,7 +125,7 @@ private:
             matrices.push_back(*place);
             if (bind.empty()) continue;
             const Eigen::Map<const Eigen::Matrix4d> inverse(&bind[16 * joint]);
-            // Inverted in floats, it may be a little off.
+            // The tolerance is for exporters that invert the matrix in single precision.
             if (!((inverse.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().array() <= 1e-6).all())
                 file_.fail(name + " has an inverse bind matrix whose last row is not 0 0 0 1");
             matrices.back() = combined(*place, inverse.topRows<3>());
@@ -133,7 +133,7 @@ private:
         return matrices;
     }
 
-    /// Adds the morph targets to the positions, each with its weight.
+    /// Adds the weighted offsets of the morph targets to the positions.
     void morph(std::vector<double>& points, const gltf_primitive& primitive, const std::vector<double>& weights,
                const std::string& mesh) const {
         const auto is_zero = [](double weight) { return weight == 0; };
@@ -142,15 +142,15 @@ private:
                        counted(weights.size(), "weight"));
         for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
             if (!primitive.targets[t] || weights[t] == 0) continue;
-            const std::vector<double> moves = positions(*primitive.targets[t], true);
-            if (moves.size() != points.size())
+            const std::vector<double> offsets = positions(*primitive.targets[t], true);
+            if (offsets.size() != points.size())
                 file_.fail(mesh + " has a morph target for a number of vertices other than its own: " +
-                           std::to_string(moves.size() / 3) + ", not " + std::to_string(points.size() / 3));
-            for (std::size_t i = 0; i < points.size(); ++i) points[i] += weights[t] * moves[i];
+                           std::to_string(offsets.size() / 3) + ", not " + std::to_string(points.size() / 3));
+            for (std::size_t i = 0; i < points.size(); ++i) points[i] += weights[t] * offsets[i];
         }
     }
 
-    /// Joints and weights of all vertices, four numbers a vertex each.
+    /// Joints and weights of all vertices, four of each per vertex.
     struct bindings {
         std::vector<double> joints;
         std::vector<double> weights;
@@ -180,7 +180,7 @@ private:
         return sets;
     }
 
-    /// Where the joints take a point: the mean of where each takes it, by their weights.
+    /// Linear blend skinning: the weighted mean of the point's images under its joints.
     [[nodiscard]] Eigen::Vector3d skinned(const Eigen::Vector3d& p, std::size_t vertex,
                                           const std::vector<bindings>& sets, const std::vector<gltf_matrix>& joints,
                                           const std::string& mesh) const {
@@ -197,21 +197,21 @@ private:
                 sum += moved(joints[joint], p) * weight;
                 weights += weight;
             }
-        // They must add up to 1; the coarsest type has steps of 1/255, half of which each may have lost.
+        // Weights must sum to 1 up to rounding: each may be off by half a step of the coarsest type, which is 1/255.
         if (!(std::abs(weights - 1) <= static_cast<double>(4 * sets.size()) / 255 / 2))
             file_.fail(mesh + " has a vertex whose weights of joints add up to " + aabb::shortest(weights) +
                        ", not to 1");
         return sum / weights;
     }
 
-    /// @returns how many there were
+    /// @returns the number of vertices added
     std::size_t add_vertices(const gltf_primitive& primitive, const gltf_node& node,
                              const std::vector<gltf_matrix>& joints, const std::string& mesh_name) {
         std::vector<double> points = positions(*primitive.positions, false);
         const std::size_t count = points.size() / 3;
         if (count > std::numeric_limits<std::uint32_t>::max() - mesh_.vertices())
             file_.fail("its scene has more than 2^32 - 1 vertices");
-        // One mesh may stand in many places.
+        // The scene may have many instances of a mesh, so the file's size does not bound it.
         require_memory(file_.name + ": its scene",
                        static_cast<double>(mesh_.vertices() + count) * sizeof(aabb::vec3f) +
                            static_cast<double>(faces_) * sizeof(std::array<std::uint32_t, 3>));
@@ -221,7 +221,7 @@ private:
         const gltf_matrix& place = *places_[static_cast<std::size_t>(&node - asset_.nodes.data())];
         for (std::size_t v = 0; v < count; ++v) {
             const Eigen::Vector3d p(&points[3 * v]);
-            // A skinned mesh stands where its joints are, wherever its node is.
+            // Joints place a skinned mesh; the format ignores the transform of its node.
             mesh_.add_vertex(in_float(node.skin ? skinned(p, v, sets, joints, mesh_name) : moved(place, p)));
         }
         return count;
@@ -274,7 +274,7 @@ private:
                 for (std::size_t i = 2; i < count; i += 3) add(i - 2, i - 1, i);
                 drop(count % 3 == 0 ? 0 : 1);
                 break;
-            case gltf_mode::triangle_strip:  // every other one is turned, so that all face one way
+            case gltf_mode::triangle_strip:  // every other one is reversed for consistent winding
                 for (std::size_t i = 2; i < count; ++i)
                     mesh_.add_strip_triangle({corners[i - 2], corners[i - (i + 1) % 2], corners[i - i % 2]}, faces_++);
                 drop(count == 1 || count == 2 ? 1 : 0);
@@ -289,8 +289,8 @@ private:
     const file_text& file_;
     gltf_asset asset_;
     mesh_builder mesh_;
-    std::vector<std::optional<gltf_matrix>> places_;  // of the nodes in the scene
-    std::vector<bool> is_shown_;                      // of the meshes
+    std::vector<std::optional<gltf_matrix>> places_;  // world transforms of the scene's nodes
+    std::vector<bool> is_shown_;                      // by mesh
     std::size_t faces_ = 0;
 };
 

@@ -1,8 +1,8 @@
 module;
 #include <Eigen/Core>
 
-/// What a glTF 2.0 file says about its meshes, as plain numbers: which indices are in range and which bytes are there
-/// is checked where they are used. (Khronos Group, "glTF 2.0 Specification", 2021.)
+/// The meshes of a glTF 2.0 file as plain data. Indices and byte ranges are checked by the code that uses them, not by
+/// the parser. (Khronos Group, "glTF 2.0 Specification", 2021.)
 module aabblab.files:gltf_asset;
 
 import :file_text;
@@ -16,10 +16,10 @@ struct gltf_view {
     std::optional<std::size_t> stride;
 };
 
-/// The types of numbers, by the number that stands for each in the format.
+/// Component types by their codes in the format.
 enum class gltf_component : std::size_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
 
-/// Elements of an accessor that are others than its view has.
+/// Elements of an accessor that replace those of its buffer view.
 struct gltf_sparse {
     struct part {
         std::size_t view = 0;
@@ -45,14 +45,14 @@ struct gltf_primitive {
     std::optional<std::size_t> positions;
     std::optional<std::size_t> indices;
     std::size_t mode = 4;
-    std::vector<std::optional<std::size_t>> targets;  ///< positions of each morph target, where it moves them
+    std::vector<std::optional<std::size_t>> targets;  ///< accessor of each morph target's position offsets, if any
     std::vector<std::size_t> joints;                  ///< JOINTS_0, JOINTS_1, …
     std::vector<std::size_t> weights;                 ///< WEIGHTS_0, WEIGHTS_1, …
 };
 
 struct gltf_mesh {
     std::vector<gltf_primitive> primitives;
-    std::optional<std::vector<double>> weights;  ///< of the morph targets
+    std::optional<std::vector<double>> weights;  ///< default weights of the morph targets
 };
 
 struct gltf_skin {
@@ -60,21 +60,21 @@ struct gltf_skin {
     std::optional<std::size_t> inverse_bind_matrices;
 };
 
-/// Without the last row, which is 0 0 0 1.
+/// An affine transform without its last row, which is 0 0 0 1.
 using gltf_matrix = Eigen::Matrix<double, 3, 4>;
 
 struct gltf_node {
-    gltf_matrix place;  ///< in its parent
+    gltf_matrix place;  ///< relative to its parent
     std::optional<std::size_t> mesh;
     std::optional<std::size_t> skin;
-    std::optional<std::vector<double>> weights;  ///< in the place of those of its mesh
+    std::optional<std::vector<double>> weights;  ///< override those of its mesh
     std::vector<std::size_t> children;
-    std::string extension;  ///< one that changes the surface and is not read; empty where there is none
+    std::string extension;  ///< an unsupported one that changes the surface; empty if there is none
 };
 
 struct gltf_buffer {
     std::string bytes;
-    std::size_t length = 0;  ///< that it must have at least
+    std::size_t length = 0;  ///< the minimum number of bytes
     std::optional<std::string> uri;
 };
 
@@ -85,9 +85,9 @@ struct gltf_asset {
     std::vector<gltf_mesh> meshes;
     std::vector<gltf_skin> skins;
     std::vector<gltf_node> nodes;
-    std::vector<std::size_t> roots;  ///< nodes of the scene
+    std::vector<std::size_t> roots;  ///< root nodes of the scene
     std::size_t animations = 0;
-    bool has_quantized_positions = false;  ///< KHR_mesh_quantization: positions may be whole numbers
+    bool has_quantized_positions = false;  ///< KHR_mesh_quantization: positions may be integers
 };
 
 /// "accessors[3]"
@@ -95,7 +95,7 @@ struct gltf_asset {
     return std::string(list) + "[" + std::to_string(index) + "]";
 }
 
-/// @throws aabb::input_error where the list has nothing of that number.
+/// @throws aabb::input_error if the index is out of range.
 template <class Element>
 [[nodiscard]] inline const Element& gltf_element(const file_text& file, const std::vector<Element>& list,
                                                  std::string_view name, std::size_t index) {
@@ -103,9 +103,9 @@ template <class Element>
     return list[index];
 }
 
-/// The numbers of an accessor, one after the other; normalized ones from -1 or 0 to 1.
-/// @param no_view_means_zeros The format says so, but where only an extension reads the bytes it looks the same.
-/// @throws aabb::input_error where something is used that is not there, or reaches beyond the end of its bytes.
+/// The components of an accessor in order; normalized ones are mapped to [-1, 1] or [0, 1].
+/// @param no_view_means_zeros as the format specifies; but an accessor whose data only an extension has looks the same
+/// @throws aabb::input_error on a missing element or a range beyond the end of its bytes.
 [[nodiscard]] std::vector<double> gltf_numbers(const gltf_asset& asset, const file_text& file, std::size_t accessor,
                                                bool no_view_means_zeros);
 
@@ -115,15 +115,15 @@ struct gltf_parts {
     std::optional<std::string_view> binary;
     bool is_text = false;
 };
-/// @throws aabb::input_error where a chunk is cut off, or the version is another.
+/// @throws aabb::input_error on a truncated chunk or an unsupported version.
 [[nodiscard]] gltf_parts gltf_parts_of(const file_text& file);
 
-/// Everything but the bytes of the buffers.
-/// @throws aabb::input_error on what is no JSON, or where something is missing or of the wrong type.
+/// Parses everything but the bytes of the buffers.
+/// @throws aabb::input_error on malformed JSON, or a member that is missing or has the wrong type.
 [[nodiscard]] gltf_asset parse_gltf(const file_text& file, const gltf_parts& parts);
 
-/// Fills the buffers: from the binary part, from data: URIs and from files beside this one.
-/// @throws aabb::input_error where one is not there or shorter than announced.
+/// Loads the buffers from the binary chunk, from data: URIs and from files next to this one.
+/// @throws aabb::input_error if a buffer is missing or shorter than announced.
 void load_gltf_buffers(gltf_asset& asset, const file_text& file, std::optional<std::string_view> binary);
 
 }  // namespace aabblab

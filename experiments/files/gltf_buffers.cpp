@@ -14,7 +14,7 @@ constexpr std::size_t chunk_header_bytes = 8;
 constexpr std::uint32_t json_chunk = 0x4e4f534a;    // "JSON"
 constexpr std::uint32_t binary_chunk = 0x004e4942;  // "BIN"
 
-/// Takes a chunk off the front: its type and its bytes.
+/// A chunk of a .glb file; `take_chunk` removes the first one.
 struct chunk {
     std::uint32_t type = 0;
     std::string_view bytes;
@@ -31,7 +31,7 @@ chunk take_chunk(const file_text& file, std::string_view& rest) {
     return taken;
 }
 
-/// The number of a letter in base64; -1 for what is none.
+/// The value of a base64 digit; -1 for any other character.
 int digit_of(char c) {
     if (c >= 'A' && c <= 'Z') return c - 'A';
     if (c >= 'a' && c <= 'z') return c - 'a' + 26;
@@ -39,7 +39,7 @@ int digit_of(char c) {
     return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-/// None where it is not base64.
+/// Decodes base64; nullopt if the text is malformed.
 std::optional<std::string> decoded(std::string_view text) {
     for (int i = 0; i < 2 && text.ends_with('='); ++i) text.remove_suffix(1);
     std::string bytes;
@@ -58,7 +58,7 @@ std::optional<std::string> decoded(std::string_view text) {
     return count < 6 ? std::optional(bytes) : std::nullopt;
 }
 
-/// A URI writes some letters as % and two digits.
+/// Decodes the percent-encoding of a URI.
 std::string unescaped(std::string_view uri) {
     const auto hex = [](char c) { return std::string_view("0123456789abcdef").find(static_cast<char>(c | 0x20)); };
     std::string text;
@@ -79,7 +79,7 @@ std::string bytes_of_data(std::string_view uri) {
     return *std::move(bytes);
 }
 
-/// @param loaded bytes of the buffers before it: many may name one file
+/// @param loaded total bytes of the previous buffers, for the memory limit, as many buffers may name one file
 std::string bytes_of(const gltf_buffer& buffer, const file_text& file, std::optional<std::string_view> binary,
                      std::size_t loaded) {
     if (!buffer.uri) {
@@ -95,7 +95,7 @@ std::string bytes_of(const gltf_buffer& buffer, const file_text& file, std::opti
     return read_whole(beside, size, 1).text;
 }
 
-/// Elements that are known to lie in a buffer.
+/// Strided elements whose range has been checked.
 struct elements {
     const char* first = nullptr;
     std::size_t stride = 0;
@@ -120,7 +120,7 @@ public:
         const scalar type = scalar_of(a.component);
         const std::size_t bytes = width * bytes_of(type);
         const elements dense = a.view ? elements_of(*a.view, a.offset, a.count, bytes) : elements{};
-        // Without a view, nothing but this number says how many there are.
+        // Without a view, no data bounds the count, so a short file could request any amount of memory.
         require_memory(file_.name + ": " + name_, static_cast<double>(a.count) * static_cast<double>(width) * 8);
         std::vector<double> numbers(a.count * width);
         if (a.view)
@@ -152,8 +152,8 @@ private:
                                        std::size_t bytes) const {
         const std::string view_name = gltf_place("bufferViews", index);
         const gltf_view& view = gltf_element(file_, asset_.views, "bufferViews", index);
-        const std::string& held = gltf_element(file_, asset_.buffers, "buffers", view.buffer).bytes;
-        if (view.offset > held.size() || view.length > held.size() - view.offset)
+        const std::string& buffer = gltf_element(file_, asset_.buffers, "buffers", view.buffer).bytes;
+        if (view.offset > buffer.size() || view.length > buffer.size() - view.offset)
             file_.fail(view_name + " reaches beyond the end of " + gltf_place("buffers", view.buffer));
         const std::size_t stride = view.stride.value_or(bytes);
         if (stride < bytes)
@@ -161,10 +161,10 @@ private:
         if (count > 0 && (offset > view.length || view.length - offset < bytes ||
                           (view.length - offset - bytes) / stride < count - 1))
             file_.fail(name_ + " reaches beyond the end of " + view_name);
-        return {count > 0 ? held.data() + view.offset + offset : nullptr, stride, count};
+        return {count > 0 ? buffer.data() + view.offset + offset : nullptr, stride, count};
     }
 
-    /// @param where its numbers go, `width` of them
+    /// @param where receives the `width` components
     void read_element(const char* bytes, scalar type, std::size_t width, double* where) const {
         for (std::size_t k = 0; k < width; ++k) {
             where[k] = number_at(bytes + k * bytes_of(type), type);
@@ -181,7 +181,7 @@ private:
         const elements values =
             elements_of(sparse.values.view, sparse.values.offset, sparse.count, width * bytes_of(type));
         for (std::size_t i = 0; i < sparse.count; ++i) {
-            std::uint32_t index = 0;  // the format is little-endian, as the machine is
+            std::uint32_t index = 0;  // both the format and the machine are little-endian
             std::memcpy(&index, indices[i], bytes_of(index_type));
             if (index >= accessor_.count)
                 file_.fail(name_ + " replaces element " + std::to_string(index) + ", but has " +
@@ -211,7 +211,7 @@ gltf_parts gltf_parts_of(const file_text& file) {
     const chunk first = take_chunk(file, rest);
     if (first.type != json_chunk) file.fail("is no glTF file: its first chunk is not JSON");
     gltf_parts parts{first.bytes, {}};
-    // Chunks of other types belong to extensions.
+    // Chunks of other types belong to extensions and are skipped.
     while (!rest.empty())
         if (const chunk next = take_chunk(file, rest); next.type == binary_chunk && !parts.binary)
             parts.binary = next.bytes;
@@ -223,7 +223,7 @@ void load_gltf_buffers(gltf_asset& asset, const file_text& file, std::optional<s
     for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
         gltf_buffer& buffer = asset.buffers[i];
         try {
-            // The binary chunk is the first buffer and no other.
+            // Only the first buffer can refer to the binary chunk.
             buffer.bytes = bytes_of(buffer, file, i == 0 ? binary : std::nullopt, loaded);
             loaded += buffer.bytes.size();
             if (buffer.bytes.size() < buffer.length)

@@ -14,7 +14,7 @@ using object = json_value;
 
 constexpr std::string_view quantization = "KHR_mesh_quantization";
 
-/// What the file cannot be read without, unless it is about looks only.
+/// Rejects required extensions unless they are supported or affect only the appearance.
 void require_no_extension(const object& root) {
     for (const std::string& name : root.texts("extensionsRequired")) {
         const auto is_about = [&](std::string_view looks) { return name.find(looks) != std::string::npos; };
@@ -45,22 +45,22 @@ gltf_sparse::part part_of(const object& part) {
 }
 
 gltf_accessor accessor_of(const object& accessor) {
-    gltf_accessor read{.view = accessor.index("bufferView"),
-                       .offset = accessor.index("byteOffset").value_or(0),
-                       .component = gltf_component{accessor.needed_index("componentType")},
-                       .count = accessor.needed_index("count"),
-                       .type = accessor.text("type").value_or(""),
-                       .normalized = accessor.flag("normalized").value_or(false),
-                       .sparse = {}};
+    gltf_accessor parsed{.view = accessor.index("bufferView"),
+                         .offset = accessor.index("byteOffset").value_or(0),
+                         .component = gltf_component{accessor.needed_index("componentType")},
+                         .count = accessor.needed_index("count"),
+                         .type = accessor.text("type").value_or(""),
+                         .normalized = accessor.flag("normalized").value_or(false),
+                         .sparse = {}};
     if (const auto sparse = accessor.member("sparse")) {
         const object indices = sparse->needed("indices");
-        read.sparse = {sparse->needed_index("count"), part_of(indices),
-                       gltf_component{indices.needed_index("componentType")}, part_of(sparse->needed("values"))};
+        parsed.sparse = {sparse->needed_index("count"), part_of(indices),
+                         gltf_component{indices.needed_index("componentType")}, part_of(sparse->needed("values"))};
     }
-    return read;
+    return parsed;
 }
 
-/// NAME_0, NAME_1 and so on.
+/// The accessors of the attributes NAME_0, NAME_1 and so on.
 std::vector<std::size_t> numbered_attributes(const object& attributes, const std::string& name) {
     std::vector<std::size_t> accessors;
     while (const auto next = attributes.index(name + "_" + std::to_string(accessors.size())))
@@ -69,25 +69,25 @@ std::vector<std::size_t> numbered_attributes(const object& attributes, const std
 }
 
 gltf_primitive primitive_of(const object& primitive) {
-    gltf_primitive read;
+    gltf_primitive parsed;
     if (const auto attributes = primitive.member("attributes")) {
-        read.positions = attributes->index("POSITION");
-        read.joints = numbered_attributes(*attributes, "JOINTS");
-        read.weights = numbered_attributes(*attributes, "WEIGHTS");
+        parsed.positions = attributes->index("POSITION");
+        parsed.joints = numbered_attributes(*attributes, "JOINTS");
+        parsed.weights = numbered_attributes(*attributes, "WEIGHTS");
     }
-    read.indices = primitive.index("indices");
-    read.mode = primitive.index("mode").value_or(read.mode);
-    for (const object& target : primitive.objects("targets")) read.targets.push_back(target.index("POSITION"));
-    return read;
+    parsed.indices = primitive.index("indices");
+    parsed.mode = primitive.index("mode").value_or(parsed.mode);
+    for (const object& target : primitive.objects("targets")) parsed.targets.push_back(target.index("POSITION"));
+    return parsed;
 }
 
 gltf_mesh mesh_of(const object& mesh) {
-    gltf_mesh read{{}, mesh.numbers("weights")};
-    for (const object& primitive : mesh.objects("primitives")) read.primitives.push_back(primitive_of(primitive));
-    return read;
+    gltf_mesh parsed{{}, mesh.numbers("weights")};
+    for (const object& primitive : mesh.objects("primitives")) parsed.primitives.push_back(primitive_of(primitive));
+    return parsed;
 }
 
-/// An extension that says where the mesh of a node stands, or whether it is there.
+/// The first unsupported extension that moves, repeats or hides the node's mesh; empty if there is none.
 std::string surface_extension_of(const object& node) {
     if (const auto extensions = node.member("extensions"))
         for (const char* const name : {"EXT_mesh_gpu_instancing", "KHR_node_visibility"})

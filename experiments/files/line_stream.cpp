@@ -16,34 +16,34 @@ namespace aabblab {
 namespace {
 
 constexpr std::size_t most_at_once = 65'536;
-/// No line of any format is nearly as long, but input without an end may have no end of a line either.
+/// Lines of every format are far shorter; the limit is for endless input without line ends.
 constexpr std::size_t longest_line = std::size_t{1} << 24U;
 
-/// Bytes of a file, a pipe or a device as they come.
+/// Streams the bytes of a file, a pipe or a device.
 class byte_source {
 public:
-    /// Opens it for reading.
-    /// @param name for messages, in place of the file's
-    /// @throws aabb::input_error where that cannot be, where it is a folder, or a named pipe that nobody opens for
-    /// writing within some seconds.
+    /// Opens the file for reading.
+    /// @param name replaces the file's name in messages
+    /// @throws aabb::input_error if the file cannot be opened, is a folder, or is a named pipe that has no writer
+    /// within a few seconds.
     explicit byte_source(const std::filesystem::path& file, const std::string& name = {})
         : name_(name.empty() ? file.string() : name),
           descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK)) {
         if (descriptor_ < 0) refuse(name_, errno == ENOENT ? "no such file" : "cannot be read: " + system_error_text());
         try {
-            struct stat about{};
-            if (fstat(descriptor_, &about) != 0) refuse(name_, "cannot be read: " + system_error_text());
-            if (S_ISDIR(about.st_mode)) refuse(name_, "is a folder, not a file");
-            if (S_ISREG(about.st_mode)) size_ = static_cast<std::uintmax_t>(about.st_size);
-            if (S_ISFIFO(about.st_mode)) wait_for_writer();
-            // Opened so as not to wait for a writer for ever; from here on it is waited for bytes.
+            struct stat status{};
+            if (fstat(descriptor_, &status) != 0) refuse(name_, "cannot be read: " + system_error_text());
+            if (S_ISDIR(status.st_mode)) refuse(name_, "is a folder, not a file");
+            if (S_ISREG(status.st_mode)) size_ = static_cast<std::uintmax_t>(status.st_size);
+            if (S_ISFIFO(status.st_mode)) wait_for_writer();
+            // O_NONBLOCK keeps open() from waiting for a writer forever; reads block from here on.
             if (fcntl(descriptor_, F_SETFL, 0) != 0) refuse(name_, "cannot be read: " + system_error_text());
         } catch (...) {
             close(descriptor_);
             throw;
         }
     }
-    /// Standard input.
+    /// Reads standard input.
     byte_source() : name_("standard input"), descriptor_(STDIN_FILENO) {}
     byte_source(const byte_source&) = delete;
     byte_source& operator=(const byte_source&) = delete;
@@ -52,12 +52,12 @@ public:
     }
 
     [[nodiscard]] const std::string& name() const noexcept { return name_; }
-    /// In bytes; 0 where it is not known.
+    /// The size in bytes; 0 if it is unknown.
     [[nodiscard]] std::uintmax_t size() const noexcept { return size_; }
 
-    /// Appends what is there, at most so many bytes; waits until there is something.
+    /// Appends the available bytes, at most `most`; blocks until there are any.
     /// @returns false at the end
-    /// @throws aabb::input_error where it cannot be read.
+    /// @throws aabb::input_error if reading fails.
     bool read(std::size_t most, std::string& bytes) {
         if (!ahead_.empty()) {
             bytes += ahead_;
@@ -66,27 +66,27 @@ public:
         }
         const std::size_t before = bytes.size();
         bytes.resize(before + most);
-        ssize_t got = 0;
-        do got = ::read(descriptor_, bytes.data() + before, most);
-        while (got < 0 && errno == EINTR);
-        if (got < 0)
+        ssize_t count = 0;
+        do count = ::read(descriptor_, bytes.data() + before, most);
+        while (count < 0 && errno == EINTR);
+        if (count < 0)
             refuse(name_, errno == EISDIR ? "is a folder, not a file" : "cannot be read: " + system_error_text());
-        bytes.resize(before + static_cast<std::size_t>(got));
-        return got > 0;
+        bytes.resize(before + static_cast<std::size_t>(count));
+        return count > 0;
     }
 
 private:
-    /// A pipe without a name, as a shell makes for <(command), had a writer from the first; its end is its end.
+    /// Anonymous pipes, such as those of <(command), had a writer from the start, so their end is not awaited.
     void wait_for_writer() {
         struct statfs system{};
         if (fstatfs(descriptor_, &system) == 0 && system.f_type == PIPEFS_MAGIC) return;
-        constexpr std::chrono::seconds patience{3};
-        const auto end = std::chrono::steady_clock::now() + patience;
+        constexpr std::chrono::seconds timeout{3};
+        const auto end = std::chrono::steady_clock::now() + timeout;
         for (;;) {
             std::array<char, 1> first{};
-            const ssize_t got = ::read(descriptor_, first.data(), first.size());
-            if (got > 0) ahead_ = first[0];
-            if (got != 0) return;  // something to read, or a writer that has not written yet
+            const ssize_t count = ::read(descriptor_, first.data(), first.size());
+            if (count > 0) ahead_ = first[0];
+            if (count != 0) return;  // data, or a writer that has not written yet
             if (std::chrono::steady_clock::now() > end) refuse(name_, "is a named pipe with no writer");
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
@@ -104,8 +104,8 @@ struct line_stream::state {
     byte_source source;
     text_decoder decoder;
     std::string bytes;
-    std::string text;    // decoded, from some line on
-    std::size_t at = 0;  // where the next line begins in it
+    std::string text;    // the decoded text that is not consumed yet
+    std::size_t at = 0;  // the offset of the next line in it
     bool ended = false;
     std::uintmax_t read = 0;
     std::string_view line;
@@ -114,7 +114,7 @@ struct line_stream::state {
     state() = default;
     state(const std::filesystem::path& file, const std::string& name) : source(file, name) {}
 
-    /// Decodes some more bytes; notices the end.
+    /// Reads and decodes another block, and detects the end.
     void read_on() {
         bytes.clear();
         if (source.read(most_at_once, bytes))
@@ -148,7 +148,7 @@ bool line_stream::next() {
         searched = s.text.size();
         s.read_on();
     }
-    // Lines before what is no text were handed out first.
+    // Valid lines before malformed text are returned first.
     if (end == std::string::npos && !s.decoder.problem().empty()) refuse(s.source.name(), s.decoder.problem());
     if (end == std::string::npos && s.at == s.text.size()) return false;
     const std::size_t length = end == std::string::npos ? std::string::npos : end - s.at;
@@ -179,7 +179,7 @@ std::string text_of_file(const std::filesystem::path& file, std::size_t most) {
     byte_source source(file);
     std::string bytes;
     while (bytes.size() <= most && source.read(most + 1 - bytes.size(), bytes)) continue;
-    // Cut off, it is no text any more, and too long as it is.
+    // A truncated text is not decoded: the caller rejects it as too long.
     return bytes.size() > most ? bytes : as_text({source.name(), std::move(bytes)}).text;
 }
 

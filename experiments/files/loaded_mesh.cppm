@@ -5,30 +5,30 @@ import aabb.std;
 
 export namespace aabblab {
 
-/// What a mesh is read without.
+/// Parts of a file that are not read.
 struct skipped_parts {
     std::string_view what;  ///< "statement" or "element"
-    std::string name;       ///< in the file
+    std::string name;       ///< as in the file
     std::size_t count = 0;
 };
 
-/// What reading a mesh did to it.
+/// How reading changed a mesh, and what it left out.
 struct mesh_report {
     std::size_t polygons = 0;   ///< faces of more than three corners
-    std::size_t concave = 0;    ///< those of them that were ear-clipped; the others were fan-triangulated
-    std::size_t zero_area = 0;  ///< triangles of zero area, exactly: kept
-    /// Coordinates that are not floats: rounded to nearest. Text counts when it differs as a double, so "0.1" does.
+    std::size_t concave = 0;    ///< polygons that were ear-clipped; the others were fan-triangulated
+    std::size_t zero_area = 0;  ///< triangles of exactly zero area; they are kept
+    /// Coordinates rounded to the nearest float. Text counts if the double that it denotes differs, so "0.1" does.
     std::size_t rounded = 0;
     std::size_t dropped = 0;             ///< faces of fewer than three corners, points, lines
-    std::size_t stitches = 0;            ///< triangles of strips that repeat a corner: left out
-    std::size_t not_finite = 0;          ///< vertices with NaN or infinity, which no face uses: moved to one that is
-    std::size_t animations = 0;          ///< ignored: the scene is read in the pose in which it stands
-    std::size_t hidden_meshes = 0;       ///< that are in the file, but not in the scene that it shows
-    std::vector<skipped_parts> skipped;  ///< that may have been meant for surface, in the order of the file
-    std::size_t skipped_others = 0;      ///< parts of still other names
-    /// One line; empty where there is nothing to say.
+    std::size_t stitches = 0;            ///< triangles of strips that repeat a corner; they are skipped
+    std::size_t not_finite = 0;          ///< unused vertices with NaN or infinity; they are moved onto a used one
+    std::size_t animations = 0;          ///< ignored; the scene is read in its initial pose
+    std::size_t hidden_meshes = 0;       ///< meshes in the file that its scene does not show
+    std::vector<skipped_parts> skipped;  ///< parts that may have described surface, in file order
+    std::size_t skipped_others = 0;      ///< parts with further names
+    /// A summary in one line; empty if nothing was changed or left out.
     [[nodiscard]] std::string text() const;
-    /// The part of it that tells what the mesh does not have.
+    /// The part of the summary about what was left out.
     [[nodiscard]] std::string left_out() const;
 };
 

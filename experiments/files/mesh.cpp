@@ -12,7 +12,7 @@ struct format {
     bool (*is_text)(std::string_view bytes);
 };
 constexpr auto always = [](std::string_view) { return true; };
-/// JSON, as far as a text with a mark at its start tells; what is neither that nor binary is refused by the reader.
+/// Detects JSON by its first character or a byte order mark; the reader rejects any other file that is not binary.
 constexpr auto is_gltf_text = [](std::string_view bytes) {
     const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
     return text_encoding_of(bytes) != text_encoding::utf8 || bytes.starts_with("\xef\xbb\xbf") ||
@@ -22,7 +22,7 @@ constexpr format formats[] = {{".off", read_off, always},         {".obj", read_
                               {".ply", read_ply, is_text_ply},    {".stl", read_stl, is_text_stl},
                               {".gltf", read_gltf, is_gltf_text}, {".glb", read_gltf, is_gltf_text}};
 
-/// Each with a comma before it, unless it is the first.
+/// Appends to a comma-separated list.
 void add(std::string& text, const std::string& sentence) {
     text += (text.empty() ? "" : ", ") + sentence;
 }
@@ -42,40 +42,40 @@ std::vector<std::string> mesh_endings() {
 }
 
 std::string mesh_report::left_out() const {
-    std::string all;
-    if (dropped) add(all, counted(dropped, "face") + " of fewer than three corners dropped");
-    if (stitches) add(all, counted(stitches, "triangle") + " of strips skipped, which repeat a corner");
+    std::string line;
+    if (dropped) add(line, counted(dropped, "face") + " of fewer than three corners dropped");
+    if (stitches) add(line, counted(stitches, "triangle") + " of strips skipped, which repeat a corner");
     if (not_finite)
-        add(all, counted(not_finite, "vertex", "vertices") +
-                     " with NaN or infinity, which no face uses, moved onto another");
-    if (animations) add(all, counted(animations, "animation") + " ignored");
-    if (hidden_meshes) add(all, counted(hidden_meshes, "mesh", "meshes") + " outside the scene left out");
-    for (const auto& [what, name, count] : skipped) add(all, counted(count, what) + " " + in_quotes(name) + " skipped");
-    if (skipped_others) add(all, std::to_string(skipped_others) + " of other names skipped");
-    return all;
+        add(line, counted(not_finite, "vertex", "vertices") +
+                      " with NaN or infinity, which no face uses, moved onto another");
+    if (animations) add(line, counted(animations, "animation") + " ignored");
+    if (hidden_meshes) add(line, counted(hidden_meshes, "mesh", "meshes") + " outside the scene left out");
+    for (const auto& [what, name, n] : skipped) add(line, counted(n, what) + " " + in_quotes(name) + " skipped");
+    if (skipped_others) add(line, std::to_string(skipped_others) + " of other names skipped");
+    return line;
 }
 
 std::string mesh_report::text() const {
-    std::string all;
-    if (polygons > concave) add(all, counted(polygons - concave, "polygon") + " fan-triangulated");
-    if (concave) add(all, counted(concave, "concave polygon") + " ear-clipped");
-    if (zero_area) add(all, counted(zero_area, "triangle") + " of zero area kept");
-    if (rounded) add(all, counted(rounded, "coordinate") + " rounded to float");
-    if (const std::string others = left_out(); !others.empty()) add(all, others);
-    return all;
+    std::string line;
+    if (polygons > concave) add(line, counted(polygons - concave, "polygon") + " fan-triangulated");
+    if (concave) add(line, counted(concave, "concave polygon") + " ear-clipped");
+    if (zero_area) add(line, counted(zero_area, "triangle") + " of zero area kept");
+    if (rounded) add(line, counted(rounded, "coordinate") + " rounded to float");
+    if (const std::string others = left_out(); !others.empty()) add(line, others);
+    return line;
 }
 
 loaded_mesh read_mesh(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     const std::string ending = mesh_ending_of(file);
-    const auto found = std::ranges::find(formats, ending, &format::ending);
-    if (found == std::end(formats)) refuse(file, aabb::unknown_name("mesh format", ending, mesh_endings()));
+    const auto reader = std::ranges::find(formats, ending, &format::ending);
+    if (reader == std::end(formats)) refuse(file, aabb::unknown_name("mesh format", ending, mesh_endings()));
     if (ending == ".stl")
         if (std::optional<loaded_mesh> binary = read_binary_stl(file, size)) return *std::move(binary);
-    // A mesh takes about as much again as its text.
+    // The mesh takes about as much memory as its text.
     file_text content = read_whole(file, size, 2);
-    if (found->is_text(content.text)) content = as_text(std::move(content));
-    return found->read(content);
+    if (reader->is_text(content.text)) content = as_text(std::move(content));
+    return reader->read(content);
 }
 
 void write_off(const aabb::mesh& mesh, const std::filesystem::path& file) {

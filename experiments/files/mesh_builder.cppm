@@ -1,4 +1,4 @@
-/// A mesh as its file brings it: vertices, faces of any number of corners, and what became of them.
+/// Builds a mesh from vertices and polygons in file order, and reports what was changed or left out.
 module aabblab.files:mesh_builder;
 
 import :file_text;
@@ -7,7 +7,7 @@ import :polygon;
 
 namespace aabblab {
 
-/// Exactly: the corners of a triangle lie on one line (or are one point).
+/// Exact test for collinear or coincident corners.
 [[nodiscard]] inline bool has_zero_area(const aabb::triangle3f& t) {
     const aabb::triangle3d d = aabb::in_double(t);
     return aabb::exact_turn(d[0], d[1], d[2], 0) == 0 && aabb::exact_turn(d[0], d[1], d[2], 1) == 0 &&
@@ -18,8 +18,8 @@ class mesh_builder {
 public:
     explicit mesh_builder(std::string file) : file_(std::move(file)) {}
 
-    /// Its coordinates need not be finite where no face uses it.
-    /// @param line of the file; 0 where it has none
+    /// Coordinates that are not finite are allowed as long as no face uses the vertex.
+    /// @param line in the file; 0 if the format has no lines
     void add_vertex(const aabb::vec3f& p, std::size_t line = 0) {
         if (!aabb::is_finite(p)) not_finite_.push_back({loaded_.mesh.vertices.size(), line});
         loaded_.mesh.vertices.push_back(p);
@@ -31,8 +31,8 @@ public:
         loaded_.mesh.triangles.reserve(triangles);
     }
 
-    /// A polygon becomes triangles when the mesh is finished, as vertices may come later. Below three corners it goes.
-    /// @param place where it stands in the file, for errors: a line or a face
+    /// Polygons are triangulated by `finish`, as their vertices may follow; below three corners they are dropped.
+    /// @param place the line or the number of the face, for messages
     void add_face(std::span<const std::uint32_t> corners, std::size_t place) {
         for (const std::uint32_t corner : corners) use(corner, place);
         if (corners.size() < 3) return drop();
@@ -41,20 +41,20 @@ public:
             loaded_.mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
     }
     void drop() { ++loaded_.report.dropped; }
-    /// What of a scene is not read: it is taken as it stands, and only what it shows.
+    /// Reports what is ignored: only the visible meshes of a scene are read, in their initial pose.
     void ignore(std::size_t animations, std::size_t hidden_meshes) {
         loaded_.report.animations = animations;
         loaded_.report.hidden_meshes = hidden_meshes;
     }
 
-    /// Has the vertex be there when the mesh is finished.
+    /// Requires that the vertex exists when the mesh is finished.
     void use(std::uint32_t corner, std::size_t place) {
         if (corner < greatest_) return;
         greatest_ = std::size_t{corner} + 1;
         greatest_at_ = place;
     }
 
-    /// A triangle of a strip. One that repeats a corner only joins two parts, through space, and is left out.
+    /// Adds a triangle of a strip. A triangle that repeats a corner only joins two parts of the strip and is skipped.
     void add_strip_triangle(const std::array<std::uint32_t, 3>& corners, std::size_t place) {
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
             ++loaded_.report.stitches;
@@ -62,7 +62,7 @@ public:
             add_face(corners, place);
     }
 
-    /// Counts what the mesh is read without: `name` as the file has it.
+    /// Counts parts of the file that are not read, by their name in the file.
     void skip(std::string_view what, std::string_view name, std::size_t count) {
         constexpr std::size_t most_names = 8;
         auto& skipped = loaded_.report.skipped;
@@ -75,10 +75,10 @@ public:
             loaded_.report.skipped_others += count;
     }
 
-    /// The mesh, checked.
-    /// @param before "FILE:" or "FILE: face ", what the place of a face is appended to
-    /// @param first the number of the first vertex in this format: 0 or 1
-    /// @throws aabb::input_error on no triangles, a corner that is no vertex, or a polygon that bounds no surface.
+    /// Validates and returns the mesh.
+    /// @param before "FILE:" or "FILE: face ", the prefix of a face's place in messages
+    /// @param first the index of the first vertex in this format: 0 or 1
+    /// @throws aabb::input_error if there are no triangles, an index is out of range, or a polygon bounds no surface.
     [[nodiscard]] loaded_mesh finish(std::size_t rounded, std::string_view before, std::size_t first) {
         aabb::mesh& m = loaded_.mesh;
         if (greatest_ > m.vertices.size())
@@ -128,7 +128,7 @@ private:
         std::size_t line;
     };
 
-    /// Vertices that are not finite keep their numbers and, where no face uses them, go where one is that a face uses.
+    /// Moves unused vertices that are not finite onto a used one, so that the indices of the others stay the same.
     void settle_vertices(std::size_t first) {
         if (not_finite_.empty()) return;
         aabb::mesh& m = loaded_.mesh;
@@ -147,20 +147,20 @@ private:
 
     std::string file_;
     loaded_mesh loaded_;
-    std::vector<polygon> polygons_;  // of more than three corners
+    std::vector<polygon> polygons_;  // with more than three corners
     std::vector<located_vertex> not_finite_;
-    std::size_t greatest_ = 0;  // one more than the greatest corner so far
+    std::size_t greatest_ = 0;  // one more than the greatest corner index so far
     std::size_t greatest_at_ = 0;
 };
 
-// The readers, one a format. Files that are text come as `as_text` makes it.
+// One reader per format. Text files are decoded by `as_text` before.
 [[nodiscard]] loaded_mesh read_off(const file_text& file);
 [[nodiscard]] loaded_mesh read_obj(const file_text& file);
 [[nodiscard]] loaded_mesh read_ply(const file_text& file);
 [[nodiscard]] loaded_mesh read_stl(const file_text& file);
-/// None where the file does not have the size that a binary one of its header has; then it may be text.
+/// Returns nullopt if the file size contradicts the count in a binary header; then the file may be text.
 [[nodiscard]] std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, std::size_t size);
-/// glTF 2.0, as text or binary, with its buffers inside or beside it.
+/// Reads glTF 2.0, text or binary, with embedded or external buffers.
 [[nodiscard]] loaded_mesh read_gltf(const file_text& file);
 
 [[nodiscard]] bool is_text_ply(std::string_view bytes);

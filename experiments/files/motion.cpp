@@ -6,7 +6,7 @@ namespace aabblab {
 
 namespace {
 
-/// A line of the file.
+/// A line of the file: the pose of an object from a frame on.
 struct step {
     std::uint32_t frame;
     std::uint32_t object;
@@ -46,7 +46,7 @@ public:
         return std::move(steps_);
     }
 
-    /// Of frame 0.
+    /// The number of objects in frame 0.
     [[nodiscard]] std::size_t objects() const { return objects_; }
 
 private:
@@ -61,7 +61,7 @@ private:
         frame_ = frame;
     }
 
-    /// The objects of frame 0 are all there are.
+    /// Frame 0 defines the set of objects, which must have no gaps.
     void require_all_objects() {
         for (std::size_t object = 0; object < placed_.size(); ++object)
             if (placed_[object] == 0) in_.fail("frame 0 has no pose of object " + std::to_string(object));
@@ -78,22 +78,22 @@ private:
         placed_[object] = frame_ + 1;
     }
 
-    static constexpr std::uint32_t most = 10'000'000;  // of objects and frames, against slips of the pen
+    static constexpr std::uint32_t most = 10'000'000;  // limits objects and frames, which catches typing errors
 
     text_scanner in_;
     std::vector<step> steps_;
     std::uint32_t frame_ = 0;
-    std::vector<std::uint32_t> placed_;  // by object, the last frame that has a pose of it plus 1
+    std::vector<std::uint32_t> placed_;  // by object: 1 + the last frame with a pose of it
     std::size_t objects_ = 0;
 };
 
 class motion_scene final : public aabb::mesh_scene {
 public:
-    motion_scene(const std::filesystem::path& file, std::vector<aabb::mesh> given) {
+    motion_scene(const std::filesystem::path& file, std::vector<aabb::mesh> scene_meshes) {
         const file_text text = as_text(read_whole(file, require_file(file), 8));
         motion_reader reader(text);
         steps_ = reader.read();
-        meshes = std::move(given);
+        meshes = std::move(scene_meshes);
         if (meshes.size() > reader.objects())
             refuse(file, "moves " + std::to_string(reader.objects()) + " objects, but there are " +
                              std::to_string(meshes.size()) + " meshes");
@@ -116,7 +116,7 @@ private:
     std::vector<step> steps_;
     std::size_t at_ = 0;
     std::size_t frame_ = 0;
-    std::vector<aabb::pose> poses_;  // by object
+    std::vector<aabb::pose> poses_;  // current, by object
 };
 
 }  // namespace

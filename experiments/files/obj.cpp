@@ -7,12 +7,12 @@ namespace aabblab {
 
 namespace {
 
-/// The words of a statement, which a backslash at the end of a line carries on to the next line.
+/// The words of a statement, which a backslash at the end of a line continues on the next line.
 class statement_words {
 public:
     explicit statement_words(text_scanner& in) : in_(in) {}
 
-    /// Empty behind the last.
+    /// The next word; empty after the last one.
     [[nodiscard]] std::string_view next() {
         for (;;) {
             if (goes_on_ && !in_.next_line()) in_.ends("after a backslash");
@@ -31,7 +31,7 @@ private:
     bool goes_on_ = false;
 };
 
-/// The vertex of "v", "v/vt", "v//vn" or "v/vt/vn", from 0. Numbers count from 1, negative ones from the last so far.
+/// The vertex index of "v", "v/vt", "v//vn" or "v/vt/vn", from 0. OBJ counts from 1, or backwards if negative.
 std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t vertices) {
     const std::string_view number = word.substr(0, word.find('/'));
     const std::string_view others = word.substr(number.size());
@@ -48,7 +48,7 @@ std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t 
     return static_cast<std::uint32_t>(index);
 }
 
-/// Statements without which the surface is the same: looks, names, groups, and how a free-form curve is meant.
+/// Statements that do not change the surface: appearance, names, groups, and attributes of free-form geometry.
 constexpr std::string_view silent[] = {
     "vt",     "vn",    "vp",       "g",        "o",    "s",    "mg",   "usemtl",     "mtllib",    "usemap",
     "maplib", "bevel", "c_interp", "d_interp", "lod",  "end",  "parm", "shadow_obj", "trace_obj", "cstype",
@@ -70,7 +70,7 @@ loaded_mesh read_obj(const file_text& file) {
             mesh.add_vertex(p, line);
             for (std::string_view word = words.next(); !word.empty(); word = words.next())
                 if (!read_number<double>(word).is_one) in.expected("the weight or the colour of a vertex", word);
-        } else if (statement == "f" || statement == "fo") {  // "fo" is what the first versions of the format had
+        } else if (statement == "f" || statement == "fo") {  // early versions of the format use "fo"
             corners.clear();
             for (std::string_view word = words.next(); !word.empty(); word = words.next())
                 corners.push_back(corner(in, word, mesh.vertices()));

@@ -7,16 +7,16 @@ namespace aabblab {
 
 namespace {
 
-/// How numbers stand on lines. Behind the numbers of a vertex and the corners of a face may stand colours, as many as
-/// the writer liked, so that only the end of a line can tell where they end.
+/// How numbers are arranged in lines. An arbitrary number of colour values may follow a vertex or a face, so that only
+/// the end of the line shows where they end.
 enum class arrangement : std::uint8_t {
-    lines,       ///< each vertex and each face has a line of its own, with anything at its end
-    face_lines,  ///< lines mean nothing, but that each face begins one, which may end in colours
-    words        ///< lines mean nothing, and there are no colours of faces
+    lines,       ///< each vertex and each face has its own line, and extra values at its end are skipped
+    face_lines,  ///< only faces begin on new lines, and colours may follow them
+    words        ///< line ends are insignificant, and faces have no colours
 };
 
-/// "OFF", after any of ST, C, N: colours, normals and texture coordinates follow the position and are skipped.
-/// @returns how many numbers they are
+/// Reads "OFF" with any prefix of ST, C, N: texture coordinates, colours and normals follow positions and are skipped.
+/// @returns the number of values to skip per vertex
 std::size_t read_keyword(text_scanner& in) {
     if (!in.next_line()) in.ends("before the keyword OFF");
     const std::string_view keyword = in.word();
@@ -31,7 +31,7 @@ std::size_t read_keyword(text_scanner& in) {
         }
     if (before == "4" || before == "n" || before == "4n") in.fail("only OFF in three dimensions is read");
     if (!before.empty()) in.expected("the keyword OFF", keyword);
-    // Some writers put the first count right behind the keyword.
+    // Some writers omit the blank between the keyword and the first count.
     in.back_to(keyword.substr(at + 3));
     return numbers;
 }
@@ -41,7 +41,7 @@ public:
     off_reader(const file_text& file, arrangement how)
         : in_(file, '#'), name_(file.name), how_(how), mesh_(file.name) {}
 
-    /// @throws aabb::input_error with the line where the file is not so arranged.
+    /// @throws aabb::input_error with file and line if the file does not have this arrangement.
     [[nodiscard]] loaded_mesh read() {
         const std::size_t numbers_behind = read_keyword(in_);
         const auto before_counts = [] { return std::string("before the numbers of vertices and faces"); };
@@ -60,16 +60,16 @@ public:
         if ((how_ == arrangement::words && in_.more()) || in_.next_line())
             in_.fail("expected the end of the file after " + counted(vertices, "vertex", "vertices") + " and " +
                      counted(faces, "face") + ", found " + in_quotes(in_.word()));
-        is_so_arranged_ = true;
+        reached_end_ = true;
         return mesh_.finish(in_.rounded(), name_ + ":", 0);
     }
 
     [[nodiscard]] bool has_vertex() const { return mesh_.vertices() > 0; }
-    /// Whether the end was come to, so that what is wrong is not how numbers stand on lines.
-    [[nodiscard]] bool is_so_arranged() const { return is_so_arranged_; }
+    /// Whether the file was read to its end, so that an error is not about the arrangement.
+    [[nodiscard]] bool reached_end() const { return reached_end_; }
 
 private:
-    /// Goes to the next word.
+    /// Advances to the next word.
     void go_on(auto where) {
         if (!in_.more() && !in_.next_line()) in_.ends(where());
     }
@@ -100,7 +100,7 @@ private:
             in_.ends(where());
         const std::size_t line = in_.line();
         const auto corners = in_.whole<std::uint32_t>("the number of corners of a face");
-        // A number that is missing or too many before would shift all the others, and smaller faces hide it.
+        // A missing or extra number would shift all that follow, and accepting smaller faces would hide that.
         if (how_ != arrangement::lines && corners < 3) in_.fail("expected at least three corners of a face");
         corners_.clear();
         for (std::uint32_t i = 0; i < corners; ++i) {
@@ -113,7 +113,7 @@ private:
     text_scanner in_;
     std::string name_;
     arrangement how_;
-    bool is_so_arranged_ = false;
+    bool reached_end_ = false;
     mesh_builder mesh_;
     std::vector<std::uint32_t> corners_;
 };
@@ -122,21 +122,21 @@ struct attempt {
     std::optional<loaded_mesh> loaded;
     std::string refusal;
     bool has_vertex = false;
-    bool is_so_arranged = false;
+    bool reached_end = false;
 };
 attempt read_as(const file_text& file, arrangement how) {
     off_reader reader(file, how);
     try {
         return {reader.read(), {}, true, true};
     } catch (const aabb::input_error& error) {
-        return {{}, error.what(), reader.has_vertex(), reader.is_so_arranged()};
+        return {{}, error.what(), reader.has_vertex(), reader.reached_end()};
     }
 }
 
 }  // namespace
 
-// The format is one of words (Geomview's manual, "OFF Files"), and writers nearly always give vertices and faces lines
-// of their own. Other arrangements are tried only where the file is not of such lines.
+// The format ignores line ends (Geomview's manual, "OFF Files"), but writers nearly always put each vertex and face on
+// its own line. The other arrangements are tried only if that one fails.
 loaded_mesh read_off(const file_text& file) {
     attempt lines = read_as(file, arrangement::lines);
     if (lines.loaded) return *std::move(lines.loaded);
@@ -148,8 +148,8 @@ loaded_mesh read_off(const file_text& file) {
             "vertex and each face on a line of its own");
     for (attempt* other : {&face_lines, &words})
         if (other->loaded) return *std::move(other->loaded);
-    for (const attempt* one : {&lines, &face_lines, &words})
-        if (one->is_so_arranged) throw aabb::input_error(one->refusal);
+    for (const attempt* failed : {&lines, &face_lines, &words})
+        if (failed->reached_end) throw aabb::input_error(failed->refusal);
     throw aabb::input_error(lines.has_vertex ? lines.refusal : words.refusal);
 }
 

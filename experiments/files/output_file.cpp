@@ -13,9 +13,9 @@ namespace aabblab {
 
 struct output_file::state {
     std::filesystem::path target;
-    bool in_place = false;  // the target is no regular file: written at once
-    int folder = -1;        // where the target is, opened, so that no path to it can be too long
-    std::string part;       // the name beside the target, while there is one
+    bool in_place = false;  // the target is not a regular file and is written directly
+    int folder = -1;        // the open folder of the target, so that paths cannot be too long
+    std::string part;       // the temporary name in the folder, if any
     file_handle file;
 
     state() = default;
@@ -33,8 +33,8 @@ struct output_file::state {
         return target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
     }
 
-    /// Gives `make` names that no other process and no other file of this one has, until it makes one. `make` must not
-    /// take an existing file (EEXIST). They are short, since the target's name may be as long as names can be.
+    /// Calls `make` with names that are unique to this process and file until it succeeds. `make` must fail with EEXIST
+    /// on an existing file. The names are short, as the target's name may have the maximum length already.
     [[nodiscard]] bool make_part(auto make) {
         for (int attempt = 0; attempt < 100; ++attempt) {
             part = ".aabblab." + std::to_string(getpid()) + "." + std::to_string(attempt) + ".part";
@@ -59,7 +59,7 @@ output_file::output_file(const std::filesystem::path& file) : state_(std::make_u
     state_->target = file;
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
-    // The file gets its name when all work is done, which is late to hear that the name is too long.
+    // The file is named only after all work is done, so an invalid name must be rejected now.
     if (status.type() == std::filesystem::file_type::none) state_->refuse(error.message());
     if (is_directory(status)) state_->refuse("it is a folder");
     if (exists(status) && !is_regular_file(status)) {
@@ -68,14 +68,14 @@ output_file::output_file(const std::filesystem::path& file) : state_(std::make_u
     } else {
         if (std::filesystem::is_symlink(file, error)) {
             if (!exists(status)) state_->refuse("it is a symbolic link to what is not there");
-            state_->target = std::filesystem::canonical(file);  // so that the link stays one
+            state_->target = std::filesystem::canonical(file);  // the link itself is preserved
         }
         state_->folder = open(state_->folder_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
         if (state_->folder < 0) state_->fail();
-        // A file without a name goes with its process, however that ends. Without /proc it could never be named.
+        // An unnamed file vanishes with its process, however that ends. It can be named only through /proc.
         state_->take(openat(state_->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
         if (state_->file && access(state::link_to(fileno(state_->file.get())).c_str(), F_OK) != 0) state_->file.reset();
-        // Not every file system has files without a name.
+        // Not every file system supports unnamed files.
         if (!state_->file && !state_->make_part([&](const char* part) {
                 state_->take(openat(state_->folder, part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
                 return state_->file != nullptr;
@@ -116,7 +116,7 @@ void output_file::commit() {
     std::FILE* const file = state_->file.get();
     if (std::fflush(file) != 0) state_->fail();
     if (!state_->in_place) {
-        // An existing file cannot be linked over, only renamed over.
+        // linkat() cannot replace an existing file, but renameat() can.
         const std::string unnamed = state::link_to(fileno(file));
         if (state_->part.empty() && !state_->make_part([&](const char* part) {
                 return linkat(AT_FDCWD, unnamed.c_str(), state_->folder, part, AT_SYMLINK_FOLLOW) == 0;

@@ -18,13 +18,13 @@ constexpr scalar_name scalar_names[] = {
     {"int", scalar::i32},   {"int32", scalar::i32},   {"uint", scalar::u32},   {"uint32", scalar::u32},
     {"float", scalar::f32}, {"float32", scalar::f32}, {"double", scalar::f64}, {"float64", scalar::f64}};
 
-/// What a property is to a mesh.
+/// The meaning of a property for the mesh.
 enum class role : std::uint8_t { none, x, y, z, corners, strip };
 
 struct property {
     role meaning;
     scalar type;
-    std::optional<scalar> count;  // of a list
+    std::optional<scalar> count;  // the type of a list's length
 };
 
 struct element {
@@ -33,7 +33,7 @@ struct element {
     std::vector<property> properties;
 };
 
-/// What the vertices of an element are that a list of it names; none where they are nothing to a mesh.
+/// The role of an element's list of vertex indices; none if the element is not read.
 role role_of_vertices(const element& e) {
     return e.name == "face" ? role::corners : e.name == "tristrips" ? role::strip : role::none;
 }
@@ -47,9 +47,9 @@ struct header {
 
 scalar read_type(text_scanner& in) {
     const std::string_view word = in.word();
-    const auto found = std::ranges::find(scalar_names, word, &scalar_name::name);
-    if (found == std::end(scalar_names)) in.expected("the type of a property", word);
-    return found->type;
+    const auto entry = std::ranges::find(scalar_names, word, &scalar_name::name);
+    if (entry == std::end(scalar_names)) in.expected("the type of a property", word);
+    return entry->type;
 }
 
 property read_property(text_scanner& in, const element& owner) {
@@ -75,7 +75,7 @@ property read_property(text_scanner& in, const element& owner) {
     return p;
 }
 
-/// An element must hold each of these exactly once.
+/// Requires that an element has each necessary property exactly once.
 void require_roles(const text_scanner& in, const element& e) {
     const auto require = [&](role wanted, const std::string& what) {
         if (std::ranges::count(e.properties, wanted, &property::meaning) != 1)
@@ -90,8 +90,8 @@ void require_roles(const text_scanner& in, const element& e) {
     if (e.properties.empty()) in.fail("the element " + in_quotes(e.name) + " has no properties");
 }
 
-/// Where the header ends and values begin; npos where there is no header, or none of single bytes. Behind a header
-/// whose lines end in carriage returns alone, a line feed is the first byte of binary values.
+/// The offset of the first value after the header; npos if there is no header in a single-byte encoding. If the lines
+/// of the header end in carriage returns alone, a following line feed already belongs to the binary values.
 std::size_t end_of_header(std::string_view bytes) {
     constexpr std::string_view last = "end_header";
     const auto is_line_end = [&](std::size_t at) { return bytes[at] == '\n' || bytes[at] == '\r'; };
@@ -106,7 +106,7 @@ std::size_t end_of_header(std::string_view bytes) {
     return std::string_view::npos;
 }
 
-/// @throws aabb::input_error with the line.
+/// @throws aabb::input_error with file and line.
 header read_header(text_scanner& in) {
     if (!in.next_line()) in.ends("before the word ply");
     if (const std::string_view magic = in.word(); magic != "ply") in.expected("the word ply", magic);
@@ -143,7 +143,7 @@ header read_header(text_scanner& in) {
     in.ends("inside the header");
 }
 
-/// Values of a text file, an element a line.
+/// Reads the values of a text file, one element per line.
 class text_values {
 public:
     explicit text_values(text_scanner& in) : in_(in) {}
@@ -155,7 +155,7 @@ public:
     }
     [[nodiscard]] float coordinate(scalar) { return in_.coordinate(in_.word()); }
     [[nodiscard]] std::uint32_t whole(scalar) { return in_.whole<std::uint32_t>("a whole number"); }
-    /// A corner, or -1 for the end of a strip.
+    /// Reads a corner of a strip, or -1, which ends a part of it.
     [[nodiscard]] std::int64_t corner_or_end(scalar) {
         const auto corner = in_.whole<std::int64_t>("a whole number");
         if (corner < -1 || corner > std::numeric_limits<std::uint32_t>::max())
@@ -191,10 +191,10 @@ public:
         index_ = index;
     }
     [[nodiscard]] float coordinate(scalar type) {
-        const double fine = number(type);
-        const auto value = static_cast<float>(fine);
-        if (std::isfinite(fine) && std::isinf(value)) fail("has a coordinate that is too large for a float");
-        if (std::isfinite(fine)) rounded_ += value != fine;
+        const double exact = number(type);
+        const auto value = static_cast<float>(exact);
+        if (std::isfinite(exact) && std::isinf(value)) fail("has a coordinate that is too large for a float");
+        if (std::isfinite(exact)) rounded_ += value != exact;
         return value;
     }
     [[nodiscard]] std::uint32_t whole(scalar type) {
@@ -240,8 +240,8 @@ private:
     std::size_t rounded_ = 0;
 };
 
-/// The triangles of a strip: each three neighbours in it, of which every other triangle is turned so that all face one
-/// way; -1 ends a part, behind which another begins anew. A part of fewer than three corners is dropped.
+/// Splits a strip into triangles of three consecutive corners. Every other triangle is reversed for consistent winding.
+/// -1 ends a part of the strip and starts another; a part of fewer than three corners is dropped.
 class strip_triangles {
 public:
     strip_triangles(mesh_builder& mesh, std::size_t place) : mesh_(mesh), place_(place) {}
@@ -308,7 +308,7 @@ loaded_mesh read_elements(const file_text& file, const header& h, Values values)
 
 }  // namespace
 
-// The header may be text of other systems before binary values, so that it is read alone.
+// Only the header of a binary file is decoded as text, whatever its line ends; its values must stay as they are.
 loaded_mesh read_ply(const file_text& file) {
     const std::size_t end = std::min(end_of_header(file.text), file.text.size());
     const file_text top = as_text({file.name, file.text.substr(0, end)});

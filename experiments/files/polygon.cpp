@@ -2,7 +2,7 @@ module aabblab.files;
 
 import :polygon;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Evaluates sums and products exactly as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabblab {
@@ -15,7 +15,7 @@ int sign_of(double x) noexcept {
     return static_cast<int>(x > 0) - static_cast<int>(x < 0);
 }
 
-/// Where the least rotation of a cycle begins (Shiloach, "Fast canonization of circular strings", 1981).
+/// The start of the least rotation of a cycle (Shiloach, "Fast canonization of circular strings", 1981).
 std::size_t least_rotation(std::size_t count, auto key) {
     std::size_t i = 0;
     std::size_t j = 1;
@@ -90,7 +90,7 @@ std::size_t polygon_cutter::distinct_corners() const noexcept {
 }
 
 int polygon_cutter::project() {
-    // A product of two floats is a double exactly.
+    // The product of two floats is exact in double.
     for (exact_sum& component : normal_) component.clear();
     const vec3d* p = &corners_.back().p;
     for (const corner& c : corners_) {
@@ -113,7 +113,7 @@ int polygon_cutter::project() {
 }
 
 bool polygon_cutter::is_convex(int way) const noexcept {
-    // Edges of no length do not count.
+    // Edges of zero length are skipped.
     const auto stands = [&](const vec3d& a, const vec3d& b) { return !precedes(a, b) && !precedes(b, a); };
     const std::size_t n = corners_.size();
     std::size_t last = n - 1;
@@ -131,7 +131,7 @@ bool polygon_cutter::is_convex(int way) const noexcept {
         a = b;
         b = &c;
     }
-    return returns == 2;  // it goes around once
+    return returns == 2;  // the boundary winds around once
 }
 
 void polygon_cutter::begin_at_least_corner() {
@@ -147,7 +147,7 @@ int polygon_cutter::turn(const vec3d& a, const vec3d& b, const vec3d& c) const n
     const int y = (axis_ + 2) % 3;
     const double left = (b[x] - a[x]) * (c[y] - a[y]);
     const double right = (b[y] - a[y]) * (c[x] - a[x]);
-    // Shewchuk's bound; nothing overflows or underflows where coordinates are floats.
+    // Shewchuk's error bound; with float coordinates nothing overflows or underflows.
     constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
     const double error = (3 + 16 * unit) * unit * (std::abs(left) + std::abs(right));
     const double turned = left - right;
@@ -194,7 +194,7 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
         const std::array<int, 3> sides = {turn(p, q, t0), turn(p, q, t1), turn(p, q, t2)};
         return std::ranges::min(sides) < 0 && std::ranges::max(sides) > 0;
     };
-    // Beside t1, in the triangle along the edge to t0, the edges below are counted, by their directions.
+    // The winding number at a point of the triangle next to t1, on the edge to t0: signed crossings of a ray downwards.
     const bool is_right_of_corner = precedes(t1, t0);
     int winding = 0;
     const auto count_below = [&](const vec3d& p, const vec3d& q) {
@@ -221,7 +221,7 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
         i = corners_[i].next;
         const vec3d* q = &corners_[i].p;
         const vec3d& from = *std::exchange(p, q);
-        // Most edges lie to the left, to the right or above.
+        // Fast path: most edges lie to the left, to the right or above.
         if (std::max(from[x], (*q)[x]) < low_x || std::min(from[x], (*q)[x]) > high_x ||
             std::min(from[y], (*q)[y]) > high_y)
             continue;
@@ -248,7 +248,7 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
         --left;
     };
 
-    // A boundary that goes and comes back may block an ear. Else a corner becomes one only when a neighbour is cut.
+    // Needles are cut first, as they may block ears. Then a corner can become an ear only when a neighbour is cut.
     std::uint32_t at = 0;
     for (std::size_t passed = 0; left > 3 && passed < left;)
         if (is_needle(corners_[at])) {
@@ -262,7 +262,7 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
 
     for (std::size_t passed = 0; left > 3;) {
         corner& b = corners_[at];
-        // Once around in vain, one is cut that is touched or in the middle of an edge.
+        // If no clear ear is left, the second round also cuts touched ears and corners in the middle of an edge.
         const bool is_second_round = passed >= left;
         const int turned = turn_at(b);
         if (turned > 0 && (b.kind == ear::unknown || (is_second_round && b.kind == ear::touched))) b.kind = kind_of(b);
@@ -271,7 +271,7 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
                                            : false;
         if (is_ready) {
             take(at);
-            // The one after the next, so that ears do not all meet in one corner.
+            // Skipping a corner avoids a fan of ears around a single corner.
             at = corners_[b.next].next;
             passed = 0;
         } else {

@@ -10,7 +10,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "recordings are little-endian");
 
-/// min xyz 0, max xyz 0
+/// The layout of a box: min x, y, z, 0, max x, y, z, 0.
 using box_record = std::array<float, 8>;
 
 struct header {
@@ -64,13 +64,13 @@ private:
     std::size_t frame_ = 0;
 };
 
-/// Without objects no size bounds the number of frames, and playing them does nothing for hours.
+/// Without objects the file size does not bound the number of frames, and running them would take hours.
 void require_few_empty_frames(const std::filesystem::path& file, std::size_t objects, std::size_t frames) {
     if (objects == 0 && frames > 1'000'000)
         refuse(file, "a recording of 0 objects holds at most 1000000 frames, not " + std::to_string(frames));
 }
 
-/// The text in a field of the header, cut to what fits; never empty, which Broadmark refuses.
+/// A header field with the text, truncated to fit; never empty, as Broadmark rejects empty fields.
 std::array<char, 128> field(const std::string& text, const std::string& otherwise) {
     const std::string& used = text.empty() ? otherwise : text;
     std::array<char, 128> padded{};
@@ -94,7 +94,7 @@ std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& fil
         refuse(file, "its header announces " + std::to_string(h.objects) + " objects and " +
                          std::to_string(h.last_frame) + " frames; neither can be negative");
     if (!aabb::is_valid(unpacked(h.world))) refuse(file, "the world box in its header is inverted or not finite");
-    // Counted in boxes: in bytes the announced size may not fit a number.
+    // Counts boxes, as the announced size in bytes may overflow.
     const std::uint64_t boxes = static_cast<std::uint64_t>(h.objects) * (static_cast<std::uint64_t>(h.last_frame) + 1);
     const std::uint64_t held = (size - sizeof(header)) / sizeof(box_record);
     if (boxes != held || (size - sizeof(header)) % sizeof(box_record) != 0)

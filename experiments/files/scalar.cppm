@@ -1,4 +1,4 @@
-/// Numbers as bytes, on a machine that is little-endian (`gltf_buffers.cpp`).
+/// Reads binary numbers; the machine must be little-endian, which `gltf_buffers.cpp` asserts.
 module aabblab.files:scalar;
 
 import aabb.std;
@@ -15,7 +15,7 @@ enum class scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
     return std::array<std::size_t, 8>{1, 1, 2, 2, 4, 4, 4, 8}[static_cast<std::size_t>(type)];
 }
 
-/// The greatest one of whole numbers.
+/// The greatest value of an integer type.
 [[nodiscard]] inline double greatest(scalar type) noexcept {
     const bool has_sign = type == scalar::i8 || type == scalar::i16 || type == scalar::i32;
     return std::ldexp(1, static_cast<int>(8 * bytes_of(type)) - has_sign) - 1;
@@ -27,7 +27,7 @@ enum class scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
     return number;
 }
 
-/// The number that begins there. Each is a double exactly.
+/// Reads the number at `bytes`. Every scalar type converts to double exactly.
 [[nodiscard]] inline double number_at(const char* bytes, scalar type, bool is_big_endian = false) noexcept {
     const auto as = [&]<class Value>(Value) {
         std::array<char, sizeof(Value)> raw{};

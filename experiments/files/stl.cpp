@@ -8,16 +8,16 @@ namespace aabblab {
 
 namespace {
 
-/// STL repeats a vertex for every triangle around it: those of the same bits become one, numbered as they first appear.
-/// Triangles keep the order of the file. The numbers stand in a hash table with open addressing.
+/// Merges bitwise equal vertices, which STL repeats for each triangle. Vertices are numbered by their first occurrence,
+/// and triangles keep the order of the file. The indices are in a hash table with open addressing.
 class vertex_merger {
 public:
-    /// @param triangles how many there are about; a closed mesh has half as many vertices
+    /// @param triangles the approximate number, which sizes the table: a closed mesh has half as many vertices
     vertex_merger(mesh_builder& mesh, std::size_t triangles)
         : mesh_(mesh), numbers_(std::bit_ceil(std::max<std::size_t>(triangles, 16)), none) {}
 
-    /// Asks for the part of the table in which the vertex is looked for, so that it is there when it is needed.
-    /// @returns what `index_of` takes
+    /// Prefetches the slot of the vertex, so that it is in the cache when `index_of` needs it.
+    /// @returns the hash for `index_of`
     [[nodiscard]] std::size_t prefetch(const aabb::vec3f& p) const noexcept {
         const std::size_t hash = hash_of(bits_of(p));
         __builtin_prefetch(&numbers_[hash & (numbers_.size() - 1)]);
@@ -43,7 +43,7 @@ private:
     [[nodiscard]] static bits_of_vertex bits_of(const aabb::vec3f& p) noexcept {
         return std::bit_cast<bits_of_vertex>(p);
     }
-    /// Multiplication carries every bit upwards; shifts bring the upper ones down to where places are taken from.
+    /// Multiplications mix bits upwards; shifts bring the upper bits down to those that select the slot.
     [[nodiscard]] static std::size_t hash_of(const bits_of_vertex& bits) noexcept {
         constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;  // 2^64 over the golden ratio (Knuth, volume 3, 6.4)
         std::uint64_t hash = (bits[0] | std::uint64_t{bits[1]} << 32U) * odd;
@@ -62,7 +62,7 @@ private:
     }
 
     mesh_builder& mesh_;
-    std::vector<std::uint32_t> numbers_;  // a power of two of places, at most half of them taken
+    std::vector<std::uint32_t> numbers_;  // a power of two of slots, at most half full
 };
 
 constexpr std::size_t header_bytes = 84;
@@ -72,7 +72,7 @@ std::uint32_t announced_triangles(std::string_view bytes) {
     return u32_at(bytes, 80);
 }
 
-/// Writers disagree about the case of keywords.
+/// Compares without case, as writers disagree about the case of keywords.
 bool is_keyword(std::string_view word, std::string_view keyword) {
     return std::ranges::equal(word, keyword, [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
 }
@@ -99,7 +99,7 @@ loaded_mesh read_text(const file_text& file) {
         } else if (is_keyword(word, "facet") && in_solid && !in_facet) {
             in_facet = true;
             count = 0;
-            // Its normal follows from its vertices.
+            // The normal is skipped, as the vertices determine it.
             for (int i = 0; i < 4; ++i) static_cast<void>(in.word());
             require_end_of_line();
         } else if (is_keyword(word, "endfacet") && in_facet) {
@@ -122,7 +122,7 @@ loaded_mesh read_text(const file_text& file) {
     return mesh.finish(in.rounded(), file.name + ":", 0);
 }
 
-/// How many bytes a binary file has that announces so many triangles.
+/// The size of a binary file with this number of triangles.
 std::uint64_t bytes_of_binary(std::uint64_t triangles) {
     return header_bytes + triangle_bytes * triangles;
 }
@@ -133,8 +133,8 @@ bool is_space(char c) {
 
 }  // namespace
 
-// Binary files may begin with "solid" too, so the size decides. A file is several times as large as the mesh that it
-// holds, and is read in parts: memory that is touched for the first time takes most of the time of reading.
+// Binary files may begin with "solid" too, so the size decides. The file is several times as large as its mesh and is
+// read in blocks, as touching fresh memory would take most of the time.
 std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, std::size_t size) {
     if (size < header_bytes) return {};
     whole_file opened(file, size);
@@ -154,7 +154,7 @@ std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, st
         const std::uint32_t triangles = std::min(most_at_once, count - first);
         opened.read(bytes.data(), triangle_bytes * triangles);
         for (std::size_t t = 0; t < triangles; ++t)
-            // A normal, three vertices, two bytes of attributes.
+            // A record is a normal, three vertices and two bytes of attributes.
             std::memcpy(&points[3 * t], bytes.data() + triangle_bytes * t + 12, 3 * sizeof points[0]);
         for (std::size_t i = 0; i < 3 * triangles; ++i) {
             if (!aabb::is_finite(points[i]))
@@ -170,7 +170,7 @@ std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, st
     return mesh.finish(0, file.string() + ": triangle ", 0);
 }
 
-// What may stand before and behind a text does not count, see text_decoder. A binary file that is cut off is no text.
+// Ignores what text_decoder drops before and after a text. A truncated binary file must not count as text.
 bool is_text_stl(std::string_view bytes) {
     if (text_encoding_of(bytes) != text_encoding::utf8) return true;
     if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);

@@ -9,7 +9,7 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr char ctrl_z = '\x1a';
-constexpr char32_t replacement = 0xfffd;  // what Unicode has for what cannot be read
+constexpr char32_t replacement = 0xfffd;  // U+FFFD stands for malformed input
 
 bool is_padding(char c) {
     return c == '\0' || c == ctrl_z;
@@ -42,7 +42,7 @@ void append_utf8(char32_t character, std::string& text) {
     append_rest(0);
 }
 
-/// Nothing in it is to be changed, which holds for nearly every file.
+/// Whether decoding leaves the bytes unchanged, as for nearly every file.
 bool is_plain(std::string_view bytes) {
     for (const std::string_view mark : {"\xef\xbb\xbf"sv, "\xff\xfe"sv, "\xfe\xff"sv})
         if (bytes.starts_with(mark)) return false;
@@ -86,15 +86,15 @@ void text_decoder::finish(std::string& text) {
         add(std::exchange(start_, {}), text);
     }
     if (!problem_.empty()) return;
-    // What may stand behind a text may do so in one byte.
+    // Padding may be a single byte after UTF-16.
     const bool is_cut_off = half_ && !is_padding(static_cast<char>(*half_));
     if (is_cut_off || high_surrogate_ != 0) take_character(replacement, text);
-    // Nothing follows those that wait, so that they end a line.
+    // Nothing follows the pending carriage returns, so they end lines.
     text.append(std::exchange(returns_, 0), '\n');
 }
 
-/// Tells the encoding by the first bytes, of which the mark is dropped, unless too few are there yet.
-/// @param is_whole no more bytes follow
+/// Detects the encoding and drops the byte order mark, unless more bytes are needed.
+/// @param is_whole whether no more bytes follow
 void text_decoder::begin(bool is_whole) {
     constexpr std::string_view mark = "\xef\xbb\xbf";
     const std::string_view start = start_;
@@ -139,7 +139,7 @@ void text_decoder::take_character(char32_t character, std::string& text) {
     take(utf8, text);
 }
 
-/// Lines end in line feeds, and nothing in the bytes may be padding.
+/// Whether the bytes can be copied: lines end in line feeds, and no byte may be padding.
 bool text_decoder::is_unchanged(std::string_view utf8) const noexcept {
     return ends_ == line_end::feed && padding_ == ' ' && std::ranges::none_of(utf8, is_padding);
 }
@@ -180,7 +180,7 @@ void text_decoder::take_byte(char c, std::string& text) {
         line_ += end == '\n' ? returns_ : 0;
         text.append(std::exchange(returns_, 0), end);
     }
-    // In a text of carriage returns a line feed is what they are in others.
+    // If lines end in carriage returns, the roles of both characters are swapped.
     if (ends_ == line_end::carriage_return && (c == '\r' || c == '\n')) c = c == '\r' ? '\n' : '\r';
     line_ += c == '\n';
     text += c;

@@ -1,4 +1,4 @@
-/// Text as programs of many systems write it, made UTF-8 with line feeds at the ends of lines.
+/// Converts text from programs on many systems to UTF-8 with line feeds.
 module aabblab.files:text_decoder;
 
 import aabb.std;
@@ -6,20 +6,20 @@ import aabb.std;
 namespace aabblab {
 
 enum class text_encoding : std::uint8_t { utf8, utf16_little, utf16_big, utf16_unmarked, utf32 };
-/// By the first bytes, four of them or all there are.
+/// Detects the encoding from the first four bytes, or all bytes if there are fewer.
 [[nodiscard]] text_encoding text_encoding_of(std::string_view bytes) noexcept;
 
-/// Takes a text piece by piece. A byte order mark is dropped, UTF-16 that begins with one is converted, carriage
-/// returns become line feeds where the first line ends in one alone, and what pads the end of a file is dropped: NULs,
-/// and Ctrl-Z, which CP/M and DOS end text with. A carriage return before a line feed stays, as readers skip it; alone
-/// in a text of line feeds it stays too, as does the reverse, as a carriage return: `line_without_return` refuses both.
+/// Decodes a text incrementally. A byte order mark is dropped, UTF-16 with a mark is converted, carriage returns become
+/// line feeds if the first line ends in one alone, and trailing padding is dropped: NULs, and Ctrl-Z, which ends text
+/// in CP/M and DOS. A carriage return before a line feed stays, as readers skip it. A line end of the
+/// other kind becomes or stays a carriage return, which `line_without_return` rejects.
 class text_decoder {
 public:
-    /// Appends what the bytes say.
+    /// Appends the decoded bytes.
     void add(std::string_view bytes, std::string& text);
-    /// Appends what waited for more bytes: these were the last.
+    /// Appends pending characters; no more bytes follow.
     void finish(std::string& text);
-    /// Why this is no such text, to be said after its name; empty while it is. Nothing is appended any more then.
+    /// The reason why the bytes are not text, to follow the file's name; else empty. It stops all further output.
     [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
 private:
@@ -33,17 +33,17 @@ private:
     [[nodiscard]] bool is_unchanged(std::string_view utf8) const noexcept;
 
     std::optional<text_encoding> encoding_;
-    std::string start_;  // bytes that the encoding is not known from yet
+    std::string start_;  // bytes before the encoding is known
     std::optional<unsigned char> half_;
     char32_t high_surrogate_ = 0;
     line_end ends_ = line_end::unknown;
-    std::size_t returns_ = 0;  // that wait for the next byte, which tells how lines end
-    char padding_ = ' ';       // its first byte; a blank where there is none
+    std::size_t returns_ = 0;  // pending until the next byte shows how lines end
+    char padding_ = ' ';       // the first padding byte; a blank if there is none
     std::size_t line_ = 1;
     std::string problem_;
 };
 
-/// A text and why it is none, see `text_decoder`.
+/// The result of `text_decoder` for a whole text.
 struct decoded_text {
     std::string text;
     std::string problem;

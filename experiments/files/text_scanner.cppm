@@ -1,4 +1,4 @@
-/// Words of a text file, line by line; numbers in them; errors with the file and the line.
+/// Splits a text file into lines and words, parses numbers, and reports errors with file and line.
 module aabblab.files:text_scanner;
 
 import aabb.geometry;
@@ -16,13 +16,13 @@ struct read_number {
         const auto [stopped, error] = std::from_chars(text.data() + has_plus, end, value);
         is_one = stopped == end && error != std::errc::invalid_argument;
         out_of_range = error == std::errc::result_out_of_range;
-        // Too small is a rounded zero, too large infinite; only this tells which it was.
+        // from_chars does not distinguish underflow, which rounds to zero, from overflow; strtod does.
         if constexpr (std::floating_point<Number>)
             if (out_of_range) value = from_text(text);
     }
 
     Number value = 0;
-    bool is_one = false;  ///< and nothing else
+    bool is_one = false;  ///< whether the whole text is one number
     bool out_of_range = false;
 
 private:
@@ -36,10 +36,10 @@ private:
 
 class text_scanner {
 public:
-    /// @param comment what begins a comment that runs to the end of the line; '\0' for none.
+    /// @param comment the character that begins a comment up to the end of the line; '\0' for none
     text_scanner(const file_text& file, char comment) : file_(file.name), rest_(file.text), comment_(comment) {}
 
-    /// Goes to the next line that holds a word; false at the end of the file.
+    /// Advances to the next line that has a word; false at the end of the file.
     bool next_line() {
         while (!rest_.empty()) {
             const std::size_t end = rest_.find('\n');
@@ -59,9 +59,9 @@ public:
         skip_blanks();
         std::size_t length = 0;
         while (length < line_.size() && !is_blank(line_[length])) ++length;
-        const std::string_view found = line_.substr(0, length);
+        const std::string_view next_word = line_.substr(0, length);
         line_.remove_prefix(length);
-        return found;
+        return next_word;
     }
 
     /// Whether words are left on the line.
@@ -70,7 +70,7 @@ public:
         return !line_.empty();
     }
 
-    /// Begins to read the line at a part of it.
+    /// Moves the cursor of the line back to a word.
     void back_to(std::string_view word) { line_ = std::string_view(word.begin(), line_.end()); }
 
     [[nodiscard]] std::size_t line() const noexcept { return number_; }
@@ -79,13 +79,13 @@ public:
     [[noreturn]] void fail(const std::string& sentence) const {
         refuse(file_ + ":" + std::to_string(number_), sentence);
     }
-    [[noreturn]] void expected(const std::string& what, std::string_view found) const {
-        fail("expected " + what + ", found " + (found.empty() ? "the end of the line" : in_quotes(found)));
+    [[noreturn]] void expected(const std::string& what, std::string_view actual) const {
+        fail("expected " + what + ", found " + (actual.empty() ? "the end of the line" : in_quotes(actual)));
     }
-    /// For a file that ends too early.
+    /// Reports a file that ends too early.
     [[noreturn]] void ends(const std::string& where) const { refuse(file_, "ends " + where); }
 
-    /// A whole number that fits.
+    /// Parses an integer in the range of its type.
     template <std::integral Whole>
     [[nodiscard]] Whole whole(const std::string& what) {
         const std::string_view text = word();
@@ -94,7 +94,7 @@ public:
         return number.value;
     }
 
-    /// A finite number, correctly rounded to double.
+    /// Parses a finite number, correctly rounded to double.
     [[nodiscard]] double number(const std::string& what) {
         const std::string_view text = word();
         const read_number<double> number(text);
@@ -103,14 +103,14 @@ public:
         return number.value;
     }
 
-    /// Three coordinates, as `coordinate`.
+    /// Parses three coordinates like `coordinate`.
     [[nodiscard]] aabb::vec3f point() {
         aabb::vec3f p{};
         for (int k = 0; k < 3; ++k) p[k] = coordinate(word());
         return p;
     }
 
-    /// One coordinate, correctly rounded to float; NaN or infinite only where the text says so.
+    /// Parses a coordinate, correctly rounded to float. It is NaN or infinite only if the text is.
     [[nodiscard]] float coordinate(std::string_view text) {
         const read_number<float> number(text);
         if (!number.is_one) expected("three coordinates", text);
@@ -121,7 +121,7 @@ public:
         return number.value;
     }
 
-    /// Coordinates so far whose text, read as a double, differs from the float.
+    /// The number of coordinates so far whose text denotes a double that differs from the float.
     [[nodiscard]] std::size_t rounded() const noexcept { return rounded_; }
 
 private:

@@ -13,7 +13,7 @@ namespace aabblab {
 
 namespace {
 
-/// A folder of a new name, for nobody else to read.
+/// Makes a temporary folder that only the user can access.
 std::filesystem::path make_temporary_folder() {
     std::error_code error;
     std::string name = (std::filesystem::temp_directory_path(error) / ("aabblab-" + std::string(6, 'X'))).string();
@@ -22,7 +22,7 @@ std::filesystem::path make_temporary_folder() {
     return name;
 }
 
-/// Where an entry goes: below `top`, and by no detour.
+/// The place of an entry below `top`. Rejects absolute paths and "..", which could leave the folder.
 std::filesystem::path place_of(const std::string& name, const std::string& top, const std::string& archive) {
     const std::filesystem::path path(name);
     const bool detours = std::ranges::any_of(
@@ -55,9 +55,9 @@ public:
         std::size_t folders = 0;
         archive_entry* entry = nullptr;
         while (has_next(entry)) {
-            const char* given = archive_entry_pathname(entry);
+            const char* pathname = archive_entry_pathname(entry);
             const auto type = archive_entry_filetype(entry);
-            std::string name = given ? given : "";
+            std::string name = pathname ? pathname : "";
             if (type == AE_IFDIR && name.ends_with('/')) name.pop_back();
             const std::filesystem::path place = place_of(name, top, file_);
             if (archive_entry_hardlink(entry) || (type != AE_IFREG && type != AE_IFDIR))
@@ -94,7 +94,7 @@ private:
             const la_ssize_t size = archive_read_data(archive_.get(), buffer.data(), buffer.size());
             if (size < 0) fail_reading();
             if (size == 0) break;
-            // As it comes, whatever the header of the entry says.
+            // Counts the actual bytes, as the size in the header cannot be trusted.
             bytes_ += static_cast<std::uint64_t>(size);
             if (bytes_ > limits_.bytes)
                 fail("unpacks to more than " + std::to_string(limits_.bytes >> 20U) + " MiB, which no results have");
@@ -104,9 +104,9 @@ private:
     }
 
     [[noreturn]] void fail_reading() const {
-        const char* why = archive_error_string(archive_.get());
+        const char* reason = archive_error_string(archive_.get());
         if (!begun_) fail("is not an archive of results, which is tar compressed by xz");
-        fail(std::string("is damaged or cut off: ") + (why ? why : "it cannot be read to its end"));
+        fail(std::string("is damaged or cut off: ") + (reason ? reason : "it cannot be read to its end"));
     }
     [[noreturn]] void fail(const std::string& what) const { throw aabb::input_error(file_ + " " + what); }
 
@@ -117,7 +117,7 @@ private:
     bool begun_ = false;
 };
 
-/// Where the bytes go, for functions of C, through which no exception may pass.
+/// Adapts an output file to libarchive's C callbacks, through which no exception may pass: it is rethrown later.
 class sink {
 public:
     explicit sink(const std::filesystem::path& file) : out_(file) {}
@@ -147,7 +147,7 @@ public:
     explicit writer(const std::filesystem::path& file) : file_(file), sink_(file), archive_(archive_write_new()) {
         require(archive_write_add_filter_xz(archive_.get()));
         require(archive_write_set_format_pax_restricted(archive_.get()));
-        // The last block as it is, in place of a tape's.
+        // Omits the padding of the last block, which only tapes need.
         require(archive_write_set_bytes_in_last_block(archive_.get(), 1));
         require(archive_write_open(archive_.get(), &sink_, nullptr, &sink::write, nullptr));
     }

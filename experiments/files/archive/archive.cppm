@@ -1,4 +1,4 @@
-/// Files of a folder as one: tar, compressed by xz, so that any system can open it without us.
+/// Packs the files of a folder into a tar archive compressed by xz, which standard tools can open.
 export module aabblab.archive;
 
 import aabb.std;
@@ -6,24 +6,24 @@ import aabblab.processes;
 
 export namespace aabblab {
 
-/// Writes files of a folder into an archive, in which they stand below the folder `top`. The same files give the same
-/// bytes: who packed them, where and when is not in it.
-/// @param files as the folder has them, such as "c1/results.csv"
-/// @throws aabb::input_error where a file cannot be read or written.
+/// Packs files of a folder into an archive, below the folder `top`. The archive is reproducible: it has no owner, host
+/// or time, so the same files give the same bytes.
+/// @param files relative to the folder, such as "c1/results.csv"
+/// @throws aabb::input_error if a file cannot be read or written.
 void write_archive(const std::filesystem::path& archive, const std::string& top, const std::filesystem::path& folder,
                    std::span<const std::filesystem::path> files);
 
-/// How much an archive may hold, so that a small one cannot fill the disk, nor take hours.
+/// Limits on the unpacked contents, so that a small archive cannot fill the disk or take hours.
 struct archive_limits {
-    std::size_t files = 10'000;  ///< and as many folders, each of which holds one at least
+    std::size_t files = 10'000;  ///< the limit for folders too, as each holds at least one file
     std::uint64_t bytes = std::uint64_t{4} << 30U;
 };
 
-/// The files of an archive in a folder that is gone with this, and with this process, by whatever signal it ends.
+/// An archive unpacked into a temporary folder, which is removed on destruction or when a signal ends the process.
 class unpacked_archive {
 public:
-    /// @throws aabb::input_error where it is no such archive, cut off, larger than that, or has anything but files
-    /// below `top`, each once: no links, no way out of the folder.
+    /// @throws aabb::input_error if the archive is malformed, truncated or beyond the limits, or has anything but
+    /// distinct files below `top`: links and paths that leave the folder are rejected.
     unpacked_archive(const std::filesystem::path& archive, const std::string& top, const archive_limits& limits = {});
 
     [[nodiscard]] const std::filesystem::path& folder() const { return guard_.folder(); }

@@ -14,7 +14,7 @@ std::array<std::uint32_t, 4> words_of(const aabb::contact& c) {
     return {c.a, c.b, c.triangle_a, c.triangle_b};
 }
 
-/// Some bits of one of the words of a row.
+/// A radix digit: consecutive bits of one word of a row.
 struct digit {
     static constexpr std::size_t most_bits = 8;
     static constexpr std::size_t values = std::size_t{1} << most_bits;
@@ -26,7 +26,7 @@ struct digit {
     [[nodiscard]] std::size_t of(const auto& row) const { return words_of(row)[word] >> shift & mask; }
 };
 
-/// Of all bits in which rows differ, from the highest on.
+/// The digits that cover all bits in which the rows differ, most significant first.
 template <class Row>
 std::vector<digit> digits_of(std::span<const Row> rows) {
     auto differing = words_of(rows[0]);
@@ -48,10 +48,10 @@ std::vector<digit> digits_of(std::span<const Row> rows) {
     return digits;
 }
 
-/// Of rows that differ in these digits only.
+/// Sorts rows that differ only in these digits.
 template <class Row>
 void sort_by(std::span<const digit> digits, std::span<Row> rows) {
-    // Fewer are sorted in the time in which the values of a digit are counted.
+    // For fewer rows a comparison sort is faster than a histogram of the digit.
     if (rows.size() <= digit::values / 4) {
         std::ranges::sort(rows);
         return;
@@ -63,12 +63,12 @@ void sort_by(std::span<const digit> digits, std::span<Row> rows) {
     std::array<std::size_t, digit::values> next{};
     std::exclusive_scan(ends.begin(), ends.end(), next.begin(), std::size_t{0});
     std::inclusive_scan(ends.begin(), ends.end(), ends.begin());
-    // Each row goes to where it belongs, and the one that was there goes on.
+    // Cycle permutation: each row is swapped into its bucket, and the displaced row continues.
     for (std::size_t value = 0; value <= d.mask; ++value)
         while (next[value] < ends[value]) {
             Row row = rows[next[value]];
-            for (std::size_t of_row = d.of(row); of_row != value; of_row = d.of(row))
-                std::swap(row, rows[next[of_row]++]);
+            for (std::size_t target = d.of(row); target != value; target = d.of(row))
+                std::swap(row, rows[next[target]++]);
             rows[next[value]++] = row;
         }
     std::size_t begin = 0;
@@ -117,14 +117,14 @@ std::string to_cells(const aabb::triangle_intersection& common) {
 }
 
 void require_each_once(std::span<const aabb::index_pair> pairs, std::string_view where) {
-    if (const auto twice = std::ranges::adjacent_find(pairs); twice != pairs.end())
-        throw defect(fmt::format("{}: the pair {},{} was reported more than once", where, twice->a, twice->b));
+    if (const auto duplicate = std::ranges::adjacent_find(pairs); duplicate != pairs.end())
+        throw defect(fmt::format("{}: the pair {},{} was reported more than once", where, duplicate->a, duplicate->b));
 }
 
 void require_each_once(std::span<const aabb::contact> contacts, std::string_view where) {
-    if (const auto twice = std::ranges::adjacent_find(contacts); twice != contacts.end())
-        throw defect(fmt::format("{}: the contact {},{},{},{} was reported more than once", where, twice->a, twice->b,
-                                 twice->triangle_a, twice->triangle_b));
+    if (const auto duplicate = std::ranges::adjacent_find(contacts); duplicate != contacts.end())
+        throw defect(fmt::format("{}: the contact {},{},{},{} was reported more than once", where, duplicate->a,
+                                 duplicate->b, duplicate->triangle_a, duplicate->triangle_b));
 }
 
 number_table::number_table(const std::filesystem::path& file, std::string_view header)
