@@ -33,33 +33,33 @@ void run(CLI::App& program, int argc, char** argv) {
     flush_output();
 }
 
-/// A file opened later would take the place of a standard stream that is closed, and get what is printed.
-/// @throws aabb::input_error when it is standard output, which nothing can stand in for.
+/// Opens closed standard streams as /dev/null; else a file opened later would take their number and get their output.
+/// @throws aabb::input_error if standard output is closed.
 void require_standard_streams() {
     bool is_closed = false;
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (fcntl(stream, F_GETFD) >= 0) continue;
         is_closed |= stream == STDOUT_FILENO;
-        // Opening takes the lowest number that is free, which is this one.
+        // open() returns the lowest free number, which is that of this stream.
         if (open("/dev/null", O_RDWR) != stream) throw aabb::input_error("/dev/null cannot be opened");
     }
     if (is_closed) throw aabb::input_error("standard output is closed; nothing could be printed");
 }
 
-/// Says what went wrong, after what was printed before it.
+/// Prints the error after all earlier output.
 int fail(int status, const std::string& sentence) {
     try {
         flush_output();
     } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
-        // The sentence at hand is the earlier one.
+        // The first error is reported.
     }
     note(sentence);
     return status;
 }
 
 int main_of(int argc, char** argv) {
-    std::signal(SIGCHLD, SIG_DFL);  // inherited as ignored, it would keep waitpid from reporting a status
-    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is the error EPIPE, told apart from others in print()
+    std::signal(SIGCHLD, SIG_DFL);  // if inherited as ignored, waitpid could not report a status
+    std::signal(SIGPIPE, SIG_IGN);  // print() handles a closed pipe by its error EPIPE
     int status = 0;
     try {
         require_standard_streams();
@@ -70,7 +70,7 @@ int main_of(int argc, char** argv) {
         program.require_subcommand(0, 1);
         wrap_help(program);
         add_commands({program, status});
-        // Set last: commands added before do not inherit it.
+        // Set last, so that commands do not inherit it.
         program.footer(
             "With the script aabblab at the root of the source tree also:\n"
             "  test                        Build and run every test\n"
@@ -79,7 +79,7 @@ int main_of(int argc, char** argv) {
             "  paper                       The report of a reproduction as a PDF\n"
             "aabblab COMMAND --help tells the options of a command.\n"
             "Exit status: 0; 1 when a check failed, or collide --exit-code finds an intersection; 2 on bad input.");
-        // Before any command, but the one that measures them anew, or removes a file that cannot be read.
+        // Costs are loaded before every command except calibrate, which must run even if the file is malformed.
         program.parse_complete_callback([&] {
             if (!program.got_subcommand("calibrate")) use_kept_costs();
         });

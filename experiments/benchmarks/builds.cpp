@@ -16,7 +16,7 @@ namespace aabblab {
 
 namespace {
 
-/// As large as the meshes of `experiments/configs/peers/builds.toml`.
+/// The sizes are those of the meshes in `experiments/configs/peers/builds.toml`.
 constexpr std::array<std::string_view, 2> built_meshes = {"noise_sphere:triangles=75000",
                                                           "torus_knot:triangles=870000"};
 
@@ -28,26 +28,26 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
     Build by_two;
     by_two.threads = 2;
     const auto build = [&](const Build& by) {
-        const aabb::model<aabb::implicit_tree> made(m, aabb::built_by(by));
-        benchmark::DoNotOptimize(&made);
+        const aabb::model<aabb::implicit_tree> built(m, aabb::built_by(by));
+        benchmark::DoNotOptimize(&built);
     };
-    // Starts the threads. TBB counts the processors that it may use when it is first asked.
+    // Warm-up: starts the threads. TBB determines the available processors on its first use.
     build(by_two);
     std::vector<double> two_threads;
     std::vector<double> two_builds;
     for (auto _ : state) {
-        double all = 0;
+        double total = 0;
         for (int turn = 0; turn < turns; ++turn) {
-            // Threads linger after a build by two of them, so that comes last.
-            const double one = milliseconds_of([&] { build(by_one); });
-            two_builds.push_back(2 * one / milliseconds_of([&] {
+            // The build by two threads comes last, as its threads linger.
+            const double one_thread = milliseconds_of([&] { build(by_one); });
+            two_builds.push_back(2 * one_thread / milliseconds_of([&] {
                                      const std::jthread other([&] { build(by_one); });
                                      build(by_one);
                                  }));
-            two_threads.push_back(one / milliseconds_of([&] { build(by_two); }));
-            all += one;
+            two_threads.push_back(one_thread / milliseconds_of([&] { build(by_two); }));
+            total += one_thread;
         }
-        state.SetIterationTime(all / turns / 1000);
+        state.SetIterationTime(total / turns / 1000);
     }
     state.counters["two_threads"] = quartiles_of(two_threads).median;
     state.counters["two_builds"] = quartiles_of(two_builds).median;

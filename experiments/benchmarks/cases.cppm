@@ -1,4 +1,4 @@
-/// What benchmarks are run on: every strategy of a kind with the values of its parameters, and frames of a scene.
+/// The inputs of benchmarks: every strategy of a kind with the values of its parameters, and frames of a scene.
 export module aabblab.cases;
 
 import aabb.pipeline;
@@ -7,9 +7,9 @@ import aabblab.scenes;
 
 export namespace aabblab {
 
-/// Objects of a scene.
+/// Numbers of objects per scene.
 inline constexpr std::array<std::uint32_t, 3> sizes = {1'000, 10'000, 100'000};
-/// As the scene `brownian` takes it: the longest way of an object in a frame, over the mean extent.
+/// The parameter of the scene `brownian`: the maximum displacement of an object per frame, relative to the mean extent.
 inline constexpr std::array<std::string_view, 3> displacements = {"0.01", "0.1", "1"};
 
 /// Calls `run(type_list<Strategy>)` for each strategy of a list.
@@ -19,8 +19,7 @@ void for_each_strategy(aabb::type_list<Strategies...>, Run run) {
 }
 
 namespace detail {
-/// Every name of a choice and every one of a few whole numbers; of other parameters none, which leaves them at their
-/// default.
+/// All values of a parameter with named or few integer values; empty for other parameters, which keep their default.
 template <class Parameter>
 [[nodiscard]] std::vector<std::string> values_of(const Parameter& parameter) {
     constexpr std::size_t few = 8;
@@ -35,7 +34,7 @@ template <class Parameter>
 }
 }  // namespace detail
 
-/// A strategy with every combination of the values of its parameters.
+/// The strategy with every combination of its parameters' values.
 template <aabb::Strategy S>
 [[nodiscard]] std::vector<aabb::strategy_choice> choices_of() {
     std::vector<aabb::strategy_choice> choices{{std::string(S::name), {}}};
@@ -60,7 +59,7 @@ template <aabb::Strategy S>
     return aabb::make_strategy<S>(aabb::configured<S>(choice.settings));
 }
 
-/// The name of a benchmark, which a displacement is a part of where objects move.
+/// The name of a benchmark, with the displacement if objects move.
 [[nodiscard]] inline std::string case_name(std::string_view stage, const aabb::strategy_choice& choice,
                                            std::uint32_t objects, std::string_view displacement = {}) {
     std::string name = std::string(stage) + "/" + to_text(choice) + "/n:" + std::to_string(objects);
@@ -68,8 +67,8 @@ template <aabb::Strategy S>
     return name;
 }
 
-/// Drifting cubes.
-/// @param frames after the first one
+/// A scene of cubes in Brownian motion.
+/// @param frames the number of frames after the first one
 [[nodiscard]] inline std::unique_ptr<aabb::box_scene> drifting_boxes(std::uint32_t objects, std::uint32_t frames,
                                                                      std::string_view displacement) {
     return make_box_scene({"brownian",
@@ -79,7 +78,7 @@ template <aabb::Strategy S>
                            {}});
 }
 
-/// The projections of all boxes on an axis, sorted.
+/// The sorted projections of all boxes on an axis.
 [[nodiscard]] inline std::vector<aabb::projection> sorted_list(std::span<const aabb::box> boxes, int axis) {
     std::vector<aabb::projection> list;
     for (std::uint32_t id = 0; id < boxes.size(); ++id) list.push_back({boxes[id].min[axis], id});
@@ -99,12 +98,12 @@ public:
 
     [[nodiscard]] std::span<const aabb::box> boxes() const noexcept { return boxes_; }
     [[nodiscard]] const aabb::membership& objects() const noexcept { return objects_; }
-    /// What a strategy gets that asked for these axes.
+    /// The input of a strategy that requested these axes.
     [[nodiscard]] aabb::whole_subset with_lists(aabb::axis_set axes) const noexcept {
-        aabb::whole_subset all{boxes_, {}};
+        aabb::whole_subset whole{boxes_, {}};
         for (std::size_t k = 0; k < 3; ++k)
-            if (aabb::has_axis(axes, k)) all.lists[k] = lists_[k];
-        return all;
+            if (aabb::has_axis(axes, k)) whole.lists[k] = lists_[k];
+        return whole;
     }
 
 private:

@@ -23,9 +23,9 @@ auto* add_case(std::string_view stage, const aabb::strategy_choice& choice, std:
 
 using list_of_frame = std::vector<aabb::projection>;
 
-/// The lists of one axis, a frame each: the keys of the frame in the order of the frame before. With fewer frames,
-/// branch prediction would learn the outcomes of their comparisons.
-std::vector<list_of_frame> play_lists(std::uint32_t objects, std::string_view displacement) {
+/// The lists of one axis, one per frame: the keys of the frame in the order of the previous frame. With fewer frames,
+/// the branch predictor would learn the outcomes of the comparisons.
+std::vector<list_of_frame> lists_over_frames(std::uint32_t objects, std::string_view displacement) {
     constexpr std::uint32_t frames = 16;
     constexpr int axis = 0;
     const auto scene = drifting_boxes(objects, frames, displacement);
@@ -41,11 +41,11 @@ std::vector<list_of_frame> play_lists(std::uint32_t objects, std::string_view di
     return lists;
 }
 
-/// Kept for all sorts, and since a benchmark is called several times before its time is taken.
+/// Shared by all sorts, each of which Google Benchmark calls several times.
 const std::vector<list_of_frame>& lists_of(std::uint32_t objects, std::string_view displacement) {
-    static std::map<std::pair<std::uint32_t, std::string_view>, std::vector<list_of_frame>> known;
-    std::vector<list_of_frame>& lists = known[{objects, displacement}];
-    if (lists.empty()) lists = play_lists(objects, displacement);
+    static std::map<std::pair<std::uint32_t, std::string_view>, std::vector<list_of_frame>> cache;
+    std::vector<list_of_frame>& lists = cache[{objects, displacement}];
+    if (lists.empty()) lists = lists_over_frames(objects, displacement);
     return lists;
 }
 
@@ -63,7 +63,7 @@ void count_work(benchmark::State& state, Sort sort, std::span<const list_of_fram
     const auto per_element = [&](aabb::work what) { return static_cast<double>(counted[what]) / elements; };
     state.counters["inversions/n"] = per_element(aabb::work::inversions);
     state.counters["comparisons/n"] = per_element(aabb::work::comparisons);
-    // A sort that moves entries out of sight counts no moves.
+    // Library sorts do not count moves.
     if (counted[aabb::work::moves] > 0) state.counters["moves/n"] = per_element(aabb::work::moves);
 }
 
@@ -92,17 +92,17 @@ template <class Partition>
 void time_partition(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);
     const aabb::axis_set cut = partition.axes(frame.boxes(), frame.objects(), swept);
-    const aabb::whole_subset all = frame.with_lists(cut | swept);
+    const aabb::whole_subset whole = frame.with_lists(cut | swept);
     aabb::subset_lists subsets;
     aabb::no_counters none;
     for (auto _ : state) {
         benchmark::DoNotOptimize(partition.axes(frame.boxes(), frame.objects(), swept));
-        partition.fit(all);
-        subsets.distribute(partition, all, swept, none);
+        partition.fit(whole);
+        subsets.distribute(partition, whole, swept, none);
         benchmark::ClobberMemory();
     }
     aabb::work_counters counted;
-    subsets.distribute(partition, all, swept, counted);
+    subsets.distribute(partition, whole, swept, counted);
     state.counters["copies/n"] = static_cast<double>(counted[aabb::work::subset_copies]) / objects;
     state.counters["subsets"] = subsets.size();
     if constexpr (aabb::SegmentingPartition<Partition>) {
@@ -112,7 +112,7 @@ void time_partition(benchmark::State& state, Partition partition, std::uint32_t 
     state.counters["bytes"] = static_cast<double>(aabb::bytes_of(partition) + subsets.bytes());
 }
 
-/// A partition that cuts first brings boxes to columns bucket by bucket.
+/// Times a column partition, which distributes boxes to columns bucket by bucket.
 template <class Partition>
 void time_column_search(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);
@@ -142,8 +142,8 @@ template <aabb::ListSweep Sweep>
     return sweep.axes(frame.boxes(), frame.objects());
 }
 
-/// A sweep over several lists may walk every pair that overlaps on any of them, and all_axes does so for each block of
-/// its bits: with the largest scene that is no micro-benchmark.
+/// Whether a sweep uses a single list. A sweep of several lists may visit every pair that overlaps on any axis, and
+/// all_axes does so for each block of its bits, which takes too long for a micro-benchmark of the largest scene.
 template <aabb::ListSweep Sweep>
 [[nodiscard]] bool takes_one_list(const aabb::strategy_choice& choice) {
     Sweep sweep = made<Sweep>(choice);
@@ -153,38 +153,38 @@ template <aabb::ListSweep Sweep>
 template <aabb::ListSweep Sweep>
 void time_sweep(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     const sorted_frame frame(objects);
-    const aabb::whole_subset all = frame.with_lists(swept_axes(sweep, frame));
+    const aabb::whole_subset whole = frame.with_lists(swept_axes(sweep, frame));
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
-    sweep.sweep(all, pairs, counted);  // which grows the buffers too
+    sweep.sweep(whole, pairs, counted);  // also grows the buffers
     report(state, counted, pairs.size(), objects);
     aabb::no_counters none;
     for (auto _ : state) {
         pairs.clear();
-        sweep.sweep(all, pairs, none);
+        sweep.sweep(whole, pairs, none);
         benchmark::DoNotOptimize(pairs.data());
         benchmark::ClobberMemory();
     }
 }
 
-/// Over the columns of a whole frame, cut and filled before.
+/// Times a sweep over the columns of a whole frame, which are filled in advance.
 template <aabb::ColumnSweep Sweep>
 void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     const sorted_frame frame(objects);
     aabb::column_lists columns;
     aabb::bucket_sort sort;
     aabb::no_counters none;
-    constexpr auto any_number = std::numeric_limits<std::uint64_t>::max();
+    constexpr auto no_limit = std::numeric_limits<std::uint64_t>::max();
     const aabb::column_plan plan = aabb::columns_partition().plan(frame.boxes(), aabb::everywhere);
-    if (columns.fill(frame.boxes(), {}, plan, false, any_number, sort, none) != aabb::fill_result::whole)
+    if (columns.fill(frame.boxes(), {}, plan, false, no_limit, sort, none) != aabb::fill_result::whole)
         throw std::logic_error("the scene has a box that is not valid");
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
-    sweep.sweep(columns.block(), pairs, any_number, counted);
+    sweep.sweep(columns.block(), pairs, no_limit, counted);
     report(state, counted, pairs.size(), objects);
     for (auto _ : state) {
         pairs.clear();
-        benchmark::DoNotOptimize(sweep.sweep(columns.block(), pairs, any_number, none));
+        benchmark::DoNotOptimize(sweep.sweep(columns.block(), pairs, no_limit, none));
         benchmark::ClobberMemory();
     }
 }
@@ -197,7 +197,7 @@ template <aabb::CoherentSweep Sweep, class Sort, class... Sorts>
         return sort_for<Sweep>(aabb::type_list<Sorts...>{});
 }
 
-/// Plays frames forth and back, so that a step is always one frame long, however often.
+/// Alternates forwards and backwards through the frames, so that every step spans one frame for any number of steps.
 template <aabb::CoherentSweep Sweep>
 class moving_sweep {
 public:
@@ -209,7 +209,7 @@ public:
         objects_.settle();
     }
 
-    /// Until it is back at the first frame.
+    /// The number of steps until the first frame recurs.
     [[nodiscard]] std::size_t period() const noexcept { return 2 * (frames_.size() - 1); }
 
     template <aabb::CounterPolicy Counters>
@@ -236,7 +236,7 @@ void time_steps(benchmark::State& state, Sweep sweep, std::uint32_t objects, std
     moving_sweep<Sweep> moving(std::move(sweep), frames);
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
-    for (std::size_t i = 0; i < moving.period(); ++i) moving.step(pairs, counted);  // which grows the buffers too
+    for (std::size_t i = 0; i < moving.period(); ++i) moving.step(pairs, counted);  // also grows the buffers
     report(state, counted, pairs.size(), static_cast<double>(objects * moving.period()));
     aabb::no_counters none;
     for (auto _ : state) {

@@ -18,31 +18,31 @@ namespace aabblab {
 
 namespace {
 
-// What a walk over two meshes tests, so that each test can be made again by itself.
+// The tests of a traversal of two meshes, recorded so that each can be timed separately.
 
 using walked_tree = aabb::canonical_tree;
 
-/// A pair of nodes of which one is a leaf that has just been reached.
+/// A pair of nodes of which one is a newly reached leaf.
 struct reached_leaf {
     walked_tree::cursor a;
     walked_tree::cursor b;
-    std::uint32_t triangle;  ///< of the leaf
-    aabb::box other;         ///< of the other node, in A's frame: the walk had it in hand for the test before
+    std::uint32_t triangle;  ///< triangle of the leaf
+    aabb::box other;         ///< box of the other node in A's frame, which the traversal already has
 };
 
 /// Two leaves whose boxes overlap.
-struct met_triangles {
+struct leaf_pair {
     std::uint32_t a;
     std::uint32_t b;
     aabb::triangle3f b_image;  ///< in A's frame
 };
 
-/// A noise sphere and a torus knot of about 5,000 triangles each, half-way into each other as in the scene `mesh_pair`,
-/// and the pairs that `local_detection` tests between them: the same descent, with the tree `canonical`. So hits and
-/// misses mix as they do there, and boxes are about as large as those that they meet.
+/// The pairs that `local_detection` tests between a noise sphere and a torus knot of about 5,000 triangles each, which
+/// penetrate each other as in the scene `mesh_pair`. The traversal is the same, with the tree `canonical`, so the mix
+/// of hits and misses and the relative sizes of boxes are representative.
 class walked_pairs {
 public:
-    /// @throws std::logic_error when local detection has come to test other pairs
+    /// @throws std::logic_error if local_detection no longer tests these pairs
     walked_pairs() {
         walk();
         aabb::local_detection<walked_tree, aabb::exact_triangle, aabb::work_counters> detection;
@@ -58,10 +58,10 @@ public:
 
     [[nodiscard]] const rotated_boxes& rotated() const noexcept { return rotated_; }
 
-    /// Leaves of A, each with the node of B, a leaf or not, that it is tested against when it is reached; and of B.
+    /// Leaves of A, each with the inner or leaf node of B that it is tested against first; and vice versa.
     [[nodiscard]] const std::vector<reached_leaf>& leaves_of_a() const noexcept { return leaves_of_a_; }
     [[nodiscard]] const std::vector<reached_leaf>& leaves_of_b() const noexcept { return leaves_of_b_; }
-    [[nodiscard]] const std::vector<met_triangles>& triangles() const noexcept { return triangles_; }
+    [[nodiscard]] const std::vector<leaf_pair>& triangles() const noexcept { return triangles_; }
 
 private:
     using cursor = walked_tree::cursor;
@@ -114,7 +114,7 @@ private:
 
     void meet(std::uint32_t a, std::uint32_t b) { triangles_.push_back({a, b, to_a_(b_.triangles().triangle(b))}); }
 
-    /// By which the walk chooses the node to open.
+    /// The traversal opens the node with the longer box.
     [[nodiscard]] static float length(const aabb::box& b) noexcept {
         const int k = aabb::longest_axis(b);
         return b.max[k] - b.min[k];
@@ -132,20 +132,20 @@ private:
     std::vector<node_pair> open_;
     std::vector<reached_leaf> leaves_of_a_;
     std::vector<reached_leaf> leaves_of_b_;
-    std::vector<met_triangles> triangles_;
+    std::vector<leaf_pair> triangles_;
     std::size_t box_tests_ = 0;
 };
 
-/// Kept for all benchmarks, and since one is called several times before its time is taken.
+/// Shared by all benchmarks, each of which Google Benchmark calls several times.
 const walked_pairs& walked() {
     static const walked_pairs pairs;
     return pairs;
 }
 
-// How it is timed.
+// Timing.
 
-/// The pairs in random order, and again in others, 65,536 in all. A processor learns the answers to 5,000 tests by
-/// heart when they come in one order again and again, and then a box test takes a third of its time.
+/// Repeats the pairs in different random orders, 65,536 in total. In a fixed order, the branch predictor memorises the
+/// outcomes of 5,000 tests, and then a box test takes a third of its time.
 template <class Pair>
 std::vector<Pair> in_random_order(std::vector<Pair> pairs) {
     constexpr std::size_t count = 1 << 16;
@@ -159,10 +159,10 @@ std::vector<Pair> in_random_order(std::vector<Pair> pairs) {
     return order;
 }
 
-/// An iteration is one test, and the branch on its answer with which a walk goes on or turns back: what the processor
-/// loses where it guesses wrongly is a part of what the test costs.
-/// @param test with `[[gnu::always_inline]]`: it is called twice here, and the compiler would make it a function of its
-/// own, which a walk does not call.
+/// An iteration is one test and the branch on its result, as in a traversal: the cost of mispredicted branches is part
+/// of the cost of the test.
+/// @param test must be `[[gnu::always_inline]]`, as in a traversal: it is called twice here, and would otherwise be an
+/// out-of-line function
 template <class Pair, class Test>
 void time_tests(benchmark::State& state, const std::vector<Pair>& pairs, const Test& test) {
     std::size_t hits = 0;
@@ -171,12 +171,12 @@ void time_tests(benchmark::State& state, const std::vector<Pair>& pairs, const T
         if (test(pairs[next])) benchmark::DoNotOptimize(++hits);
         if (++next == pairs.size()) next = 0;
     }
-    const auto all = static_cast<double>(pairs.size());
-    state.counters["hits"] = static_cast<double>(std::ranges::count_if(pairs, test)) / all;
+    const auto count = static_cast<double>(pairs.size());
+    state.counters["hits"] = static_cast<double>(std::ranges::count_if(pairs, test)) / count;
 }
 
-/// A leaf of B that has just been reached. What is tested of it is read, in B's frame, and carried into A's: the box in
-/// its tree becomes the box around it as it stands there, the triangle in its mesh three other corners.
+/// The operand is a leaf of B. Its box or triangle is read in B's frame and transformed into A's: the box becomes the
+/// AABB of its image, and the corners of the triangle are transformed.
 struct leaf_of_b {
     static constexpr std::string_view suffix;
     const walked_pairs& at;
@@ -188,7 +188,7 @@ struct leaf_of_b {
     }
 };
 
-/// A leaf of A that has just been reached. What is tested of it is read; there is nothing to carry.
+/// The operand is a leaf of A. Its box or triangle is read, and needs no transform.
 struct leaf_of_a {
     static constexpr std::string_view suffix = "/frame:a";
     const walked_pairs& at;
@@ -200,7 +200,7 @@ struct leaf_of_a {
     }
 };
 
-/// In a tree with leaf boxes.
+/// The test of trees that store leaf boxes.
 template <class Leaf>
 struct box_test {
     static constexpr std::string_view name = "test/box";
@@ -211,7 +211,7 @@ struct box_test {
     }
 };
 
-/// With `leaf_test=triangle_box`.
+/// The test of `leaf_test=triangle_box`.
 template <class Leaf>
 struct triangle_box_test {
     static constexpr std::string_view name = "test/triangle_box";
@@ -222,7 +222,7 @@ struct triangle_box_test {
     }
 };
 
-/// With `leaf_test=triangle_aabb`; the making of the box is included.
+/// The test of `leaf_test=triangle_aabb`, including the computation of the box.
 template <class Leaf>
 struct triangle_aabb_test {
     static constexpr std::string_view name = "test/triangle_aabb";
@@ -233,8 +233,8 @@ struct triangle_aabb_test {
     }
 };
 
-/// Möller's original of `triangle_box` (Akenine-Möller 2001), without the margin that keeps rounding from parting what
-/// touches.
+/// Möller's original of `triangle_box` (Akenine-Möller 2001), without the margin that prevents false negatives due to
+/// rounding.
 template <class Leaf>
 struct triangle_box_moller_test {
     static constexpr std::string_view name = "test/triangle_box_moller";
@@ -246,7 +246,7 @@ struct triangle_box_moller_test {
     }
 };
 
-/// The boxes of both trees as they stand: nothing is carried or boxed anew, whichever is the leaf. Six axes.
+/// The separating axis test of both boxes in their own frames, without a new AABB, with six axes.
 template <class Leaf>
 struct rotated_box_6_test {
     static constexpr std::string_view name = "test/rotated_box_6";
@@ -258,7 +258,7 @@ struct rotated_box_6_test {
     }
 };
 
-/// The same with all fifteen.
+/// The same with all fifteen axes.
 template <class Leaf>
 struct rotated_box_15_test {
     static constexpr std::string_view name = "test/rotated_box_15";
@@ -272,17 +272,17 @@ struct rotated_box_15_test {
 };
 
 [[nodiscard]] std::vector<std::uint32_t> triangles_below(const aabb::model<walked_tree>& m, walked_tree::cursor node) {
-    std::vector<std::uint32_t> found;
+    std::vector<std::uint32_t> triangles;
     std::vector<walked_tree::cursor> open{node};
     while (!open.empty()) {
         const walked_tree::cursor at = open.back();
         open.pop_back();
         if (m.tree().is_leaf(at))
-            found.push_back(m.tree().triangle(at));
+            triangles.push_back(m.tree().triangle(at));
         else
             for (const walked_tree::cursor child : m.tree().children(at, m.triangles())) open.push_back(child);
     }
-    return found;
+    return triangles;
 }
 
 [[nodiscard]] bool any_intersect(const walked_pairs& at, const reached_leaf& p) {
@@ -294,29 +294,30 @@ struct rotated_box_15_test {
     return false;
 }
 
-/// How often the test says no to nodes below which triangles intersect.
+/// The number of negative tests of nodes whose triangles intersect.
 template <class Test>
-[[nodiscard]] std::size_t lost_by(const Test& test) {
+[[nodiscard]] std::size_t false_negatives_of(const Test& test) {
     return static_cast<std::size_t>(std::ranges::count_if(
         test.leaf.pairs(), [&](const reached_leaf& p) { return !test(p) && any_intersect(test.leaf.at, p); }));
 }
 
 template <class Test>
-constexpr bool may_lose = requires { requires !Test::exact; };
+constexpr bool may_miss = requires { requires !Test::exact; };
 
-/// What a test loses that must not lose anything is an error; of one that may it is reported.
-/// @throws std::logic_error
+/// Times the test. Its false negatives are reported if the test is inexact.
+/// @throws std::logic_error if an exact test has false negatives
 template <class Test>
 void time_leaf_test(benchmark::State& state) {
     const Test test{{walked()}};
-    static const std::size_t lost = lost_by(test);
-    if (lost > 0 && !may_lose<Test>)
+    static const std::size_t false_negatives = false_negatives_of(test);
+    if (false_negatives > 0 && !may_miss<Test>)
         throw std::logic_error(std::string(Test::name) + " says no to triangles that intersect");
     static const std::vector<reached_leaf> pairs = in_random_order(test.leaf.pairs());
     time_tests(state, pairs, test);
-    // Not how many are lost: of a zero in every repetition Google Benchmark tells a spread that is no number.
-    if (may_lose<Test>)
-        state.counters["kept"] = 1 - static_cast<double>(lost) / static_cast<double>(test.leaf.pairs().size());
+    // Reports the complement, as Google Benchmark computes a NaN spread for a counter that is always zero.
+    if (may_miss<Test>)
+        state.counters["kept"] =
+            1 - static_cast<double>(false_negatives) / static_cast<double>(test.leaf.pairs().size());
 }
 
 template <template <class> class Test, class Leaf>
@@ -335,24 +336,24 @@ void add_all() {
     add<triangle_aabb_test, Leaf>();
 }
 
-/// The triangle of B is carried into A's frame for the first of the triangles of A that it meets …
+/// Transforms the triangle of B into A's frame, as for the first triangle of A that it is tested with …
 template <class Triangle>
 struct carried_test {
     Triangle triangle;
     const walked_pairs& at;
 
-    [[nodiscard, gnu::always_inline]] bool operator()(const met_triangles& p) const {
+    [[nodiscard, gnu::always_inline]] bool operator()(const leaf_pair& p) const {
         return triangle.intersects(at.a().triangles().triangle(p.a), at.to_a()(at.b().triangles().triangle(p.b)));
     }
 };
 
-/// … and kept for those that follow.
+/// … or reuses its image, as for all others.
 template <class Triangle>
 struct kept_test {
     Triangle triangle;
     const walked_pairs& at;
 
-    [[nodiscard, gnu::always_inline]] bool operator()(const met_triangles& p) const {
+    [[nodiscard, gnu::always_inline]] bool operator()(const leaf_pair& p) const {
         return triangle.intersects(at.a().triangles().triangle(p.a), p.b_image);
     }
 };
@@ -360,7 +361,7 @@ struct kept_test {
 template <class Test>
 void add(const std::string& name, const aabb::strategy_choice& choice) {
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-        static const std::vector<met_triangles> pairs = in_random_order(walked().triangles());
+        static const std::vector<leaf_pair> pairs = in_random_order(walked().triangles());
         time_tests(state, pairs, Test{made<decltype(Test::triangle)>(choice), walked()});
     });
 }

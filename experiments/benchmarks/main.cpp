@@ -12,8 +12,8 @@ namespace {
 
 constexpr int bad_input = 2;
 
-/// Google Benchmark prints its help and ends with 0 on a value that an option does not take, too.
-void refuse_value() {
+/// Replaces the default handler, which prints the help and exits with 0 even on an invalid value.
+void reject_value() {
     std::cerr << "aabblab: benchmark: an option does not take its value; see ./aabblab benchmark --help\n";
     std::exit(bad_input);
 }
@@ -21,14 +21,14 @@ void refuse_value() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    // Short by default, so that all of them take some 90 s; the caller's own time comes later and wins.
+    // The default makes all benchmarks take about 90 s; a time on the command line follows and overrides it.
     char min_time[] = "--benchmark_min_time=" AABBLAB_MIN_TIME;
     std::vector<char*> arguments(argv, argv + argc);
     arguments.insert(arguments.begin() + 1, min_time);
     arguments.push_back(nullptr);
     int count = argc + 1;
     const bool wants_help = std::any_of(argv, argv + argc, [](std::string_view a) { return a == "--help"; });
-    benchmark::Initialize(&count, arguments.data(), wants_help ? benchmark::PrintDefaultHelp : refuse_value);
+    benchmark::Initialize(&count, arguments.data(), wants_help ? benchmark::PrintDefaultHelp : reject_value);
     if (count > 1) {
         std::cerr << "aabblab: benchmark: cannot use '" << arguments[1] << "'; see ./aabblab benchmark --help\n";
         return bad_input;
@@ -41,10 +41,10 @@ int main(int argc, char** argv) {
     aabblab::add_leaf_test_benchmarks();
     aabblab::add_triangle_test_benchmarks();
     try {
-        // It says itself that nothing matches a filter.
+        // Google Benchmark itself reports that no benchmark matches a filter.
         return benchmark::RunSpecifiedBenchmarks() == 0 ? bad_input : EXIT_SUCCESS;
-    } catch (const std::logic_error& wrong) {  // what is to be timed gives wrong answers
-        std::cerr << "aabblab: benchmark: " << wrong.what() << '\n';
+    } catch (const std::logic_error& error) {  // a benchmarked function gives wrong results
+        std::cerr << "aabblab: benchmark: " << error.what() << '\n';
         return EXIT_FAILURE;
     }
 }

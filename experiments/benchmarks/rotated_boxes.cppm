@@ -1,33 +1,33 @@
-/// Boxes of two trees held against each other as they stand, one of them rotated: what trees of axis-aligned boxes were
-/// tested by when the paper's references were written, in place of a new box around the rotated one.
+/// Separating axis tests between a box and a rotated box. AABB trees used them when the paper's references were
+/// written, instead of an overlap test with the AABB of the rotated box.
 export module aabblab.rotated_boxes;
 
 import aabb.geometry;
 import aabb.std;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Evaluates sums and products exactly as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabblab {
 
-/// Three numbers for a vector unit, in double as boxes are carried (`relative_pose`), and nothing.
+/// A SIMD vector of three doubles, the precision in which `relative_pose` transforms boxes, and padding.
 using three = double __attribute__((vector_size(32)));
 
-/// Two boxes of one pair of nodes: how far B's centre is from A's and half their extents, each in its own frame.
+/// The boxes of a pair of nodes: the vector from A's centre to B's, and the half extents, each in its own frame.
 struct box_pair {
     three between;  ///< in A's frame
     three half_a;
     three half_b;
 };
 
-/// How B's frame stands in A's, made once for two meshes, and the separating axes of their boxes. A test says yes
-/// whenever the boxes hold triangles that intersect: images of vertices are rounded to float once (`relative_pose`), by
-/// at most 2^-24 of the greatest coordinate that B has in A's frame; a margin of four times that covers it along any
-/// axis of length 1 or less, as all of these are, and all roundings in double.
+/// The transform from B's frame to A's, computed once per pair of meshes, and the separating axis tests. The tests are
+/// conservative: `relative_pose` rounds the image of a vertex to float once, with an error of at most 2^-24 of B's
+/// greatest coordinate in A's frame. A margin of four times that bounds this error along any axis of length at most 1,
+/// which holds for all axes here, and all rounding errors in double.
 class rotated_boxes {
 public:
-    /// @param reach box of the vertices of B in B's frame
-    rotated_boxes(const aabb::pose& a, const aabb::pose& b, const aabb::box& reach) {
+    /// @param b_bounds the bounds of B's vertices in B's frame
+    rotated_boxes(const aabb::pose& a, const aabb::pose& b, const aabb::box& b_bounds) {
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 shift_[i] +=
@@ -40,33 +40,33 @@ public:
             b_magnitudes_[i] = magnitude(b_axes_[i]);
             a_magnitudes_[i] = magnitude(a_axes_[i]);
         }
-        const aabb::box seen = aabb::relative_pose(a, b, reach)(reach);
+        const aabb::box image = aabb::relative_pose(a, b, b_bounds)(b_bounds);
         double furthest = 0;
         for (int k = 0; k < 3; ++k)
-            furthest = std::max({furthest, std::abs(double{seen.min[k]}), std::abs(double{seen.max[k]})});
+            furthest = std::max({furthest, std::abs(double{image.min[k]}), std::abs(double{image.max[k]})});
         for (int k = 0; k < 3; ++k) margin_[k] = furthest * 0x1p-22;
     }
 
-    /// Reads two boxes, one of A in A's frame and one of B in B's.
+    /// Prepares a box of A, in A's frame, and one of B, in B's frame.
     [[nodiscard, gnu::always_inline]] inline box_pair pair_of(const aabb::box& a, const aabb::box& b) const noexcept {
         const three low_a = doubles(a.min);
         const three high_a = doubles(a.max);
         const three low_b = doubles(b.min);
         const three high_b = doubles(b.max);
         const three centre_b = (low_b + high_b) * 0.5;
-        const three seen = shift_ + b_axes_[0] * centre_b[0] + b_axes_[1] * centre_b[1] + b_axes_[2] * centre_b[2];
-        return {seen - (low_a + high_a) * 0.5, (high_a - low_a) * 0.5, (high_b - low_b) * 0.5};
+        const three image = shift_ + b_axes_[0] * centre_b[0] + b_axes_[1] * centre_b[1] + b_axes_[2] * centre_b[2];
+        return {image - (low_a + high_a) * 0.5, (high_a - low_a) * 0.5, (high_b - low_b) * 0.5};
     }
 
-    /// The normals of the faces of both (van den Bergen 1997, who does without the others).
+    /// Tests the face normals of both boxes, the only axes in van den Bergen 1997.
     [[nodiscard, gnu::always_inline]] inline bool meet_by_faces(const box_pair& p) const noexcept {
-        const three reach_a = p.half_a + weighed(b_magnitudes_, p.half_b) + margin_;
-        if (any_beyond(p.between, reach_a)) return false;
-        const three reach_b = p.half_b + weighed(a_magnitudes_, p.half_a) + margin_;
-        return !any_beyond(weighed(a_axes_, p.between), reach_b);
+        const three radius_a = p.half_a + weighed(b_magnitudes_, p.half_b) + margin_;
+        if (any_beyond(p.between, radius_a)) return false;
+        const three radius_b = p.half_b + weighed(a_magnitudes_, p.half_a) + margin_;
+        return !any_beyond(weighed(a_axes_, p.between), radius_b);
     }
 
-    /// The nine products of an edge of A and one of B, with which there are fifteen (Gottschalk, Lin and Manocha 1996).
+    /// Tests the nine cross products of edges, which complete the fifteen axes (Gottschalk, Lin and Manocha 1996).
     [[nodiscard, gnu::always_inline]] inline bool meet_by_edges(const box_pair& p) const noexcept {
         return !(edge_separates<0>(p) || edge_separates<1>(p) || edge_separates<2>(p));
     }
@@ -79,14 +79,14 @@ private:
     [[nodiscard]] static inline three weighed(const std::array<three, 3>& axes, const three& by) noexcept {
         return axes[0] * by[0] + axes[1] * by[1] + axes[2] * by[2];
     }
-    [[nodiscard]] static inline bool any_beyond(const three& at, const three& reach) noexcept {
-        const auto apart = (at > reach) | (-at > reach);
-        return (apart[0] | apart[1] | apart[2]) != 0;
+    [[nodiscard]] static inline bool any_beyond(const three& distance, const three& radius) noexcept {
+        const auto separated = (distance > radius) | (-distance > radius);
+        return (separated[0] | separated[1] | separated[2]) != 0;
     }
     [[nodiscard]] static inline three yzx(const three& v) noexcept { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
     [[nodiscard]] static inline three zxy(const three& v) noexcept { return __builtin_shufflevector(v, v, 2, 0, 1, 3); }
 
-    /// The edge of B along its axis J with each edge of A.
+    /// Tests the cross products of B's axis J with each edge of A.
     template <std::size_t J>
     [[nodiscard]] inline bool edge_separates(const box_pair& p) const noexcept {
         constexpr std::size_t next = (J + 1) % 3;
@@ -94,16 +94,16 @@ private:
         const three& axis = b_axes_[J];
         const three& size = b_magnitudes_[J];
         const three at = yzx(axis) * zxy(p.between) - zxy(axis) * yzx(p.between);
-        const three reach_a = yzx(size) * zxy(p.half_a) + zxy(size) * yzx(p.half_a);
-        const three reach_b = b_magnitudes_[next] * p.half_b[last] + b_magnitudes_[last] * p.half_b[next];
-        return any_beyond(at, reach_a + reach_b + margin_);
+        const three radius_a = yzx(size) * zxy(p.half_a) + zxy(size) * yzx(p.half_a);
+        const three radius_b = b_magnitudes_[next] * p.half_b[last] + b_magnitudes_[last] * p.half_b[next];
+        return any_beyond(at, radius_a + radius_b + margin_);
     }
 
     std::array<three, 3> b_axes_{};  // in A's frame
     std::array<three, 3> a_axes_{};  // in B's frame
     std::array<three, 3> b_magnitudes_{};
     std::array<three, 3> a_magnitudes_{};
-    three shift_{};  // of the origin of B's frame, in A's
+    three shift_{};  // the origin of B's frame in A's
     three margin_{};
 };
 

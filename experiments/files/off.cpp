@@ -11,7 +11,7 @@ namespace {
 /// the end of the line shows where they end.
 enum class arrangement : std::uint8_t {
     lines,       ///< each vertex and each face has its own line, and extra values at its end are skipped
-    face_lines,  ///< only faces begin on new lines, and colours may follow them
+    face_lines,  ///< line ends are insignificant, except that each face begins a line and colours may follow it
     words        ///< line ends are insignificant, and faces have no colours
 };
 

@@ -10,7 +10,7 @@ template <class Real>
 Real parse_number(const std::string& text) {
     char* end = nullptr;
     Real value;
-    // strtof and strtod round correctly; a double rounded again to float would not always be the nearest float.
+    // strtof and strtod round correctly; rounding a double again to float may miss the nearest float.
     if constexpr (std::same_as<Real, float>)
         value = std::strtof(text.c_str(), &end);
     else
@@ -47,7 +47,7 @@ double seconds_of(const std::string& text, std::string_view to_do) {
     try {
         if (const auto seconds = parse_number<double>(text); seconds > 0 && seconds <= most) return seconds;
     } catch (const aabb::input_error&) {  // NOLINT(bugprone-empty-catch)
-        // What is expected says more.
+        // The message below says what is expected, which is more helpful.
     }
     throw aabb::input_error("--seconds is how long to " + std::string(to_do) +
                             ": a number above 0, at most 1,000,000, not '" + text + "'");
@@ -56,7 +56,7 @@ double seconds_of(const std::string& text, std::string_view to_do) {
 std::vector<std::string> split_numbers(std::string_view line) {
     constexpr std::string_view blanks = " \t\r";
     std::vector<std::string> words;
-    bool after_comma = true;  // as it is at the start: no comma may follow
+    bool after_comma = true;  // no comma may begin the line
     while (true) {
         line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
         if (line.empty()) break;
@@ -76,21 +76,21 @@ std::vector<std::string> split_numbers(std::string_view line) {
 
 namespace {
 
-/// Also where neither is there yet.
+/// Also compares paths to files that do not exist yet.
 bool are_same_path(const std::string& a, const std::string& b) {
-    std::error_code ignored;  // a file that is not there is no other's
+    std::error_code ignored;  // a file that does not exist is no conflict
     return std::filesystem::equivalent(a, b, ignored) ||
            std::filesystem::weakly_canonical(a) == std::filesystem::weakly_canonical(b);
 }
 
-/// A shape, or a file that ends as meshes do; other files are motions.
+/// Whether the name is a shape or a file with a mesh extension; other files are motions.
 bool names_mesh(const std::string& name) {
     if (!is_mesh(name, {})) return false;
     const std::vector<std::string> endings = mesh_endings();
     return !std::filesystem::exists(name) || std::ranges::find(endings, mesh_ending_of(name)) != endings.end();
 }
 
-constexpr std::size_t most_poses = 10'000'000;  // as of a motion, for what a pipe may go on with
+constexpr std::size_t most_poses = 10'000'000;  // as in motions; a pipe could otherwise deliver poses without end
 
 aabb::pose parse_pose(const std::vector<std::string>& words) {
     if (words.size() != 12)
@@ -121,21 +121,21 @@ aabb::pose pose_of(const std::optional<std::string>& text, const char* option) {
 }
 
 given_poses read_poses(const std::string& file) {
-    given_poses read{{}, file, {}};
+    given_poses parsed{{}, file, {}};
     for (line_stream lines(file); lines.next();) {
         try {
             const std::vector<std::string> words = split_numbers(without_comment(lines.line()));
             if (words.empty()) continue;
-            if (read.poses.size() == most_poses)
+            if (parsed.poses.size() == most_poses)
                 throw aabb::input_error(fmt::format("there are more than {} poses", most_poses));
-            read.poses.push_back(parse_pose(words));
-            read.lines.push_back(lines.number());
+            parsed.poses.push_back(parse_pose(words));
+            parsed.lines.push_back(lines.number());
         } catch (const aabb::input_error& error) {
             lines.fail(error.what());
         }
     }
-    if (read.poses.empty()) throw aabb::input_error(file + ": has no poses");
-    return read;
+    if (parsed.poses.empty()) throw aabb::input_error(file + ": has no poses");
+    return parsed;
 }
 
 std::vector<aabb::mesh> read_meshes(const std::vector<std::string>& names) {
@@ -157,7 +157,7 @@ void note_left_out(const std::vector<std::string>& names, const std::filesystem:
 }
 
 void require_other_file(const std::string& out, const std::string& input) {
-    std::error_code ignored;  // a file that is not there is no other's
+    std::error_code ignored;  // a file that does not exist is no conflict
     if (std::filesystem::equivalent(out, input, ignored))
         throw aabb::input_error(out + " would write over " + input + ", which this command reads");
 }
@@ -167,7 +167,7 @@ void require_no_mesh(const std::string& out, const std::vector<std::string>& mes
     for (const std::string& name : meshes) names.emplace_back(name_without_order(name));
     for (const std::string& name : names) require_other_file(out, name);
     for (const std::string& name : names) require_other_file(out, (data_folder() / name).string());
-    // A file of that name here would from now on hide the one in the data folder.
+    // A file with this name in the working directory would hide the one in the data folder from now on.
     for (const std::string& name : names)
         if (std::filesystem::weakly_canonical(name) == std::filesystem::weakly_canonical(out))
             throw aabb::input_error(out + " is the name of a mesh that this command reads from the data folder");

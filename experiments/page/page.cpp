@@ -10,7 +10,7 @@ namespace aabblab {
 
 namespace {
 
-/// What a script would be needed for: a picture in the page itself, as its own address.
+/// A data: URI, which embeds the picture in the page without a script.
 std::string address_of(const std::string& svg) {
     constexpr std::string_view digits = "0123456789ABCDEF";
     std::string address = "data:image/svg+xml,";

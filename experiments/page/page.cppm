@@ -1,4 +1,4 @@
-/// Reports, as one page of HTML that needs no other file, light or dark as its reader has it, and as Markdown.
+/// Builds a report both as a self-contained HTML page, in the reader's light or dark mode, and as Markdown.
 export module aabblab.page;
 
 import aabb.std;
@@ -11,22 +11,22 @@ export namespace aabblab {
 
 class page {
 public:
-    /// @param style CSS, beside what all pages have
+    /// @param style CSS in addition to that of all pages
     explicit page(std::string_view title, std::string_view style = "");
 
     void title(std::string_view text);
-    /// @param id by which links call the section
+    /// @param id the target of links to the section
     void heading(std::string_view text, std::string_view id = "");
-    /// @param kind a class of the style: "soft"
+    /// @param kind a CSS class, such as "soft"
     void paragraph(std::string_view text, std::string_view kind = "");
     void add(const table& t);
     void add(const named_table& t);
-    /// Markdown takes its picture from the folder `figures`, where `draw` leaves it.
+    /// Markdown refers to the picture in the folder `figures`, where `draw` writes it.
     void add(const figure& f);
-    /// What the reader of a page unfolds.
+    /// Adds a collapsed section.
     void folded(std::string_view title, const named_table& t);
 
-    /// In one of the two alone, as it is.
+    /// Adds text verbatim to only one of the two formats.
     void add_html(std::string_view text) { html_ += text; }
     void add_markdown(std::string_view text) { markdown_ += text; }
     void folded(std::string_view title, std::string_view html);
