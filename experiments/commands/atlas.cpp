@@ -12,7 +12,7 @@ namespace {
 
 struct atlas_request {
     std::optional<std::string> out;
-    std::optional<std::string> source;  ///< a folder or archive to judge, in place of the folder of `out`
+    std::optional<std::string> source;  ///< the folder or archive to judge instead of the folder `out`
     bool quick = false;
     bool judge = false;
 
@@ -30,16 +30,16 @@ int run(const atlas_request& request) {
     const std::filesystem::path out = request.folder();
     std::vector<std::string> failures;
     if (!request.judge) failures = measure_atlas(out, request.quick);
-    const std::vector<std::string> named(request.source ? 1 : 0, request.source.value_or(""));
-    source_list sources(named);
-    if (named.empty()) sources.add(out);
+    const std::vector<std::string> names(request.source ? 1 : 0, request.source.value_or(""));
+    source_list sources(names);
+    if (names.empty()) sources.add(out);
     const results_source& source = sources.all().front();
     std::vector<atlas_scene> atlas;
     (void)sources.with_names_of_user([&] {
         verify_record(source.folder);
         std::filesystem::path parts = source.folder;
         atlas = measured_atlas(parts);
-        // Of a reproduction it is that of its report.
+        // The results of a reproduction have the atlas in the folder of their report.
         if (atlas.empty()) atlas = measured_atlas(parts = folder_of_atlas(source.folder));
         if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + source.name);
         for (const std::string& missing : unfinished_parts(parts)) note(missing);

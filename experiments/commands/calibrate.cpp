@@ -25,23 +25,23 @@ std::filesystem::path file_of(const calibrate_request& request) {
     return file;
 }
 
-table table_of(const calibration& found) {
+table table_of(const calibration& fit) {
     table t{{{"cost", false}, {"unit", false}, {"shipped"}, {"here"}, {"95 %"}}, {}};
     for (std::size_t k = 0; k < aabb::cost_infos.size(); ++k) {
         const aabb::cost_info& cost = aabb::cost_infos[k];
-        const auto [low, high] = found.estimates[k].range();
+        const auto [low, high] = fit.estimates[k].range();
         t.rows.push_back(
             {std::string(cost.name), std::string(cost.unit), fmt::format("{:.3g}", aabb::cost_model{}.*cost.value),
-             fmt::format("{:.3g}", found.costs.*cost.value), fmt::format("{:.3g}-{:.3g}", std::max(0.0, low), high)});
+             fmt::format("{:.3g}", fit.costs.*cost.value), fmt::format("{:.3g}-{:.3g}", std::max(0.0, low), high)});
     }
     return t;
 }
 
-table checks_of(const calibration& found) {
+table checks_of(const calibration& fit) {
     table t{{{"predicted in other scenes", false}, {"times"}, {"median off by"}, {"worst"}}, {}};
-    for (const group_check& one : found.checks)
-        t.rows.push_back({std::string(one.group), std::to_string(one.found.observations),
-                          fmt::format("{:.2f}", one.found.median), fmt::format("{:.2f}", one.found.worst)});
+    for (const group_check& check : fit.checks)
+        t.rows.push_back({std::string(check.group), std::to_string(check.found.observations),
+                          fmt::format("{:.2f}", check.found.median), fmt::format("{:.2f}", check.found.worst)});
     return t;
 }
 
@@ -51,21 +51,21 @@ void calibrate(const calibrate_request& request) {
         return print(std::filesystem::remove(file) ? "removed " + file.string() + ": costs are as shipped\n"
                                                    : file.string() + " is not there: costs are as shipped\n");
     require_fine_clock();
-    // What is no file of costs is somebody's else.
+    // An existing file is overwritten only if it is a file of costs.
     if (request.out && std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) > 0)
         (void)read_costs(file);
-    // Opened before anything is measured, so that a file that cannot be written costs no time.
+    // Opened before measuring, so that an output error is reported without delay.
     if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
     output_file out(file);
     const idlest_processor here;
-    const calibration found =
+    const calibration fit =
         request.quick ? calibrate(calibration_size::quick, 12) : calibrate(calibration_size::full, 95);
-    const kept_costs kept = costs_here(found.costs);
+    const kept_costs kept = costs_here(fit.costs);
     out.write(text_of(kept));
     out.commit();
     print(kept.processor + ", " + kept.instructions + "; times as processor time\n\n");
-    print(to_text(table_of(found), output_width()) + "\n");
-    print(to_text(checks_of(found), output_width()) + "\n");
+    print(to_text(table_of(fit), output_width()) + "\n");
+    print(to_text(checks_of(fit), output_width()) + "\n");
     print("wrote " + file.string() +
           (request.out ? "\n" : ", which is used from now on;\naabblab calibrate --reset removes it\n"));
 }

@@ -24,7 +24,7 @@ struct classify_request {
 
 /// @param words 18 numbers: the corners of one triangle, then of the other
 template <class Real>
-std::string answer_of(const aabb::triangle_test& test, const std::vector<std::string>& words, bool geometry) {
+std::string result_of(const aabb::triangle_test& test, const std::vector<std::string>& words, bool geometry) {
     if (words.size() != 18)
         throw aabb::input_error(fmt::format("expected 18 numbers, two triangles, not {}", words.size()));
     aabb::triangle3<Real> triangles[2];
@@ -34,17 +34,17 @@ std::string answer_of(const aabb::triangle_test& test, const std::vector<std::st
     return test.intersects(triangles[0], triangles[1]) ? "1\n" : "0\n";
 }
 
-/// Answers that stand before a line that is wrong are printed; the program writes them out with the sentence.
+/// Results of lines before a malformed line are still printed, as the program flushes them before the error.
 void classify_lines(line_stream lines, const aabb::triangle_test& test, const classify_request& request) {
-    std::optional<progress> shown;  // answers that go to the terminal are progress enough
+    std::optional<progress> shown;  // results on a terminal show the progress themselves
     if (isatty(STDOUT_FILENO) == 0) shown.emplace("bytes classified", lines.size());
     while (lines.next()) {
         if (shown) shown->at(lines.bytes_read());
         try {
             const std::vector<std::string> words = split_numbers(without_comment(lines.line()));
             if (words.empty()) continue;
-            print(request.keep_doubles ? answer_of<double>(test, words, request.geometry)
-                                       : answer_of<float>(test, words, request.geometry));
+            print(request.keep_doubles ? result_of<double>(test, words, request.geometry)
+                                       : result_of<float>(test, words, request.geometry));
         } catch (const aabb::input_error& error) {
             lines.fail(error.what());
         }

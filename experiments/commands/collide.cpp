@@ -17,10 +17,10 @@ struct collide_request {
     std::string a;
     std::optional<std::string> b;
     std::array<std::optional<std::string>, 2> poses;
-    method_options who{{aabb::stage::local_detection}};
+    method_options method{{aabb::stage::local_detection}};
     std::optional<std::string> out, poses_of_b;
     std::size_t repeats = 1;
-    std::string self;  ///< what becomes of pairs that share a vertex: "true" (together), `apart`; empty without --self
+    std::string self;  ///< how to treat pairs that share a vertex: "true" (together) or `apart`; empty without --self
     bool first = false;
     bool count = false;
     bool geometry = false;
@@ -40,8 +40,8 @@ struct collide_request {
     }
 };
 
-nlohmann::ordered_json geometry_of(const found_pair& found) {
-    const aabb::triangle_intersection& common = *found.common;
+nlohmann::ordered_json geometry_of(const found_pair& pair) {
+    const aabb::triangle_intersection& common = *pair.common;
     nlohmann::ordered_json geometry{{"kind", name_of(common.kind)}};
     for (std::uint32_t i = 0; i < common.size; ++i) geometry["corners"].push_back(common.corners[i].at);
     geometry["error"] = common.error.at;
@@ -49,7 +49,7 @@ nlohmann::ordered_json geometry_of(const found_pair& found) {
 }
 
 void print_json(const collide_request& request, const mesh_result& result) {
-    /// A value each pose, or the one that there is.
+    /// An array with a value per pose, or the only value.
     const auto by_pose = [&](nlohmann::ordered_json values, bool several = false) {
         return request.poses_of_b || several ? values : nlohmann::ordered_json(values.front());
     };
@@ -63,9 +63,9 @@ void print_json(const collide_request& request, const mesh_result& result) {
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
     if (result.neighbours) summary["neighbours"] = *result.neighbours;
     nlohmann::ordered_json first, geometry;
-    for (const std::optional<found_pair>& found : result.first) {
-        first.push_back(found ? nlohmann::ordered_json{found->triangles.a, found->triangles.b} : nullptr);
-        geometry.push_back(found && found->common ? geometry_of(*found) : nullptr);
+    for (const std::optional<found_pair>& pair : result.first) {
+        first.push_back(pair ? nlohmann::ordered_json{pair->triangles.a, pair->triangles.b} : nullptr);
+        geometry.push_back(pair && pair->common ? geometry_of(*pair) : nullptr);
     }
     if (request.first) summary["first"] = by_pose(first);
     if (request.first && request.geometry) summary["geometry"] = by_pose(geometry);
@@ -76,13 +76,13 @@ void print_json(const collide_request& request, const mesh_result& result) {
 }
 
 /// "triangles 3 and 5 intersect: segment 2 …"
-std::string text_of(const found_pair& found) {
-    return fmt::format("triangles {} and {} intersect{}\n", found.triangles.a, found.triangles.b,
-                       found.common ? ": " + to_text(*found.common) : "");
+std::string text_of(const found_pair& pair) {
+    return fmt::format("triangles {} and {} intersect{}\n", pair.triangles.a, pair.triangles.b,
+                       pair.common ? ": " + to_text(*pair.common) : "");
 }
 
-/// What was found, in a line; with --first and --poses a line before it for each pose where anything was.
-void print_found(const collide_request& request, const mesh_result& result) {
+/// Prints the result in one line; with --first and --poses, a line per pose with a hit precedes it.
+void print_results(const collide_request& request, const mesh_result& result) {
     if (request.first && !request.poses_of_b && result.first[0]) return print(text_of(*result.first[0]));
     if (request.poses_of_b)
         for (std::size_t pose = 0; pose < result.first.size(); ++pose)
@@ -100,7 +100,7 @@ void print_text(const collide_request& request, const mesh_result& result) {
         return visible(mesh) + " (" + counted(result.triangles[i], "triangle") + ")";
     };
     print(named(request.a, 0) + " against " + (request.b ? named(*request.b, 1) : "itself") + "\n");
-    print_found(request, result);
+    print_results(request, result);
     std::vector<double> ms = result.query_ms;
     std::ranges::nth_element(ms, ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2));
     print(fmt::format("{}: built in {:.3f} ms, searched in {:.3f} ms{}", result.method.text(), result.build_ms,
@@ -113,26 +113,26 @@ void print_text(const collide_request& request, const mesh_result& result) {
 }
 
 void require_sense(const collide_request& request) {
-    const auto refuse_if = [](bool is_so, const char* sentence) {
-        if (is_so) throw aabb::input_error(sentence);
+    const auto reject_if = [](bool condition, const char* sentence) {
+        if (condition) throw aabb::input_error(sentence);
     };
     if (request.self.empty()) {
-        refuse_if(!request.b, "collide: expected B, the other mesh, or --self");
+        reject_if(!request.b, "collide: expected B, the other mesh, or --self");
     } else {
         const std::vector<std::string> choices{"together", "apart"};
         if (request.self != "true" && std::ranges::find(choices, request.self) == choices.end())
             throw aabb::input_error(aabb::unknown_name("value of --self", request.self, choices));
-        refuse_if(request.b.has_value(),
+        reject_if(request.b.has_value(),
                   "--self holds one mesh against itself, so give no second one; to leave neighbours out, --self=apart");
-        refuse_if(request.poses[0] || request.poses[1] || request.poses_of_b,
+        reject_if(request.poses[0] || request.poses[1] || request.poses_of_b,
                   "--self holds a mesh against itself, so poses change nothing; leave them away");
-        refuse_if(request.first, "--self finds every pair, so --first does not go with it; --count does");
+        reject_if(request.first, "--self finds every pair, so --first does not go with it; --count does");
     }
-    refuse_if(request.poses[1] && request.poses_of_b, "--pose-b and --poses both say where B is; give one of them");
-    refuse_if(request.first && request.count, "--first and --count ask for different things");
-    refuse_if(request.count && request.out, "--count keeps no pairs, so there is nothing for --out");
-    refuse_if(request.geometry && request.count, "--count keeps no pairs, so --geometry does not go with it");
-    refuse_if(request.geometry && !request.out && !request.first,
+    reject_if(request.poses[1] && request.poses_of_b, "--pose-b and --poses both say where B is; give one of them");
+    reject_if(request.first && request.count, "--first and --count ask for different things");
+    reject_if(request.count && request.out, "--count keeps no pairs, so there is nothing for --out");
+    reject_if(request.geometry && request.count, "--count keeps no pairs, so --geometry does not go with it");
+    reject_if(request.geometry && !request.out && !request.first,
               "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair");
 }
 
@@ -147,13 +147,13 @@ std::optional<number_table> rows_of(const collide_request& request) {
 
 int collide(const collide_request& request) {
     require_sense(request);
-    const search_choice who = request.who.choice(request.geometry);
+    const search_choice choice = request.method.choice(request.geometry);
     const aabb::pose of_a = pose_of(request.poses[0], "--pose-a");
     given_poses of_b{{pose_of(request.poses[1], "--pose-b")}, {}, {}};
     if (request.poses_of_b) of_b = read_poses(*request.poses_of_b);
     std::optional<number_table> rows = rows_of(request);
-    const mesh_result result = search_meshes(request.query(), who, read_meshes(request.meshes()), of_a, std::move(of_b),
-                                             rows ? &*rows : nullptr);
+    const mesh_result result = search_meshes(request.query(), choice, read_meshes(request.meshes()), of_a,
+                                             std::move(of_b), rows ? &*rows : nullptr);
     if (rows) rows->commit();
     if (request.json)
         print_json(request, result);
@@ -179,7 +179,7 @@ void add_collide(const command_parser& program) {
     command.option("--pose-b M", &request.poses[1], "Where B is");
     command.option("--poses FILE", &request.poses_of_b,
                    "Search with B at each pose of this file, one a line, as --pose-b takes it; trees are built once");
-    request.who.add_to(command, "build, tree and triangle test");
+    request.method.add_to(command, "build, tree and triangle test");
     command.flag("--self [=apart]", &request.self,
                  "Hold A against itself; pairs that share a vertex are counted apart, with --self=apart also left out "
                  "of the pairs");

@@ -1,6 +1,6 @@
 #include <CLI/CLI.hpp>
 
-// Imports, so it comes last.
+// This header has imports, so it comes last.
 #include "command_parser.hpp"
 
 import aabb.policy;
@@ -10,7 +10,7 @@ namespace aabblab {
 
 namespace {
 
-/// Nothing is to be lost in silence.
+/// Rejects options of the outer command, which would be ignored silently.
 void require_alone(const CLI::App& command, const CLI::App& inner) {
     for (const CLI::Option* option : command.get_options())
         if (option->count() > 0)
@@ -18,7 +18,7 @@ void require_alone(const CLI::App& command, const CLI::App& inner) {
                                     inner.get_name() + "'; what it takes stands behind its name");
 }
 
-/// "--out FILE" as names, and what stands for the value.
+/// Splits "--out FILE" into the names of the option and the placeholder of its value.
 std::pair<std::string, std::string> without_value(const std::string& names) {
     const std::size_t blank = names.find(' ');
     return {names.substr(0, blank), blank == std::string::npos ? "" : names.substr(blank + 1)};
@@ -61,7 +61,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-/// How a parameter of a strategy that the command takes is given; empty where none has one of this name.
+/// The syntax of a strategy's parameter, if a strategy that the command accepts has one of this name; else empty.
 std::string option_with(const std::string& parameter, const std::vector<std::string>& options) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         const std::string option = "--" + std::string(name_of(kind));
@@ -74,7 +74,7 @@ std::string option_with(const std::string& parameter, const std::vector<std::str
     return {};
 }
 
-/// "aabblab validate extreme"
+/// The command with its parents: "aabblab validate extreme".
 std::string full_name(const CLI::App& command) {
     const CLI::App* const above = command.get_parent();
     return (above == nullptr ? "" : full_name(*above) + " ") + command.get_name();
@@ -84,7 +84,7 @@ std::string see_help_of(const CLI::App& command) {
     return "; see " + full_name(command) + " --help";
 }
 
-/// Where a message names neither the nearest name nor all of them, it refers to the help.
+/// Refers to the help if the message suggests no name.
 std::string unknown_name(const std::string& what, const std::string& name, const std::vector<std::string>& known,
                          const CLI::App& command) {
     const std::string sentence = aabb::unknown_name(what, name, known);
@@ -169,7 +169,7 @@ parsed_option command_parser::option(const std::string& names, const option_valu
         else
             return command_->add_option_function<std::string>(parts.first, to, help);
     };
-    // An argument's name stands for its value.
+    // The placeholder is empty for arguments, whose name represents the value.
     return parsed_option(*std::visit(add, value)->type_name(parts.second));
 }
 
@@ -207,19 +207,19 @@ std::string refusal_of(const CLI::App& program, const CLI::ParseError& error) {
     }
     if (!prefix.empty()) prefix += ": ";
     const CLI::App& command = *innermost;
-    // A typing error makes the parser miss what was meant, so it comes before what the parser says.
+    // Unknown arguments are reported first, as a typing error often causes the parser's own error.
     if (const auto rest = command.remaining(); !rest.empty())
         return prefix + unexpected(program, command, rest.front());
     if (const auto rest = program.remaining(); !rest.empty()) return unexpected(program, program, rest.front());
-    const std::string said = error.what();
-    // The parser counts values; every option of ours that takes a value takes one. It does not name hidden ones.
+    const std::string message = error.what();
+    // Replaces the parser's count of values, as each option takes one, and names hidden options, which it omits.
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
-        std::string name = said.substr(0, said.find(':'));
+        std::string name = message.substr(0, message.find(':'));
         for (const CLI::Option* option : command.get_options())
             if (name.empty() && option->count() > 1) name = "--" + option->get_lnames().front();
         return prefix + name + " takes one value";
     }
-    return prefix + said;
+    return prefix + message;
 }
 
 void require_command(const CLI::App& program) {

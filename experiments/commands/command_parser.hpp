@@ -2,7 +2,7 @@
 
 #include <memory>
 
-// What every command uses. Headers that are no imports come before this one.
+// Common to all commands. Ordinary headers must be included before this one, as it has imports.
 import aabb.base;
 import aabb.std;
 import aabblab.fmt;
@@ -16,18 +16,18 @@ class ParseError;
 
 namespace aabblab {
 
-/// What takes the value of an option or an argument, which the caller keeps; or what is done with it.
+/// The destination of an option's or argument's value, which the caller owns, or a function that receives it.
 using option_value = std::variant<std::string*, std::optional<std::string>*, std::optional<std::size_t>*,
                                   std::vector<std::string>*, std::function<void(const std::string&)>>;
 
-/// An option, a flag or an argument of a command, of which help and refusals tell.
+/// An option, a flag or an argument of a command.
 class parsed_option {
 public:
     explicit parsed_option(CLI::Option& option) : option_(&option) {}
 
     parsed_option required() const;
     parsed_option excludes(parsed_option other) const;
-    /// Takes one value each time that it is given.
+    /// Accepts one value per occurrence.
     parsed_option one_value_at_a_time() const;
     parsed_option hidden() const;
 
@@ -35,19 +35,19 @@ private:
     CLI::Option* option_;
 };
 
-/// A command, or the program, whose options, arguments and commands are told to the parser. The parser is a header
-/// that takes longer to compile than most commands do, so that they see no more of it than this.
+/// Declares the options, arguments and subcommands of a command or the program. It hides the parser's header, which
+/// takes longer to compile than most commands.
 class command_parser {
 public:
-    /// @param status of the program, which a command sets when it has run: 0, or 1 when a check failed
+    /// @param status the program's exit status, which a command sets: 0, or 1 if a check failed
     command_parser(CLI::App& command, int& status) : command_(&command), status_(&status) {}
 
     command_parser add_command(const std::string& name, const std::string& help) const;
-    /// One that was added before. In place of all else that a command takes, one of its own may follow.
+    /// A command that was added before. It can have subcommands, which exclude its own options and arguments.
     [[nodiscard]] command_parser command(const std::string& name) const;
 
-    /// What the command does: called once the whole command line has been read, with the request that it has filled.
-    /// Bad input is thrown as aabb::input_error, which ends the program with status 2.
+    /// Sets the action of the command, which receives the request after the whole command line has been parsed. Invalid
+    /// input throws aabb::input_error, which ends the program with status 2.
     template <class Request, class Result>
     Request& calls(Result (*act)(const Request&)) const {
         const auto request = std::make_shared<Request>();
@@ -62,15 +62,15 @@ public:
         return *request;
     }
 
-    /// @param name as the help has it: "MESH"
+    /// @param name as in the help: "MESH"
     parsed_option argument(const std::string& name, const option_value& value, const std::string& help) const;
     parsed_option optional_argument(const std::string& name, const option_value& value, const std::string& help) const;
-    /// @param names with what stands for the value in the help: "--n,--objects V"
+    /// @param names with the placeholder of the value in the help: "--n,--objects V"
     parsed_option option(const std::string& names, const option_value& value, const std::string& help) const;
-    /// @param value a text where the flag may have a value, as in "--self [=apart]": "true" where it has none
+    /// @param value a text if the flag has an optional value, as in "--self [=apart]"; "true" without a value
     parsed_option flag(const std::string& name, std::variant<bool*, std::string*> value, const std::string& help) const;
     void footer(const std::string& text) const;
-    /// Made when help is asked for.
+    /// The text is generated only for the help.
     void footer(const std::function<std::string()>& text) const;
 
 private:
@@ -83,13 +83,13 @@ private:
 /// Adds every command of the program, in the order of its help.
 void add_commands(const command_parser& program);
 
-/// The help of the program, and of the commands that are added to it later, fits the terminal.
+/// Wraps the help of the program and of all commands that are added later to the width of the terminal.
 void wrap_help(CLI::App& program);
 
-/// The sentence for a command line that was refused, with the nearest command or option for an unknown one.
+/// The message for a rejected command line, with the closest known command or option if one is unknown.
 [[nodiscard]] std::string refusal_of(const CLI::App& program, const CLI::ParseError& error);
 
-/// @throws aabb::input_error when the command line, accepted otherwise, names no command.
+/// @throws aabb::input_error if an otherwise valid command line has no command.
 void require_command(const CLI::App& program);
 
 }  // namespace aabblab

@@ -8,7 +8,7 @@ namespace aabblab {
 
 namespace {
 
-/// "bucket, or what goes with what is named", "as it serves the scene"
+/// The default of a kind: "bucket, or what goes with what is named", "as it serves the scene".
 std::string usual_of(aabb::strategy_kind kind) {
     if (aabb::depends_on_scene(kind)) return "as it serves the scene";
     const aabb::strategy_kind_info& info = info_of(kind);
@@ -16,7 +16,7 @@ std::string usual_of(aabb::strategy_kind kind) {
     return info.beside == info.fallback ? text : text + ", or what goes with what is named";
 }
 
-/// "--sort, --partition and --sweep"
+/// The options of a stage: "--sort, --partition and --sweep".
 std::string option_names(aabb::stage stage) {
     std::vector<std::string> names;
     for (const aabb::strategy_kind kind : kinds_of(stage)) names.push_back(fmt::format("--{}", name_of(kind)));
@@ -31,7 +31,7 @@ void method_options::add_to(const command_parser& command, const std::string& in
     for (const aabb::stage stage : stages_)
         for (const aabb::strategy_kind kind : kinds_of(stage))
             command.option(
-                fmt::format("--{} S", name_of(kind)), &given_[kind],
+                fmt::format("--{} S", name_of(kind)), &values_[kind],
                 fmt::format("One of {} (default {}), as in NAME:parameter=value", names_in_line(kind), usual_of(kind)));
     command.option("--engine E", &engine_, "Reference system in place of " + in_place);
     command.footer("aabblab list has every strategy with its parameters.");
@@ -40,18 +40,18 @@ void method_options::add_to(const command_parser& command, const std::string& in
 search_choice method_options::choice(bool geometry) const {
     if (geometry && engine_)
         throw aabb::input_error("--geometry is constructed by the triangle test, so --engine does not go with it");
-    const auto is_given = [&](aabb::strategy_kind kind) { return given_[kind].has_value(); };
-    if (engine_ && std::ranges::any_of(kinds_of(stages_.back()), is_given))
+    const auto is_set = [&](aabb::strategy_kind kind) { return values_[kind].has_value(); };
+    if (engine_ && std::ranges::any_of(kinds_of(stages_.back()), is_set))
         throw aabb::input_error(fmt::format("--engine stands in for {}, so give it {}", option_names(stages_.back()),
                                             stages_.size() == 1 ? "alone" : "without them"));
     search_choice choice{stages_, {}, engine_, geometry};
     for (const aabb::stage stage : stages_)
         for (const aabb::strategy_kind kind : kinds_of(stage)) {
-            if (!is_given(kind)) continue;
-            if (*given_[kind] == "auto")
+            if (!is_set(kind)) continue;
+            if (*values_[kind] == "auto")
                 throw aabb::input_error(
                     fmt::format("--{} auto: leave it out, since what is not named is selected", name_of(kind)));
-            choice.named[kind] = aabb::parse_strategy(*given_[kind]);
+            choice.named[kind] = aabb::parse_strategy(*values_[kind]);
         }
     static_cast<void>(method_of(choice, {}));
     return choice;

@@ -9,25 +9,25 @@ namespace aabblab {
 
 class command_parser;
 
-/// Options that say who searches: the strategies of some stages, one a kind, and an engine in place of the last stage.
+/// Options that select the method: the strategies of some stages, one per kind, or an engine for the last stage.
 class method_options {
 public:
     explicit method_options(std::vector<aabb::stage> stages) : stages_(std::move(stages)) {}
 
-    /// @param in_place of what an engine stands
+    /// @param in_place what an engine replaces, for the help
     void add_to(const command_parser& command, const std::string& in_place);
-    /// @param geometry what the triangles of pairs have in common is wanted too
-    /// @throws aabb::input_error on what is not a strategy with its parameters, beside an engine on what it stands in
-    /// for, and on what makes no sense together, so that all this is refused before anything is read.
+    /// @param geometry whether to construct the intersections of triangles, too
+    /// @throws aabb::input_error on an unknown strategy or parameter, on a strategy that the engine replaces, and on an
+    /// invalid combination, so that all of these are rejected before any file is read.
     [[nodiscard]] search_choice choice(bool geometry = false) const;
 
 private:
     std::vector<aabb::stage> stages_;
-    aabb::by_kind<std::optional<std::string>> given_;
+    aabb::by_kind<std::optional<std::string>> values_;
     std::optional<std::string> engine_;
 };
 
-/// "median, mean, …", for help texts.
+/// The names of a kind's strategies, "median, mean, …", for help texts.
 [[nodiscard]] std::string names_in_line(aabb::strategy_kind kind);
 
 }  // namespace aabblab

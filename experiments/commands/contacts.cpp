@@ -16,7 +16,7 @@ namespace {
 struct contacts_request {
     std::string motion;
     std::vector<std::string> meshes;
-    method_options who{{aabb::stage::global_search, aabb::stage::local_detection}};
+    method_options method{{aabb::stage::global_search, aabb::stage::local_detection}};
     std::optional<std::string> out;
     bool geometry = false;
     bool json = false;
@@ -44,7 +44,7 @@ std::string text_of(const contacts_request& request, const search_method& method
 void find_contacts(const contacts_request& request) {
     if (request.geometry && !request.out)
         throw aabb::input_error("--geometry adds columns to the contacts, so give --out FILE");
-    const search_choice who = request.who.choice(request.geometry);
+    const search_choice choice = request.method.choice(request.geometry);
     std::optional<number_table> rows;
     if (request.out) {
         require_other_file(*request.out, request.motion);
@@ -54,7 +54,7 @@ void find_contacts(const contacts_request& request) {
         rows.emplace(*request.out, columns);
     }
     scene_play scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
-    search_method method = method_of(who, outlook_of(scene));
+    search_method method = method_of(choice, outlook_of(scene));
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
     print(request.json ? json_of(method, result) : text_of(request, method, result));
 }
@@ -70,7 +70,7 @@ void add_contacts(const command_parser& program) {
     command.argument("MESH", &request.meshes,
                      "Mesh files (OFF, OBJ, PLY, STL, glTF) or shapes; object i is mesh i, from the first again when "
                      "they run out");
-    request.who.add_to(command, "build, tree and triangle test");
+    request.method.add_to(command, "build, tree and triangle test");
     command.option("--out FILE", &request.out,
                    "Write the contacts, rows frame,object_a,object_b,triangle_a,triangle_b, to this CSV file");
     command.flag("--geometry", &request.geometry,

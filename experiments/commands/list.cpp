@@ -20,50 +20,50 @@ struct list_request {
     bool json = false;
 };
 
-/// Something that has a name, for people and as JSON.
+/// A named item of the list, as text and as JSON.
 struct listed {
     std::string name;
-    std::string said;
+    std::string summary;
     std::span<const aabb::parameter_info> parameters;
     json members;
 };
 
-/// A part of the list, with the names that `list` takes and JSON has.
+/// A part of the list, with its name as the argument of `list` and as the key in JSON.
 struct section {
     std::string name;
-    std::string heading;  ///< what is said behind the name
+    std::string heading;  ///< follows the name in text
     std::vector<listed> entries;
-    std::vector<listed> left_out = {};  ///< of this build
+    std::vector<listed> left_out = {};  ///< items that this build lacks
 };
 
 json json_of(std::span<const aabb::parameter_info> parameters) {
-    json all = json::array();
+    json array = json::array();
     for (const aabb::parameter_info& p : parameters) {
-        all.push_back({{"name", p.name}, {"expected", to_text(p.values)}, {"default", p.fallback}, {"help", p.help}});
-        if (p.fallback.empty()) all.back()["default"] = nullptr;
+        array.push_back({{"name", p.name}, {"expected", to_text(p.values)}, {"default", p.fallback}, {"help", p.help}});
+        if (p.fallback.empty()) array.back()["default"] = nullptr;
     }
-    return all;
+    return array;
 }
 
 std::string_view group_of(const metric& m) {
     return metric_groups[static_cast<std::size_t>(m.group)].name;
 }
 
-std::string said_of(const auto& info) {
+std::string summary_of(const auto& info) {
     return std::string(info.summary);
 }
-std::string said_of(const aabb::engine_info& e) {
+std::string summary_of(const aabb::engine_info& e) {
     const char* scope = !e.collides_meshes ? "boxes" : e.searches_boxes ? "boxes and meshes" : "meshes";
     return fmt::format("{} ({}{})", e.summary, scope, e.exact ? ", exact" : "");
 }
-std::string said_of(const metric& m) {
+std::string summary_of(const metric& m) {
     return fmt::format("{} ({}{})", m.summary, m.unit.empty() ? "" : m.unit + ", ", group_of(m));
 }
 
-/// What scripts may want to know, of what has it.
+/// An item with those properties of its kind that scripts may need.
 listed listed_of(const auto& info) {
-    listed one{std::string(info.name), said_of(info), {}, {{"name", info.name}, {"summary", info.summary}}};
-    json& members = one.members;
+    listed item{std::string(info.name), summary_of(info), {}, {{"name", info.name}, {"summary", info.summary}}};
+    json& members = item.members;
     if constexpr (requires { info.engine; }) members["engine"] = info.engine;
     if constexpr (requires { info.searches_boxes; }) members["searches_boxes"] = info.searches_boxes;
     if constexpr (requires { info.collides_meshes; }) members["collides_meshes"] = info.collides_meshes;
@@ -79,56 +79,56 @@ listed listed_of(const auto& info) {
                             : info.direction == better::more ? "more"
                                                              : "neither";
     if constexpr (requires { info.parameters; }) {
-        one.parameters = info.parameters;
-        members["parameters"] = json_of(one.parameters);
+        item.parameters = info.parameters;
+        members["parameters"] = json_of(item.parameters);
     }
-    return one;
+    return item;
 }
 
 std::vector<listed> all_of(const auto& infos) {
-    std::vector<listed> all;
-    for (const auto& info : infos) all.push_back(listed_of(info));
-    return all;
+    std::vector<listed> items;
+    for (const auto& info : infos) items.push_back(listed_of(info));
+    return items;
 }
 
 std::vector<section> sections() {
-    std::vector<section> all;
+    std::vector<section> list;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        all.push_back({std::string(name_of(kind)), "", all_of(aabb::strategies(kind))});
-    all.push_back({"engines", "", all_of(aabb::engines())});
+        list.push_back({std::string(name_of(kind)), "", all_of(aabb::strategies(kind))});
+    list.push_back({"engines", "", all_of(aabb::engines())});
     for (const auto& e : aabb::left_out_engines()) {
         const json members = {{"name", e.name}, {"not_found", e.library}};
-        const std::string said = "left out: " + e.library + " was not found when this was built";
-        all.back().left_out.push_back({e.name, said, {}, members});
+        const std::string summary = "left out: " + e.library + " was not found when this was built";
+        list.back().left_out.push_back({e.name, summary, {}, members});
     }
-    all.push_back({"library_tests", ", triangle tests of engines' libraries, for classify and errors",
-                   all_of(aabb::library_tests())});
-    all.push_back({"integrators", ", of validate stiff", all_of(integrators())});
+    list.push_back({"library_tests", ", triangle tests of engines' libraries, for classify and errors",
+                    all_of(aabb::library_tests())});
+    list.push_back({"integrators", ", of validate stiff", all_of(integrators())});
     for (const std::string_view name : left_out_integrators()) {
-        const char* said =
+        const char* summary =
             "left out: its library was not found when this was built; ./aabblab validate stiff installs it";
-        all.back().left_out.push_back({std::string(name), said, {}, {}});
+        list.back().left_out.push_back({std::string(name), summary, {}, {}});
     }
-    all.push_back({"scenes", "", all_of(scene_kinds())});
-    all.push_back({"shapes", ", in place of a mesh file", all_of(shapes())});
-    all.push_back({"pairs", " of triangles, for errors", all_of(pair_classes())});
-    all.push_back({"recorded", ", for metrics of each", all_of(metric_groups)});
-    all.push_back({"metrics", "", all_of(metrics())});
-    return all;
+    list.push_back({"scenes", "", all_of(scene_kinds())});
+    list.push_back({"shapes", ", in place of a mesh file", all_of(shapes())});
+    list.push_back({"pairs", " of triangles, for errors", all_of(pair_classes())});
+    list.push_back({"recorded", ", for metrics of each", all_of(metric_groups)});
+    list.push_back({"metrics", "", all_of(metrics())});
+    return list;
 }
 
 std::vector<std::string> section_names() {
     std::vector<std::string> names;
-    for (const section& one : sections()) names.push_back(one.name);
+    for (const section& part : sections()) names.push_back(part.name);
     return names;
 }
 
-void print_text(const section& one) {
-    print(one.name + one.heading + "\n");
-    for (const std::vector<listed>& part : {one.entries, one.left_out})
-        for (const listed& l : part) {
-            print(entry("  " + l.name, l.said));
-            for (const aabb::parameter_info& p : l.parameters)
+void print_text(const section& part) {
+    print(part.name + part.heading + "\n");
+    for (const std::vector<listed>& items : {part.entries, part.left_out})
+        for (const listed& item : items) {
+            print(entry("  " + item.name, item.summary));
+            for (const aabb::parameter_info& p : item.parameters)
                 print(entry(fmt::format("    {}={}", p.name, p.fallback.empty() ? "…" : p.fallback),
                             fmt::format("{}: {}{}", p.help, to_text(p.values),
                                         p.fallback.empty() ? ", which must be given" : "")));
@@ -136,32 +136,32 @@ void print_text(const section& one) {
 }
 
 json json_of(const std::vector<listed>& entries) {
-    json all = json::array();
-    for (const listed& one : entries) all.push_back(one.members);
-    return all;
+    json array = json::array();
+    for (const listed& item : entries) array.push_back(item.members);
+    return array;
 }
 
 json json_of(const std::vector<section>& sections) {
-    json all;
-    for (const section& one : sections) {
-        const auto is_it = [&](aabb::strategy_kind kind) { return name_of(kind) == one.name; };
+    json root;
+    for (const section& part : sections) {
+        const auto is_it = [&](aabb::strategy_kind kind) { return name_of(kind) == part.name; };
         const bool is_kind = std::ranges::any_of(aabb::strategy_kinds, is_it);
-        (is_kind ? all["strategies"] : all)[one.name] = json_of(one.entries);
-        if (one.name == "engines") all["engines_left_out"] = json_of(one.left_out);
+        (is_kind ? root["strategies"] : root)[part.name] = json_of(part.entries);
+        if (part.name == "engines") root["engines_left_out"] = json_of(part.left_out);
     }
-    return all;
+    return root;
 }
 
 void list(const list_request& request) {
-    std::vector<section> all = sections();
+    std::vector<section> shown = sections();
     if (request.kind) {
         const std::vector<std::string> names = section_names();
         if (std::ranges::find(names, *request.kind) == names.end())
             throw aabb::input_error("list: " + aabb::unknown_name("kind", *request.kind, names, "aabblab list --help"));
-        std::erase_if(all, [&](const section& one) { return one.name != *request.kind; });
+        std::erase_if(shown, [&](const section& part) { return part.name != *request.kind; });
     }
-    if (request.json) return print(json_of(all).dump(2) + "\n");
-    for (const section& one : all) print_text(one);
+    if (request.json) return print(json_of(shown).dump(2) + "\n");
+    for (const section& part : shown) print_text(part);
 }
 
 }  // namespace

@@ -30,11 +30,11 @@ void write_ordered(const order_request& request) {
         require_two_files("--out", request.out, "--numbers", *request.numbers);
         numbers.emplace(*request.numbers, "triangle,was");
     }
-    const aabb::ordered_mesh made = in_leaf_order(read_meshes({request.mesh}).front(), build);
-    write_off(made.ordered, request.out);
-    print(fmt::format("wrote {}: {}\n", visible(request.out), counted(made.triangles.size(), "triangle")));
+    const aabb::ordered_mesh reordered = in_leaf_order(read_meshes({request.mesh}).front(), build);
+    write_off(reordered.ordered, request.out);
+    print(fmt::format("wrote {}: {}\n", visible(request.out), counted(reordered.triangles.size(), "triangle")));
     if (!numbers) return;
-    for (std::uint32_t t = 0; t < made.triangles.size(); ++t) numbers->add({t, made.triangles[t]});
+    for (std::uint32_t t = 0; t < reordered.triangles.size(); ++t) numbers->add({t, reordered.triangles[t]});
     numbers->commit();
     print(fmt::format("wrote {}: which triangle each one was\n", visible(*request.numbers)));
 }

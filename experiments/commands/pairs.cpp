@@ -15,7 +15,7 @@ namespace {
 
 struct pairs_request {
     std::string recording;
-    method_options who{{aabb::stage::global_search}};
+    method_options method{{aabb::stage::global_search}};
     std::optional<std::string> out;
     bool json = false;
 };
@@ -31,15 +31,15 @@ std::string text_of(const pairs_request& request, const search_method& method, c
     std::string text =
         fmt::format("{}: {}, {}\n{}, digest {}\n", visible(request.recording), counted(result.objects, "object"),
                     counted(result.ms.size(), "frame"), counted(result.pairs, "overlapping pair"), result.digest);
-    // A list of neighbours serves most frames, and is made in a few.
+    // The mean, not the median: a Verlet list is rebuilt in few frames and reused in all others.
     if (!result.ms.empty()) text += fmt::format("{}: {:.4g} ms a frame (mean)\n", method.text(), result.mean_ms());
     return text;
 }
 
 void find_pairs(const pairs_request& request) {
-    const search_choice who = request.who.choice();
+    const search_choice choice = request.method.choice();
     scene_play scene(open_recording(request.recording));
-    search_method method = method_of(who, outlook_of(scene));
+    search_method method = method_of(choice, outlook_of(scene));
     std::optional<number_table> rows;
     if (request.out) {
         require_other_file(*request.out, request.recording);
@@ -56,7 +56,7 @@ void add_pairs(const command_parser& program) {
         program.add_command("pairs", "Global search on a recording: every pair of overlapping boxes");
     auto& request = command.calls(find_pairs);
     command.argument("SCENE", &request.recording, "Recording of boxes (.aabbs)");
-    request.who.add_to(command, "all of these");
+    request.method.add_to(command, "all of these");
     command.option("--out FILE", &request.out, "Write the pairs, rows frame,a,b, to this CSV file");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }

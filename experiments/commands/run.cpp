@@ -22,7 +22,7 @@ int run(const run_request& request) {
     const experiment e = request.process ? read_experiment(request.config, request.quick ? experiment_size::quick
                                                                                          : experiment_size::full)
                                          : open_experiment(request.config, request.quick);
-    // A first look does not stand in the way of the whole.
+    // Quick runs have their own folder, so that they do not block the full run.
     const std::filesystem::path folder = request.out.value_or("results/" + e.name + (request.quick ? "-quick" : ""));
     if (request.process) return play_share(e, folder, *request.process) ? 0 : 1;
     const std::vector<std::string> failures = play_experiment(
@@ -44,7 +44,7 @@ void add_run(const command_parser& program) {
     command.flag("--quick", &request.quick, "What the config says under quick, for a first look");
     command.flag("--resume", &request.resume, "Skip what is finished in the folder already");
     command.flag("--counts", &request.counts, "Also print the work of each composition and the bytes of its parts");
-    // What it starts afresh for each of the processes that a config asks for; not for users.
+    // Internal: run starts itself with this option for each process of the config.
     command.option("--process", &request.process, "").hidden();
 }
 

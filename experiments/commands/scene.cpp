@@ -24,10 +24,10 @@ struct scene_request {
     std::optional<std::string> picture;
 };
 
-/// A scene of meshes as global search sees it: the world boxes of its objects. Writes their poses on the way.
+/// A mesh scene as input of the broad phase: the world boxes of its objects. Optionally writes their poses.
 class world_boxes final : public aabb::box_scene {
 public:
-    /// @param motion null where poses are not to be written.
+    /// @param motion receives the poses; null if they are not written
     world_boxes(const scene_choice& choice, motion_file* motion)
         : scene_(choice), motion_(motion), world_(*scene_.meshes()) {
         if (scene_.meshes()->reacts())
@@ -55,7 +55,7 @@ private:
     scene_play scene_;
     motion_file* motion_;
     aabb::posed_boxes world_;
-    std::optional<player> finder_;  // of contacts, where the scene must be told
+    std::optional<player> finder_;  // finds the contacts to which the scene reacts
 };
 
 class surveyed_scene final : public aabb::box_scene {
@@ -78,14 +78,14 @@ private:
     survey seen_;
 };
 
-/// Without one given, 1 where the kind has one.
+/// The seed option, else 1 if the kind has a seed.
 std::optional<std::uint64_t> seed_of(const scene_request& request, const scene_info& kind) {
     if (!request.seed) return kind.plays_file ? std::nullopt : std::optional<std::uint64_t>(1);
     return parse_whole(*request.seed, 0, std::numeric_limits<std::uint64_t>::max(),
                        "--seed must be a whole number from 0 to 18446744073709551615");
 }
 
-/// What a motion file cannot tell.
+/// Rejects scenes that poses alone do not describe.
 void require_poses_suffice(const scene_info& kind, const scene_choice& choice, const aabb::mesh_scene& scene) {
     for (std::uint32_t m = 0; m < scene.meshes.size(); ++m)
         if (scene.deforms(m))
@@ -107,7 +107,7 @@ std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_
     return scene;
 }
 
-/// Every parameter with its value, the defaults too.
+/// Every parameter with its value, including defaults.
 std::string all_parameters(const scene_info& kind, const scene_choice& choice) {
     scene_choice whole = choice;
     whole.settings.clear();
@@ -118,7 +118,7 @@ std::string all_parameters(const scene_info& kind, const scene_choice& choice) {
     return parameters_text(whole);
 }
 
-/// Each output that was asked for, by its option.
+/// The requested outputs by option.
 std::vector<std::pair<std::string, std::string>> outputs_of(const scene_request& request) {
     std::vector<std::pair<std::string, std::string>> outputs;
     if (request.out) outputs.emplace_back("--out", *request.out);
@@ -127,7 +127,7 @@ std::vector<std::pair<std::string, std::string>> outputs_of(const scene_request&
     return outputs;
 }
 
-/// Other programs go by the ending, and so do we. A pipe or a device has none.
+/// Requires the usual extension, which other programs rely on, unless the file is a pipe or a device.
 void require_ending(const std::string& option, const std::optional<std::string>& file, const std::string& ending,
                     const std::string& what) {
     if (!file) return;
@@ -158,7 +158,7 @@ void write_scene(const scene_request& request) {
     scene_choice choice{request.kind, {}, request.meshes, seed_of(request, kind)};
     for (const auto& [name, value] : request.settings)
         if (value) choice.settings.push_back({name, *value});
-    // Opened before anything is played, so that a file that cannot be written costs no time and no recording.
+    // Outputs are opened before the scene runs, so that an error is reported without delay and leaves no files.
     std::optional<motion_file> motion;
     if (request.motion) motion.emplace(*request.motion);
     std::optional<output_file> picture;
@@ -189,7 +189,7 @@ void write_scene(const scene_request& request) {
     print(displacement_text(scene.seen()) + "\n");
 }
 
-/// `--cell_size,--cell-size` of the parameter cell_size; `--n` is short for the number of objects.
+/// The option of a parameter, such as `--cell_size,--cell-size`; `--n` abbreviates the number of objects.
 std::string option_names(const std::string& parameter) {
     std::string names = "--" + parameter;
     std::string dashed = names;
@@ -198,7 +198,7 @@ std::string option_names(const std::string& parameter) {
     return parameter == "objects" ? "--n," + names : names;
 }
 
-/// One option for each parameter of any kind of scene, which refuses those it does not have.
+/// Adds an option for each parameter of any kind of scene; a scene rejects parameters that it lacks.
 void add_parameters(const command_parser& command, scene_request& request) {
     for (const scene_info& kind : scene_kinds())
         for (const aabb::parameter_info& p : kind.parameters)

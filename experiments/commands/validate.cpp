@@ -25,7 +25,7 @@ experiment built_in_experiment() {
                       {{"objects", "40"}, {"frames", "4"}},
                       {"icosphere:triangles=320", "torus_knot:triangles=500", "noise_sphere:triangles=400"},
                       1}});
-    // Every global search and every local detection once: stages know nothing of each other, so pairs show nothing new.
+    // Stages are independent, so each broad phase and each narrow phase runs once, not every combination.
     e.compositions = aabb::every_composition(aabb::stage::global_search);
     for (const aabb::composition& c : aabb::every_composition(aabb::stage::local_detection))
         if (std::ranges::find(e.compositions, c) == e.compositions.end()) e.compositions.push_back(c);
@@ -33,8 +33,8 @@ experiment built_in_experiment() {
     return e;
 }
 
-/// "exact", "wrong", or what is different by class.
-std::string answer_of(const validated_row& v) {
+/// "exact", "WRONG", or the number of differences by class.
+std::string result_of(const validated_row& v) {
     if (!v.failure.empty()) return "WRONG";
     if (v.differences.empty()) return "exact";
     std::string text = "inexact:";
@@ -61,7 +61,7 @@ int validate(const validate_request& request) {
         table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"answer", false}}, {}};
         for (const validated_row& v : result.contenders) {
             t.rows.push_back({text_of(v.name), std::to_string(v.candidates),
-                              v.contacts ? std::to_string(*v.contacts) : "-", answer_of(v)});
+                              v.contacts ? std::to_string(*v.contacts) : "-", result_of(v)});
             if (v.failure.empty()) continue;
             ++wrong;
             note(v.failure);

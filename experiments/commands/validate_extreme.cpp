@@ -37,7 +37,7 @@ void add_validate_extreme(const command_parser& program) {
         std::string text = "Scenes:\n";
         for (const aabb::extreme_scene& scene : all_extreme_scenes(aabb::extreme_size::full).scenes)
             text += entry(scene.name, scene.summary);
-        return text.substr(0, text.size() - 1);  // the end of the line is printed behind it
+        return text.substr(0, text.size() - 1);  // the parser prints the last line end
     });
     auto& request = command.calls(validate_extreme);
     command.option("--cases FILE", &request.cases, "Pairs of triangles (default validation/cases/triangles.toml)");
