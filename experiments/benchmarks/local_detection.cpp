@@ -34,7 +34,7 @@ struct reached_leaf {
 struct leaf_pair {
     std::uint32_t a;
     std::uint32_t b;
-    aabb::triangle3f b_image;  ///< in A's frame
+    aabb::triangle3f b_image;  ///< the triangle of B in A's frame
 };
 
 /// The pairs that `local_detection` tests between a noise sphere and a torus knot of about 5,000 triangles each, which

@@ -13,9 +13,9 @@ export namespace aabblab {
 /// A SIMD vector of three doubles, the precision in which `relative_pose` transforms boxes, and padding.
 using three = double __attribute__((vector_size(32)));
 
-/// The boxes of a pair of nodes: the vector from A's centre to B's, and the half extents, each in its own frame.
+/// The boxes of a pair of nodes: the vector between their centres, and the half extents, each in its box's frame.
 struct box_pair {
-    three between;  ///< in A's frame
+    three between;  ///< from A's centre to B's, in A's frame
     three half_a;
     three half_b;
 };

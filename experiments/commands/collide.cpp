@@ -75,7 +75,7 @@ void print_json(const collide_request& request, const mesh_result& result) {
     print(summary.dump() + "\n");
 }
 
-/// "triangles 3 and 5 intersect: segment 2 …"
+/// Describes a pair: "triangles 3 and 5 intersect: segment 2 …".
 std::string text_of(const found_pair& pair) {
     return fmt::format("triangles {} and {} intersect{}\n", pair.triangles.a, pair.triangles.b,
                        pair.common ? ": " + to_text(*pair.common) : "");

@@ -58,24 +58,24 @@ private:
     std::optional<player> finder_;  // finds the contacts to which the scene reacts
 };
 
-class surveyed_scene final : public aabb::box_scene {
+class observed_scene final : public aabb::box_scene {
 public:
-    explicit surveyed_scene(std::unique_ptr<aabb::box_scene> scene)
-        : scene_(std::move(scene)), seen_(scene_->objects(), scene_->frames()) {}
+    explicit observed_scene(std::unique_ptr<aabb::box_scene> scene)
+        : scene_(std::move(scene)), survey_(scene_->objects(), scene_->frames()) {}
 
     [[nodiscard]] std::size_t objects() const override { return scene_->objects(); }
     [[nodiscard]] std::size_t frames() const override { return scene_->frames(); }
     bool next(std::vector<aabb::box>& boxes) override {
         if (!scene_->next(boxes)) return false;
-        seen_.see(boxes, scene_->present());
+        survey_.see(boxes, scene_->present());
         return true;
     }
     [[nodiscard]] std::span<const std::uint8_t> present() const override { return scene_->present(); }
-    [[nodiscard]] const survey& seen() const { return seen_; }
+    [[nodiscard]] const survey& observations() const { return survey_; }
 
 private:
     std::unique_ptr<aabb::box_scene> scene_;
-    survey seen_;
+    survey survey_;
 };
 
 /// The seed option, else 1 if the kind has a seed.
@@ -139,10 +139,10 @@ void require_ending(const std::string& option, const std::optional<std::string>&
 
 void require_outputs(const scene_request& request) {
     const auto outputs = outputs_of(request);
-    const auto played = request.settings.find("file");
+    const auto input = request.settings.find("file");
     for (const auto& [option, file] : outputs) {
         require_no_mesh(file, request.meshes);
-        if (played != request.settings.end() && played->second) require_other_file(file, *played->second);
+        if (input != request.settings.end() && input->second) require_other_file(file, *input->second);
     }
     if (outputs.empty()) throw aabb::input_error("scene: expected --out, --motion or --picture, the file to write");
     for (std::size_t i = 0; i < outputs.size(); ++i)
@@ -163,7 +163,7 @@ void write_scene(const scene_request& request) {
     if (request.motion) motion.emplace(*request.motion);
     std::optional<output_file> picture;
     if (request.picture) picture.emplace(*request.picture);
-    surveyed_scene scene(make_scene(kind, choice, motion ? &*motion : nullptr));
+    observed_scene scene(make_scene(kind, choice, motion ? &*motion : nullptr));
     note_left_out(choice.meshes);
     {
         progress shown("frames played", scene.frames());
@@ -182,11 +182,12 @@ void write_scene(const scene_request& request) {
         print(fmt::format("wrote {}: {}\n", visible(*request.motion), size));
     }
     if (picture) {
-        picture->write(picture_of(scene.seen(), {kind.name, kind.summary, visible(all_parameters(kind, choice))}));
+        picture->write(
+            picture_of(scene.observations(), {kind.name, kind.summary, visible(all_parameters(kind, choice))}));
         picture->commit();
         print(fmt::format("wrote {}: {}\n", visible(*request.picture), size));
     }
-    print(displacement_text(scene.seen()) + "\n");
+    print(displacement_text(scene.observations()) + "\n");
 }
 
 /// The option of a parameter, such as `--cell_size,--cell-size`; `--n` abbreviates the number of objects.

@@ -40,7 +40,7 @@ struct asking {
 /// A config with its lists expanded to their Cartesian product. Every name, value and combination is validated.
 struct experiment {
     std::string name;
-    std::string file;  ///< the config, as the user named it
+    std::string file;  ///< the path of the config, as the user wrote it
     std::string text;  ///< its contents
     bool quick = false;
     std::vector<std::string> engines;
@@ -58,7 +58,7 @@ struct experiment {
     /// What each row records beside the pairs and their digest, so that metrics can be computed from it later.
     std::set<metric_group> recorded{metric_group::time, metric_group::counts, metric_group::bytes, metric_group::error};
     std::vector<std::string> shown;  ///< metrics that tables show in additional columns
-    std::vector<std::string> notes;  ///< one sentence per replacement for meshes that are not installed
+    std::vector<std::string> notes;  ///< sentences for the user, such as which mesh replaces one that is absent
 
     [[nodiscard]] bool records(metric_group group) const { return recorded.contains(group); }
 };
@@ -115,8 +115,8 @@ struct error_study {
     std::vector<pair_set> hits;
     std::vector<std::string> notes;
     std::vector<pair_set> pairs;
-    std::vector<scene_choice> scenes;  ///< of meshes
-    std::optional<experiment> whole;   ///< with the compositions of all curves
+    std::vector<scene_choice> scenes;  ///< mesh scenes
+    std::optional<experiment> whole;   ///< runs the compositions of all curves
     std::vector<metric_plot> plots;
 };
 
@@ -124,7 +124,7 @@ struct error_study {
 [[nodiscard]] error_study read_error_study(const std::filesystem::path& file, experiment_size size);
 [[nodiscard]] error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size);
 
-/// Reads `[[case]]`s of name, source, about, class, first, second, intersect and, optionally, intersect_double.
+/// Reads `[[case]]`s of name, source, about, class, first, second, intersect and, if it differs, intersect_double.
 /// @throws aabb::input_error with file and line on malformed TOML, an unknown or missing key, a duplicate name, a
 /// malformed triangle, or a coordinate beyond the range of float.
 [[nodiscard]] std::vector<aabb::triangle_case> read_triangle_cases(const std::filesystem::path& file);
@@ -133,7 +133,7 @@ struct error_study {
 /// Measured costs with the program, processor and instruction set that they depend on.
 struct kept_costs {
     std::string version;       ///< of the program that measured them
-    std::string date;          ///< "2026-01-31T12:00:00Z"
+    std::string date;          ///< when they were measured, as "2026-01-31T12:00:00Z"
     std::string processor;     ///< its model name
     std::string instructions;  ///< the instruction set of the build, such as "AVX-512"
     aabb::cost_model costs;

@@ -83,7 +83,7 @@ int line_of_failed_assertion(std::string_view text) {
         }
         return false;
     };
-    std::vector<std::size_t> ends;  // of lines
+    std::vector<std::size_t> ends;  // line ends
     for (std::size_t at = 0; (at = text.find('\n', at)) != std::string_view::npos;) ends.push_back(++at);
     const auto first = std::ranges::partition_point(ends, [&](std::size_t end) { return !fails(end); });
     return static_cast<int>(first - ends.begin()) + 1;

@@ -13,7 +13,7 @@ enum class node_kind { text, integer, real, boolean, date, list, table };
 
 struct node {
     node_kind kind = node_kind::table;
-    int line = 0;             ///< from 1
+    int line = 0;             ///< in the file, from 1
     std::string key;          ///< set for the entries of a table
     std::string text;         ///< the value of a scalar, as settings take it
     std::vector<node> items;  ///< elements of a list, or entries of a table in file order
@@ -41,10 +41,10 @@ public:
     [[nodiscard]] const std::string& file() const { return file_; }
     [[nodiscard]] std::filesystem::path folder() const { return std::filesystem::path(file_).parent_path(); }
 
-    /// "FILE:LINE"
+    /// The place of a line in messages, "FILE:LINE".
     [[nodiscard]] std::string place(int line) const { return file_ + ":" + std::to_string(line); }
     [[noreturn]] void fail(int line, const std::string& sentence) const;
-    /// "KEY is a number; expected WHAT".
+    /// Reports a value of the wrong type: "KEY is a number; expected WHAT".
     [[noreturn]] void fail_type(const std::string& key, const node& value, std::string_view expected) const;
 
     /// Calls the function and prefixes its input_error with the place.

@@ -20,14 +20,14 @@ constexpr std::uint64_t quick_share = 20;  // a quick run takes 1/20 of the pair
 std::uint64_t count_of(const document& doc, const node& pairs, experiment_size size) {
     const node* count = pairs.find("count");
     const node* quick = pairs.find("quick");
-    std::uint64_t wanted = count ? doc.integer_of("count", *count, 1) : 100'000;
-    std::uint64_t few = std::max<std::uint64_t>(1, wanted / quick_share);
+    std::uint64_t full_count = count ? doc.integer_of("count", *count, 1) : 100'000;
+    std::uint64_t quick_count = std::max<std::uint64_t>(1, full_count / quick_share);
     if (quick) {
         doc.require_table("quick", *quick);
         doc.require_keys(*quick, " of quick", {"count"});
-        if (const node* in_quick = quick->find("count")) few = doc.integer_of("count", *in_quick, 1);
+        if (const node* in_quick = quick->find("count")) quick_count = doc.integer_of("count", *in_quick, 1);
     }
-    return size == experiment_size::quick ? few : wanted;
+    return size == experiment_size::quick ? quick_count : full_count;
 }
 
 /// @param key "pairs", or "hits", whose count includes only pairs that intersect

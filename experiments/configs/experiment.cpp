@@ -90,9 +90,9 @@ void read_metrics(const document& doc, const node& value, experiment& e) {
     for (const metric_group_info& group : metric_groups) known.emplace_back(group.name);
     const std::vector<std::string> names = metric_names();
     known.insert(known.end(), names.begin(), names.end());
-    const std::vector<located_text> wanted = doc.texts_of("metrics", value);
-    if (wanted.empty()) doc.fail(value.line, "metrics is an empty list; expected at least one metric");
-    for (const located_text& name : wanted) {
+    const std::vector<located_text> listed = doc.texts_of("metrics", value);
+    if (listed.empty()) doc.fail(value.line, "metrics is an empty list; expected at least one metric");
+    for (const located_text& name : listed) {
         const auto group = std::ranges::find(metric_groups, name.text, &metric_group_info::name);
         const auto metric = std::ranges::find(names, name.text);
         if (group != metric_groups.end()) {

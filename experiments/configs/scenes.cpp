@@ -14,20 +14,20 @@ bool is_false(const node& value) {
 
 /// The scene at this size of the experiment: `quick` is removed, and its entries override the others in quick runs.
 node sized(const document& doc, const node& scene, experiment_size size) {
-    node result = scene;
-    std::erase_if(result.items, [](const node& entry) { return entry.key == "quick"; });
+    node sized_scene = scene;
+    std::erase_if(sized_scene.items, [](const node& entry) { return entry.key == "quick"; });
     const node* quick = scene.find("quick");
-    if (!quick || is_false(*quick)) return result;
+    if (!quick || is_false(*quick)) return sized_scene;
     doc.require_table("quick", *quick);
-    if (size == experiment_size::full) return result;
+    if (size == experiment_size::full) return sized_scene;
     for (const node& entry : quick->items) {
-        const auto same = std::ranges::find(result.items, entry.key, &node::key);
-        if (same == result.items.end())
-            result.items.push_back(entry);
+        const auto same = std::ranges::find(sized_scene.items, entry.key, &node::key);
+        if (same == sized_scene.items.end())
+            sized_scene.items.push_back(entry);
         else
             *same = entry;
     }
-    return result;
+    return sized_scene;
 }
 
 const scene_info& info_of(const document& doc, const located_text& kind) {

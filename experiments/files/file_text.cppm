@@ -6,7 +6,7 @@ import :text_decoder;
 
 namespace aabblab {
 
-/// "FILE: SENTENCE"
+/// Throws an input_error: "FILE: SENTENCE".
 [[noreturn]] inline void refuse(const std::filesystem::path& file, const std::string& sentence) {
     throw aabb::input_error(file.string() + ": " + sentence);
 }
@@ -25,7 +25,7 @@ struct file_text {
     return "'" + std::string(word.substr(0, end)) + (end < word.size() ? "…'" : "'");
 }
 
-/// "1 vertex", "3 vertices"
+/// A count with its noun: "1 vertex", "3 vertices".
 /// @param plural if it is not the singular and an s
 [[nodiscard]] inline std::string counted(std::size_t count, std::string_view singular, std::string_view plural = {}) {
     const std::string several = plural.empty() ? std::string(singular) + "s" : std::string(plural);

@@ -45,7 +45,7 @@ public:
     [[nodiscard]] std::string_view line() const noexcept;
     /// The line number, from 1.
     [[nodiscard]] std::size_t number() const noexcept;
-    /// "FILE:LINE: SENTENCE"
+    /// Throws an input_error: "FILE:LINE: SENTENCE".
     [[noreturn]] void fail(const std::string& sentence) const;
 
     /// The file size in bytes; 0 if it is unknown.

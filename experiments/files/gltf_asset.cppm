@@ -56,7 +56,7 @@ struct gltf_mesh {
 };
 
 struct gltf_skin {
-    std::vector<std::size_t> joints;  ///< nodes
+    std::vector<std::size_t> joints;  ///< indices of nodes
     std::optional<std::size_t> inverse_bind_matrices;
 };
 
@@ -90,7 +90,7 @@ struct gltf_asset {
     bool has_quantized_positions = false;  ///< KHR_mesh_quantization: positions may be integers
 };
 
-/// "accessors[3]"
+/// The path of a list element in messages: "accessors[3]".
 [[nodiscard]] inline std::string gltf_place(std::string_view list, std::size_t index) {
     return std::string(list) + "[" + std::to_string(index) + "]";
 }

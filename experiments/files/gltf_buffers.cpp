@@ -131,8 +131,8 @@ public:
 
 private:
     [[nodiscard]] std::size_t width_of(std::string_view type) const {
-        for (const auto& [known, width] : {std::pair("SCALAR", 1), {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}})
-            if (type == known) return static_cast<std::size_t>(width);
+        for (const auto& [name, width] : {std::pair("SCALAR", 1), {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}})
+            if (type == name) return static_cast<std::size_t>(width);
         file_.fail(name_ + " has the type " + in_quotes(type) + ", which is not read");
     }
     [[nodiscard]] scalar scalar_of(gltf_component component) const {

@@ -114,8 +114,8 @@ std::vector<std::size_t> roots_of(const object& root) {
 gltf_asset parse_gltf(const file_text& file, const gltf_parts& parts) {
     const object root(file.name, parts.json, "is no glTF file",
                       parts.is_text ? object::position::line : object::position::byte);
-    const std::optional<object> about = root.member("asset");
-    const std::string version = about ? about->text("version").value_or("") : "";
+    const std::optional<object> metadata = root.member("asset");
+    const std::string version = metadata ? metadata->text("version").value_or("") : "";
     if (!version.starts_with("2.")) file.fail("is glTF of version " + in_quotes(version) + "; only version 2 is read");
     require_no_extension(root);
     gltf_asset asset;

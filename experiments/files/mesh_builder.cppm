@@ -66,9 +66,9 @@ public:
     void skip(std::string_view what, std::string_view name, std::size_t count) {
         constexpr std::size_t most_names = 8;
         auto& skipped = loaded_.report.skipped;
-        const auto known = std::ranges::find(skipped, name, &skipped_parts::name);
-        if (known != skipped.end())
-            known->count += count;
+        const auto part = std::ranges::find(skipped, name, &skipped_parts::name);
+        if (part != skipped.end())
+            part->count += count;
         else if (skipped.size() < most_names)
             skipped.push_back({what, std::string(name), count});
         else
@@ -102,7 +102,7 @@ public:
 
 private:
     struct polygon {
-        std::size_t first;  // triangle of its fan
+        std::size_t first;  // first triangle of its fan
         std::size_t corners;
         std::size_t place;
     };

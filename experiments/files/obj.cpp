@@ -35,11 +35,11 @@ private:
 std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t vertices) {
     const std::string_view number = word.substr(0, word.find('/'));
     const std::string_view others = word.substr(number.size());
-    const read_number<std::int64_t> read(number);
-    if (!read.is_one || read.out_of_range || others.find_first_not_of("/-0123456789") != std::string_view::npos ||
+    const read_number<std::int64_t> parsed(number);
+    if (!parsed.is_one || parsed.out_of_range || others.find_first_not_of("/-0123456789") != std::string_view::npos ||
         std::ranges::count(others, '/') > 2)
         in.expected("the number of a vertex", word);
-    const std::int64_t value = read.value;
+    const std::int64_t value = parsed.value;
     if (value == 0) in.fail("a face uses vertex 0, but vertices are counted from 1");
     const std::int64_t index = value > 0 ? value - 1 : static_cast<std::int64_t>(vertices) + value;
     if (index < 0 || index > std::numeric_limits<std::uint32_t>::max())

@@ -93,8 +93,8 @@ void output_file::require_space(double bytes) const {
     if (error || state_->in_place) return;
     const auto available = static_cast<double>(space.available);
     if (bytes <= available) return;
-    const auto [wanted, free] = different_sizes(bytes, available);
-    refuse(state_->target, "would take " + wanted + ", but only " + free + " are free");
+    const auto [needed, free] = different_sizes(bytes, available);
+    refuse(state_->target, "would take " + needed + ", but only " + free + " are free");
 }
 
 void output_file::write(const void* data, std::size_t bytes) {

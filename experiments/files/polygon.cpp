@@ -71,13 +71,13 @@ polygon_shape polygon_cutter::cut(std::span<const aabb::vec3f> vertices,
     for (const auto& triangle : triangles) add(triangle[2]);
 
     if (distinct_corners() < 4) return polygon_shape::convex;
-    const int way = project();
-    if (way == 0) return polygon_shape::no_normal;
-    if (is_convex(way)) return polygon_shape::convex;
-    if (way < 0) std::ranges::reverse(corners_);
+    const int orientation = project();
+    if (orientation == 0) return polygon_shape::no_normal;
+    if (is_convex(orientation)) return polygon_shape::convex;
+    if (orientation < 0) std::ranges::reverse(corners_);
     begin_at_least_corner();
     if (!cut_ears(triangles)) return polygon_shape::crosses_itself;
-    if (way < 0)
+    if (orientation < 0)
         for (auto& [a, b, c] : triangles) std::swap(a, c);
     return polygon_shape::concave;
 }
@@ -112,7 +112,7 @@ int polygon_cutter::project() {
     return normal_[dominant].sign();
 }
 
-bool polygon_cutter::is_convex(int way) const noexcept {
+bool polygon_cutter::is_convex(int orientation) const noexcept {
     // Edges of zero length are skipped.
     const auto stands = [&](const vec3d& a, const vec3d& b) { return !precedes(a, b) && !precedes(b, a); };
     const std::size_t n = corners_.size();
@@ -126,7 +126,7 @@ bool polygon_cutter::is_convex(int way) const noexcept {
         if (stands(*b, c)) continue;
         const int turned = turn(*a, *b, c);
         const bool is_return = precedes(*a, *b) != precedes(*b, c);
-        if (turned == -way || (turned == 0 && is_return)) return false;
+        if (turned == -orientation || (turned == 0 && is_return)) return false;
         returns += static_cast<std::size_t>(is_return);
         a = b;
         b = &c;
@@ -188,7 +188,7 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
     const auto [low_x, high_x] = std::minmax({t0[x], t1[x], t2[x]});
     const auto [low_y, high_y] = std::minmax({t0[y], t1[y], t2[y]});
 
-    const auto reaches_into = [&](const vec3d& p, const vec3d& q) {
+    const auto enters = [&](const vec3d& p, const vec3d& q) {
         const auto is_beyond = [&](const vec3d& s, const vec3d& t) { return turn(s, t, p) <= 0 && turn(s, t, q) <= 0; };
         if (is_beyond(t0, t1) || is_beyond(t1, t2) || is_beyond(t2, t0)) return false;
         const std::array<int, 3> sides = {turn(p, q, t0), turn(p, q, t1), turn(p, q, t2)};
@@ -226,7 +226,7 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
             std::min(from[y], (*q)[y]) > high_y)
             continue;
         if (std::max(from[y], (*q)[y]) >= low_y) {
-            if (reaches_into(from, *q)) return ear::none;
+            if (enters(from, *q)) return ear::none;
             if (touches(*q)) kind = ear::touched;
         }
         count_below(from, *q);

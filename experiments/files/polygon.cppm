@@ -12,7 +12,7 @@ class exact_sum {
 public:
     void clear() noexcept { parts_.clear(); }
     void add(double x);
-    /// |a| - |b|
+    /// Sets the sum to |a| - |b|.
     void set_difference_of_magnitudes(const exact_sum& a, const exact_sum& b);
     [[nodiscard]] int sign() const noexcept;
 
@@ -41,7 +41,7 @@ enum class polygon_shape : std::uint8_t {
 /// industrial-strength triangulation of polygons", 2001).
 class polygon_cutter {
 public:
-    /// @param triangles the fan of the polygon from its first corner, n - 2 triangles; replaced where it is concave
+    /// @param triangles the fan of the polygon from its first corner, n - 2 triangles; replaced if it is concave
     [[nodiscard]] polygon_shape cut(std::span<const aabb::vec3f> vertices,
                                     std::span<std::array<std::uint32_t, 3>> triangles);
 
@@ -64,15 +64,15 @@ private:
     /// Sets the axis of projection.
     /// @returns the sign of the normal along it
     [[nodiscard]] int project();
-    /// @param way the sign of the normal
-    [[nodiscard]] bool is_convex(int way) const noexcept;
+    /// @param orientation the sign of the normal
+    [[nodiscard]] bool is_convex(int orientation) const noexcept;
     void begin_at_least_corner();
 
     [[nodiscard]] int turn(const aabb::vec3d& a, const aabb::vec3d& b, const aabb::vec3d& c) const noexcept;
     /// Lexicographic order of the projected points.
     [[nodiscard]] bool precedes(const aabb::vec3d& a, const aabb::vec3d& b) const noexcept;
 
-    /// @returns false where the boundary crosses itself
+    /// @returns false if the boundary crosses itself
     [[nodiscard]] bool cut_ears(std::span<std::array<std::uint32_t, 3>> triangles);
     void link() noexcept;
     [[nodiscard]] int turn_at(const corner& b) const noexcept;

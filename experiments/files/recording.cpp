@@ -96,8 +96,8 @@ std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& fil
     if (!aabb::is_valid(unpacked(h.world))) refuse(file, "the world box in its header is inverted or not finite");
     // Counts boxes, as the announced size in bytes may overflow.
     const std::uint64_t boxes = static_cast<std::uint64_t>(h.objects) * (static_cast<std::uint64_t>(h.last_frame) + 1);
-    const std::uint64_t held = (size - sizeof(header)) / sizeof(box_record);
-    if (boxes != held || (size - sizeof(header)) % sizeof(box_record) != 0)
+    const std::uint64_t stored = (size - sizeof(header)) / sizeof(box_record);
+    if (boxes != stored || (size - sizeof(header)) % sizeof(box_record) != 0)
         refuse(file, "its header announces " + std::to_string(boxes) + " boxes (" + std::to_string(h.objects) +
                          " objects, " + std::to_string(h.last_frame) + " + 1 frames), but the file has " +
                          std::to_string(size - sizeof(header)) + " bytes of them, " +

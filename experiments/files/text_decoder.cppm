@@ -11,8 +11,8 @@ enum class text_encoding : std::uint8_t { utf8, utf16_little, utf16_big, utf16_u
 
 /// Decodes a text incrementally. A byte order mark is dropped, UTF-16 with a mark is converted, carriage returns become
 /// line feeds if the first line ends in one alone, and trailing padding is dropped: NULs, and Ctrl-Z, which ends text
-/// in CP/M and DOS. A carriage return before a line feed stays, as readers skip it. A line end of the
-/// other kind becomes or stays a carriage return, which `line_without_return` rejects.
+/// in CP/M and DOS. A carriage return before a line feed stays, as readers skip it. A line end of the other kind
+/// becomes or stays a carriage return, which `line_without_return` rejects.
 class text_decoder {
 public:
     /// Appends the decoded bytes.
