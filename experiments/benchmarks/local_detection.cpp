@@ -338,7 +338,7 @@ void add_all() {
 
 /// Transforms the triangle of B into A's frame, as for the first triangle of A that it is tested with …
 template <class Triangle>
-struct carried_test {
+struct transformed_test {
     Triangle triangle;
     const walked_pairs& at;
 
@@ -349,7 +349,7 @@ struct carried_test {
 
 /// … or reuses its image, as for all others.
 template <class Triangle>
-struct kept_test {
+struct cached_test {
     Triangle triangle;
     const walked_pairs& at;
 
@@ -377,8 +377,8 @@ void add_triangle_test_benchmarks() {
     for_each_strategy(aabb::triangles{}, []<class Triangle>(aabb::type_list<Triangle>) {
         for (const aabb::strategy_choice& choice : choices_of<Triangle>()) {
             const std::string name = "test/triangle/" + to_text(choice);
-            add<carried_test<Triangle>>(name, choice);
-            add<kept_test<Triangle>>(name + "/frame:a", choice);
+            add<transformed_test<Triangle>>(name, choice);
+            add<cached_test<Triangle>>(name + "/frame:a", choice);
         }
     });
 }

@@ -157,7 +157,7 @@ bool is_automatic(const document& doc, const node& compose) {
     return value && doc.flag_of("auto", *value);
 }
 
-/// Rejects named strategies that no scene can use together, which selection without a scene shows.
+/// Selects a composition without a scene, which rejects named strategies that are invalid together in every scene.
 void add_automatic(const document& doc, const node& compose, std::vector<aabb::named_strategies>& automatic) {
     for (const aabb::named_strategies& named : named_by(doc, compose, automatic.size())) {
         each_once<aabb::composition> alone;
