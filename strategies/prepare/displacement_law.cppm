@@ -7,23 +7,23 @@ import aabb.std;
 
 export namespace aabb {
 
-/// How far boxes get relative to each other in a time, by a power law: d(t) = d(a) (t/a)^h, where a is how long they
-/// have been watched. The exponent h tells how they move: 0 what swings about its place, 1/2 a random walk, 1 a drift,
-/// 2 what falls from rest. It is the slope of d in doubly logarithmic scales since an earlier age (Einstein 1905 for
-/// 1/2; Metzler and Klafter, "The random walk's guide to anomalous diffusion", 2000, for the others).
+/// The displacement of boxes relative to each other over time, as a power law: d(t) = d(a) (t/a)^h, where a is the
+/// observed time. The exponent h characterizes the motion: 0 oscillation, 1/2 random walk, 1 drift, 2 free fall from
+/// rest. It is the slope of d on a log-log scale since an earlier age (Einstein 1905 for 1/2; Metzler and Klafter, "The
+/// random walk's guide to anomalous diffusion", 2000, for the others).
 class displacement_law {
 public:
-    /// Nothing is known of how boxes move: they may drift.
+    /// Discards all observations; without any, boxes are assumed to drift.
     void forget() noexcept { *this = {}; }
-    /// Ages count from this frame on. The exponent stays what it was until boxes are two frames old.
+    /// Restarts ages at this frame. The exponent keeps its value until two frames have been observed.
     void begin() noexcept {
         known_exponent_ = exponent();
         age_ = 0;
         farthest_ = at_octave_ = before_ = 0;
     }
 
-    /// @param age in frames; greater than the last one, and no power of two is left out
-    /// @param moved by how much boxes have moved relative to each other since the frame of age 0
+    /// @param age in frames; increasing from call to call, without skipping a power of two
+    /// @param moved relative displacement of the boxes since the frame of age 0
     void observe(std::size_t age, double moved) noexcept {
         age_ = age;
         farthest_ = std::max(farthest_, moved);
@@ -31,7 +31,7 @@ public:
     }
 
     [[nodiscard]] std::size_t age() const noexcept { return age_; }
-    /// The farthest that boxes have been.
+    /// The greatest observed displacement.
     [[nodiscard]] double farthest() const noexcept { return farthest_; }
 
     [[nodiscard]] double exponent() const noexcept {
@@ -40,13 +40,13 @@ public:
         return std::min(std::log2(farthest_ / before_) / std::log2(times), fastest);
     }
 
-    /// @param exponent of this law, for whoever asks more than once
+    /// @param exponent that of this law, passed in so that repeated calls compute it once
     /// @param frames at least 1
     [[nodiscard]] double after(std::size_t frames, double exponent) const noexcept {
         return farthest_ * std::pow(static_cast<double>(frames) / static_cast<double>(age_), exponent);
     }
     [[nodiscard]] double after(std::size_t frames) const noexcept { return after(frames, exponent()); }
-    /// The age at which they have come so far; infinite where they never do.
+    /// The age at which the displacement reaches a distance; infinite if it never does.
     [[nodiscard]] double until(double distance) const noexcept {
         return static_cast<double>(age_) * std::pow(distance / farthest_, 1 / exponent());
     }
@@ -58,8 +58,8 @@ private:
     double known_exponent_ = drift;
     std::size_t age_ = 0;
     double farthest_ = 0;
-    double at_octave_ = 0;  // how far at the greatest power of two that is no greater than the age
-    double before_ = 0;     // and at half of that
+    double at_octave_ = 0;  // displacement at the greatest power of two up to the age
+    double before_ = 0;     // displacement at half of that age
 };
 
 }  // namespace aabb

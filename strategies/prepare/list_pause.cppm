@@ -5,10 +5,10 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Frames that are searched as they are, since no list of neighbours was worth its cost: twice as many each time, so
-/// that lists tried in vain cost ever less of all frames, and what such a pause loses is at most as long as what went
-/// before (exponential back-off; Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988, for what it
-/// may cost). Then a few boxes are looked at for eight frames, and again after a rest, until a list may be worth it.
+/// Exponential back-off after a Verlet list that was not worth its cost: frames are searched directly, twice as many
+/// each time, so that failed lists cost an ever smaller share of all frames, and a back-off lasts at most as long as
+/// the frames before it (Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988, bound the loss).
+/// Then a sample of boxes is watched for eight frames, repeatedly with a rest in between, until a list may be worth it.
 class list_pause {
 public:
     [[nodiscard]] bool lasts() const noexcept { return left_ > 0; }
@@ -17,17 +17,16 @@ public:
         left_ = std::max(next_, rest(boxes)) + glimpse::longest;
         next_ = std::min(2 * next_, longest);
     }
-    /// A few boxes are looked at from this frame on.
+    /// Begins by watching a sample of boxes from this frame on.
     void begin_with_look() noexcept { left_ = glimpse::longest + 1; }
-    /// A list served as long as it was to: the next pause is short again.
+    /// A list served as long as planned, so the next back-off is short again.
     void shorten() noexcept { next_ = shortest; }
 
-    /// A frame of it. Where even a few boxes move too far for any list, all do, and are not looked at for the rest of
-    /// the eight frames. Otherwise the pause ends.
-    /// @param seen with the law of these boxes
-    /// @param law of the boxes that are looked at
-    /// @param drawn as `drawn_id` has it
-    /// @returns whether all eight were in vain; others are looked at next
+    /// Advances by one frame and ends the back-off once a list seems worth its cost. If the sample already moves too
+    /// far for any list, so does the whole scene, and the rest of the eight frames is skipped.
+    /// @param seen estimates; its law is that of the sample
+    /// @param drawn as in `drawn_id`
+    /// @returns whether all eight frames were in vain; another sample is watched next
     bool pass(std::span<const box> boxes, const membership& objects, list_outlook& seen, std::uint32_t& drawn) {
         --left_;
         const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
@@ -55,16 +54,16 @@ private:
     static constexpr unsigned shortest = 1;
     static constexpr unsigned longest = 64;
 
-    /// Frames between looks. Eight frames of looking take about as long as searching 70 boxes, however many there are:
-    /// that is to be about a twentieth of what searching takes meanwhile.
+    /// The number of frames between samples. Watching a sample for eight frames takes about as long as searching 70
+    /// boxes, whatever the size of the scene, and is to cost about a twentieth of the searches meanwhile.
     [[nodiscard]] static unsigned rest(std::size_t boxes) noexcept {
         return 1400 / static_cast<unsigned>(std::max<std::size_t>(boxes, 1));
     }
 
-    unsigned left_ = 0;         // frames that are searched as they are before one is kept again
-    unsigned next_ = shortest;  // as long as the next one is
+    unsigned left_ = 0;         // remaining frames of the back-off
+    unsigned next_ = shortest;  // length of the next back-off
     glimpse glimpse_;
-    bool move_too_far_ = false;  // the few boxes, for any list
+    bool move_too_far_ = false;  // the sampled boxes move too far for any list
 };
 
 }  // namespace aabb

@@ -5,10 +5,10 @@ import aabb.std;
 
 export namespace aabb {
 
-/// How long boxes are, over the three axes, that are not by far longer than the others: the mean without those that are
-/// about 16 times as long as the median, or longer. One box that bounds half of space would decide the mean alone, so
-/// that what is measured in it, as margins are, tells nothing of the others; up to half of all boxes may be such. Where
-/// none is so long it is the mean. Boxes without extent do not count for the median.
+/// A robust mean extent of boxes, over the three axes: boxes about 16 times as long as the median, or longer, are
+/// excluded. A single box that bounds half of the scene would otherwise dominate the mean, and margins measured in it
+/// would not fit the other boxes; up to half of all boxes may be outliers. Without outliers it is the mean. Boxes of
+/// zero extent do not count for the median.
 class typical_extent {
 public:
     void add(const box& b) noexcept {
@@ -19,18 +19,18 @@ public:
         of.sum += extent;
     }
 
-    /// 0 where nothing was added.
+    /// The extent; 0 if no box was added.
     [[nodiscard]] double operator()() const noexcept {
         std::size_t longer = 0;
         for (std::size_t i = 1; i < octaves_.size(); ++i) longer += octaves_[i].boxes;
         std::size_t median = 0;
         for (std::size_t half = longer / 2; longer > half; longer -= octaves_[median].boxes) ++median;
-        octave usual;
+        octave inliers;
         for (std::size_t i = 0; i < std::min(median + octaves_above, octaves_.size()); ++i) {
-            usual.boxes += octaves_[i].boxes;
-            usual.sum += octaves_[i].sum;
+            inliers.boxes += octaves_[i].boxes;
+            inliers.sum += octaves_[i].sum;
         }
-        return usual.boxes == 0 ? 0 : usual.sum / static_cast<double>(usual.boxes);
+        return inliers.boxes == 0 ? 0 : inliers.sum / static_cast<double>(inliers.boxes);
     }
 
 private:
@@ -38,11 +38,11 @@ private:
         std::size_t boxes = 0;
         double sum = 0;
     };
-    static constexpr std::size_t octaves_above = 5;  // that of the median, and four more
-    static constexpr int least_exponent = -160;      // below that of the least float, over three
-    static constexpr std::size_t count = 160 + 130;  // up to twice the greatest
+    static constexpr std::size_t octaves_above = 5;  // the octave of the median and four more
+    static constexpr int least_exponent = -160;      // less than that of a third of the smallest float
+    static constexpr std::size_t count = 160 + 130;  // covers up to twice the greatest float
 
-    /// From 1 on, by the power of two below it; 0: no extent.
+    /// The index of an extent's octave, from 1 on; index 0 holds zero extents.
     [[nodiscard]] static std::size_t octave_of(double extent) noexcept {
         if (!(extent > 0)) return 0;
         const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(extent) >> 52U) - 1023;
@@ -52,8 +52,7 @@ private:
     std::array<octave, count> octaves_{};
 };
 
-/// `times` the typical extent of the objects that are present, each the mean over the three axes; 0 where nobody is. It
-/// is the unit of margins.
+/// `times` the typical extent of the present objects; 0 if there are none. The typical extent is the unit of margins.
 [[nodiscard]] inline double typical_extents(double times, std::span<const box> boxes,
                                             const membership& objects) noexcept {
     typical_extent extents;
@@ -62,8 +61,8 @@ private:
     return times * extents();
 }
 
-/// `times` the mean, over the boxes of the objects that are present and the three axes; 0 where nobody is. It is the
-/// unit of the sizes from which objects are divided, which are few, however long.
+/// `times` the mean extent over the boxes of the present objects and the three axes; 0 if there are none. The mean
+/// extent is the unit of the size above which objects are divided: outliers count, so that only few are divided.
 [[nodiscard]] inline double mean_extents(double times, std::span<const box> boxes, const membership& objects) noexcept {
     double extents = 0;
     std::size_t present = 0;
@@ -75,16 +74,16 @@ private:
     return present == 0 ? 0 : times * extents / (3 * static_cast<double>(present));
 }
 
-/// The median over a few boxes of their extents, each a mean over the three axes: one huge box hardly changes it. 0
-/// where there is none.
-/// @param some at most 16
-[[nodiscard]] inline double median_extent(std::span<const box> some) noexcept {
+/// The median of the boxes' extents, each a mean over the three axes, which one huge box hardly changes; 0 without
+/// boxes.
+/// @param sample at most 16 boxes
+[[nodiscard]] inline double median_extent(std::span<const box> sample) noexcept {
     std::array<double, 16> extents{};
-    for (std::size_t i = 0; i < some.size(); ++i)
-        for (int k = 0; k < 3; ++k) extents[i] += (double{some[i].max[k]} - double{some[i].min[k]}) / 3;
-    const auto middle = extents.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
-    std::nth_element(extents.begin(), middle, extents.begin() + static_cast<std::ptrdiff_t>(some.size()));
-    return some.empty() ? 0 : *middle;
+    for (std::size_t i = 0; i < sample.size(); ++i)
+        for (int k = 0; k < 3; ++k) extents[i] += (double{sample[i].max[k]} - double{sample[i].min[k]}) / 3;
+    const auto middle = extents.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+    std::nth_element(extents.begin(), middle, extents.begin() + static_cast<std::ptrdiff_t>(sample.size()));
+    return sample.empty() ? 0 : *middle;
 }
 
 }  // namespace aabb

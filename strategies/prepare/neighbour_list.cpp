@@ -12,34 +12,34 @@ namespace aabb {
 
 namespace {
 
-/// What is kept from frame to frame.
+/// What is kept between frames.
 enum class state : std::uint8_t {
-    nothing,    ///< and nothing is known yet, or a search has failed
-    searching,  ///< nothing, since no list was worth its cost; a few boxes are looked at now and then
-    watching,   ///< the boxes of a frame, to see how far they go from there before lists are given up
-    resting,    ///< the pairs of a frame, which are those of later ones until a box moves
-    listing     ///< the pairs of a frame's boxes grown by a margin
+    nothing,    ///< nothing is known yet, or a search has failed
+    searching,  ///< no list was worth its cost; every frame is searched, and a sample of boxes is watched now and then
+    watching,   ///< the boxes of one frame are kept to measure their displacement before Verlet lists are given up
+    resting,    ///< the pairs of one frame are kept and stay valid until a box moves
+    listing     ///< a Verlet list is kept: the pairs of boxes grown by the skin
 };
 
-/// What a frame shows.
+/// What the boxes of the current frame show about the kept ones.
 enum class sight : std::uint8_t {
-    as_before,  ///< what is kept holds its pairs; while no pairs are, no list is in sight
-    settled,    ///< the same, and boxes no longer move
-    changed,    ///< what is kept may lack some; while no pairs are, a list may be worth its cost
-    arrival     ///< an object came
+    as_before,  ///< the kept pairs are still complete; without kept pairs, no list is worth its cost yet
+    settled,    ///< the kept pairs are still complete, and boxes have stopped moving
+    changed,    ///< the kept pairs may be incomplete; without kept pairs, a list may be worth its cost
+    arrival     ///< an object has been inserted
 };
 
-/// What is done then.
+/// How the pairs of the current frame are computed.
 enum class step : std::uint8_t {
-    search,  ///< the boxes as they are
-    keep,    ///< their pairs, too: until a box moves, and to see how far it does
-    plan,    ///< a list, or the next frames without one
-    repeat,  ///< the pairs that are kept
-    serve,   ///< those of them that meet
-    settle   ///< these, and keep them
+    search,  ///< search the boxes as they are
+    keep,    ///< search them and keep their pairs until a box moves, to measure how far it moves
+    plan,    ///< plan a new list, or the next frames without one
+    repeat,  ///< report the kept pairs unchanged
+    serve,   ///< report the listed pairs that overlap
+    settle   ///< report the listed pairs that overlap, and keep only these
 };
 
-/// By state and sight.
+/// Transition table, indexed by state and sight.
 constexpr step steps[5][4]{{step::plan, step::plan, step::plan, step::plan},
                            {step::search, step::search, step::keep, step::search},
                            {step::search, step::search, step::plan, step::plan},
@@ -67,12 +67,12 @@ public:
         require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());
         boxes_ = boxes;
-        // Nobody asked for the pairs of the frame that it was to be made of.
+        // The pairs of the frame in which the list was planned were never requested, so the list does not exist.
         if (std::exchange(is_to_be_made_, false)) state_ = state::nothing;
         const bool comes_any = objects_.arrivals() > 0;
         const bool leaves_any = objects_.any_departures();
         frame_.change([&] { objects_.settle(); });
-        // At once: the frame may be refused yet, and who left is not told again.
+        // Departures are reported only once, so they are applied now, even if this frame is rejected later.
         if (leaves_any && state_ >= state::resting)
             list_.erase_if([&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
         note_arrivals(comes_any);
@@ -84,7 +84,7 @@ public:
             switch (steps[static_cast<std::size_t>(state_)][static_cast<std::size_t>(seen)]) {
                 case step::search: search_->update(boxes); break;
                 case step::keep: keep(boxes, {0, 0}); break;
-                // The boxes of who has come since others were kept say nothing, and may be none.
+                // Objects inserted since the boxes were kept have no valid kept box, so their motion is unknown.
                 case step::plan: plan(boxes, seen == sight::changed && age_ > 0 && !comes_any); break;
                 case step::repeat: has_rested_ = true; break;
                 case step::serve: serve(boxes); break;
@@ -112,14 +112,14 @@ public:
                 break;
         }
         outlook_.pairs = pairs.size() - before;
-        // Where a list is made, also of its first tests, which take far less.
+        // In the frame that makes a list the share also covers the list's first tests, which take far less time.
         share_of_update_ = searches ? search_->share_of_update() : 0;
     }
 
     [[nodiscard]] work_counters counters() const override {
-        work_counters all = search_->counters();
-        all.add(work::box_tests, tests_counted_);
-        return all;
+        work_counters total = search_->counters();
+        total.add(work::box_tests, tests_counted_);
+        return total;
     }
 
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
@@ -131,14 +131,14 @@ public:
     [[nodiscard]] double share_of_update() const override { return share_of_update_; }
 
     [[nodiscard]] std::vector<stage_plan> plans() const override {
-        std::vector<stage_plan> all = search_->plans();
+        std::vector<stage_plan> stage_plans = search_->plans();
         if (state_ == state::listing)
-            all.push_back({plan_kind::neighbour_list,
-                           {"a list of {pairs} pairs, of boxes grown by {margin} on every side",
-                            {{{"pairs", static_cast<double>(list_.size())}, {"margin", margin_}}}}});
+            stage_plans.push_back({plan_kind::neighbour_list,
+                                   {"a list of {pairs} pairs, of boxes grown by {margin} on every side",
+                                    {{{"pairs", static_cast<double>(list_.size())}, {"margin", margin_}}}}});
         else if (state_ == state::resting)
-            all.push_back({plan_kind::frame_at_rest, {"the pairs of a frame since which nothing has moved"}});
-        return all;
+            stage_plans.push_back({plan_kind::frame_at_rest, {"the pairs of a frame since which nothing has moved"}});
+        return stage_plans;
     }
 
     [[nodiscard]] std::vector<omission> left_out() const override {
@@ -153,17 +153,17 @@ public:
 
 private:
     struct next_list {
-        std::size_t frames;  ///< that it is to serve; 0 where nobody reckoned
+        std::size_t frames;  ///< number of frames that the list is planned to serve; 0 if unplanned
         double margin;
-        bool about_kept = false;  ///< boxes, not those of this frame
+        bool about_kept = false;  ///< the list is built from the kept boxes instead of those of this frame
     };
 
     [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
     [[nodiscard]] bool has_few_boxes() const noexcept { return adapts() && objects_.size() < fewest_boxes; }
-    /// Whether pairs that are sure meet in this frame.
+    /// Whether the pairs marked as sure are guaranteed to overlap in this frame.
     [[nodiscard]] bool is_within() const noexcept { return moved_.both_ways <= margin_; }
 
-    /// No list serves beyond the next arrival, which is to come as soon as the last one did, or later where it is late.
+    /// An arrival ends every list. The next one is expected after the interval between the last two, or is overdue.
     void note_arrivals(bool any) noexcept {
         if (any && frames_ > 0) between_arrivals_ = since_arrival_;
         since_arrival_ = any ? 1 : since_arrival_ + 1;
@@ -178,12 +178,12 @@ private:
         if (state_ == state::nothing) return sight::changed;
         if (state_ == state::searching) return look_at_few(boxes);
         if (comes_any || boxes.size() != kept_.size())
-            // Whoever comes to boxes at rest does not make them move.
+            // An object inserted among resting boxes does not make them move.
             return state_ == state::resting && !has_rested_ ? sight::changed : sight::arrival;
         if (state_ == state::resting && std::memcmp(boxes.data(), kept_.data(), boxes.size_bytes()) == 0)
             return sight::as_before;
         ++age_;
-        // Ever less often, as long as nothing hangs on it.
+        // While watching no result depends on the motion, so it is measured at power-of-two ages only.
         if (state_ == state::watching && !std::has_single_bit(age_)) return sight::as_before;
         const bool is_due = config_.every > 0 && age_ >= config_.every;
         if (config_.every > 0 && config_.margin) return is_due ? sight::changed : sight::as_before;
@@ -193,19 +193,17 @@ private:
         if (state_ != state::listing || moved_.margin > margin_) return sight::changed;
         if (!adapts()) return sight::as_before;
         if (age_ == made_at_ + 1 && !pays(objects_.size(), outlook_.pairs, list_.size())) {
-            // Not since boxes moved too far.
-            planned_ = 0;
+            planned_ = 0;  // the list ends because of its length, not because boxes moved too far
             return sight::changed;
         }
-        // As far as in the frame before, to the last bit, are boxes that stand; what falls together moves by roundings.
+        // Boxes at rest keep the same motion bit for bit; boxes that fall together differ by rounding errors.
         return age_ > 1 && moved_ == before ? sight::settled : sight::as_before;
     }
 
     [[nodiscard]] sight look_at_few(std::span<const box> boxes) {
         if (!pause_.lasts()) return sight::changed;
         if (pause_.pass(boxes, objects_, outlook_, drawn_)) {
-            // What lists held so long ago tells nothing.
-            outlook_.correction = 1;
+            outlook_.correction = 1;  // learned from lists that are too old to predict the next one
             release(kept_);
             release(grown_);
             list_.release();
@@ -213,18 +211,17 @@ private:
         return pause_.lasts() ? sight::as_before : sight::changed;
     }
 
-    /// Whether half of a list would not be worth its cost, by a rough count of it: it may hold each box with every
-    /// other, whatever is reckoned.
+    /// Whether even half of the estimated list would not be worth its cost. A sampled count guards against scenes in
+    /// which the model underestimates, up to every box listed with every other.
     [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin) {
-        // So few of a sample may be in reach by chance.
-        constexpr std::size_t by_chance = 8;
-        const rough_reach reach = rough_reach_of(boxes, objects_, drawn_, margin);
-        const auto overlapping = std::max(outlook_.pairs, static_cast<std::size_t>(reach.overlapping));
-        return reach.counted >= by_chance &&
-               !pays(objects_.size(), overlapping, static_cast<std::size_t>(reach.in_reach / 2));
+        constexpr std::size_t by_chance = 8;  // fewer sampled pairs may lie within the margin by chance
+        const rough_reach estimate = rough_reach_of(boxes, objects_, drawn_, margin);
+        const auto overlapping = std::max(outlook_.pairs, static_cast<std::size_t>(estimate.overlapping));
+        return estimate.counted >= by_chance &&
+               !pays(objects_.size(), overlapping, static_cast<std::size_t>(estimate.in_reach / 2));
     }
 
-    /// Before anything is known.
+    /// The first list is made before any motion has been observed.
     [[nodiscard]] std::optional<next_list> first_list(std::span<const box> boxes) {
         outlook_.pairs = 0;
         outlook_.look_anew(boxes, objects_, drawn_);
@@ -237,12 +234,12 @@ private:
         return next_list{0, is_far_too_long(boxes, margin) ? 0 : margin};
     }
 
-    /// The list that costs least from how far boxes moved, or the last one again where that lasted as planned; none
-    /// where none is worth its cost, or boxes move by far more than was thought and are to be watched.
+    /// Plans the cheapest list from the observed displacement, or repeats the last plan if its list lasted as planned.
+    /// Returns nullopt if no list is worth its cost, or if boxes moved much farther than estimated and must be watched.
     [[nodiscard]] std::optional<next_list> planned_list(std::span<const box> boxes, bool has_ended) {
         const bool is_list = state_ == state::listing;
         const bool has_failed = has_ended && is_list && 2 * (age_ - made_at_) < planned_;
-        // Else the pause that may follow is longer than the last one.
+        // Without this success, the next back-off would be longer than the last one.
         if (is_list ? !has_failed : has_rested_) pause_.shorten();
         if (has_failed) return std::nullopt;
         if (has_ended && is_list && made_at_ == 0 && planned_ <= age_ && age_ < 2 * planned_ &&
@@ -255,8 +252,8 @@ private:
         if (is_list) outlook_.learn(margin_, list_.size());
         const list_plan best = plan_list(outlook_);
         next_list next{best.frames, best.margin};
-        // What gets less far than a random walk swings about its place. Of that it is known how far it goes from the
-        // boxes that are kept, but not from those of this frame, which may be at one end of their ways.
+        // Below the exponent of a random walk, boxes oscillate. Their displacement is known relative to the kept boxes,
+        // but not relative to those of this frame, which may be at an extreme of the oscillation.
         constexpr double random_walk = 0.5;
         if (best.frames > 1 && has_ended && outlook_.law.exponent() < random_walk)
             next = {best.frames, outlook_.law.after(age_ + best.frames - 1), true};
@@ -287,7 +284,7 @@ private:
         search_->update(boxes);
     }
 
-    /// A list; or where it has no margin and may be given up, the pairs of these boxes until they move.
+    /// Starts a list. In adaptive mode a list without margin keeps the pairs of these boxes until one of them moves.
     void keep(std::span<const box> boxes, next_list next) {
         state_ = state::nothing;
         margin_ = margin_when_made_ = next.margin;
@@ -301,7 +298,7 @@ private:
         planned_ = next.frames;
         has_rested_ = false;
         if (margin_ > 0) {
-            // Grown, an inverted box may be none. As they are, the search looks at them.
+            // Growing may turn an inverted box into a valid one, which the search could not reject any more.
             require_valid(boxes);
             grown_.resize(boxes.size());
             grow(kept_, margin_, grown_);
@@ -311,7 +308,7 @@ private:
         state_ = adapts() && margin_ == 0 ? state::resting : state::listing;
     }
 
-    /// A frame in which the list holds all pairs. At an age of two frames it shows how long it will serve.
+    /// Serves a frame from a complete list. After two frames its remaining lifetime can be estimated.
     void serve(std::span<const box> boxes) {
         require_valid(boxes);
         if (adapts()) shorten_if_it_pays();
@@ -319,7 +316,7 @@ private:
             list_.tell_sure(kept_, margin_);
     }
 
-    /// Those that meet are all pairs until boxes move.
+    /// Reduces the list to the overlapping pairs, which are the result of every frame until a box moves.
     void settle(std::span<const box> boxes) {
         require_valid(boxes);
         if (!is_within()) list_.forget_sure();
@@ -336,13 +333,13 @@ private:
         state_ = state::resting;
     }
 
-    /// Makes the list that a smaller margin would have made, without a search: where boxes move by so much less than
-    /// this one allows that it holds many in vain. It is to serve for four times as long as it has; looked at ever less
-    /// often.
+    /// Reduces the list to a smaller margin without a search if boxes move much less than the current one allows, so
+    /// that many listed pairs are tested in vain. The smaller list is planned for four times the current age. The check
+    /// runs at power-of-two ages only.
     void shorten_if_it_pays() {
         constexpr std::size_t first_look = 8;
         constexpr std::size_t times_as_long = 4;
-        // Shorter, it lists hardly fewer, and roundings may end it.
+        // A smaller margin would hardly shorten the list, and rounding errors could end it.
         constexpr double shortest = 1.0 / 16;
         if (age_ < first_look || !std::has_single_bit(age_)) return;
         const std::size_t frames = times_as_long * age_;
@@ -361,16 +358,16 @@ private:
         if (counted_ == instrumentation::counters) tests_counted_ += tests;
     }
 
-    /// Fewer are searched in the time that it takes to watch them.
+    /// Searching fewer boxes takes no longer than watching them.
     static constexpr std::size_t fewest_boxes = 2 * simd::width + 1;
-    /// Of fewer frames in all, the first one gets no list: how boxes move is not known, and a list that is made in new
-    /// memory takes as long as searching several frames.
+    /// With fewer frames left, the first frame gets no list: the motion is unknown yet, and making a list in newly
+    /// allocated memory takes as long as searching several frames.
     static constexpr std::size_t fewest_frames_of_first_list = 64;
-    /// Of the first list, in typical extents: the best where one margin must do for any scene.
+    /// The margin of the first list, in typical extents: the best single margin over the benchmark scenes.
     static constexpr double extents_of_first_margin = 0.1;
     /// Frames for which boxes are watched before lists are given up.
     static constexpr std::size_t longest_watch = 8;
-    /// So many lists are made by one plan: pairs may become more or fewer meanwhile.
+    /// A plan is repeated at most this often, since the number of pairs may change meanwhile.
     static constexpr unsigned longest_repetition = 8;
 
     std::unique_ptr<global_stage> search_;
@@ -381,25 +378,25 @@ private:
     frame_state frame_;
     std::span<const box> boxes_;
     state state_ = state::nothing;
-    bool is_to_be_made_ = false;  // the list, in the search
+    bool is_to_be_made_ = false;  // the next search fills the list
     double share_of_update_ = 0;
-    std::vector<box> kept_;   // boxes that the list is about
-    std::vector<box> grown_;  // the same with their margin
-    pair_list list_;          // what it found, less the pairs of objects that have left
-    double margin_ = 0;
-    double margin_when_made_ = 0;  // of the list, which may have been shortened since
-    relative_motion moved_{};      // from the kept boxes to those of this frame
-    std::size_t age_ = 0;          // frames for which they have been watched
+    std::vector<box> kept_;        // reference boxes from which the list was made
+    std::vector<box> grown_;       // the reference boxes grown by the margin
+    pair_list list_;               // the pairs of the grown boxes, without those of removed objects
+    double margin_ = 0;            // the skin of the Verlet list
+    double margin_when_made_ = 0;  // the margin before the list was shortened
+    relative_motion moved_{};      // motion from the kept boxes to those of this frame
+    std::size_t age_ = 0;          // number of frames since the boxes were kept
     std::size_t made_at_ = 0;      // age at which the list was made
-    bool has_rested_ = false;      // for some frames
-    std::size_t planned_ = 0;      // frames that the list is to serve; 0 where nobody reckoned
-    unsigned repeated_ = 0;        // lists made since by the same plan
+    bool has_rested_ = false;      // boxes have been at rest for at least one frame
+    std::size_t planned_ = 0;      // number of frames that the list is planned to serve; 0 if unplanned
+    unsigned repeated_ = 0;        // number of lists made since by the same plan
     list_outlook outlook_;
     list_pause pause_;
     std::uint32_t drawn_ = 0;  // see `drawn_id`
-    std::size_t frames_ = 0;   // before this one
+    std::size_t frames_ = 0;   // number of earlier frames
     std::size_t expected_ = std::numeric_limits<std::size_t>::max();
-    std::size_t since_arrival_ = 0;  // frames
+    std::size_t since_arrival_ = 0;  // number of frames
     std::size_t between_arrivals_ = std::numeric_limits<std::size_t>::max();
 };
 

@@ -5,24 +5,23 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Boxes are searched grown by a margin, and the pairs found are kept as a list. While no box has moved by more than
-/// the margin relative to the others, each pair that overlaps is in the list, so that a frame takes one test a listed
-/// pair and no search (Verlet, "Computer 'experiments' on classical fluids", 1967), and, once it has served and is to
-/// go on, none of a pair that overlaps by more than two margins, which cannot part. What all move alike is no motion.
-/// An object that comes makes a search too.
+/// A Verlet list (Verlet, "Computer 'experiments' on classical fluids", 1967): boxes are grown by a margin, the skin,
+/// and the pairs found among them are kept. While no box has moved by more than the margin relative to the others, the
+/// list contains every overlapping pair, so a frame takes one test per listed pair and no search. Pairs that overlap by
+/// more than two margins cannot separate and are not tested either. Motion common to all boxes does not count. An
+/// inserted object triggers a search.
 ///
-/// Without a margin of its own, each list gets the one that costs least (`list_plan`), from how far boxes moved under
-/// the last one (`displacement_law`), or the longest of those that cost about as little. Of the first one nothing is
-/// known yet: it gets a tenth of the mean extent. Where no list is worth its cost, or boxes moved by far more than was
-/// planned for, frames are searched as they are, and a few boxes looked at in some of them (`list_pause`). Where few
-/// frames are expected (`global_stage::expect`), no list is made before some of the boxes have shown that it repays its
-/// making in those that are left. Where boxes move by far less than was thought, the list becomes the one that a
-/// smaller margin would have made, once that pays. What a search costs is reckoned as that of `columns`: before a
-/// slower one, lists are given up sooner than they need to be.
+/// Without a configured margin, each list gets the cheapest one (`list_plan`), estimated from the displacement under
+/// the last list (`displacement_law`), or the largest of those that cost about as little. The first list has no such
+/// estimate and uses a tenth of the typical extent. If no list is worth its cost, or boxes moved much farther than
+/// estimated, frames are searched directly and a sample of boxes is watched in some of them (`list_pause`). If few
+/// frames are expected (`global_stage::expect`), the first list waits until such a sample shows that the remaining
+/// frames repay it. If boxes move much less than estimated, the list is reduced to a smaller margin once that is worth
+/// its cost. Searches are assumed to cost what `columns` costs; with a slower search, lists are given up too early.
 ///
-/// With `every` the search comes round after so many frames, whatever has moved by then: pairs that were further apart
-/// than two margins at the last search are missed until the next one. Nothing is ever invented. When to use: where
-/// objects move by little a frame, or might; `every` only to see what stale lists cost.
+/// With `every` the search runs after a fixed number of frames, whatever has moved by then: pairs that were more than
+/// two margins apart at the last search are false negatives until the next one. There are never false positives. When
+/// to use: objects that move little per frame, or might; `every` only to measure the cost of stale lists.
 struct neighbour_list_prepare {
     static constexpr std::string_view name = "neighbour_list";
     static constexpr std::string_view summary =
@@ -32,7 +31,7 @@ struct neighbour_list_prepare {
         std::optional<double> margin;
         std::uint32_t every = 0;
 
-        /// Lists of an earlier frame may lack a pair of this one.
+        /// A list from an earlier frame may lack a pair of the current one.
         [[nodiscard]] constexpr bool is_exact() const noexcept { return every <= 1; }
     };
     static constexpr std::array leaves_out{absence::division};
