@@ -5,7 +5,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Boxes are searched as they are. When to use: unless a few objects are very large.
+/// Passes boxes to the broad phase unchanged. When to use: unless a few objects are very large.
 struct none_prepare {
     static constexpr std::string_view name = "none";
     static constexpr std::string_view summary = "boxes are searched as they are";

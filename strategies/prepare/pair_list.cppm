@@ -12,7 +12,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The least and the greatest numbers of a box on all three axes, each with a fourth one of no account.
+/// The lower or upper corner of a box as a vector; the fourth lane is arbitrary and ignored.
 using corner = float __attribute__((vector_size(16)));
 [[nodiscard, gnu::always_inline]] inline corner lower_of(const box& b) noexcept {
     corner v;
@@ -25,16 +25,17 @@ using corner = float __attribute__((vector_size(16)));
     return __builtin_shufflevector(v, v, 1, 2, 3, 0);
 }
 
-/// As `overlaps`, on three axes at a time.
+/// Same result as `overlaps`, but tests the three axes at once.
 [[nodiscard, gnu::always_inline]] inline bool meet(const box& a, const box& b) noexcept {
     using bools = bool __attribute__((ext_vector_type(4)));
-    const auto held = (lower_of(a) <= upper_of(b)) & (lower_of(b) <= upper_of(a));
-    return (std::bit_cast<std::uint8_t>(__builtin_convertvector(held, bools)) & 7U) == 7U;
+    const auto overlapping = (lower_of(a) <= upper_of(b)) & (lower_of(b) <= upper_of(a));
+    return (std::bit_cast<std::uint8_t>(__builtin_convertvector(overlapping, bools)) & 7U) == 7U;
 }
 
-/// Stores those that overlap: a vector of pairs at a time, without a branch, since which cannot be foreseen.
-/// @param to may be where the list is; written are some beyond the last, at most as many as the list has and a vector
-/// @return how many
+/// Stores the overlapping pairs of a list by compress-stores of one vector of pairs each, without branches, since the
+/// outcome of a test is hard to predict.
+/// @param to may equal the list; writes up to one vector beyond the list's length
+/// @return the number of overlapping pairs
 inline std::size_t store_meeting(std::span<const box> boxes, std::span<const index_pair> list, index_pair* to) {
     constexpr std::size_t at_a_time = simd::width / 2;
     std::size_t end = 0;
@@ -44,9 +45,9 @@ inline std::size_t store_meeting(std::span<const box> boxes, std::span<const ind
 #pragma clang loop unroll(full)
         for (std::size_t k = 0; k < at_a_time; ++k)
             both_words |= (meet(boxes[list[i + k].a], boxes[list[i + k].b]) ? 3U : 0U) << 2 * k;
-        simd::words some;
-        std::memcpy(&some, &list[i], sizeof some);
-        end += simd::store_where(&to[end].a, some, both_words) / 2;
+        simd::words block;
+        std::memcpy(&block, &list[i], sizeof block);
+        end += simd::store_where(&to[end].a, block, both_words) / 2;
     }
     for (const index_pair pair : list.subspan(i)) {
         to[end] = pair;
@@ -55,35 +56,35 @@ inline std::size_t store_meeting(std::span<const box> boxes, std::span<const ind
     return end;
 }
 
-/// Appends those that overlap. A part at a time, so that what they are stored in stays in the cache, and room that they
-/// turn out not to need is not made.
+/// Appends the overlapping pairs of a list. Works in blocks, so that the buffer stays in the cache and the output never
+/// grows by more than it needs.
 inline void append_meeting(std::span<const box> boxes, std::span<const index_pair> list,
                            std::vector<index_pair>& pairs) {
     constexpr std::size_t at_a_time = 1024;
-    std::array<index_pair, at_a_time + simd::width / 2> met;
+    std::array<index_pair, at_a_time + simd::width / 2> overlaps;
     for (std::size_t i = 0; i < list.size(); i += at_a_time) {
-        const std::size_t found =
-            store_meeting(boxes, list.subspan(i, std::min(at_a_time, list.size() - i)), met.data());
-        pairs.insert(pairs.end(), met.begin(), met.begin() + static_cast<std::ptrdiff_t>(found));
+        const std::size_t count =
+            store_meeting(boxes, list.subspan(i, std::min(at_a_time, list.size() - i)), overlaps.data());
+        pairs.insert(pairs.end(), overlaps.begin(), overlaps.begin() + static_cast<std::ptrdiff_t>(count));
     }
 }
 
-/// Pairs of neighbours, of which some are sure: they overlap by so much that they meet whatever all boxes do within the
-/// margin of the list, and are handed out without a test.
+/// The pairs of a Verlet list. Some of them are sure: they overlap by so much that they keep overlapping whatever the
+/// boxes do within the margin of the list, and are reported without a test.
 class pair_list {
 public:
     [[nodiscard]] std::size_t size() const noexcept { return sure_.size() + open_.size(); }
     [[nodiscard]] std::size_t bytes() const { return bytes_of(sure_, open_); }
 
-    /// Where a search appends what it finds; nothing is listed before, and nothing is sure.
+    /// Empties the list and returns the vector to which a search appends its pairs.
     [[nodiscard]] std::vector<index_pair>& begin() noexcept {
         sure_.clear();
         open_.clear();
         return open_;
     }
 
-    /// Finds those that are sure.
-    /// @param kept boxes that the list is about
+    /// Finds the sure pairs.
+    /// @param kept the boxes from which the list was made
     void tell_sure(std::span<const box> kept, double margin) {
         const float depth = depth_beyond(margin);
         if (std::isinf(depth)) return;
@@ -91,33 +92,33 @@ public:
         constexpr std::uint32_t all_words = (1U << simd::width) - 1;
         const std::size_t count = open_.size();
         std::size_t end = sure_.size();
-        // Room for a vector more than there may be.
+        // A compress-store may write one vector beyond the last pair.
         sure_.resize(end + count + at_a_time);
-        std::size_t left = 0;
+        std::size_t still_open = 0;
         std::size_t i = 0;
         for (; i + at_a_time <= count; i += at_a_time) {
             std::uint32_t both_words = 0;
 #pragma clang loop unroll(full)
             for (std::size_t k = 0; k < at_a_time; ++k)
                 both_words |= (overlap_by(depth, kept[open_[i + k].a], kept[open_[i + k].b]) ? 3U : 0U) << 2 * k;
-            simd::words some;
-            std::memcpy(&some, &open_[i], sizeof some);
-            end += simd::store_where(&sure_[end].a, some, both_words) / 2;
-            left += simd::store_where(&open_[left].a, some, ~both_words & all_words) / 2;
+            simd::words block;
+            std::memcpy(&block, &open_[i], sizeof block);
+            end += simd::store_where(&sure_[end].a, block, both_words) / 2;
+            still_open += simd::store_where(&open_[still_open].a, block, ~both_words & all_words) / 2;
         }
         for (; i < count; ++i) {
             const index_pair pair = open_[i];
             const bool sure = overlap_by(depth, kept[pair.a], kept[pair.b]);
             sure_[end] = pair;
             end += static_cast<std::size_t>(sure);
-            open_[left] = pair;
-            left += static_cast<std::size_t>(!sure);
+            open_[still_open] = pair;
+            still_open += static_cast<std::size_t>(!sure);
         }
         sure_.resize(end);
-        open_.resize(left);
+        open_.resize(still_open);
     }
 
-    /// Those whose boxes do not meet are no longer listed; the sure ones stay.
+    /// Removes the pairs whose boxes do not overlap; sure pairs stay.
     void keep_meeting(std::span<const box> boxes) { open_.resize(store_meeting(boxes, open_, open_.data())); }
 
     void forget_sure() {
@@ -131,15 +132,15 @@ public:
         std::erase_if(open_, gone);
     }
 
-    /// Of a list without sure ones.
+    /// The whole list, which must have no sure pairs.
     [[nodiscard]] std::span<const index_pair> whole() const noexcept {
         assert(sure_.empty());
         return open_;
     }
 
-    /// Appends those that meet.
-    /// @param within whether boxes are within the margin, so that the sure ones do
-    /// @returns how many were tested
+    /// Appends the overlapping pairs.
+    /// @param within whether boxes are still within the margin, so that sure pairs need no test
+    /// @returns the number of tests
     std::size_t append_to(std::vector<index_pair>& pairs, std::span<const box> boxes, bool within) const {
         if (within)
             pairs.insert(pairs.end(), sure_.begin(), sure_.end());
@@ -149,7 +150,7 @@ public:
         return within ? open_.size() : size();
     }
 
-    /// How many are tested in each frame.
+    /// The number of tests per frame.
     [[nodiscard]] std::size_t tested() const noexcept { return open_.size(); }
 
     void release() {
@@ -158,20 +159,19 @@ public:
     }
 
 private:
-    /// By how much two boxes overlap at least, as floats tell it, if they do by two margins: a difference is off by
-    /// 2^-24 of itself at most.
+    /// The least overlap computed in floats that proves an overlap by two margins: the relative error of a difference
+    /// is at most 2^-24.
     [[nodiscard]] static float depth_beyond(double margin) noexcept {
-        constexpr float without_end = std::numeric_limits<float>::infinity();
+        constexpr float infinity = std::numeric_limits<float>::infinity();
         const double depth = 2 * margin * (1 + 0x1p-22);
-        return depth < double{std::numeric_limits<float>::max()}
-                   ? std::nextafter(static_cast<float>(depth), without_end)
-                   : without_end;
+        return depth < double{std::numeric_limits<float>::max()} ? std::nextafter(static_cast<float>(depth), infinity)
+                                                                 : infinity;
     }
 
     [[nodiscard, gnu::always_inline]] static bool overlap_by(float depth, const box& a, const box& b) noexcept {
         using bools = bool __attribute__((ext_vector_type(4)));
-        const auto held = (upper_of(b) - lower_of(a) >= depth) & (upper_of(a) - lower_of(b) >= depth);
-        return (std::bit_cast<std::uint8_t>(__builtin_convertvector(held, bools)) & 7U) == 7U;
+        const auto deep = (upper_of(b) - lower_of(a) >= depth) & (upper_of(a) - lower_of(b) >= depth);
+        return (std::bit_cast<std::uint8_t>(__builtin_convertvector(deep, bools)) & 7U) == 7U;
     }
 
     std::vector<index_pair> sure_;

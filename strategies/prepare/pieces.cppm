@@ -1,4 +1,4 @@
-/// How many pieces something long is cut into.
+/// Division of large objects into pieces.
 export module aabb.prepare.pieces;
 
 import aabb.policy;
@@ -9,7 +9,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// What both ways of dividing what is large have in common.
+/// The configuration shared by the two strategies that divide large objects.
 class dividing_prepare {
 public:
     static constexpr std::array leaves_out{absence::neighbour_list};
@@ -28,18 +28,18 @@ protected:
     config config_;
 };
 
-/// On an axis.
+/// Limit per axis.
 inline constexpr std::size_t most_pieces = 16;
 
-/// As few as are no longer than that, by more than a hundredth: so rounding cuts nothing.
+/// The least number of pieces no longer than `longest`, with a tolerance of 1%, so that rounding errors cut nothing.
 [[nodiscard]] inline std::size_t piece_count(double extent, double longest) noexcept {
     if (!(extent > longest)) return 1;
     const double wanted = std::min(std::ceil(extent / longest - 0.01), static_cast<double>(most_pieces));
     return static_cast<std::size_t>(wanted);
 }
 
-/// More than so many no search would gain by.
-/// @param strategy whose parameter `size` made them
+/// Rejects a division into more pieces than any search gains from.
+/// @param strategy name of the strategy whose parameter `size` leads to the pieces
 /// @throws input_error
 inline void require_few_pieces(std::string_view strategy, std::size_t pieces, std::size_t objects) {
     const std::size_t most = 65'536 + 16 * objects;

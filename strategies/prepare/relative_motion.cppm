@@ -9,8 +9,8 @@ import aabb.std;
 
 namespace aabb::detail {
 
-/// The least and the most that planes moved along each axis.
-/// What it begins with is finite, so that motions beyond the floats, all of them infinite, are infinitely far apart.
+/// The least and the greatest displacement of box planes along each axis. The initial values are finite, so that
+/// displacements that overflow to infinity yield an infinite range.
 struct motion_range {
     vec3f least{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
                 std::numeric_limits<float>::max()};
@@ -18,7 +18,7 @@ struct motion_range {
                std::numeric_limits<float>::lowest()};
 };
 
-/// Of lower and of upper planes.
+/// The displacements of lower and of upper planes.
 struct plane_motion {
     motion_range lower;
     motion_range upper;
@@ -35,7 +35,7 @@ struct plane_motion {
     }
 };
 
-/// Boxes lie in memory as rows of six numbers; three vectors hold whole rows, whatever their width.
+/// Boxes are stored as rows of six floats; three vectors hold a whole number of rows at any vector width.
 [[nodiscard]] inline plane_motion motion_of_all(std::span<const box> from, std::span<const box> to) noexcept {
     constexpr std::size_t block = simd::width / 2;
     plane_motion motion;
@@ -62,7 +62,7 @@ struct plane_motion {
         float up[3 * simd::width];
         std::memcpy(down, least, sizeof down);
         std::memcpy(up, most, sizeof up);
-        // Row by row into one.
+        // Reduce the rows to one by halves.
         for (std::size_t half = 3 * simd::width / 2; half >= 6; half /= 2)
             for (std::size_t i = 0; i < half; ++i) {
                 down[i] = std::min(down[i], down[half + i]);
@@ -85,7 +85,7 @@ export namespace aabb {
 
 struct relative_motion {
     double margin;     ///< see `motion_between`
-    double both_ways;  ///< the same, and the least by which the earlier ones, shrunk, lie in the later ones
+    double both_ways;  ///< also bounds the margin by which the earlier boxes, shrunk, lie in the later ones
 
     bool operator==(const relative_motion&) const = default;
 };
@@ -94,7 +94,7 @@ struct relative_motion {
 
 namespace aabb::detail {
 
-/// Half of what lies between, and what rounding may have taken from it.
+/// Half of the range, rounded up by the largest possible rounding error.
 [[nodiscard]] inline double margin_between(double least, double most) noexcept {
     return (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2;
 }
@@ -114,18 +114,18 @@ namespace aabb::detail {
 
 export namespace aabb {
 
-/// As the other, of boxes that are all present.
+/// The overload for scenes in which all objects are present.
 [[nodiscard]] inline relative_motion motion_between(std::span<const box> from, std::span<const box> to) noexcept {
     return detail::motion_of(detail::motion_of_all(from, to));
 }
 
-/// By how much the boxes of the objects that are present moved beyond what all moved alike: the least margin by which
-/// the earlier ones, grown on every side and shifted together, hold the later ones. What moves as one, as in free fall,
-/// does not move. Never less than the exact margin: each difference is off by half a unit in its last place at most.
+/// The motion of the present objects' boxes relative to their common motion: the least margin by which the earlier
+/// boxes, grown on every side and shifted together, contain the later ones. A common motion such as free fall counts as
+/// none. Never less than the exact margin: each difference has an error of at most half a unit in the last place.
 ///
-/// Where later boxes lie in the earlier ones so grown and shifted, two that overlap now overlapped when grown.
-/// Of boxes that are not valid it tells nothing.
-/// @param from, to boxes by id, as many of one as of the other
+/// As long as the later boxes lie in the earlier ones thus grown and shifted, any two that overlap now also overlapped
+/// when grown. The result is unspecified for invalid boxes.
+/// @param from, to boxes by id, of equal number
 [[nodiscard]] inline relative_motion motion_between(std::span<const box> from, std::span<const box> to,
                                                     const membership& objects) noexcept {
     if (objects.size() == to.size()) return motion_between(from, to);
@@ -135,16 +135,16 @@ export namespace aabb {
     return detail::motion_of(motion);
 }
 
-/// Valid boxes grown on every side by at least a margin, in float: what is added to it, 2^-22 of it and of the
-/// coordinate, is more than its rounding, the product's and the two sums' take together, 2^-23 of the one and 2^-24 of
-/// the other. What would lie beyond the greatest float stays at it.
+/// Grows valid boxes on every side by at least a margin, in float: the added 2^-22 of the margin and of the coordinate
+/// exceeds the rounding errors of the margin, the product and the two sums, which total 2^-23 of the one and 2^-24 of
+/// the other. Results are clamped to the greatest float.
 /// @param margin at least 0
-/// @param grown as many
+/// @param grown output, as long as `boxes`
 inline void grow(std::span<const box> boxes, double margin, std::span<box> grown) {
     constexpr float greatest = std::numeric_limits<float>::max();
     const double with_rounding = margin * (1 + 0x1p-22) + double{std::numeric_limits<float>::min()};
     const auto wide = static_cast<float>(std::min(with_rounding, double{greatest}));
-    // Boxes lie in memory as rows of six numbers; three vectors hold whole rows, whatever their width.
+    // Three vectors hold a whole number of rows, as in `motion_of_all`.
     constexpr std::size_t block = simd::width / 2;
     constexpr std::size_t numbers = 3 * simd::width;
     simd::floats sign[3];

@@ -1,4 +1,4 @@
-/// What a few boxes, drawn by chance, tell of all.
+/// Estimates from a random sample of boxes.
 export module aabb.prepare.sample;
 
 export import aabb.global_search;
@@ -8,68 +8,69 @@ import aabb.std;
 
 export namespace aabb {
 
-/// An id below `count`, by chance: what stands at regular places may be of one kind.
-/// @param drawn how many were drawn before
+/// A pseudorandom id below `count`: ids at regular strides may all belong to objects of one kind.
+/// @param drawn number of ids drawn so far
 [[nodiscard]] inline std::uint32_t drawn_id(std::uint32_t& drawn, std::size_t count) noexcept {
-    // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4), twice: once alone it goes in even steps, which
-    // may meet one kind only.
+    // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4), applied twice: a single pass yields regular
+    // strides again.
     constexpr std::uint64_t golden_ratio = 0x9e3779b97f4a7c15U;
     std::uint64_t hash = ++drawn * golden_ratio;
     hash = (hash ^ hash >> 32U) * golden_ratio;
     return static_cast<std::uint32_t>((hash >> 32U) * count >> 32U);
 }
 
-/// @param drawn as `drawn_id` has it
-/// @return as many as `of` holds, fewer where some objects are absent
+/// @param drawn as in `drawn_id`
+/// @return boxes in `buffer`, which it fills unless some objects are absent
 [[nodiscard]] inline std::span<const box> drawn_boxes(std::span<const box> boxes, const membership& objects,
-                                                      std::uint32_t& drawn, std::span<box> of) {
+                                                      std::uint32_t& drawn, std::span<box> buffer) {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < of.size() && i < boxes.size(); ++i) {
+    for (std::size_t i = 0; i < buffer.size() && i < boxes.size(); ++i) {
         const std::uint32_t id = drawn_id(drawn, boxes.size());
-        if (objects.contains(id)) of[count++] = boxes[id];
+        if (objects.contains(id)) buffer[count++] = boxes[id];
     }
-    return of.first(count);
+    return buffer.first(count);
 }
 
-/// Pairs by a rough count: eight boxes against one of thirty-two others.
+/// Estimated numbers of pairs, from testing eight sampled boxes against one in 32 of all boxes.
 struct rough_reach {
     double overlapping = 0;
-    double in_reach = 0;      ///< when grown by the margin
-    std::size_t counted = 0;  ///< of the latter
+    double in_reach = 0;      ///< pairs that overlap when both boxes are grown by the margin
+    std::size_t counted = 0;  ///< number of such pairs in the sample
 };
-/// @param drawn as `drawn_id` has it
+/// @param drawn as in `drawn_id`
 [[nodiscard]] inline rough_reach rough_reach_of(std::span<const box> boxes, const membership& objects,
                                                 std::uint32_t& drawn, double margin) {
-    std::array<box, 8> some;
-    const std::span<const box> asked = drawn_boxes(boxes, objects, drawn, some);
-    std::array<box, 8> reach;
-    // Both boxes of a pair are grown.
-    grow(asked, 2 * margin, reach);
+    std::array<box, 8> buffer;
+    const std::span<const box> sample = drawn_boxes(boxes, objects, drawn, buffer);
+    std::array<box, 8> grown;
+    // Growing one box of a pair by twice the margin is equivalent to growing both by the margin.
+    grow(sample, 2 * margin, grown);
     const std::size_t others = std::max<std::size_t>(8, boxes.size() / 32);
     std::size_t overlapping = 0;
-    rough_reach found;
+    rough_reach estimate;
     for (std::size_t k = 0; k < others && !boxes.empty(); ++k) {
         const box& b = boxes[drawn_id(drawn, boxes.size())];
-        for (std::size_t i = 0; i < asked.size(); ++i) {
-            if (!meet(b, reach[i]) || b == asked[i]) continue;
-            ++found.counted;
-            overlapping += static_cast<std::size_t>(meet(b, asked[i]));
+        for (std::size_t i = 0; i < sample.size(); ++i) {
+            if (!meet(b, grown[i]) || b == sample[i]) continue;
+            ++estimate.counted;
+            overlapping += static_cast<std::size_t>(meet(b, sample[i]));
         }
     }
     const auto n = static_cast<double>(objects.size());
-    const double each = asked.empty() ? 0 : n / static_cast<double>(asked.size()) * n / static_cast<double>(others) / 2;
-    found.overlapping = static_cast<double>(overlapping) * each;
-    found.in_reach = static_cast<double>(found.counted) * each;
-    return found;
+    const double scale =
+        sample.empty() ? 0 : n / static_cast<double>(sample.size()) * n / static_cast<double>(others) / 2;
+    estimate.overlapping = static_cast<double>(overlapping) * scale;
+    estimate.in_reach = static_cast<double>(estimate.counted) * scale;
+    return estimate;
 }
 
-/// A few boxes, which say that all have moved at least so far.
+/// A sample of boxes whose motion is a lower bound on that of the scene.
 class glimpse {
 public:
-    /// Frames that it looks on.
+    /// The number of frames for which a sample is watched.
     static constexpr unsigned longest = 8;
 
-    /// @param drawn as `drawn_id` has it
+    /// @param drawn as in `drawn_id`
     void keep(std::span<const box> boxes, std::uint32_t& drawn) {
         for (std::size_t i = 0; i < ids_.size() && !boxes.empty(); ++i) {
             ids_[i] = drawn_id(drawn, boxes.size());
@@ -77,7 +78,7 @@ public:
         }
     }
 
-    /// Not more than `motion_between` the kept one and this over all boxes; 0 where none of them is left.
+    /// A lower bound on `motion_between` the kept frame and this one; 0 if no sampled object is left.
     [[nodiscard]] double least_motion(std::span<const box> boxes, const membership& objects) const {
         std::array<box, few> from{};
         std::array<box, few> to{};

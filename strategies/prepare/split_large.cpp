@@ -9,7 +9,7 @@ namespace aabb {
 
 namespace {
 
-/// On any axis.
+/// Whether the box is longer on any axis.
 bool is_longer(const box& b, double longest) {
     for (int k = 0; k < 3; ++k)
         if (double{b.max[k]} - double{b.min[k]} > longest) return true;
@@ -56,10 +56,10 @@ public:
     void search(std::vector<index_pair>& pairs) override {
         frame_.require_taken();
         if (splits_.empty()) return search_->search(pairs);
-        found_.clear();
-        search_->search(found_);
+        piece_pairs_.clear();
+        search_->search(piece_pairs_);
         append_whole(pairs, [&] {
-            for (const auto [a, b] : found_)
+            for (const auto [a, b] : piece_pairs_)
                 if (counts(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
         });
     }
@@ -67,15 +67,15 @@ public:
     [[nodiscard]] double share_of_update() const override { return search_->share_of_update(); }
 
     [[nodiscard]] work_counters counters() const override {
-        work_counters all = search_->counters();
-        all.add(work::pieces, pieces_counted_);
-        return all;
+        work_counters total = search_->counters();
+        total.add(work::pieces, pieces_counted_);
+        return total;
     }
 
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::vector<part_bytes> parts = search_->bytes();
         parts.push_back({"prepare", bytes_of(objects_, splits_, slots_, splits_now_, slots_now_, object_of_slot_,
-                                             free_slots_, left_slots_, pieces_, found_)});
+                                             free_slots_, left_slots_, pieces_, piece_pairs_)});
         return parts;
     }
 
@@ -88,17 +88,17 @@ public:
     }
 
 private:
-    /// Where the pieces of an interval begin, and the last one's end.
+    /// The ends of an interval's pieces: where each begins, then where the last one ends.
     struct cut_interval {
         std::size_t pieces;
         std::array<float, most_pieces + 1> at;
     };
-    /// An object that is split, and into how many pieces on each axis.
+    /// A divided object and its number of pieces on each axis.
     struct split {
         std::uint32_t object;
         std::array<std::uint8_t, 3> pieces;
 
-        /// Beside the first, which has the object's own id.
+        /// The number of pieces beside the first one, which keeps the object's id.
         [[nodiscard]] std::size_t further_pieces() const { return std::size_t{pieces[0]} * pieces[1] * pieces[2] - 1; }
         friend bool operator==(const split&, const split&) = default;
     };
@@ -110,7 +110,7 @@ private:
         const auto wanted = static_cast<double>(interval.pieces);
         for (std::size_t i = 1; i < interval.pieces; ++i) {
             interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);
-            // Between floats that are this near each other there is no room for pieces.
+            // The interval contains too few floats to be divided.
             if (!(interval.at[i] > interval.at[i - 1] && interval.at[i] < upper)) return {1, {lower, upper}};
         }
         interval.at[interval.pieces] = upper;
@@ -119,27 +119,27 @@ private:
 
     void find_splits(std::span<const box> boxes, double longest) {
         splits_now_.clear();
-        std::size_t all = 0;
+        std::size_t total = 0;
         for (std::uint32_t id = 0; id < boxes.size(); ++id) {
             if (!objects_.contains(id) || !is_longer(boxes[id], longest)) continue;
-            split found{id, {}};
+            split division{id, {}};
             for (int k = 0; k < 3; ++k)
-                found.pieces[static_cast<std::size_t>(k)] =
+                division.pieces[static_cast<std::size_t>(k)] =
                     static_cast<std::uint8_t>(cut(boxes[id].min[k], boxes[id].max[k], longest).pieces);
-            if (found.further_pieces() == 0) continue;
-            all += found.further_pieces() + 1;
-            require_few_pieces(split_large_prepare::name, all, boxes.size());
-            splits_now_.push_back(found);
+            if (division.further_pieces() == 0) continue;
+            total += division.further_pieces() + 1;
+            require_few_pieces(split_large_prepare::name, total, boxes.size());
+            splits_now_.push_back(division);
         }
     }
 
-    /// A split that stays the same keeps its slots.
+    /// Merges the new splits with the known ones; an unchanged split keeps its slots.
     void assign_slots() {
         free_slots_.insert(free_slots_.end(), left_slots_.begin(), left_slots_.end());
         left_slots_.clear();
         slots_now_.clear();
         std::size_t known = 0;
-        std::size_t first = 0;  // slot of the known split
+        std::size_t first = 0;  // first slot of the known split
         const auto pass_known = [&](auto use) {
             for (std::size_t end = first + splits_[known].further_pieces(); first < end; ++first) use(slots_[first]);
             ++known;
@@ -148,15 +148,15 @@ private:
             search_->remove(first_slot_ + slot);
             left_slots_.push_back(slot);
         };
-        for (const split& now : splits_now_) {
-            while (known < splits_.size() && splits_[known].object < now.object) pass_known(leave);
-            if (known < splits_.size() && splits_[known] == now) {
+        for (const split& current : splits_now_) {
+            while (known < splits_.size() && splits_[known].object < current.object) pass_known(leave);
+            if (known < splits_.size() && splits_[known] == current) {
                 pass_known([&](std::uint32_t slot) { slots_now_.push_back(slot); });
                 continue;
             }
-            for (std::size_t i = now.further_pieces(); i > 0; --i) {
+            for (std::size_t i = current.further_pieces(); i > 0; --i) {
                 slots_now_.push_back(take_slot());
-                object_of_slot_[slots_now_.back()] = now.object;
+                object_of_slot_[slots_now_.back()] = current.object;
                 search_->insert(first_slot_ + slots_now_.back());
             }
         }
@@ -198,7 +198,7 @@ private:
         }
     }
 
-    /// Of two boxes of the search.
+    /// Whether this pair of pieces reports its objects: both pieces must contain the corner of the objects' overlap.
     [[nodiscard]] bool counts(std::uint32_t piece_a, std::uint32_t piece_b) const {
         const std::uint32_t a = object_of(piece_a);
         const std::uint32_t b = object_of(piece_b);
@@ -224,16 +224,16 @@ private:
     membership objects_;
     frame_state frame_;
     std::span<const box> boxes_;
-    std::uint32_t first_slot_ = 0;      // ids below are objects, or the first pieces of objects; the others are slots
-    std::vector<split> splits_;         // by object
-    std::vector<std::uint32_t> slots_;  // of the further pieces, split after split
-    std::vector<split> splits_now_;     // both, while they are found
+    std::uint32_t first_slot_ = 0;      // smaller ids are objects or their first pieces; larger ones are slots
+    std::vector<split> splits_;         // sorted by object
+    std::vector<std::uint32_t> slots_;  // slots of the further pieces, split after split
+    std::vector<split> splits_now_;     // splits of the current frame, while they are matched with the known ones
     std::vector<std::uint32_t> slots_now_;
     std::vector<std::uint32_t> object_of_slot_;
     std::vector<std::uint32_t> free_slots_;
-    std::vector<std::uint32_t> left_slots_;  // in this frame: the search must see them gone before others take them
-    std::vector<box> pieces_;                // what the search sees
-    std::vector<index_pair> found_;
+    std::vector<std::uint32_t> left_slots_;  // freed in this frame; reused only after the search has removed them
+    std::vector<box> pieces_;                // the boxes of the inner search
+    std::vector<index_pair> piece_pairs_;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ double extent_of(const box& b, int axis) {
     return double{b.max[axis]} - double{b.min[axis]};
 }
 
-/// Equal cells of a box, numbered.
+/// A uniform grid of numbered cells in a box.
 class cell_grid {
 public:
     cell_grid(const box& b, double longest) : box_(b) {
@@ -42,7 +42,7 @@ private:
     std::array<std::size_t, 3> cells_{};
 };
 
-/// The triangles of each part; empty where the mesh stays whole.
+/// The triangles of each part; empty if the mesh is not divided.
 std::vector<std::vector<std::uint32_t>> parts_of(const mesh& m, const box& bounds, double longest) {
     const cell_grid grid(bounds, longest);
     if (grid.size() == 1) return {};
@@ -90,9 +90,9 @@ public:
     void search(std::vector<index_pair>& pairs) override { search_->search(pairs); }
     [[nodiscard]] double share_of_update() const override { return search_->share_of_update(); }
     [[nodiscard]] work_counters counters() const override {
-        work_counters all = search_->counters();
-        all.add(work::pieces, pieces_counted_);
-        return all;
+        work_counters total = search_->counters();
+        total.add(work::pieces, pieces_counted_);
+        return total;
     }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return search_->bytes(); }
     [[nodiscard]] std::vector<stage_plan> plans() const override { return search_->plans(); }
@@ -103,7 +103,7 @@ private:
     double size_;
     instrumentation counted_;
     bool knows_meshes_ = false;
-    std::uint64_t pieces_ = 0;  // of objects that are divided
+    std::uint64_t pieces_ = 0;  // number of pieces of the divided objects
     std::uint64_t pieces_counted_ = 0;
 };
 

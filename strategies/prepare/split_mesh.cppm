@@ -6,13 +6,13 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The paper's pre-processing (section 2) done to what objects are made of: "if a few objects are very large" each is
-/// divided into smaller objects, with boxes of their own, before the search. Where `split_large` cuts a box, and its
-/// pieces fill it, a part of a mesh has a box around its triangles only, and a tree.
+/// The paper's pre-processing (section 2) applied to meshes: "if a few objects are very large" each is divided into
+/// smaller objects with boxes of their own, before the broad phase. The pieces of `split_large` fill the box of their
+/// object, whereas a part of a mesh has a tight box around its triangles, and a BVH of its own.
 ///
-/// A mesh that is longer, on an axis of its own frame, than `size` times the mean extent of all objects is cut as
-/// `split_large` cuts a box; a triangle belongs to the cell in which its centroid lies. Cells without triangles are no
-/// parts. All is decided before the first frame; parts follow a mesh that deforms. When to use: claim C9 asks.
+/// A mesh that is longer, on an axis of its local frame, than `size` times the mean extent of all objects is cut as
+/// `split_large` cuts a box; each triangle belongs to the cell that contains its centroid, and empty cells yield no
+/// parts. The division is fixed before the first frame; parts follow deforming meshes. When to use: see claim C9.
 struct split_mesh_prepare : dividing_prepare {
     using dividing_prepare::dividing_prepare;
 
