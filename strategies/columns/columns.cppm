@@ -1,4 +1,4 @@
-/// The room of the partition into columns and of its sweep: what the two strategies see of it. All else is behind.
+/// The interface of the column search for the two strategies that use it, the `columns` partition and the `simd` sweep.
 export module aabb.columns;
 
 export import aabb.columns.lists;

@@ -6,12 +6,12 @@ import aabb.std;
 
 export namespace aabb {
 
-/// A frame whose pairs are kept for as long as nothing moves. Boxes are kept only when some of them stood still since
-/// the frame before: a scene in motion pays for a look at those. Where those stand still and others do not, frames are
-/// kept ever more rarely, down to one of 64.
+/// Sleep detection: keeps the pairs of a frame for as long as nothing moves. A frame is kept only if a sample of its
+/// boxes has not moved since the previous frame, so moving scenes only pay for comparing the sample. If the sample is
+/// at rest but other boxes move, exponential back-off keeps ever fewer frames, down to one in 64.
 class frame_at_rest {
 public:
-    /// @returns whether all boxes are where they were in the frame that is kept, so that `pairs` has theirs
+    /// @returns whether no box has moved since the kept frame, so that `pairs` is still the result
     [[nodiscard]] bool lasts(std::span<const box> boxes, const membership& objects) {
         const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;
         if (!boxes_.empty()) {
@@ -25,9 +25,9 @@ public:
             waited_ = 0;
         }
         size_ = boxes.size();
-        const auto some = some_of(boxes);
-        is_to_be_kept_ = same_objects && are_same(some, some_) && ++waited_ > pause_;
-        some_ = some;
+        const auto sample = sample_of(boxes);
+        is_to_be_kept_ = same_objects && are_same(sample, sample_) && ++waited_ > pause_;
+        sample_ = sample;
         return false;
     }
 
@@ -41,32 +41,33 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(boxes_, pairs_); }
 
 private:
-    static constexpr std::size_t looked_at = 64;
+    static constexpr std::size_t sample_size = 64;
 
     [[nodiscard]] static bool are_same(std::span<const box> a, std::span<const box> b) noexcept {
         return std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
     }
-    [[nodiscard]] static std::array<box, looked_at> some_of(std::span<const box> boxes) noexcept {
-        std::array<box, looked_at> some{};
+    [[nodiscard]] static std::array<box, sample_size> sample_of(std::span<const box> boxes) noexcept {
+        std::array<box, sample_size> sample{};
         if (!boxes.empty())
-            for (std::size_t i = 0; i < looked_at; ++i) some[i] = boxes[i * boxes.size() / looked_at];
-        return some;
+            for (std::size_t i = 0; i < sample_size; ++i) sample[i] = boxes[i * boxes.size() / sample_size];
+        return sample;
     }
 
     std::size_t size_ = 0;
-    std::array<box, looked_at> some_{};
+    std::array<box, sample_size> sample_{};
     bool is_to_be_kept_ = false;
-    unsigned pause_ = 0;  // frames that are not kept, though some boxes stand still
+    unsigned pause_ = 0;  // back-off: number of frames that are not kept although the sample is at rest
     unsigned waited_ = 0;
-    std::vector<box> boxes_;  // of all objects, absent ones too; empty where no frame is kept
+    std::vector<box> boxes_;  // boxes of all objects, including absent ones; empty if no frame is kept
     std::vector<index_pair> pairs_;
 };
 
-/// Boxes so few that each is tested against all others, a vector at a time: to sort or cut them would take longer.
+/// Brute-force search for few boxes: each is tested against all others, a vector at a time, which takes less time than
+/// sorting or cutting them.
 class few_boxes {
 public:
-    /// @param group in the order of ids
-    /// @returns whether all are valid; if not, there is nothing to search.
+    /// @param group boxes in ascending order of ids
+    /// @returns whether all boxes are valid; otherwise `search` must not be called.
     [[nodiscard]] bool fill(const column_group& group) {
         group_ = group;
         vectors_.resize((group.boxes.size() + width - 1) / width);
@@ -82,7 +83,7 @@ public:
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         const std::size_t n = group_.boxes.size();
         met_.resize(n * vectors_.size());
-        std::size_t found = 0;
+        std::size_t rows = 0;
         std::size_t tests = 0;
         for (std::size_t v = 0; v < vectors_.size(); ++v) {
             const vector_of_boxes vector = vectors_[v];
@@ -90,9 +91,9 @@ public:
             const std::uint32_t present = simd::lanes_below(n - first);
             const auto test = [&](std::size_t i, std::uint32_t wanted) {
                 const std::uint32_t lanes = vector.met_by(group_.boxes[i]) & wanted;
-                // Kept without a branch, since whether there are any cannot be foreseen.
-                met_[found] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(first), lanes};
-                found += static_cast<std::size_t>(lanes != 0);
+                // Stored without a branch, which would be hard to predict.
+                met_[rows] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(first), lanes};
+                rows += static_cast<std::size_t>(lanes != 0);
             };
             for (std::size_t i = 0; i < first; ++i) test(i, present);
             const std::size_t end = std::min(n, first + width);
@@ -100,7 +101,7 @@ public:
             tests += end;
         }
         counters.add(work::box_tests, width * tests);
-        report(std::span(met_).first(found), pairs);
+        report(std::span(met_).first(rows), pairs);
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(vectors_, met_); }
@@ -111,26 +112,26 @@ private:
     struct vector_of_boxes {
         simd::floats coordinates[6];
 
-        /// Bit l is set where box l overlaps this one.
+        /// Bit l is set if box l of the vector overlaps `b`.
         [[nodiscard, gnu::always_inline]] inline std::uint32_t met_by(const box& b) const noexcept {
             simd::flags met = (coordinates[0] <= b.max[0]) & (coordinates[3] >= b.min[0]);
             for (int k = 1; k < 3; ++k) met &= (coordinates[k] <= b.max[k]) & (coordinates[3 + k] >= b.min[k]);
             return simd::bits(met);
         }
     };
-    /// A box, and those behind it in a vector that it overlaps.
+    /// A box and the later boxes of one vector that it overlaps.
     struct met_lanes {
         std::uint32_t box;
-        std::uint32_t first;  ///< of the vector
+        std::uint32_t first;  ///< index of the vector's first box
         std::uint32_t lanes;
     };
 
-    void report(std::span<const met_lanes> all, std::vector<index_pair>& pairs) const {
+    void report(std::span<const met_lanes> rows, std::vector<index_pair>& pairs) const {
         std::size_t next = pairs.size();
         std::size_t end = next;
-        for (const met_lanes& met : all) end += static_cast<std::size_t>(std::popcount(met.lanes));
+        for (const met_lanes& met : rows) end += static_cast<std::size_t>(std::popcount(met.lanes));
         pairs.resize(end);
-        for (const met_lanes& met : all)
+        for (const met_lanes& met : rows)
             for (std::uint32_t lanes = met.lanes; lanes != 0; lanes &= lanes - 1)
                 pairs[next++] = {id_of(met.box),
                                  id_of(met.first + static_cast<std::uint32_t>(std::countr_zero(lanes)))};
@@ -145,9 +146,9 @@ private:
     std::vector<met_lanes> met_;
 };
 
-/// Global search that cuts first: boxes go to columns as they are, group by group where there are many, and what a
-/// group needs is made while it is swept, so that it is still in a cache. A few boxes are not cut at all. Kept from
-/// frame to frame are the plans, and the pairs for as long as nothing moves.
+/// Broad phase that cuts before it sorts: boxes are put into columns unsorted. Large scenes are processed group by
+/// group, and the data of a group are built right before it is swept, so that they are still in a cache. Few boxes are
+/// tested by brute force. Plans are kept between frames, and so are the pairs for as long as nothing moves.
 template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
 class column_search {
 public:
@@ -156,7 +157,7 @@ public:
         workers_.push_back({{std::move(sort), std::move(sweep)}, {}});
         workers_.resize(threads_.count(), workers_.front());
     }
-    // What was filled points into itself.
+    // The members refer to each other, so copies would dangle.
     column_search(const column_search&) = delete;
     column_search& operator=(const column_search&) = delete;
     column_search(column_search&&) = default;
@@ -177,7 +178,7 @@ public:
             if (!few_.fill(present_)) require_valid(boxes);
             return;
         }
-        const box bounds = bounds_of_some();
+        const box bounds = bounds_of_sample();
         const bool is_anew = is_stale(n) || lie_elsewhere(bounds, planned_bounds_);
         if (is_anew) planned_bounds_ = bounds;
         planned_ = 0;
@@ -204,7 +205,7 @@ public:
         at_rest_.keep(boxes_, std::span(pairs).subspan(before));
     }
 
-    /// Of the last frame that was cut: into groups of columns where there are any.
+    /// The plan of the last frame that was cut: the grid of groups if there are groups, else the columns.
     [[nodiscard]] const column_plan& plan() const noexcept { return is_in_groups() ? cut_.grid : cut_.columns.plan; }
     [[nodiscard]] bool is_in_groups() const noexcept { return groups_.size() > 0; }
     [[nodiscard]] std::vector<stage_plan> plans() const {
@@ -226,10 +227,10 @@ public:
         if (is_few_) return {{absence::partition, why}, {absence::sort, why}};
         return {};
     }
-    /// Of the time of the last search: groups are cut and sorted in it, where they are still in a cache.
+    /// The share of the last search's time that belongs to the update: `search` also cuts and sorts the groups.
     [[nodiscard]] double share_of_update() const {
-        const double all = sum_of([](const worker& w) { return w.own.times().all(); });
-        return all > 0 ? sum_of([](const worker& w) { return w.own.times().cut(); }) / all : 0;
+        const double total = sum_of([](const worker& w) { return w.own.times().all(); });
+        return total > 0 ? sum_of([](const worker& w) { return w.own.times().cut(); }) / total : 0;
     }
     [[nodiscard]] std::size_t sort_bytes() const noexcept {
         return sum_of([](const worker& w) { return w.own.sort_bytes(); });
@@ -239,21 +240,21 @@ public:
                sum_of([](const worker& w) { return w.own.column_bytes(); });
     }
     [[nodiscard]] std::size_t sweep_bytes() const noexcept {
-        return bytes_of(found_) + sum_of([](const worker& w) { return w.own.sweep_bytes() + bytes_of(w.pairs); });
+        return bytes_of(group_pairs_) + sum_of([](const worker& w) { return w.own.sweep_bytes() + bytes_of(w.pairs); });
     }
 
 private:
-    /// Plans serve at most this many frames.
+    /// A plan is replaced after this many frames.
     static constexpr unsigned frames_a_plan = 32;
 
     using own_counters = std::conditional_t<Counters::enabled, work_counters, no_counters>;
 
-    // Cache lines come in twos; none is written by two workers.
+    // Aligned to pairs of cache lines, which are prefetched together, to prevent false sharing between workers.
     struct alignas(128) worker {
         column_worker<Sort, Partition, Sweep, own_counters> own;
         std::vector<index_pair> pairs;
     };
-    /// Where the pairs of a group are that another worker than the first one took.
+    /// Where the pairs of a group are stored if a worker other than the first one searched it.
     struct pairs_of_group {
         std::size_t worker = 0;
         std::size_t begin = 0;
@@ -279,27 +280,27 @@ private:
         return planned_ == 0 || age_ + 1 == frames_a_plan || 8 * change > planned_;
     }
 
-    /// Of a few of the boxes, the same ones in every frame that has as many.
-    [[nodiscard]] box bounds_of_some() const noexcept {
-        constexpr std::size_t looked_at = 16;
+    /// Bounds of a sample of boxes, which is the same in every frame with the same number of boxes.
+    [[nodiscard]] box bounds_of_sample() const noexcept {
+        constexpr std::size_t sample_size = 16;
         box bounds = empty_box();
         const std::size_t n = present_.boxes.size();
-        const std::size_t step = std::max<std::size_t>(1, n / looked_at);
+        const std::size_t step = std::max<std::size_t>(1, n / sample_size);
         for (std::size_t i = 0; i < n; i += step) bounds = merged(bounds, present_.boxes[i]);
         return bounds;
     }
 
-    /// Whether boxes spread over half as much again as when they were planned for, or over two thirds, or have moved on
-    /// by half of that, on any axis; on one on which they hardly spread, by more than a part of the longest.
-    [[nodiscard]] static bool lie_elsewhere(const box& now, const box& planned) noexcept {
+    /// Whether, on any axis, the extent of the scene has grown by half or shrunk by a third since it was planned for,
+    /// or its centre has moved by half of the extent. Short axes count as a 64th of the longest one.
+    [[nodiscard]] static bool lie_elsewhere(const box& current, const box& planned) noexcept {
         const auto width_of = [](const box& b, int k) { return double{b.max[k]} - double{b.min[k]}; };
         const double longest = width_of(planned, longest_axis(planned));
         for (int k = 0; k < 3; ++k) {
             const double width = std::max(width_of(planned, k), longest / 64);
-            const double change = width_of(now, k) - width_of(planned, k);
-            const double way =
-                double{now.min[k]} - double{planned.min[k]} + double{now.max[k]} - double{planned.max[k]};
-            if (change > width / 2 || change < -width / 3 || std::abs(way) > width) return true;
+            const double change = width_of(current, k) - width_of(planned, k);
+            const double displacement =
+                double{current.min[k]} - double{planned.min[k]} + double{current.max[k]} - double{planned.max[k]};
+            if (change > width / 2 || change < -width / 3 || std::abs(displacement) > width) return true;
         }
         return false;
     }
@@ -333,37 +334,38 @@ private:
             for (std::uint32_t g = 0; g < groups_.size(); ++g) search_group(g, workers_.front(), pairs);
             return;
         }
-        // The first worker takes groups from the first one on, so that it leaves pairs where they belong; others take
-        // them from the last one on.
+        // The first worker takes groups in ascending order, so that it can append their pairs to the result; the other
+        // workers take groups in descending order.
         for (worker& w : workers_) w.pairs.clear();
-        found_.assign(groups_.size(), {});
-        std::atomic<std::uint64_t> taken = 0;  // how many from the first one on, and 2^32 times how many from the last
+        group_pairs_.assign(groups_.size(), {});
+        std::atomic<std::uint64_t> taken = 0;  // low u32: groups taken in ascending order; high u32: in descending
         threads_.for_each_index(threads_.count(), [&](std::size_t, std::size_t number) {
             std::vector<index_pair>& to = number == 0 ? pairs : workers_[number].pairs;
-            const std::uint64_t one = number == 0 ? 1 : std::uint64_t{1} << 32U;
+            const std::uint64_t increment = number == 0 ? 1 : std::uint64_t{1} << 32U;
             for (;;) {
-                const std::uint64_t before = taken.fetch_add(one, std::memory_order_relaxed);
+                const std::uint64_t before = taken.fetch_add(increment, std::memory_order_relaxed);
                 const auto first = static_cast<std::uint32_t>(before);
                 const auto last = static_cast<std::uint32_t>(before >> 32U);
                 if (first + last >= groups_.size()) return;
                 const std::uint32_t g = number == 0 ? first : groups_.size() - 1 - last;
                 const std::size_t begin = to.size();
                 search_group(g, workers_[number], to);
-                if (number > 0) found_[g] = {number, begin, to.size()};
+                if (number > 0) group_pairs_[g] = {number, begin, to.size()};
             }
         });
         collect(pairs);
     }
 
-    /// Those of the other workers, behind: in the order of the groups, whichever thread took them.
+    /// Appends the pairs of the other workers in the order of the groups, so that the order of the result does not
+    /// depend on the threads.
     void collect(std::vector<index_pair>& pairs) {
-        std::size_t all = pairs.size();
-        for (const worker& w : workers_) all += w.pairs.size();
-        if (all > pairs.capacity()) pairs.reserve(std::max(all, 2 * pairs.capacity()));
-        for (const pairs_of_group& f : found_) {
-            const auto from = workers_[f.worker].pairs.begin();
-            pairs.insert(pairs.end(), from + static_cast<std::ptrdiff_t>(f.begin),
-                         from + static_cast<std::ptrdiff_t>(f.end));
+        std::size_t total = pairs.size();
+        for (const worker& w : workers_) total += w.pairs.size();
+        if (total > pairs.capacity()) pairs.reserve(std::max(total, 2 * pairs.capacity()));
+        for (const pairs_of_group& g : group_pairs_) {
+            const auto from = workers_[g.worker].pairs.begin();
+            pairs.insert(pairs.end(), from + static_cast<std::ptrdiff_t>(g.begin),
+                         from + static_cast<std::ptrdiff_t>(g.end));
         }
     }
 
@@ -374,9 +376,9 @@ private:
     void add_up(Counters& counters) {
         if constexpr (Counters::enabled)
             for (worker& w : workers_) {
-                const work_counters made = w.own.take_counters();
+                const work_counters own_work = w.own.take_counters();
                 for (std::size_t k = 0; k < work_names.size(); ++k)
-                    if (const auto what = static_cast<work>(k); made[what] > 0) counters.add(what, made[what]);
+                    if (const auto kind = static_cast<work>(k); own_work[kind] > 0) counters.add(kind, own_work[kind]);
             }
     }
 
@@ -389,20 +391,20 @@ private:
 
     [[no_unique_address]] Partition partition_;
     worker_threads threads_;
-    std::vector<worker> workers_;  // one for each of them
-    std::span<const box> boxes_;   // of the frame
+    std::vector<worker> workers_;  // one per thread
+    std::span<const box> boxes_;   // boxes of the current frame
     frame_at_rest at_rest_;
     bool rests_ = false;
     column_group present_{};
-    std::vector<box> present_boxes_;  // where some objects are absent
+    std::vector<box> present_boxes_;  // used only if some objects are absent
     std::vector<std::uint32_t> present_ids_;
     few_boxes few_;
     bool is_few_ = false;
     kept_cut cut_;
     column_groups groups_;
-    std::vector<pairs_of_group> found_;
-    std::size_t planned_ = 0;  // boxes of the frame before; 0 without a plan
-    unsigned age_ = 0;         // frames since the plan
+    std::vector<pairs_of_group> group_pairs_;  // by group
+    std::size_t planned_ = 0;                  // number of boxes in the previous frame; 0 without a plan
+    unsigned age_ = 0;                         // number of frames since the plan was made
     box planned_bounds_ = empty_box();
 };
 

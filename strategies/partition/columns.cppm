@@ -9,27 +9,26 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Cuts first and sorts afterwards: columns of equal width along one axis, each with its own short list. When to use:
-/// almost always; it sorts nothing that is not swept.
+/// Cuts the scene into columns of equal width that run along one axis, and only then sorts, one short list per column.
+/// When to use: almost always; it sorts nothing that is not swept.
 ///
-/// The axis along which columns run, and how many there are, are what a model of evenly spread boxes finds cheapest for
-/// a sample of them.
+/// The axis and the number of columns minimize the cost of a model of uniformly spread boxes, fitted to a sample.
 class columns_partition {
 public:
     static constexpr std::string_view name = "columns";
     static constexpr std::string_view summary = "cuts boxes into columns before anything is sorted";
 
     struct config {
-        /// How many of the two axes across are cut into columns.
+        /// Number of the two perpendicular axes that are cut into columns.
         std::uint32_t axes = 2;
-        /// Up to so many boxes are tested each against each, a vector at a time. auto: as many as four vectors hold.
+        /// Brute-force threshold: up to this many boxes are tested pairwise by vectors. auto: four vectors of boxes.
         std::optional<std::uint32_t> few{};
-        /// Boxes that are put side by side first, about. auto: all, up to 40,000; more are put into groups of 9,000,
-        /// which fill half a second-level cache with their entries, or into 300 groups, which is as many places as can
-        /// be written in turn without much waiting. Any number of boxes is put into groups, and those into further
-        /// ones, where they lie in clumps so far apart that columns over all of them leave each clump in one place.
+        /// Approximate number of boxes per group. auto: scenes of up to 40,000 boxes form a single group. Larger ones
+        /// are put into groups of 9,000, whose entries fill half of the L2 cache, or into 300 groups, as many write
+        /// streams as the processor sustains without stalls. Scenes of any size are put into nested groups if their
+        /// boxes lie in clusters so far from each other that columns over the whole scene would not divide a cluster.
         std::optional<std::uint32_t> group{};
-        /// How many threads take groups.
+        /// Number of threads that search groups.
         std::uint32_t threads = 1;
     };
     static constexpr std::tuple parameters{
@@ -48,24 +47,24 @@ public:
         return {};
     }
 
-    /// A global search with this partition.
+    /// The broad phase that uses this partition.
     template <class Sort, class Sweep, class Counters>
     using search_with = column_search<Sort, columns_partition, Sweep, Counters>;
 
     columns_partition() = default;
     explicit columns_partition(const config& c) : config_(c) {}
 
-    /// For these boxes, of which only what lies within the bounds counts.
+    /// The cheapest plan for these boxes, clipped to the bounds.
     [[nodiscard]] column_plan plan(std::span<const box> boxes, const box& within) const {
         if (boxes.empty()) return {};
         const sample seen = sample_of(boxes, within);
         column_plan best;
         double least = std::numeric_limits<double>::infinity();
         for (int axis = 0; axis < 3; ++axis) {
-            column_plan one;
-            one.axis = axis;
-            const int u = one.axis_across(0);
-            const int v = one.axis_across(1);
+            column_plan candidate;
+            candidate.axis = axis;
+            const int u = candidate.axis_across(0);
+            const int v = candidate.axis_across(1);
             if (!seen.varies(axis) && (seen.varies(u) || seen.varies(v))) continue;
             const double most_u = most(seen, u, config_.axes > 0);
             const double most_v = most(seen, v, config_.axes > 1);
@@ -74,26 +73,26 @@ public:
                 for (const std::uint32_t nv : numbers) {
                     if (nv > most_v || nu * nv > most_columns) break;
                     if (nu * nv > 1 && std::size_t{nu} * nv * simd::width > boxes.size()) break;
-                    one.across = {nu, nv};
-                    const double cost = cost_of(seen, one, boxes.size());
+                    candidate.across = {nu, nv};
+                    const double cost = cost_of(seen, candidate, boxes.size());
                     if (cost >= least) continue;
                     least = cost;
-                    best = one;
+                    best = candidate;
                 }
             }
         }
         best.fit(seen.bounds);
         best.most_along =
             static_cast<std::uint32_t>(std::min(most(seen, best.axis, true) / columns_a_box, double{most_columns}));
-        // A group of fewer boxes than a plan looks at is not worth one of its own.
+        // A group of fewer boxes than a plan samples is not worth its own plan.
         if (!config_.group && are_clumped(seen, best, boxes.size(), least))
             best.groups = std::clamp(static_cast<double>(boxes.size()) / samples, 4.0, double{most_groups});
         return best;
     }
 
-    /// Of so many boxes, or fewer, none is cut.
+    /// The brute-force threshold.
     [[nodiscard]] std::size_t few() const noexcept { return config_.few.value_or(4 * simd::width); }
-    /// How many of so many boxes are cut into columns together, about.
+    /// The approximate size of a group in a scene of this many boxes.
     [[nodiscard]] std::size_t group(std::size_t boxes) const noexcept {
         if (config_.group) return std::min(boxes, std::size_t{*config_.group});
         return boxes <= 40'000 ? boxes : std::max(std::size_t{9'000}, boxes / std::size_t{most_groups});
@@ -103,25 +102,25 @@ public:
 private:
     static constexpr std::size_t samples = 256;
     static constexpr std::size_t kept_samples = samples / 2;
-    /// One of so many is left out on either side; none of 0.
+    /// Candidate shares of outliers to exclude on either side: none, 1/64 and 1/8.
     static constexpr std::array<std::size_t, 3> shares{0, 64, 8};
-    /// Of so many, one is asked which others it meets.
-    static constexpr std::size_t boxes_an_asked = 32;
+    /// One in this many boxes is tested against the kept sample.
+    static constexpr std::size_t boxes_per_tested = 32;
     static constexpr std::uint32_t most_columns = 16'384;
     static constexpr std::uint32_t most_groups = 300;
     static constexpr double columns_a_box = 4;
     static constexpr std::array<std::uint32_t, 24> numbers{1,  2,  3,  4,  5,  6,  7,  8,  10, 12, 14,  16,
                                                            20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128};
 
-    /// Some boxes, and the means of their extents, of products of two, and of all three.
+    /// A sample of boxes, and the means of their extents, face areas and volumes.
     struct sample {
         box bounds = empty_box();
         vec3d extent{};
-        vec3d product{};  ///< of the other two
+        vec3d product{};  ///< on each axis, the product of the extents on the other two
         double volume = 0;
-        vec3d per_width{};                                      ///< 1 / `width`; 0 without one
-        std::array<std::array<float, kept_samples>, 6> ends{};  ///< of every second box: lower ones, then upper ones
-        std::size_t kept = 0;                                   ///< how many those are
+        vec3d per_width{};                                      ///< 1 / `width`, or 0 if the width is 0
+        std::array<std::array<float, kept_samples>, 6> ends{};  ///< lower, then upper ends of every second box
+        std::size_t kept = 0;                                   ///< number of kept boxes
 
         void keep(const box& b) {
             for (int k = 0; k < 3; ++k) {
@@ -144,12 +143,12 @@ private:
         }
         [[nodiscard]] double width(int k) const { return double{bounds.max[k]} - double{bounds.min[k]}; }
         [[nodiscard]] bool varies(int k) const {
-            // By more than a few of the numbers that a float can hold there.
+            // A width of only a few floats does not count.
             return width(k) > 0x1p-21 * std::max(std::abs(double{bounds.min[k]}), std::abs(double{bounds.max[k]}));
         }
     };
 
-    /// Every so many-th box, each time another one, so that no order of the boxes is met.
+    /// Draws one pseudorandom box from each stride, so that the sample does not depend on periodic orders of the boxes.
     [[nodiscard]] static sample sample_of(std::span<const box> boxes, const box& within) {
         sample seen;
         std::array<std::array<float, samples + 1>, 6> ends;
@@ -176,7 +175,7 @@ private:
             seen.per_width[k] = seen.width(k) > 0 ? 1 / seen.width(k) : 0;
         }
         if (has_outliers) {
-            // What lies outside, however large, is within a column at the border.
+            // Parts of boxes outside the bounds belong to the columns at the border, however large they are.
             seen.extent = seen.product = {};
             seen.volume = 0;
             for (std::size_t i = 0; i < seen.kept; ++i) seen.add_extents(common(seen.kept_box(i), seen.bounds));
@@ -191,10 +190,9 @@ private:
         return seen;
     }
 
-    /// From the first lower end to the last upper one, without a few that lie far from all others: what lies outside is
-    /// in the columns at the border. Of 64 the outermost on either side are left out, or of 8, where that makes the
-    /// rest four times as short.
-    /// @returns whether any are
+    /// Bounds the lower and upper ends without outliers, which belong to the columns at the border. The outermost 64th
+    /// or 8th on either side is excluded if that makes the bounds at least four times as short.
+    /// @returns whether outliers were excluded
     static bool bound(box& bounds, int k, std::span<float> lower, std::span<float> upper) {
         const std::array<float, shares.size()> first = outermost(lower, std::ranges::less());
         const std::array<float, shares.size()> last = outermost(upper, std::ranges::greater());
@@ -207,22 +205,23 @@ private:
         return chosen > 0;
     }
 
-    /// What is outermost without each of the shares.
+    /// The outermost value after each share of outliers is excluded.
     template <class Before>
     [[nodiscard]] static std::array<float, shares.size()> outermost(std::span<float> values, Before before) {
-        std::array<float, shares.size()> found{};
-        const std::size_t all = values.size();
+        std::array<float, shares.size()> bounds{};
+        const std::size_t count = values.size();
         for (std::size_t i = shares.size(); i-- > 0;) {
-            const std::size_t out = shares[i] == 0 ? 0 : all / shares[i];
-            const auto place = values.begin() + static_cast<std::ptrdiff_t>(out);
+            const std::size_t excluded = shares[i] == 0 ? 0 : count / shares[i];
+            const auto place = values.begin() + static_cast<std::ptrdiff_t>(excluded);
             std::ranges::nth_element(values, place, before);
-            found[i] = *place;
-            values = values.first(out + 1);
+            bounds[i] = *place;
+            values = values.first(excluded + 1);
         }
-        return found;
+        return bounds;
     }
 
-    /// Without NaN, which selects wrongly: that boxes are invalid is seen once they are put into columns.
+    /// Clips a box. NaN, which would break `nth_element`, becomes a bound; invalid boxes are detected later, when they
+    /// are put into columns.
     [[nodiscard]] static box common(const box& b, const box& within) {
         box c = b;
         for (int k = 0; k < 3; ++k) {
@@ -232,14 +231,14 @@ private:
         return c;
     }
 
-    /// How many columns there may be; narrower ones gain nothing.
+    /// The greatest useful number of columns on an axis; narrower ones gain nothing.
     [[nodiscard]] static double most(const sample& seen, int k, bool cut) {
         if (!cut || !seen.varies(k)) return 1;
         return seen.extent[k] > 0 ? std::max(1.0, columns_a_box * seen.width(k) / seen.extent[k]) : numbers.back();
     }
 
-    /// For a box, in nanoseconds: to bring its entries to their places, and to test each, a vector at a time, against
-    /// those that it meets along the column.
+    /// The cost per box in nanoseconds: placing its entries, and testing each of them by vectors against the entries
+    /// whose intervals overlap along the column.
     [[nodiscard]] static double cost_of(const sample& seen, const column_plan& p, std::size_t boxes) {
         const cost_model& ns = machine_costs();
         const int u = p.axis_across(0);
@@ -248,20 +247,20 @@ private:
         const double iu = per(u, p.across[0]);
         const double iv = per(v, p.across[1]);
         const double entries = 1 + seen.extent[u] * iu + seen.extent[v] * iv + seen.product[p.axis] * iu * iv;
-        const double reach = seen.extent[p.axis] + seen.product[v] * iu + seen.product[u] * iv + seen.volume * iu * iv;
+        const double length = seen.extent[p.axis] + seen.product[v] * iu + seen.product[u] * iv + seen.volume * iu * iv;
         const auto columns = static_cast<double>(p.columns());
         const auto n = static_cast<double>(boxes);
         const double per_length = seen.per_width[p.axis];
-        const double met = n * (per_length > 0 ? reach * per_length : entries) / columns;
-        return entries * (ns.column_entry + ns.column_test * (1 + met / simd::width)) + ns.column * columns / n;
+        const double tests = n * (per_length > 0 ? length * per_length : entries) / columns;
+        return entries * (ns.column_entry + ns.column_test * (1 + tests / simd::width)) + ns.column * columns / n;
     }
 
-    /// Boxes of a sample as a sweep has them, a vector of them.
+    /// A vector of sampled boxes in the representation of the sweep.
     struct sampled_entries {
         simd::floats ends[6];
         simd::words lower, upper;  ///< as in `column_entry`
-        simd::words first, last;   ///< columns, as whole numbers stand in `lower`
-        simd::words begin, end;    ///< buckets
+        simd::words first, last;   ///< column numbers, packed like the coordinates in `lower`
+        simd::words begin, end;    ///< bucket numbers
 
         void fill(const sample& seen, std::size_t at, const column_plan& plan, std::uint32_t bucket_bits) {
             for (std::size_t k = 0; k < 6; ++k) std::memcpy(&ends[k], &seen.ends[k][at], sizeof ends[k]);
@@ -276,30 +275,31 @@ private:
             end = plan.whole(ends[3 + plan.axis], plan.axis) >> (16 - bucket_bits);
         }
 
-        /// Bit l is set where box l has a column, and a bucket in it, in common with another one.
+        /// Bit l is set if box l shares a column, and a range of buckets in it, with the other box.
         [[nodiscard]] std::uint32_t met_by(const sampled_entries& others, std::size_t other) const {
             return simd::bits(((simd::excess(first, simd::all(others.last[other])) |
                                 simd::excess(simd::all(others.first[other]), last)) == 0U) &
                               (begin <= others.end[other]) & (end >= others.begin[other]));
         }
-        /// Bit l is set where whole numbers across the columns do not tell, but box l does not overlap the other one.
+        /// Bit l is set if box l does not overlap the other box, but the quantized test across the columns does not
+        /// reject it.
         [[nodiscard]] std::uint32_t rejected_late(const sampled_entries& others, std::size_t other) const {
-            simd::flags apart{};
+            simd::flags disjoint{};
             for (int k = 0; k < 3; ++k)
-                apart |= (ends[k] > others.ends[3 + k][other]) | (ends[3 + k] < others.ends[k][other]);
+                disjoint |= (ends[k] > others.ends[3 + k][other]) | (ends[3 + k] < others.ends[k][other]);
             return simd::bits(((simd::excess(lower, simd::all(others.upper[other])) |
                                 simd::excess(simd::all(others.lower[other]), upper)) == 0U) &
-                              apart);
+                              disjoint);
         }
     };
 
-    /// Whether tests, of which pairs of a sample tell how many there are, cost more than all that is planned for evenly
-    /// spread boxes and than what groups would cost beside it. Who waits for that takes at most about twice as long as
-    /// who knows, whether groups serve or not.
+    /// Whether the boxes are clustered: the tests, extrapolated from pairs of the sample, cost more than the whole plan
+    /// for uniformly spread boxes plus the cost of grouping. Switching only at that point is 2-competitive: it takes at
+    /// most about twice the time of the better choice, whichever that is.
     [[nodiscard]] static bool are_clumped(const sample& seen, const column_plan& plan, std::size_t boxes,
                                           double planned) {
         const cost_model& ns = machine_costs();
-        // In nanoseconds for a box.
+        // Costs are in nanoseconds per box.
         const double most = planned + ns.column_entry;
         const auto cost = [&](double met, double rejected) { return ns.column_test * (met / simd::width + rejected); };
         const auto n = static_cast<double>(boxes);
@@ -307,25 +307,26 @@ private:
         std::array<sampled_entries, kept_samples / simd::width> entries;
         for (std::size_t i = 0; i < seen.kept; i += simd::width)
             entries[i / simd::width].fill(seen, i, plan, plan.bucket_bits(boxes));
-        // Some of them are asked, across the sample, so that looking at few boxes takes a small part of their search.
-        const std::size_t asked = std::min(seen.kept, std::max<std::size_t>(boxes / boxes_an_asked, 1));
+        // Only some of the sample are tested against the rest, so that the estimate takes a small share of the search.
+        const std::size_t tested = std::min(seen.kept, std::max<std::size_t>(boxes / boxes_per_tested, 1));
         int met = 0;
         int rejected = 0;
-        for (std::size_t k = 0; k < asked; ++k) {
-            const std::size_t i = k * seen.kept / asked;
+        for (std::size_t k = 0; k < tested; ++k) {
+            const std::size_t i = k * seen.kept / tested;
             const sampled_entries& others = entries[i / simd::width];
             const std::size_t other = i % simd::width;
             for (std::size_t first = 0; first < seen.kept; first += simd::width) {
-                std::uint32_t some = simd::lanes_below(seen.kept - first);
-                if (first == i - other) some &= ~(std::uint32_t{1} << other);
-                some &= entries[first / simd::width].met_by(others, other);
-                if (some == 0) continue;
-                met += std::popcount(some);
-                rejected += std::popcount(some & entries[first / simd::width].rejected_late(others, other));
+                std::uint32_t lanes = simd::lanes_below(seen.kept - first);
+                if (first == i - other) lanes &= ~(std::uint32_t{1} << other);
+                lanes &= entries[first / simd::width].met_by(others, other);
+                if (lanes == 0) continue;
+                met += std::popcount(lanes);
+                rejected += std::popcount(lanes & entries[first / simd::width].rejected_late(others, other));
             }
         }
-        // Each is met from either side. Chance makes counts differ by their square root; three times that is beyond it.
-        const double pairs = 2 * static_cast<double>(asked) * (static_cast<double>(seen.kept) - 1);
+        // Each pair is counted from both sides. Counts are Poisson-like, so three square roots are subtracted to make
+        // an overestimate unlikely.
+        const double pairs = 2 * static_cast<double>(tested) * (static_cast<double>(seen.kept) - 1);
         const auto at_least = [&](int count) {
             return std::max(0.0, count - 3 * std::sqrt(double(count))) * n / pairs;
         };
