@@ -5,20 +5,21 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Boxes of one region of a scene, side by side in memory.
+/// The boxes of one region of a scene, contiguous in memory.
 struct column_group {
     std::span<const box> boxes;
-    std::span<const std::uint32_t> ids;  ///< by place, with bits of `later_on`; empty where the place is the id
+    std::span<const std::uint32_t> ids;  ///< by index, with bits of `later_on`; empty if the index is the id
 };
 
-/// Puts the boxes of a large scene into groups of neighbours that fit a cache together; each is cut into columns for
-/// itself. Groups are columns too, only wider: a box is in each into which it reaches, and its copy in a later group
-/// than the first is marked. A group's boxes stand in the order of their places, first those that begin there, whatever
-/// the threads.
+/// Puts the boxes of a large scene into cache-sized groups of neighbours; each group is cut into columns separately.
+/// Groups are themselves wide columns: each group that a box overlaps gets a copy of it, and copies in groups other
+/// than the first are marked. The order within a group is that of the input, boxes that begin there first, and does not
+/// depend on the number of threads.
 class column_groups {
 public:
-    /// So many groups as are planned, in the proportion of the columns; no more than those on their axes. Where they
-    /// are too few, as of boxes along a line, groups are cut along them instead of across the axis that has fewer.
+    /// The grid of groups: as many as planned, in the proportion of the columns, and no more than those on each axis.
+    /// If these are too few, as for boxes along a line, groups are cut along the columns instead of the axis with fewer
+    /// of them.
     [[nodiscard]] static column_plan coarser(column_plan plan) {
         const double groups = plan.groups;
         const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;
@@ -44,15 +45,15 @@ public:
 
     void clear() noexcept { starts_.resize(1); }
 
-    /// @param ids of the boxes; empty where the place is the id
-    /// @param most_in_group with a group of more boxes, copies included, there are no groups: crowded. Nor are there
-    /// with a box that is invalid.
+    /// @param ids ids of the boxes; empty if the index is the id
+    /// @param most_in_group limit on the boxes of a group, copies included; beyond it the result is `crowded`
+    /// @returns `whole`, or else there are no groups
     [[nodiscard]] fill_result distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                          const column_plan& plan, std::size_t most_in_group, worker_threads& threads) {
         clear();
         plan_ = plan;
         keys_.resize(boxes.size() + simd::width);
-        // Fewer boxes are not worth a part; more parts than threads, since not all begin at once.
+        // Fewer boxes are not worth a part of their own. There are more parts than threads to balance the load.
         constexpr std::size_t least = 4096;
         const std::size_t most = threads.count() > 1 ? std::size_t{4} * threads.count() : 1;
         parts_.resize(std::clamp(boxes.size() / least, std::size_t{1}, most));
@@ -78,9 +79,9 @@ public:
         return {std::span(boxes_).subspan(begin, n), std::span(ids_).subspan(begin, n)};
     }
 
-    /// Boxes in groups, each as often as it is in one.
+    /// Total number of boxes over all groups.
     [[nodiscard]] std::size_t copies() const noexcept { return starts_.back(); }
-    /// Pairs of boxes within groups, each box with itself, and in either order.
+    /// Number of ordered pairs of boxes within groups, including each box with itself.
     [[nodiscard]] double pairs() const noexcept {
         double sum = 0;
         for (std::size_t g = 0; g + 1 < starts_.size(); ++g) {
@@ -89,10 +90,10 @@ public:
         }
         return sum;
     }
-    /// Boxes in the group that has most.
+    /// Number of boxes in the fullest group.
     [[nodiscard]] std::size_t fullest() const noexcept { return fullest_; }
 
-    /// The region of a group of boxes that lie within these bounds; what begins or ends beyond it, does so elsewhere.
+    /// The region of a group within the bounds of all groups. Boxes may extend beyond it into other groups.
     [[nodiscard]] box region(std::uint32_t g, const box& within) const noexcept {
         box b = within;
         const std::uint32_t at[2] = {g % plan_.across[0], g / plan_.across[0]};
@@ -110,34 +111,34 @@ public:
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = bytes_of(keys_, wide_, wide_first_, wide_last_, boxes_, ids_, starts_);
-        for (const part& p : parts_) all += bytes_of(p.next, p.next_copy);
-        return all;
+        std::size_t total = bytes_of(keys_, wide_, wide_first_, wide_last_, boxes_, ids_, starts_);
+        for (const part& p : parts_) total += bytes_of(p.next, p.next_copy);
+        return total;
     }
 
 private:
     static constexpr std::uint32_t most_groups = 16'384;
 
-    /// Boxes that one thread takes at a time.
+    /// A range of boxes that one thread distributes.
     struct part {
         std::size_t begin;
         std::size_t end;
-        std::size_t wide_begin;  // of those that reach into further groups, among all such
+        std::size_t wide_begin;  // the part's range in `wide_`, the boxes that overlap several groups
         std::size_t wide_end;
-        std::vector<std::size_t> next;       // by group: how many begin there, then the place of the next one
-        std::vector<std::size_t> next_copy;  // the same of those that reach there
+        std::vector<std::size_t> next;       // by group: number of boxes that begin there, then the next one's index
+        std::vector<std::size_t> next_copy;  // the same for copies
         std::size_t copies;
         fill_result result;
     };
 
-    /// More are not worth the groups.
+    /// With more copies, groups are not worth their cost.
     [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept { return 65'536 + 4 * boxes; }
 
     void classify(std::span<const box> boxes, std::size_t number) {
         part& p = parts_[number];
-        const std::size_t each = (boxes.size() / parts_.size() + simd::width) / simd::width * simd::width;
-        p.begin = std::min(boxes.size(), number * each);
-        p.end = std::min(boxes.size(), p.begin + each);
+        const std::size_t length = (boxes.size() / parts_.size() + simd::width) / simd::width * simd::width;
+        p.begin = std::min(boxes.size(), number * length);
+        p.end = std::min(boxes.size(), p.begin + length);
         p.next.assign(plan_.columns(), 0);
         p.next_copy.assign(plan_.columns(), 0);
         p.wide_begin = p.wide_end = p.begin + number * simd::width;
@@ -175,42 +176,42 @@ private:
         }
     }
 
-    /// Counts become places.
-    /// @returns whether no group has more than so many boxes
+    /// Turns counts into start indices by a prefix sum.
+    /// @returns whether no group exceeds the limit
     [[nodiscard]] bool make_room(std::size_t most_in_group) {
         const std::uint32_t groups = plan_.columns();
         starts_.resize(groups + 1);
         fullest_ = 0;
-        std::size_t all = 0;
+        std::size_t total = 0;
         const auto place = [&](std::size_t& count) {
             const std::size_t here = count;
-            count = all;
-            all += here;
+            count = total;
+            total += here;
         };
         for (std::uint32_t g = 0; g < groups; ++g) {
-            starts_[g] = all;
+            starts_[g] = total;
             for (part& p : parts_) place(p.next[g]);
             for (part& p : parts_) place(p.next_copy[g]);
-            fullest_ = std::max(fullest_, all - starts_[g]);
+            fullest_ = std::max(fullest_, total - starts_[g]);
         }
-        starts_[groups] = all;
+        starts_[groups] = total;
         if (fullest_ > most_in_group) {
             clear();
             return false;
         }
-        if (all > boxes_.capacity()) {
-            // Not twice as many as before: few boxes come to reach into further groups.
+        if (total > boxes_.capacity()) {
+            // Growth by a 16th instead of doubling: the number of copies changes little between frames.
             release(boxes_);
             release(ids_);
-            boxes_.reserve(all + all / 16);
-            ids_.reserve(all + all / 16);
+            boxes_.reserve(total + total / 16);
+            ids_.reserve(total + total / 16);
         }
-        boxes_.resize(all);
-        ids_.resize(all);
+        boxes_.resize(total);
+        ids_.resize(total);
         return true;
     }
 
-    /// Each box is read once, and put into all its groups.
+    /// Reads each box once and writes it to all its groups.
     void put(std::span<const box> boxes, std::span<const std::uint32_t> ids, part& p) {
         std::size_t* const next = p.next.data();
         std::size_t* const next_copy = p.next_copy.data();
@@ -218,7 +219,7 @@ private:
         box* const to = boxes_.data();
         std::uint32_t* const to_ids = ids_.data();
         const auto write = [&](std::size_t place, std::size_t i, std::uint32_t later_on) {
-            // The next cache lines of a group: no processor foresees that many places at once.
+            // Prefetch the next cache lines of the group: there are too many write streams for hardware prefetchers.
             __builtin_prefetch(to + place + 8, 1);
             __builtin_prefetch(to_ids + place + 16, 1);
             to[place] = boxes[i];
@@ -233,7 +234,7 @@ private:
         for (; i < p.end; ++i) write(next[keys[i]]++, i, 0);
     }
 
-    /// Of a wide box, the groups but the first.
+    /// Visits all groups of a wide box except the first.
     template <class Visit>
     void for_each_further(std::size_t wide, Visit visit) const {
         const std::uint32_t u0 = wide_first_[wide] & 0xffffU;
@@ -249,9 +250,9 @@ private:
 
     column_plan plan_;
     large_vector<std::uint16_t> keys_;        // by box: its first group
-    large_vector<std::uint32_t> wide_;        // boxes that reach into further ones, in order
-    large_vector<std::uint32_t> wide_first_;  // column on the first axis across, and 2^16 times that on the second one
-    large_vector<std::uint32_t> wide_last_;
+    large_vector<std::uint32_t> wide_;        // boxes that overlap several groups, ascending
+    large_vector<std::uint32_t> wide_first_;  // packed u16 columns: first axis across low, second axis high
+    large_vector<std::uint32_t> wide_last_;   // the same for the last column
     std::vector<part> parts_;
     large_vector<box> boxes_;  // group after group
     large_vector<std::uint32_t> ids_;

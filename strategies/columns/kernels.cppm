@@ -3,8 +3,8 @@ module;
 #include <immintrin.h>
 #endif
 
-/// What columns do with as many numbers at a time as a register takes, beside what `aabb.simd` has: rows of a few
-/// numbers each, as they lie in memory, to columns and back, and two numbers of 16 bits in a word.
+/// SIMD kernels of the column search beyond those of `aabb.simd`: transposes between rows and columns, and arithmetic
+/// on two u16 packed in a u32.
 export module aabb.columns.kernels;
 
 export import aabb.simd;
@@ -12,16 +12,16 @@ import aabb.std;
 
 namespace aabb::simd::detail {
 
-using pairs = double __attribute__((vector_size(4 * width)));  // of two numbers
+using pairs = double __attribute__((vector_size(4 * width)));  // each lane holds two floats
 
-/// Pair `K` of each of half as many rows of three pairs as a vector has numbers.
+/// Pair `K` of each of `width / 2` rows of three pairs.
 template <std::size_t K>
 [[nodiscard, gnu::always_inline]] inline pairs every_third(pairs a, pairs b, pairs c) noexcept {
     constexpr std::size_t half = width / 2;
     constexpr auto of_first_two = [](std::size_t i) { return 3 * i + K < width ? 3 * i + K : 0; };
     constexpr auto of_all = [](std::size_t i) { return 3 * i + K < width ? i : half + (3 * i + K - width); };
-    const pairs found = shuffled<pairs, of_first_two>(a, b, std::make_index_sequence<half>{});
-    return shuffled<pairs, of_all>(found, c, std::make_index_sequence<half>{});
+    const pairs from_first_two = shuffled<pairs, of_first_two>(a, b, std::make_index_sequence<half>{});
+    return shuffled<pairs, of_all>(from_first_two, c, std::make_index_sequence<half>{});
 }
 
 template <std::size_t K>
@@ -34,7 +34,7 @@ template <std::size_t K>
     columns[2 * K + 1] = shuffled<floats, odd>(low, high, std::make_index_sequence<width>{});
 }
 
-// Vectors are handed over in memory, which leaves no trace when optimised.
+// Vectors are passed through memory, which the optimizer removes.
 #if defined(__AVX512F__)
 [[gnu::always_inline]] inline void gather_sixteen(const std::uint32_t* from, const void* places, void* to) noexcept {
     _mm512_storeu_si512(to, _mm512_i32gather_epi32(_mm512_loadu_si512(places), from, 4));
@@ -51,7 +51,7 @@ template <std::size_t K>
 
 export namespace aabb::simd {
 
-/// Of `width` rows of six numbers: their columns.
+/// Transposes `width` rows of six floats into columns.
 [[gnu::always_inline]] inline void load_rows_of_six(const float* from, floats (&columns)[6]) noexcept {
     detail::pairs rows[6];
     std::memcpy(rows, from, sizeof rows);
@@ -60,17 +60,17 @@ export namespace aabb::simd {
     detail::take_pair<2>(rows, columns);
 }
 
-/// Of `width` rows of four numbers: their columns.
+/// Transposes `width` rows of four u32 into columns.
 [[gnu::always_inline]] inline void load_rows_of_four(const std::uint32_t* from, words (&columns)[4]) noexcept {
     words rows[4];
     std::memcpy(rows, from, sizeof rows);
     const auto column = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
         constexpr auto of_two = [](std::size_t i) { return 4 * (i % (width / 2)) + K; };
         constexpr auto joined = [](std::size_t i) { return i < width / 2 ? i : width + i - width / 2; };
-        const auto all = std::make_index_sequence<width>{};
-        const words low = shuffled<words, of_two>(rows[0], rows[1], all);
-        const words high = shuffled<words, of_two>(rows[2], rows[3], all);
-        columns[K] = shuffled<words, joined>(low, high, all);
+        const auto lanes = std::make_index_sequence<width>{};
+        const words low = shuffled<words, of_two>(rows[0], rows[1], lanes);
+        const words high = shuffled<words, of_two>(rows[2], rows[3], lanes);
+        columns[K] = shuffled<words, joined>(low, high, lanes);
     };
     column(std::integral_constant<std::size_t, 0>{});
     column(std::integral_constant<std::size_t, 1>{});
@@ -78,16 +78,16 @@ export namespace aabb::simd {
     column(std::integral_constant<std::size_t, 3>{});
 }
 
-/// The other way round.
+/// The inverse of `load_rows_of_four`.
 [[gnu::always_inline]] inline void store_rows_of_four(std::uint32_t* to, const words (&&columns)[4]) noexcept {
     const auto rows = [&]<std::size_t R>(std::integral_constant<std::size_t, R>) {
-        // Number j of these rows is of row j / 4 and column j % 4: two columns at a time, then both.
+        // Element j of these rows comes from row j / 4 and column j % 4; two columns are interleaved at a time.
         constexpr auto of_two = [](std::size_t i) { return R * width / 4 + i / 4 + (i % 2) * width; };
         constexpr auto joined = [](std::size_t i) { return i % 4 < 2 ? i : width + i; };
-        const auto all = std::make_index_sequence<width>{};
-        const words low = shuffled<words, of_two>(columns[0], columns[1], all);
-        const words high = shuffled<words, of_two>(columns[2], columns[3], all);
-        store(to + R * width, shuffled<words, joined>(low, high, all));
+        const auto lanes = std::make_index_sequence<width>{};
+        const words low = shuffled<words, of_two>(columns[0], columns[1], lanes);
+        const words high = shuffled<words, of_two>(columns[2], columns[3], lanes);
+        store(to + R * width, shuffled<words, joined>(low, high, lanes));
     };
     rows(std::integral_constant<std::size_t, 0>{});
     rows(std::integral_constant<std::size_t, 1>{});
@@ -95,9 +95,9 @@ export namespace aabb::simd {
     rows(std::integral_constant<std::size_t, 3>{});
 }
 
-using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two in each word
+using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two u16 per u32 lane
 
-/// Numbers of 16 bits.
+/// Loads u16 and zero-extends them to u32.
 [[nodiscard, gnu::always_inline]] inline words load_halves(const std::uint16_t* from) noexcept {
     using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
     narrow v;
@@ -105,14 +105,14 @@ using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two 
     return __builtin_convertvector(v, words);
 }
 
-/// The lower half of each number.
+/// Stores the low u16 of each u32.
 [[gnu::always_inline]] inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
     using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
     const auto lower = __builtin_convertvector(v, narrow);
     std::memcpy(to, &lower, sizeof lower);
 }
 
-/// Of two numbers of 16 bits each, the upper half of the product.
+/// The high u16 of the product of each pair of u16.
 [[nodiscard, gnu::always_inline]] inline words upper_products(words a, words b) noexcept {
     using wide = std::uint32_t __attribute__((vector_size(8 * width)));
     const auto x = __builtin_convertvector(reinterpret_cast<halves>(a), wide);
@@ -120,13 +120,13 @@ using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two 
     return reinterpret_cast<words>(__builtin_convertvector(x * y >> 16, halves));
 }
 
-/// Of two numbers of 16 bits each: the difference, or 0 where it is negative.
+/// The saturating difference of each pair of u16: 0 if it would be negative.
 [[nodiscard, gnu::always_inline]] inline words excess(words a, words b) noexcept {
     return reinterpret_cast<words>(
         __builtin_elementwise_sub_sat(reinterpret_cast<halves>(a), reinterpret_cast<halves>(b)));
 }
 
-/// What stands at these places.
+/// Loads the elements at these indices.
 [[nodiscard, gnu::always_inline]] inline words gather(const std::uint32_t* from, words places) noexcept {
     words v;
 #if defined(__AVX512F__)
@@ -139,12 +139,12 @@ using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two 
     return v;
 }
 
-/// Of each lane, the sum of those up to it.
+/// The inclusive prefix sum over the lanes.
 [[nodiscard, gnu::always_inline]] inline words running_sum(words v) noexcept {
-    const words none{};
+    const words zero{};
     const auto shifted = [&]<std::size_t By, std::size_t... I>(std::integral_constant<std::size_t, By>,
                                                                std::index_sequence<I...>) {
-        return __builtin_shufflevector(v, none, (I < By ? static_cast<int>(width + I) : static_cast<int>(I - By))...);
+        return __builtin_shufflevector(v, zero, (I < By ? static_cast<int>(width + I) : static_cast<int>(I - By))...);
     };
     const auto add = [&]<std::size_t By>(std::integral_constant<std::size_t, By> distance) {
         if constexpr (By < width) v += shifted(distance, std::make_index_sequence<width>{});

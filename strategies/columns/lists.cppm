@@ -5,16 +5,17 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Cuts boxes into columns and brings each column in order, for one sweep.
+/// Cuts boxes into columns and sorts each column, for one sweep.
 ///
-/// A box is taken to whole numbers once; from them come its column and its bucket, and one pass of counting and one of
-/// writing put it behind those of its column that begin before it. Which boxes reach into further columns is
-/// remembered on the way, and only those are looked at again.
+/// Each box is quantized once. Its quantized coordinates yield its column and its bucket, and a counting sort of one
+/// counting and one writing pass places it behind the boxes of its column that begin earlier. Boxes that overlap
+/// several columns are recorded in the first pass, so that only those are visited again.
 class column_lists {
 public:
-    /// @param ids by place in `boxes`; empty where the place is the id
-    /// @param by_keys sorted by the sort policy, entry by entry, even where that leaves it to buckets
-    /// @param most_copies with more there is nothing to sweep: crowded. Nor is there with an invalid box.
+    /// @param ids by index in `boxes`; empty if the index is the id
+    /// @param by_keys whether to sort by exact keys even if the sort policy would accept unsorted buckets
+    /// @param most_copies limit on the copies; beyond it the result is `crowded`
+    /// @returns `whole`, or else there is nothing to sweep
     template <class Sort, CounterPolicy Counters>
     [[nodiscard]] fill_result fill(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                    const column_plan& plan, bool by_keys, std::size_t most_copies, Sort& sort,
@@ -23,17 +24,17 @@ public:
         plan_ = plan;
         const bool in_buckets = BucketSort<Sort> && !by_keys;
         bucket_bits_ = in_buckets ? plan.bucket_bits(boxes.size()) : 0;
-        if (const fill_result taken = take(most_copies); taken != fill_result::whole) return taken;
-        const std::uint32_t all = make_room();
+        if (const fill_result result = take(most_copies); result != fill_result::whole) return result;
+        const std::uint32_t entries = make_room();
         distribute();
         counters.add(work::moves, copies());
         if (!in_buckets) sort_columns(sort, counters);
-        block_.entries = std::span(entries_).first(all);
+        block_.entries = std::span(entries_).first(entries);
         block_.ends = ends_;
         return fill_result::whole;
     }
 
-    /// Boxes in columns, each as often as it is in one.
+    /// Total number of boxes over all columns.
     [[nodiscard]] std::size_t copies() const noexcept { return block_.boxes.size() + copies_.size(); }
     [[nodiscard]] const column_block& block() const noexcept { return block_; }
 
@@ -45,32 +46,32 @@ private:
     static constexpr std::uint32_t width = simd::width;
     static constexpr std::size_t at_a_time = 1024;
 
-    /// A box in whole numbers.
+    /// A quantized box.
     struct place {
         std::uint32_t lower;
         std::uint32_t upper;
         std::uint32_t reach;
-        std::uint32_t bucket;  ///< in which it begins, in its first column
+        std::uint32_t bucket;  ///< bucket of its lower end in its first column
     };
-    /// A box in a further column: so many buckets later.
+    /// A copy of a box in another column.
     struct copy {
-        std::uint32_t index;  ///< with bits of `later_on`
-        std::uint32_t buckets;
+        std::uint32_t index;    ///< index of the box, with bits of `later_on`
+        std::uint32_t buckets;  ///< offset to the bucket in the first column
     };
 
-    /// A few boxes at a time, so that what is known of them is still in the nearest cache when they are counted.
+    /// Quantizes and counts boxes in blocks, so that quantized boxes are still in the L1 cache when they are counted.
     [[nodiscard]] fill_result take(std::size_t most_copies) {
         places_.resize(block_.boxes.size() + width);
         copies_.clear();
         ends_.clear();
         ends_.resize((std::size_t{plan_.columns()} << bucket_bits_) + width);
         for (std::size_t begin = 0; begin < block_.boxes.size(); begin += at_a_time) {
-            const auto some = block_.boxes.subspan(begin, std::min(at_a_time, block_.boxes.size() - begin));
-            const bool valid = plan_.axis == 0   ? classify<0>(some, begin)
-                               : plan_.axis == 1 ? classify<1>(some, begin)
-                                                 : classify<2>(some, begin);
+            const auto boxes = block_.boxes.subspan(begin, std::min(at_a_time, block_.boxes.size() - begin));
+            const bool valid = plan_.axis == 0   ? classify<0>(boxes, begin)
+                               : plan_.axis == 1 ? classify<1>(boxes, begin)
+                                                 : classify<2>(boxes, begin);
             if (!valid) return fill_result::invalid;
-            for (const place& p : std::span(places_).subspan(begin, some.size())) ++ends_[p.bucket];
+            for (const place& p : std::span(places_).subspan(begin, boxes.size())) ++ends_[p.bucket];
             if (!add_copies(most_copies)) return fill_result::crowded;
         }
         return fill_result::whole;
@@ -102,8 +103,8 @@ private:
         return simd::bits(invalid) == 0;
     }
 
-    /// Of boxes that reach into more than one column, an entry for each further one.
-    /// @returns whether there are no more than so many
+    /// Records a copy for each further column of the boxes that overlap several columns.
+    /// @returns whether the number of copies is within the limit
     [[nodiscard]] bool add_copies(std::size_t most_copies) {
         const std::uint32_t later_on[2] = {column_entry::later_on(plan_.axis_across(0)),
                                            column_entry::later_on(plan_.axis_across(1))};
@@ -113,31 +114,31 @@ private:
             return ((p.upper >> shift & 0xffffU) * plan_.across[k] >> 16) -
                    ((p.lower >> shift & 0xffffU) * plan_.across[k] >> 16);
         };
-        std::array<copy, 64> some;
+        std::array<copy, 64> buffer;
         std::size_t n = 0;
-        const auto flush = [&] { copies_.insert(copies_.end(), some.begin(), some.begin() + std::exchange(n, 0)); };
+        const auto flush = [&] { copies_.insert(copies_.end(), buffer.begin(), buffer.begin() + std::exchange(n, 0)); };
         for (const std::uint32_t i : std::span(wide_).first(wide_boxes_)) {
             const place p = places_[i];
             const std::uint32_t nu = reached(p, 0, 0);
             const std::uint32_t nv = reached(p, 16, 1);
             const auto add = [&](std::uint32_t u, std::uint32_t v, std::uint32_t times) {
                 const std::uint32_t buckets = u * column + v * row;
-                some[n] = {i | (u ? later_on[0] : 0) | (v ? later_on[1] : 0), buckets};
+                buffer[n] = {i | (u ? later_on[0] : 0) | (v ? later_on[1] : 0), buckets};
                 n += times;
                 ends_[p.bucket + buckets * times] += times;
             };
             if (nu <= 1 && nv <= 1) {
-                // Which of three it is cannot be foreseen.
+                // Branch-free, since which of the three copies exist is hard to predict.
                 add(1, 0, nu);
                 add(0, 1, nv);
                 add(1, 1, nu & nv);
-                if (n + 3 > some.size()) flush();
+                if (n + 3 > buffer.size()) flush();
                 continue;
             }
             for (std::uint32_t v = 0; v <= nv; ++v)
                 for (std::uint32_t u = v == 0; u <= nu; ++u) {
                     add(u, v, 1);
-                    if (n + 3 > some.size()) flush();
+                    if (n + 3 > buffer.size()) flush();
                 }
             if (copies_.size() > most_copies) return false;
         }
@@ -145,30 +146,30 @@ private:
         return copies_.size() <= most_copies;
     }
 
-    /// Counts become places; what fills a column up to a whole vector is written.
-    /// @returns entries with those
+    /// Turns counts into start indices and pads each column to a whole number of vectors.
+    /// @returns the number of entries, including padding
     std::uint32_t make_room() {
         const std::uint32_t columns = plan_.columns();
         const std::size_t most = block_.boxes.size() + copies_.size() + std::size_t{columns} * (width - 1);
-        // Not twice as many as before: frames differ by few.
+        // Growth by a 16th instead of doubling: the number of entries changes little between frames.
         if (most > entries_.capacity()) {
             release(entries_);
             entries_.reserve(most + most / 16);
         }
         entries_.resize(most);
         const std::uint32_t buckets = std::uint32_t{1} << bucket_bits_;
-        const column_entry none{~std::uint32_t{0}, 0, columns << bucket_bits_, 0};
+        const column_entry padding{~std::uint32_t{0}, 0, columns << bucket_bits_, 0};
         std::uint32_t next = 0;
         for (std::uint32_t c = 0; c < columns; ++c) {
             std::uint32_t* const ends = &ends_[c << bucket_bits_];
             next = buckets >= width ? places_of(ends, buckets, next) : std::exchange(*ends, next) + next;
-            while (next % width != 0) entries_[next++] = none;
+            while (next % width != 0) entries_[next++] = padding;
         }
-        ends_[columns << bucket_bits_] = 0;  // where what fills up ends: it meets none
+        ends_[columns << bucket_bits_] = 0;  // padding ends before every entry, so it overlaps none
         return next;
     }
 
-    /// Of each bucket, how many stand before it.
+    /// Exclusive prefix sum over the buckets of a column.
     static std::uint32_t places_of(std::uint32_t* counts, std::uint32_t buckets, std::uint32_t next) noexcept {
         for (std::uint32_t b = 0; b < buckets; b += width) {
             const simd::words here = simd::load(counts + b);
@@ -179,7 +180,7 @@ private:
         return next;
     }
 
-    /// Afterwards a bucket's place is that of its end.
+    /// Writes the entries; afterwards `ends_` holds the end of each bucket.
     void distribute() {
         if (block_.ids.empty())
             distribute([](std::uint32_t) { return std::uint32_t{0}; });
@@ -200,7 +201,7 @@ private:
         }
     }
 
-    /// By the sort policy, column by column; each entry gets a bucket of its own.
+    /// Sorts each column by the sort policy; each entry gets a bucket of its own.
     template <class Sort, CounterPolicy Counters>
     void sort_columns(Sort& sort, Counters& counters) {
         column_ends_.clear();
@@ -234,13 +235,13 @@ private:
     column_plan plan_;
     std::uint32_t bucket_bits_ = 0;
     std::vector<place> places_;                          // by box
-    std::array<std::uint32_t, at_a_time + width> wide_;  // of those at hand, boxes that reach into further columns
-    std::size_t wide_boxes_ = 0;                         // how many those are
-    std::vector<copy> copies_;                           // for each of those
+    std::array<std::uint32_t, at_a_time + width> wide_;  // boxes of the current block that overlap several columns
+    std::size_t wide_boxes_ = 0;                         // number of boxes in `wide_`
+    std::vector<copy> copies_;
     std::vector<column_entry> entries_;
-    std::vector<std::uint32_t> ends_;  // by bucket, and one more
-    std::vector<projection> list_;     // of a column, where it is sorted
-    std::vector<column_entry> moved_;  // the same
+    std::vector<std::uint32_t> ends_;  // by bucket, plus one for padding
+    std::vector<projection> list_;     // keys of the column being sorted
+    std::vector<column_entry> moved_;  // entries of the column being sorted, in their old order
     std::vector<std::uint32_t> column_ends_;
 };
 

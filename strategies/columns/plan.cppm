@@ -9,33 +9,33 @@ import aabb.std;
 
 export namespace aabb {
 
-/// How boxes are cut into columns that run along one axis. Coordinates are taken to whole numbers of 0 to 65,535,
-/// rounded down, so that of two that overlap none lies beyond the other: what is apart in whole numbers is apart.
+/// How boxes are cut into columns that run along one axis. Coordinates are quantized to u16 by a monotone function, so
+/// the quantized test is conservative: intervals that are disjoint when quantized are disjoint.
 struct column_plan {
-    int axis = 0;                               ///< along which columns run
-    std::array<std::uint32_t, 2> across{1, 1};  ///< how many columns on the next axis and the one after it
-    std::uint32_t most_along = 1;               ///< how many boxes fit one behind the other along them
-    double groups = 1;  ///< of neighbours, about, into which boxes are put before each is cut for itself; 1: none
+    int axis = 0;                               ///< the axis along which columns run
+    std::array<std::uint32_t, 2> across{1, 1};  ///< numbers of columns on the next axis and the one after it
+    std::uint32_t most_along = 1;               ///< greatest useful number of cuts along the columns
+    double groups = 1;  ///< approximate number of groups that are cut into columns separately; 1: no groups
     vec3f origin{};
-    vec3f scale{};  ///< to the whole numbers
+    vec3f scale{};  ///< factor of the quantization
 
     [[nodiscard]] constexpr int axis_across(std::size_t i) const noexcept {
         return (axis + 1 + static_cast<int>(i)) % 3;
     }
     [[nodiscard]] constexpr std::uint32_t columns() const noexcept { return across[0] * across[1]; }
 
-    /// About as many buckets as a column of so many boxes has of them, and at least a vector of them: 2 to this power.
+    /// Binary logarithm of the number of buckets per column: about one bucket per box, and at least a vector of them.
     [[nodiscard]] constexpr std::uint32_t bucket_bits(std::size_t boxes) const noexcept {
-        const auto each = static_cast<std::uint32_t>(std::max<std::size_t>(simd::width, boxes / columns()));
-        return std::min(16U, static_cast<std::uint32_t>(std::bit_width(each - 1)));
+        const auto buckets = static_cast<std::uint32_t>(std::max<std::size_t>(simd::width, boxes / columns()));
+        return std::min(16U, static_cast<std::uint32_t>(std::bit_width(buckets - 1)));
     }
 
-    /// Whole numbers over these bounds. Where an axis has no extent all are 0.
+    /// Sets the range of the quantization; on an axis without extent every coordinate becomes 0.
     constexpr void fit(const box& bounds) noexcept {
         origin = bounds.min;
         for (int k = 0; k < 3; ++k) {
             const float extent = bounds.max[k] - bounds.min[k];
-            // What overflows here does so where `whole` takes it for the last number, which is no less.
+            // The double division avoids an overflow of the extent; coordinates that overflow later are clamped.
             if (extent > std::numeric_limits<float>::max())
                 scale[k] = static_cast<float>(65'536 / (double{bounds.max[k]} - double{bounds.min[k]}));
             else
@@ -43,7 +43,7 @@ struct column_plan {
         }
     }
 
-    /// Rises with x, wherever x lies.
+    /// Quantizes a coordinate: monotone in x, and clamped to the range.
     [[nodiscard]] inline std::uint32_t whole(float x, int k) const noexcept {
         const float at = (x - origin[k]) * scale[k];
         return static_cast<std::uint32_t>(at > 0 ? std::min(at, 65'535.0F) : 0.0F);
@@ -57,43 +57,43 @@ struct column_plan {
     }
 };
 
-/// A box in one column. Numbers on the two axes across stand in one word, those of the first one low.
+/// A box in one column. The quantized coordinates on the two axes across are packed as u16, the first axis low.
 struct column_entry {
     std::uint32_t lower;
     std::uint32_t upper;
-    std::uint32_t reach;  ///< which of `column_block::ends` says where the box ends along the column
-    std::uint32_t index;  ///< of the box among those of the block; the three highest bits: see `later_on`
+    std::uint32_t reach;  ///< index into `column_block::ends` of the bucket in which the box ends along the column
+    std::uint32_t index;  ///< index of the box in the block; for the three highest bits, see `later_on`
 
     static constexpr std::uint32_t index_bits = (std::uint32_t{1} << 29) - 1;
-    /// Set where the box begins on axis k in an earlier column: of two such copies another column has the pair.
+    /// Set if the box begins in an earlier column on axis k. If both copies have it set, another column owns the pair.
     [[nodiscard]] static constexpr std::uint32_t later_on(int k) noexcept { return std::uint32_t{1} << (29 + k); }
 };
 static_assert(sizeof(column_entry) == 16);
 
-/// Columns one behind the other, each filled up to a whole vector with entries that overlap none, and in each its boxes
-/// bucket after bucket, in no order within a bucket.
+/// Consecutive columns, each padded to a whole number of vectors with entries that overlap nothing. Within a column
+/// boxes are ordered by bucket, but unordered within a bucket.
 struct column_block {
     std::span<const box> boxes;
-    std::span<const std::uint32_t> ids;  ///< by index, maybe with bits of `later_on`; empty where the index is the id
+    std::span<const std::uint32_t> ids;  ///< by index, possibly with bits of `later_on`; empty if the index is the id
     std::span<const column_entry> entries;
-    std::span<const std::uint32_t> ends;  ///< by bucket: how many entries stand before the next one
-    int axis;                             ///< along which columns run
+    std::span<const std::uint32_t> ends;  ///< by bucket: index of the entry after the bucket's last
+    int axis;                             ///< the axis along which columns run
 
     [[nodiscard]] inline std::uint32_t id_of(std::uint32_t index) const noexcept {
         return ids.empty() ? index : ids[index] & column_entry::index_bits;
     }
 };
 
-/// What came of bringing boxes to their places: with an invalid one, or with more copies or boxes at one place than are
-/// allowed, nothing.
+/// The result of distributing boxes: it fails if a box is invalid, or if there are too many copies or too many boxes in
+/// one place.
 enum class fill_result : std::uint8_t { whole, invalid, crowded };
 
 inline constexpr box everywhere{
     {std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest()},
     {std::numeric_limits<float>::max(), std::numeric_limits<float>::max(), std::numeric_limits<float>::max()}};
 
-/// Calls `visit(place, coordinates, present)` for each vector of boxes: lower ends on three axes, then upper ones. What
-/// the last one holds too many are copies of the last box, and have no bit in `present`.
+/// Calls `visit(index, coordinates, present)` for each vector of boxes, with the lower ends on three axes and then the
+/// upper ones. The last vector is padded with copies of the last box, whose bits in `present` are not set.
 template <class Visit>
 inline void for_each_vector(std::span<const box> boxes, Visit visit) {
     simd::floats coordinates[6];
@@ -110,7 +110,7 @@ inline void for_each_vector(std::span<const box> boxes, Visit visit) {
     visit(i, coordinates, simd::lanes_below(boxes.size() - i));
 }
 
-/// Where `is_valid` does not hold; nowhere else.
+/// The exact complement of `is_valid`, by lanes.
 [[nodiscard, gnu::always_inline]] inline simd::flags are_invalid(const simd::floats (&coordinates)[6]) noexcept {
     constexpr float most = std::numeric_limits<float>::max();
     simd::flags valid = coordinates[0] >= -most;
@@ -119,9 +119,9 @@ inline void for_each_vector(std::span<const box> boxes, Visit visit) {
     return ~valid;
 }
 
-/// A partition into columns: `plan(boxes, within)` says into which columns boxes are cut, of which only what lies
-/// within the bounds counts; `few()` says of how many nothing is cut, `group(n)` how many of n boxes are cut together,
-/// and `threads()` how many threads take such groups.
+/// A partition into columns: `plan(boxes, within)` is the plan for boxes clipped to the bounds, `few()` is the
+/// brute-force threshold, `group(n)` is the size of a group in a scene of n boxes, and `threads()` is the number of
+/// threads that search groups.
 template <class P>
 concept ColumnPartition =
     PartitionPolicy<P> && requires(const P policy, std::span<const box> boxes, const box& within) {
@@ -131,16 +131,16 @@ concept ColumnPartition =
         { policy.threads() } -> std::same_as<unsigned>;
     };
 
-/// A sweep of columns, too. It returns how many tests of a vector it made; once these are more than `most`, it stops,
-/// and the pairs are not all.
+/// A sweep that also takes columns. It returns its number of vector tests; once these exceed `most`, it stops early
+/// with incomplete pairs.
 template <class S>
 concept ColumnSweep = SweepPolicy<S> && requires(S policy, const column_block& block, std::vector<index_pair>& pairs,
-                                                 std::uint64_t most, no_counters none, work_counters some) {
-    { policy.sweep(block, pairs, most, none) } -> std::same_as<std::uint64_t>;
-    { policy.sweep(block, pairs, most, some) } -> std::same_as<std::uint64_t>;
+                                                 std::uint64_t most, no_counters off, work_counters on) {
+    { policy.sweep(block, pairs, most, off) } -> std::same_as<std::uint64_t>;
+    { policy.sweep(block, pairs, most, on) } -> std::same_as<std::uint64_t>;
 };
 
-/// A sort whose work columns do as they are cut: they bring boxes into buckets, and need no more.
+/// A sort that is satisfied by the buckets into which columns put their boxes, without sorting within a bucket.
 template <class S>
 concept BucketSort = SortPolicy<S> && requires { requires S::is_done_by_columns; };
 

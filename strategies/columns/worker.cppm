@@ -6,24 +6,24 @@ import aabb.std;
 
 export namespace aabb {
 
-/// How boxes are cut for as long as that serves them.
+/// A plan that is kept between frames while its sweep stays cheap.
 struct kept_plan {
     column_plan plan;
-    bool by_keys = false;          ///< columns are sorted by keys, since their buckets took too many boxes
-    std::uint64_t most_tests = 0;  ///< of a vector, with which a sweep still serves; 0 before the first one
+    bool by_keys = false;          ///< columns are sorted by exact keys, since buckets are too crowded
+    std::uint64_t most_tests = 0;  ///< limit on vector tests for early stopping; 0 before the first sweep
 };
 
-/// How boxes are cut that may be in groups, and how those of each group are.
+/// The plan of a scene or group: either columns, or a grid of groups and recursively the plan of each group.
 struct kept_cut {
-    kept_plan columns;  ///< where there are no groups
+    kept_plan columns;  ///< used if there are no groups
     bool in_groups = false;
-    column_plan grid;         ///< of groups
-    std::size_t fullest = 0;  ///< how many boxes the fullest group had when the grid was planned
+    column_plan grid;         ///< the grid of groups
+    std::size_t fullest = 0;  ///< number of boxes in the fullest group when the grid was planned
     std::vector<kept_cut> groups;
 
     [[nodiscard]] bool is_planned() const noexcept { return in_groups || columns.most_tests > 0; }
 
-    /// Forgets how groups were cut.
+    /// Discards the plans of earlier groups.
     void begin_groups(std::size_t in_fullest) {
         if (groups.size() < grid.columns()) groups.resize(grid.columns());
         for (kept_cut& g : groups) g.columns = {}, g.in_groups = false;
@@ -38,11 +38,11 @@ struct kept_cut {
     }
 };
 
-/// Puts boxes into groups where these are planned; where earlier groups do not serve, into others.
+/// Puts boxes into groups if these are planned, and plans new ones if the kept grid no longer fits.
 ///
-/// Groups are put into groups in turn, so these must come to an end: of all pairs of boxes, at least an eighth are in
-/// no group together. Then there is no more to do, over all levels, than eight times what each against each would take.
-/// @returns crowded where there are no groups.
+/// Groups are nested, so the recursion must terminate: each level must separate at least an eighth of all pairs of
+/// boxes. The work over all levels is then at most eight times that of brute force.
+/// @returns `crowded` if there are no groups
 template <class Plan>
 [[nodiscard]] fill_result put_into_groups(const column_group& boxes, kept_cut& kept, Plan plan, column_groups& groups,
                                           worker_threads& threads) {
@@ -68,11 +68,11 @@ template <class Plan>
     return result;
 }
 
-/// How long groups took to be cut and sorted, which of boxes in one group is a part of the update, and to be swept.
-/// Groups of few boxes are timed now and then, for those before too: a look at a clock takes as long as some.
+/// Measures how long groups take to be cut and sorted, which counts as update, and to be swept. Reading a clock takes
+/// as long as processing a small group, so small groups are sampled and the result is extrapolated to the others.
 class phase_times {
 public:
-    /// Calls both.
+    /// Calls both functions and may time them.
     template <class Cut, class Sweep>
     void add(std::size_t boxes, const Cut& cut, const Sweep& sweep) {
         untimed_ += boxes;
@@ -95,26 +95,25 @@ private:
 
     double cut_ = 0;  // in seconds
     double sweep_ = 0;
-    std::size_t untimed_ = 0;  // boxes since the last group that was
+    std::size_t untimed_ = 0;  // number of boxes since the last timed group
 };
 
-/// Cuts a group of boxes into columns and sweeps them: what one thread has for itself.
+/// Cuts a group of boxes into columns and sweeps them, with the state of one thread.
 ///
-/// A plan comes from a few boxes of an earlier frame. Whether it serves these is seen while it is used: once boxes have
-/// very many copies, or their sweep takes far more tests than it took at first, what was begun is given up for a new
-/// plan. If that serves no better, columns are sorted by keys, as a sweep along one axis would; no scene takes much
-/// longer than that.
+/// A plan is estimated from a sample of an earlier frame and checked while it is used: if boxes have too many copies,
+/// or the sweep takes far more tests than the plan's first one, it stops early and a new plan is made. If the new plan
+/// is no better, columns are sorted by exact keys, which bounds the cost by about that of a sweep along one axis.
 template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
 class column_worker {
 public:
     column_worker(Sort sort, Sweep sweep) : sort_(std::move(sort)), sweep_(std::move(sweep)) {}
 
-    /// What lies within the bounds counts, where a plan is made.
+    /// A new plan for a group of boxes, clipped to the bounds.
     [[nodiscard]] static kept_plan planned(const Partition& partition, const column_group& group, const box& within) {
         return {partition.plan(group.boxes, within), false, 0};
     }
 
-    /// Finds the pairs of a group of valid boxes, by groups of its own where these are planned.
+    /// Finds the pairs of a group of valid boxes, recursively if nested groups are planned.
     void search(const Partition& partition, const column_group& group, const box& within, kept_cut& kept,
                 std::vector<index_pair>& pairs, std::size_t depth = 0) {
         if (group.boxes.size() < 2) return count(1, group.boxes.size());
@@ -139,7 +138,7 @@ public:
         count(0, copies());
     }
 
-    /// @returns whether all boxes are valid; if not, there is nothing to sweep.
+    /// @returns whether all boxes are valid; otherwise there is nothing to sweep.
     [[nodiscard]] bool fill(const Partition& partition, const column_group& group, const box& within, kept_plan& kept) {
         is_filled_ = false;
         for (;;) {
@@ -157,13 +156,13 @@ public:
         return true;
     }
 
-    /// Of what was filled, or is filled again where that broke off.
+    /// Sweeps the filled columns, and fills and sweeps again under a new plan if the sweep stops early.
     void sweep(const Partition& partition, const column_group& group, const box& within, kept_plan& kept,
                std::vector<index_pair>& pairs) {
         const std::size_t before = pairs.size();
         const std::size_t n = group.boxes.size();
         for (;;) {
-            // They were valid when they were filled first.
+            // The boxes were validated when the columns were first filled.
             if (!is_filled_) static_cast<void>(fill(partition, group, within, kept));
             const bool is_new = kept.most_tests == 0;
             const std::uint64_t most = !is_new ? kept.most_tests : kept.by_keys ? any_number : 64 * n + 4096;
@@ -178,7 +177,7 @@ public:
         }
     }
 
-    /// Boxes in columns, each as often as it is in one.
+    /// Total number of boxes over all columns.
     [[nodiscard]] std::size_t copies() const noexcept { return columns_.copies(); }
     void count(std::size_t subsets, std::size_t copies) {
         counters_.add(work::subsets, subsets);
@@ -187,7 +186,7 @@ public:
 
     [[nodiscard]] phase_times& times() noexcept { return times_; }
     [[nodiscard]] const phase_times& times() const noexcept { return times_; }
-    /// Work that was not taken yet.
+    /// The work since the last call.
     [[nodiscard]] auto take_counters() { return std::exchange(counters_, {}); }
 
     [[nodiscard]] std::size_t sort_bytes() const noexcept { return bytes_of(sort_); }
@@ -201,7 +200,7 @@ public:
 private:
     static constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::max();
 
-    /// More are not worth their columns.
+    /// With more copies, columns are not worth their cost.
     [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept {
         return std::min(65'536 + 16 * boxes, std::size_t{1} << 30);
     }
@@ -212,7 +211,7 @@ private:
     column_lists columns_;
     bool is_filled_ = false;
     phase_times times_;
-    std::deque<column_groups> levels_;  // of groups within groups
+    std::deque<column_groups> levels_;  // nested groups, by depth
 };
 
 }  // namespace aabb
