@@ -12,15 +12,15 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The paper's axial cut (section 2): axes are cut into segments that hold the same number of projection intervals, and
-/// overlap checking stays inside a subset. When to use: almost always in place of a grid; cuts follow the objects, so
-/// neither the size of the world nor clusters matter.
+/// The paper's axial cut (section 2): axes are cut into segments that contain the same number of projection intervals,
+/// and overlap tests stay within a subset. When to use: almost always instead of a grid; cuts adapt to the objects, so
+/// neither the size of the scene nor clusters matter.
 ///
-/// A cut is the lower end of a box, and a box reaches into a segment when lower end < next cut and upper end >= cut.
-/// With the limit no box is cut more than once on any axis, so it has at most two copies for each axis cut: each cut
-/// lies beyond every upper end of the boxes that begin before the cut before it. A wanted cut that does not is put at
-/// the first lower end that does, and those wanted before there are left out. That takes comparisons only, and one wide
-/// box costs the cuts within it, not those elsewhere.
+/// A cut is the lower end of a box, and a box overlaps a segment if its lower end < the next cut and its upper end >=
+/// the segment's cut. With the limit, no box is cut more than once per axis, so it has at most two copies per cut axis:
+/// each cut lies beyond all upper ends of the boxes that begin before the previous cut. A desired cut that violates
+/// this moves to the first lower end that satisfies it, and desired cuts before that end are dropped. This takes
+/// comparisons only, and a wide box only loses the cuts within it.
 class axial_cut_partition {
 public:
     static constexpr std::string_view name = "axial_cut";
@@ -29,12 +29,12 @@ public:
 
     enum class limit_choice : std::uint8_t { on, off };
     struct config {
-        /// How many axes are cut: those on which the centres vary most, the axis that a sweep sorts along last. auto:
-        /// as many as a model of uniformly spread boxes finds cheapest, none where the cut does not pay.
+        /// Number of cut axes: those with the greatest variance of centres come first, a swept axis last. auto: the
+        /// cheapest number in a model of uniformly spread boxes, or none if cutting is not worth its cost.
         std::optional<std::uint32_t> axes;
-        /// Segments wanted on each of these axes. auto: what the same model finds cheapest.
+        /// Desired number of segments on each of these axes. auto: the cheapest number in the same model.
         std::optional<std::uint32_t> segments;
-        /// off: a box may be cut any number of times; a frame with more than 2^24 + 64 n copies of n boxes is refused.
+        /// off: a box may be cut any number of times; frames with more than 2^24 + 64 n copies of n boxes are rejected.
         limit_choice limit = limit_choice::on;
     };
     static constexpr std::tuple parameters{
@@ -48,8 +48,9 @@ public:
     axial_cut_partition() = default;
     explicit axial_cut_partition(const config& c) : config_(c) {}
 
-    /// An axis that is cut is exchanged for one on which centres vary half as much again only, and another number must
-    /// cost a tenth less, since a new list is sorted from scratch. One on which centres do not vary is not cut.
+    /// Chooses the axes with hysteresis, since a new list is sorted from scratch: a cut axis is replaced only if the
+    /// variance on another is 50% greater, and their number changes only if that costs 10% less. Axes without variance
+    /// are not cut.
     axis_set axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
         const spread along = spread_of(boxes, objects);
         const std::array<int, 3> order = in_order(along, swept);
@@ -61,24 +62,24 @@ public:
             const int k = order[n - 1];
             if (along.variance[k] > 0) cut |= axis_set{1} << k;
             if (n < config_.axes.value_or(1) || cut == 0) continue;
-            candidate_cut found = cheapest(along, cut, swept);
-            if (cut == cut_) found.cost *= preference;
-            if (found.cost < best.cost) best = found;
+            candidate_cut candidate = cheapest(along, cut, swept);
+            if (cut == cut_) candidate.cost *= preference;
+            if (candidate.cost < best.cost) best = candidate;
         }
         wanted_ = best.segments;
         cut_ = wanted_ > 1 ? best.cut : 0;
         return cut_;
     }
 
-    /// @throws input_error when there would be more than 2^26 subsets.
-    void fit(const whole_subset& all) {
-        if (cut_) places_.resize(all.boxes.size());
+    /// @throws input_error if there would be more than 2^26 subsets.
+    void fit(const whole_subset& scene) {
+        if (cut_) places_.resize(scene.boxes.size());
         std::uint64_t subsets = 1;
         for (std::size_t k = 0; k < 3; ++k) {
             cuts_[k].clear();
             if (has_axis(cut_, k)) {
-                choose_cuts(all.boxes, all.lists[k], k);
-                classify(all.boxes, all.lists[k], k);
+                choose_cuts(scene.boxes, scene.lists[k], k);
+                classify(scene.boxes, scene.lists[k], k);
             }
             subsets *= cuts_[k].size() + 1;
         }
@@ -103,22 +104,22 @@ public:
     }
 
     [[nodiscard]] std::uint64_t copies(std::uint32_t id, const box&) const noexcept {
-        std::uint64_t all = 1;
-        for (const range& r : reach_of(id)) all *= std::uint64_t{r.last} - r.first + 1;
-        return all;
+        std::uint64_t count = 1;
+        for (const range& r : ranges_of(id)) count *= std::uint64_t{r.last} - r.first + 1;
+        return count;
     }
 
     template <class Visit>
     void for_each_subset(std::uint32_t id, const box&, Visit visit) const {
-        const std::array<range, 3> reach = reach_of(id);
+        const std::array<range, 3> ranges = ranges_of(id);
         const std::uint32_t along_y = segments_on(1);
         const std::uint32_t along_z = segments_on(2);
-        for (std::uint32_t x = reach[0].first; x <= reach[0].last; ++x)
-            for (std::uint32_t y = reach[1].first; y <= reach[1].last; ++y)
-                for (std::uint32_t z = reach[2].first; z <= reach[2].last; ++z)
-                    visit((x * along_y + y) * along_z + z, axis_set{x == reach[0].first} |
-                                                               axis_set{y == reach[1].first} << 1 |
-                                                               axis_set{z == reach[2].first} << 2);
+        for (std::uint32_t x = ranges[0].first; x <= ranges[0].last; ++x)
+            for (std::uint32_t y = ranges[1].first; y <= ranges[1].last; ++y)
+                for (std::uint32_t z = ranges[2].first; z <= ranges[2].last; ++z)
+                    visit((x * along_y + y) * along_z + z, axis_set{x == ranges[0].first} |
+                                                               axis_set{y == ranges[1].first} << 1 |
+                                                               axis_set{z == ranges[2].first} << 2);
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(places_, cuts_); }
@@ -126,7 +127,7 @@ public:
 private:
     static constexpr std::uint64_t most_subsets = std::uint64_t{1} << 26;
 
-    /// The segments into which a box reaches on an axis, both included.
+    /// The first and last segment that a box overlaps on an axis.
     struct range {
         std::uint16_t first;
         std::uint16_t last;
@@ -137,16 +138,16 @@ private:
         return static_cast<std::uint32_t>(cuts_[k].size()) + 1;
     }
 
-    [[nodiscard]] inline std::array<range, 3> reach_of(std::uint32_t id) const noexcept {
-        std::array<range, 3> reach{};
+    [[nodiscard]] inline std::array<range, 3> ranges_of(std::uint32_t id) const noexcept {
+        std::array<range, 3> ranges{};
         for (std::size_t k = 0; k < 3; ++k)
-            if (has_axis(cut_, k)) reach[k] = places_[id][k];
-        return reach;
+            if (has_axis(cut_, k)) ranges[k] = places_[id][k];
+        return ranges;
     }
 
     void choose_cuts(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         std::vector<float>& cuts = cuts_[k];
-        // The last upper end of the boxes begun before the last cut.
+        // The greatest upper end of the boxes that begin before the last cut.
         float reached = -std::numeric_limits<float>::infinity();
         std::size_t begun = 0;
         for (std::uint64_t i = 1; i < wanted_ && !list.empty(); ++i) {
@@ -163,7 +164,7 @@ private:
         assert(is_ascending(cuts));
     }
 
-    /// No two are equal.
+    /// Whether cuts ascend strictly.
     [[nodiscard]] static bool is_ascending(std::span<const float> cuts) {
         return std::ranges::adjacent_find(cuts, std::ranges::greater_equal{}) == cuts.end();
     }
@@ -172,7 +173,7 @@ private:
         return static_cast<std::size_t>(std::ranges::upper_bound(list, key, {}, &projection::key) - list.begin());
     }
 
-    /// The list is in order, so the segment of a lower end is found by walking along.
+    /// The list is sorted, so the segments of all lower ends are found in one pass.
     void classify(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         const std::vector<float>& cuts = cuts_[k];
         std::size_t first = 0;
@@ -188,8 +189,8 @@ private:
         }
     }
 
-    /// Axes first on which centres vary; those that are cut already and on which they vary much before others, and one
-    /// that alone is swept last.
+    /// Axes in descending variance of centres, with a bonus for axes that are cut already. The only swept axis comes
+    /// last, except for axes without variance.
     [[nodiscard]] std::array<int, 3> in_order(const spread& along, axis_set swept) const {
         std::array<int, 3> order{0, 1, 2};
         const auto varies = [&](int k) { return along.variance[k] > 0; };
@@ -203,16 +204,15 @@ private:
         return order;
     }
 
-    /// What a cut would cost a frame, in nanoseconds.
     struct candidate_cut {
         axis_set cut;
-        std::uint32_t segments;  // an axis
-        double cost;
+        std::uint32_t segments;  // per axis
+        double cost;             // per frame, in nanoseconds
     };
     static constexpr double never = std::numeric_limits<double>::infinity();
     static constexpr double preference = 0.9;
 
-    /// Of the boxes' width, how much a mean box takes; a uniform spread is sqrt(12) deviations wide.
+    /// The extent of a mean box relative to that of the scene; a uniform distribution is sqrt(12) deviations wide.
     [[nodiscard]] static vec3d shares_of(const spread& along) {
         vec3d share{};
         for (int k = 0; k < 3; ++k) {
@@ -223,7 +223,7 @@ private:
         return share;
     }
 
-    /// Every axis that is cut or swept needs a list.
+    /// Each cut or swept axis needs a sorted list.
     [[nodiscard]] static double cost_of_lists(const spread& along, axis_set needed) {
         return machine_costs().list_entry * static_cast<double>(along.objects) * std::popcount(needed);
     }
@@ -237,11 +237,11 @@ private:
         return cost_of_lists(along, swept) + machine_costs().cut_test * objects * objects / 2 * swept_share;
     }
 
-    /// The number of segments an axis, if none is asked for, at which lists, copies, subsets and box tests together
-    /// cost least, were n boxes of the mean size spread evenly: S segments of an axis make 1 + x copies of a box, x = S
-    /// · extent / width, and within a subset each box is tested against those that it overlaps on the swept axis.
-    /// Beyond x = 1 the limit ends it. More subsets than boxes are none's gain, whatever they cost, and no answer may
-    /// hang on costs: so many subsets are never refused.
+    /// The number of segments per axis, if not configured, that minimizes the total cost of lists, copies, subsets and
+    /// box tests for n uniformly spread boxes of the mean size: S segments of an axis make 1 + x copies of a box, x = S
+    /// · extent / width, and within a subset each box is tested against those that overlap it on the swept axis. The
+    /// limit bounds x by 1. There are never more subsets than boxes, so that no cost model can make a frame exceed the
+    /// limit on subsets and be rejected.
     [[nodiscard]] candidate_cut cheapest(const spread& along, axis_set cut, axis_set swept) const {
         const auto objects = static_cast<double>(along.objects);
         const vec3d share = shares_of(along);
@@ -271,7 +271,7 @@ private:
 
     config config_;
     axis_set cut_ = 0;
-    std::uint32_t wanted_ = 1;                  // segments an axis
+    std::uint32_t wanted_ = 1;                  // segments per axis
     std::array<std::vector<float>, 3> cuts_;    // ascending
     std::vector<std::array<range, 3>> places_;  // by id
 };

@@ -12,25 +12,25 @@ namespace aabb {
 
 namespace {
 
-/// As many boxes of a node as its split is chosen by.
+/// Limit on the sample of boxes from which a split is chosen.
 constexpr std::size_t most_sampled = 128;
 
-/// Half of each, so that nothing overflows.
+/// Halves each coordinate first to avoid overflow.
 float centre_of(const box& b, int k) {
     return b.min[k] / 2 + b.max[k] / 2;
 }
 
-/// What the boxes of a node are like, from a sample.
+/// A sample of a node's boxes.
 struct sampled {
     std::array<const box*, most_sampled> boxes;
     std::size_t n = 0;
     box bounds = empty_box();
     vec3d extent{};  // mean
 
-    sampled(std::span<const box> all, std::span<const std::uint32_t> ids) {
+    sampled(std::span<const box> boxes_by_id, std::span<const std::uint32_t> ids) {
         const std::size_t step = (ids.size() + most_sampled - 1) / most_sampled;
         for (std::size_t i = 0; i < ids.size(); i += step) {
-            const box& b = all[ids[i]];
+            const box& b = boxes_by_id[ids[i]];
             boxes[n++] = &b;
             bounds = merged(bounds, b);
             for (int k = 0; k < 3; ++k) extent[k] += double{b.max[k]} - double{b.min[k]};
@@ -46,7 +46,8 @@ struct sampled {
         return *middle;
     }
 
-    /// Of a subset of so many of these boxes within bounds: entries, and tests of a sweep along the best of its axes.
+    /// The cost of a subset with this number of boxes within bounds: its entries, and the tests of a sweep along the
+    /// best swept axis.
     [[nodiscard]] double cost(double count, const box& within, axis_set swept) const {
         const cost_model& ns = machine_costs();
         double share = 1;
@@ -59,7 +60,7 @@ struct sampled {
     }
 };
 
-/// Of a half-open cell.
+/// Whether a half-open cell contains a box.
 bool lies_within(const box& b, const box& cell) {
     unsigned within = 1;
     for (int k = 0; k < 3; ++k)
@@ -78,7 +79,7 @@ bool lies_right(const box& b, std::uint32_t axis, float plane) {
 }  // namespace
 
 axis_set kd_tree_partition::axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
-    // Another axis to sweep along makes other splits cheap.
+    // Costs of splits depend on the swept axes, so another axis invalidates the tree.
     is_whole_ &= swept == swept_;
     swept_ = swept;
     present_.clear();
@@ -87,24 +88,24 @@ axis_set kd_tree_partition::axes(std::span<const box> boxes, const membership& o
     return 0;
 }
 
-void kd_tree_partition::fit(const whole_subset& all) {
+void kd_tree_partition::fit(const whole_subset& scene) {
     made_nodes_ = 0;
-    // Whatever is thrown on the way, the next frame starts from nothing.
+    // After an exception, the next frame rebuilds the whole tree.
     if (!std::exchange(is_whole_, false))
-        choose_all(all.boxes);
+        choose_all(scene.boxes);
     else if (!groups_.empty())
-        choose_stale(all.boxes);
-    [[maybe_unused]] bool placed = place(all.boxes);
+        choose_stale(scene.boxes);
+    [[maybe_unused]] bool placed = place(scene.boxes);
     if (!placed) {
-        choose_all(all.boxes);
-        placed = place(all.boxes);
+        choose_all(scene.boxes);
+        placed = place(scene.boxes);
     }
     compare();
-    // Few nodes went off and can wait for the next frame, which then need not look for its boxes twice; but what makes
-    // this one much dearer cannot.
+    // Stale subtrees are usually rebuilt in the next frame, so that boxes are placed only once per frame, but not if
+    // they make the current frame much more expensive.
     if (!groups_.empty() && pairs_ > 2 * pairs_at_first_) {
-        choose_stale(all.boxes);
-        placed = place(all.boxes);
+        choose_stale(scene.boxes);
+        placed = place(scene.boxes);
         compare();
     }
     assert(placed);
@@ -116,7 +117,7 @@ std::size_t kd_tree_partition::bytes() const noexcept {
                     group_starts_, group_ends_, ids_);
 }
 
-/// All planes, whatever there was.
+/// Rebuilds the whole tree.
 void kd_tree_partition::choose_all(std::span<const box> boxes) {
     nodes_.clear();
     leaves_ = 0;
@@ -128,7 +129,7 @@ void kd_tree_partition::choose_all(std::span<const box> boxes) {
     choose(boxes, 0, ids_.size(), {empty_box().max, empty_box().min}, 0);
 }
 
-/// Those below the nodes that went off, for the boxes that were in them.
+/// Rebuilds the stale subtrees from the boxes that were in them.
 void kd_tree_partition::choose_stale(std::span<const box> boxes) {
     gather();
     old_.swap(nodes_);
@@ -149,7 +150,7 @@ void kd_tree_partition::copy_or_choose(std::span<const box> boxes, std::uint32_t
     const auto group = std::ranges::lower_bound(groups_, old);
     if (group != groups_.end() && *group == old) {
         const auto g = static_cast<std::size_t>(group - groups_.begin());
-        // Behind all groups: these are not to be written over yet.
+        // Copy the group above all groups, since the others are still needed.
         const std::size_t first = ids_.size();
         const std::size_t count = group_ends_[g] - group_starts_[g];
         ids_.resize(first + count);
@@ -174,7 +175,7 @@ void kd_tree_partition::copy_or_choose(std::span<const box> boxes, std::uint32_t
     copy_or_choose(boxes, old_[old].children[1], depth + 1);
 }
 
-/// A node and all below it, for the boxes ids_[first .. first + count).
+/// Builds the subtree of the boxes ids_[first .. first + count).
 void kd_tree_partition::choose(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell,
                                std::size_t depth) {
     const std::size_t self = nodes_.size();
@@ -189,7 +190,7 @@ void kd_tree_partition::choose(std::span<const box> boxes, std::size_t first, st
             const std::size_t right = first + count;
             const std::size_t left = right + parts[1];
             std::array<box, 2> cells{cell, cell};
-            // Boxes may have moved out of the cell since, and the plane lie beyond it.
+            // Boxes may have left the cell of a stale node, so the plane may lie outside.
             const auto k = static_cast<int>(at.axis);
             cells[0].max[k] = std::min(at.plane, cell.max[k]);
             cells[1].min[k] = std::max(at.plane, cell.min[k]);
@@ -205,13 +206,13 @@ void kd_tree_partition::choose(std::span<const box> boxes, std::size_t first, st
     ++leaves_;
 }
 
-/// Puts the boxes right of a plane, then those left of it, behind the ones at hand.
-/// @returns false where that makes too many copies, or one side has them all
+/// Pushes the boxes right of a plane, then those left of it, onto the stack of ids.
+/// @returns false if that makes too many copies, or one side has all boxes
 bool kd_tree_partition::divide(std::span<const box> boxes, std::size_t first, std::size_t count, const split& at,
                                std::array<std::size_t, 2>& parts) {
     const std::size_t end = first + count;
     ids_.resize(end + 2 * count);
-    // The left ones from the back of this room, so that either may be any number.
+    // The left side grows downwards from the end of the range, so that either side may have any length.
     std::size_t right = end;
     std::size_t left = ids_.size();
     for (std::size_t i = first; i < end; ++i) {
@@ -231,7 +232,7 @@ bool kd_tree_partition::divide(std::span<const box> boxes, std::size_t first, st
         return false;
     }
     copied_ += copies;
-    // In the order of ids again.
+    // Restore ascending order of ids.
     std::reverse(ids_.begin() + static_cast<std::ptrdiff_t>(left), ids_.end());
     std::copy(ids_.begin() + static_cast<std::ptrdiff_t>(left), ids_.end(),
               ids_.begin() + static_cast<std::ptrdiff_t>(right));
@@ -243,7 +244,7 @@ kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxe
                                                        std::size_t count) const {
     constexpr double never = std::numeric_limits<double>::infinity();
     const sampled sample(boxes, std::span(ids_).subspan(first, count));
-    const double each = static_cast<double>(count) / static_cast<double>(sample.n);
+    const double scale = static_cast<double>(count) / static_cast<double>(sample.n);
     split best{is_leaf, 0, config_.leaf ? never : sample.cost(static_cast<double>(count), sample.bounds, swept_)};
     if (config_.leaf && count <= *config_.leaf) return best;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -258,22 +259,22 @@ kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxe
         if (left == sample.n || right == sample.n) continue;
         std::array<box, 2> within{sample.bounds, sample.bounds};
         within[0].max[k] = within[1].min[k] = plane;
-        const double cost = sample.cost(each * static_cast<double>(left), within[0], swept_) +
-                            sample.cost(each * static_cast<double>(right), within[1], swept_);
+        const double cost = sample.cost(scale * static_cast<double>(left), within[0], swept_) +
+                            sample.cost(scale * static_cast<double>(right), within[1], swept_);
         if (cost < best.cost) best = {axis, plane, cost};
     }
     return best;
 }
 
 /// Finds the leaves of all boxes.
-/// @returns false when these would be too many, and most boxes lie in leaves in which they did not
+/// @returns false if there are too many copies, which requires a full rebuild
 bool kd_tree_partition::place(std::span<const box> boxes) {
     const std::size_t most = 2 * most_copies * present_.size();
     starts_.resize(boxes.size() + 1);
     homes_.resize(boxes.size(), 0);
     in_leaf_.assign(leaves_, 0);
     entries_.clear();
-    std::size_t next = 0;  // of starts_
+    std::size_t next = 0;  // next element of starts_
     for (const std::uint32_t id : present_) {
         const box& b = boxes[id];
         while (next <= id) starts_[next++] = static_cast<std::uint32_t>(entries_.size());
@@ -284,7 +285,7 @@ bool kd_tree_partition::place(std::span<const box> boxes) {
     return true;
 }
 
-/// Into every leaf that it reaches into below a node whose cell holds all of the box.
+/// Puts a box into all leaves that it overlaps below a node whose cell contains it.
 /// @returns the lowest such node
 inline std::uint32_t kd_tree_partition::put(const box& b, std::uint32_t from) {
     struct waiting {
@@ -303,12 +304,12 @@ inline std::uint32_t kd_tree_partition::put(const box& b, std::uint32_t from) {
                 home = std::min(home, at);
                 stack[height++] = {n->children[1], owned & ~(axis_set{1} << n->axis)};
             }
-            // Which of them it is cannot be foreseen.
+            // Branch-free, since the side is hard to predict.
             at = n->children[static_cast<std::size_t>(!left)];
         }
         entries_.push_back(n->children[0] << 3 | owned);
         ++in_leaf_[n->children[0]];
-        // Nodes below others have greater numbers.
+        // In preorder, descendants have greater indices.
         home = std::min(home, at);
         if (height == 0) return home;
         at = stack[--height].at;
@@ -316,7 +317,7 @@ inline std::uint32_t kd_tree_partition::put(const box& b, std::uint32_t from) {
     }
 }
 
-/// Holds how many are where against how many there were when planes were chosen.
+/// Compares the number of copies below each node with that at its construction, and collects the stale nodes.
 void kd_tree_partition::compare() {
     below_.resize(nodes_.size());
     for (std::size_t at = nodes_.size(); at-- > 0;) {
@@ -334,14 +335,14 @@ void kd_tree_partition::compare() {
         mark(0);
 }
 
-/// More than twice as many as at first, or less than half; a few more or less are chance.
+/// Whether a node is stale: its number of copies has more than doubled or halved, with a tolerance for small numbers.
 bool kd_tree_partition::is_off(std::uint32_t at) const noexcept {
-    const std::uint64_t now = below_[at];
-    const std::uint64_t before = nodes_[at].at_first;
-    return now > 2 * before + 16 || 2 * now + 16 < before;
+    const std::uint64_t current = below_[at];
+    const std::uint64_t initial = nodes_[at].at_first;
+    return current > 2 * initial + 16 || 2 * current + 16 < initial;
 }
 
-/// A node that is as it was with a child that is not can divide its boxes anew between its children.
+/// Collects the lowest nodes that are not stale but have a stale child: they can redistribute boxes among children.
 void kd_tree_partition::mark(std::uint32_t at) {
     if (nodes_[at].axis == is_leaf) return;
     const auto [left, right] = nodes_[at].children;
@@ -359,22 +360,23 @@ std::uint32_t kd_tree_partition::leaf_of(std::uint32_t at, std::size_t side) con
     return nodes_[at].children[0];
 }
 
-/// The boxes of each group, in the order of ids. The leaves of a box rise, so those of a group follow each other.
+/// Collects the boxes of each group in ascending order of ids. A box visits its leaves in ascending order, so the
+/// leaves of a group are consecutive.
 void kd_tree_partition::gather() {
     group_of_.assign(leaves_, 0);
     group_starts_.resize(groups_.size());
     group_ends_.resize(groups_.size());
-    std::size_t room = 0;
+    std::size_t total = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-        group_starts_[g] = group_ends_[g] = room;
-        room += below_[groups_[g]];
+        group_starts_[g] = group_ends_[g] = total;
+        total += below_[groups_[g]];
         const std::uint32_t last = leaf_of(groups_[g], 1);
         for (std::uint32_t leaf = leaf_of(groups_[g], 0); leaf <= last; ++leaf)
             group_of_[leaf] = static_cast<std::uint32_t>(g) + 1;
     }
-    ids_.resize(room);
+    ids_.resize(total);
     for (const std::uint32_t id : present_) {
-        // One that came since has no leaves.
+        // Boxes inserted since the last frame have no leaves yet.
         if (std::size_t{id} + 1 >= starts_.size()) break;
         std::uint32_t last = 0;
         for (std::uint32_t i = starts_[id]; i < starts_[id + 1]; ++i) {

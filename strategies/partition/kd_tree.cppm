@@ -5,22 +5,21 @@ import aabb.std;
 
 export namespace aabb {
 
-/// A kd-tree over the frame: planes at medians of the boxes' centres cut space into leaves, and a box is copied into
-/// every leaf that it reaches into. Planes are kept from frame to frame; only below a node whose boxes went elsewhere
-/// are they chosen anew. After Serpa and Rodrigues, "Flexible use of temporal and spatial reasoning for fast and
-/// scalable CPU broad-phase collision detection using KD-trees" (Computer Graphics Forum 38, 2019), from what the names
-/// and comments of its authors' program tell: it too hands boxes that lie across planes down to the leaves, but moves
-/// planes and objects in place; here a box is looked for from the last node whose cell held all of it, if it still
-/// does, and the sweep in a leaf is whichever is named. When to use: clusters and unlike densities, for which cells of
-/// one size do not do.
+/// A kd-tree over the frame: planes at medians of the boxes' centres divide space into leaves, and each leaf that a box
+/// overlaps gets a copy of it. Planes are kept between frames; only subtrees whose boxes have moved elsewhere are
+/// rebuilt. After Serpa and Rodrigues, "Flexible use of temporal and spatial reasoning for fast and scalable CPU
+/// broad-phase collision detection using KD-trees" (Computer Graphics Forum 38, 2019), as far as the names and comments
+/// of the authors' program reveal it: it also passes boxes that straddle planes down to the leaves, but moves planes
+/// and objects in place. Here the descent of a box starts at the last node whose cell contained it, if it still does,
+/// and any sweep can run in the leaves. When to use: clusters and varying densities, which cells of one size do not
+/// fit.
 ///
-/// A box lies left of a plane when its lower end does, and right when its upper end does not, so space is divided
-/// half-open, and the leaf that holds the greater lower ends of a pair owns it.
+/// A box lies left of a plane if its lower end does, and right if its upper end does not. Cells are half-open, and a
+/// pair is owned by the leaf that contains its greater lower ends.
 ///
-/// A node is split on the axis, of those on which its boxes have a median, that a model of evenly spread boxes finds
-/// cheapest, and where that is cheaper than not to split: so an axis that is swept is hardly cut, and nothing is where
-/// most boxes would be copied. No frame has more than eight copies of each box when planes are new, and sixteen before
-/// all are chosen anew.
+/// A node is split at the median of the axis that is cheapest in a model of uniformly spread boxes, if splitting is
+/// cheaper than not splitting. Swept axes are therefore hardly ever split, nor are nodes in which most boxes would be
+/// copied. A frame has at most eight copies per box on average when planes are new, and a full rebuild follows at 16.
 class kd_tree_partition {
 public:
     static constexpr std::string_view name = "kd_tree";
@@ -28,7 +27,7 @@ public:
         "planes at medians, kept between frames and chosen anew where boxes went elsewhere";
 
     struct config {
-        /// A leaf with more boxes is split wherever no more than half of them are copied. auto: where that costs less.
+        /// A leaf with more boxes is split if that copies at most half of them. auto: if splitting costs less.
         std::optional<std::uint32_t> leaf;
     };
     static constexpr std::tuple parameters{
@@ -37,13 +36,13 @@ public:
     kd_tree_partition() = default;
     explicit kd_tree_partition(const config& c) : config_(c) {}
 
-    /// It looks at boxes, not at lists.
+    /// Needs no sorted lists: planes follow from the boxes alone.
     axis_set axes(std::span<const box> boxes, const membership& objects, axis_set swept);
 
-    void fit(const whole_subset& all);
+    void fit(const whole_subset& scene);
 
     [[nodiscard]] std::uint32_t subset_count() const noexcept { return leaves_; }
-    /// How many nodes had their planes chosen in this frame, leaves among them.
+    /// Number of nodes built in this frame, including leaves.
     [[nodiscard]] std::size_t made_nodes() const noexcept { return made_nodes_; }
 
     [[nodiscard]] inline std::uint64_t copies(std::uint32_t id, const box&) const noexcept {
@@ -61,22 +60,21 @@ private:
     static constexpr std::uint32_t is_leaf = 3;
     static constexpr std::uint32_t unknown = ~std::uint32_t{0};
     static constexpr std::size_t most_depth = 48;
-    static constexpr std::uint64_t most_copies = 8;  // of a box, on average
+    static constexpr std::uint64_t most_copies = 8;  // per box, on average
 
-    /// Nodes stand before their children, the left one right behind.
+    /// Nodes are stored in preorder: the left child directly follows its parent.
     struct node {
         box cell;  ///< half-open
         float plane;
         std::uint32_t axis;                     ///< or is_leaf
-        std::array<std::uint32_t, 2> children;  ///< left, right; of a leaf its number
-        std::uint32_t at_first;                 ///< copies in its leaves when it was made
+        std::array<std::uint32_t, 2> children;  ///< left, right; in a leaf, the first is its number
+        std::uint32_t at_first;                 ///< number of copies in its leaves when it was built
     };
 
-    /// Where to split a node, and what the frame costs then, in nanoseconds.
     struct split {
         std::uint32_t axis;
         float plane;
-        double cost;
+        double cost;  ///< of the node's boxes per frame, in nanoseconds
     };
 
     void choose_all(std::span<const box> boxes);
@@ -96,26 +94,26 @@ private:
 
     config config_;
     axis_set swept_ = 0;
-    bool is_whole_ = false;  // what follows is that of a frame
+    bool is_whole_ = false;  // the members below are consistent: the last frame completed without an exception
     std::vector<std::uint32_t> present_;
     std::vector<node> nodes_;
     std::uint32_t leaves_ = 1;
     std::vector<std::uint32_t> starts_;   // by id, in entries_
     std::vector<std::uint32_t> entries_;  // leaf << 3 | the axes whose lower end lies there
-    std::vector<std::uint32_t> homes_;    // by id: the lowest node whose cell holds all of the box
-    std::vector<std::uint32_t> in_leaf_;  // copies
-    std::vector<std::uint32_t> below_;    // by node: copies in its leaves
-    double pairs_ = 0;                    // within leaves
-    double pairs_at_first_ = 0;
+    std::vector<std::uint32_t> homes_;    // by id: the lowest node whose cell contains the box
+    std::vector<std::uint32_t> in_leaf_;  // by leaf: number of copies
+    std::vector<std::uint32_t> below_;    // by node: number of copies in its leaves
+    double pairs_ = 0;                    // number of ordered pairs within leaves
+    double pairs_at_first_ = 0;           // the same when the planes were chosen
     std::size_t made_nodes_ = 0;
-    // While planes are chosen:
+    // Used while planes are chosen:
     std::vector<node> old_;
-    std::vector<std::uint32_t> now_at_;      // by old node: itself, or what stands for it now
-    std::vector<std::uint32_t> groups_;      // nodes to be chosen anew in the next frame, in their order
-    std::vector<std::uint32_t> group_of_;    // by leaf, from 1; 0: stays
-    std::vector<std::size_t> group_starts_;  // in ids_
+    std::vector<std::uint32_t> now_at_;      // by old node: its new index, or that of the subtree that replaces it
+    std::vector<std::uint32_t> groups_;      // nodes whose subtrees the next frame rebuilds, ascending
+    std::vector<std::uint32_t> group_of_;    // by leaf: index of its group plus one, or 0 if the leaf stays
+    std::vector<std::size_t> group_starts_;  // indices into ids_
     std::vector<std::size_t> group_ends_;
-    std::vector<std::uint32_t> ids_;  // of the nodes at hand, those of a child behind its parent's
+    std::vector<std::uint32_t> ids_;  // a stack of the boxes of the nodes being built, children above their parents
     std::uint64_t copied_ = 0;
 };
 

@@ -5,7 +5,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// All objects in one subset: no cells, no copies, no arrays. When to use: few objects, or a sweep that needs no help.
+/// Keeps all objects in one subset, without cells or copies. When to use: few objects, or a sweep that needs no cuts.
 struct none_partition {
     static constexpr std::string_view name = "none";
     static constexpr std::string_view summary = "no partition: all objects in one subset";

@@ -11,9 +11,9 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Cubic cells of one size over the world of the frame; a box is copied into every cell it reaches into. The paper's
-/// foil ("no best size for all situations", section 2): cells, and with them bytes and time, grow with the space, not
-/// with the objects. When to use: objects of like size, evenly spread.
+/// A uniform grid of cubic cells over the bounds of the frame; each cell that a box overlaps gets a copy of it. The
+/// paper's counterexample ("no best size for all situations", section 2): the number of cells, and with it memory and
+/// time, grows with the space instead of the objects. When to use: objects of similar size, uniformly spread.
 class uniform_grid_partition {
 public:
     static constexpr std::string_view name = "uniform_grid";
@@ -21,7 +21,7 @@ public:
 
     struct config {
         /// Edge of a cell in world units. auto: twice the mean longest extent of the boxes, enlarged until there are at
-        /// most four cells an object.
+        /// most four cells per object.
         std::optional<double> cell_size;
     };
     static constexpr std::tuple parameters{number_parameter{
@@ -30,14 +30,14 @@ public:
     uniform_grid_partition() = default;
     explicit uniform_grid_partition(const config& c) : config_(c) {}
 
-    /// It looks at boxes, not at lists.
+    /// Needs no sorted lists: cells follow from the boxes alone.
     static axis_set axes(std::span<const box>, const membership&, axis_set) noexcept { return 0; }
 
-    /// @throws input_error when the cells would be more than 2^26.
-    void fit(const whole_subset& all) {
+    /// @throws input_error if there would be more than 2^26 cells.
+    void fit(const whole_subset& scene) {
         const std::span<const projection> present =
-            *std::ranges::max_element(all.lists, {}, [](const auto& list) { return list.size(); });
-        const std::span<const box> boxes = all.boxes;
+            *std::ranges::max_element(scene.lists, {}, [](const auto& list) { return list.size(); });
+        const std::span<const box> boxes = scene.boxes;
         box world = empty_box();
         double extents = 0;
         for (const projection& p : present) {
@@ -59,7 +59,7 @@ public:
         const int longest = longest_axis(world);
         const double span = double{world.max[longest]} - double{world.min[longest]};
         double size = std::max(2 * extents / objects, span * 0x1p-20);
-        if (size == 0) return;  // all objects at one point
+        if (size == 0) return;  // all objects lie at one point
         while (cells_of(world, size) > std::min(4 * objects, most_cells)) size *= 1.25;
         assert(static_cast<double>(subset_count()) <= most_cells);
     }
@@ -67,9 +67,9 @@ public:
     [[nodiscard]] std::uint32_t subset_count() const noexcept { return cells_[0] * cells_[1] * cells_[2]; }
 
     [[nodiscard]] std::uint64_t copies(std::uint32_t, const box& b) const noexcept {
-        std::uint64_t all = 1;
-        for (int k = 0; k < 3; ++k) all *= cell(b.max[k], k) - cell(b.min[k], k) + 1;
-        return all;
+        std::uint64_t count = 1;
+        for (int k = 0; k < 3; ++k) count *= cell(b.max[k], k) - cell(b.min[k], k) + 1;
+        return count;
     }
 
     template <class Visit>
@@ -90,19 +90,19 @@ public:
 private:
     static constexpr double most_cells = 1U << 26;
 
-    /// Sets the grid up and says how many cells it has; more than most_cells are not to be used.
+    /// Sets up the grid and returns its number of cells; the grid is usable only if these are at most `most_cells`.
     double cells_of(const box& world, double size) {
-        double all = 1;
+        double count = 1;
         per_unit_ = std::min(1 / size, std::numeric_limits<double>::max());  // not infinity, which times 0 is NaN
         for (int k = 0; k < 3; ++k) {
             const double along = std::floor((double{world.max[k]} - double{world.min[k]}) * per_unit_) + 1;
-            all *= along;
+            count *= along;
             cells_[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(std::min(along, most_cells));
         }
-        return all;
+        return count;
     }
 
-    /// Grows with x, rounding included, so that the cell of a greater lower end lies in the range of both boxes.
+    /// Monotone in x, rounding included, so the cell of the greater lower end of two boxes lies in the range of both.
     [[nodiscard]] std::uint32_t cell(float x, int k) const noexcept {
         const double along = (double{x} - double{origin_[k]}) * per_unit_;
         return std::min(static_cast<std::uint32_t>(along), cells_[static_cast<std::size_t>(k)] - 1);
