@@ -6,9 +6,9 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Bucket sort: entries go to as many buckets of equal length as there are entries, then insertion sort mends what is
-/// out of order within them. When to use: wherever objects move; linear where they are spread evenly. Columns are
-/// filled bucket by bucket as they are cut, and sorted only where that leaves very many boxes in one.
+/// Bucket sort: entries are distributed over as many buckets of equal width as there are entries, then insertion sort
+/// orders each bucket. When to use: whenever objects move; linear for uniformly spread objects. Columns are filled
+/// bucket by bucket as they are cut, and sorted only if a bucket is crowded.
 class bucket_sort {
 public:
     static constexpr std::string_view name = "bucket";
@@ -38,7 +38,7 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(starts_, from_); }
 
 private:
-    /// A bucket that took very many is sorted for itself: insertion sort would be quadratic there.
+    /// Sorts each bucket; crowded buckets by std::sort, since insertion sort would be quadratic there.
     template <CounterPolicy Counters>
     void mend(std::span<projection> list, Counters& counters) const {
         constexpr std::size_t most = 64;

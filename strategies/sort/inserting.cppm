@@ -12,8 +12,8 @@ struct ignore_swaps {
     }
 };
 
-/// Moves each entry of a list before all that are greater: n + d comparisons for d inversions.
-/// @param on_swap gets the entry that is passed and the one that moves before it; false ends the sort with that swap
+/// Insertion sort: n + d comparisons for d inversions.
+/// @param on_swap gets the entry that is passed and the one that moves before it; returning false ends the sort there
 template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps>
 constexpr void insert_each(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}) {
     for (std::size_t i = 1; i < list.size(); ++i) {

@@ -7,14 +7,14 @@ import aabb.std;
 export namespace aabb {
 
 /// Insertion sort, the paper's traditional method (section 2). When to use: lists that stay almost sorted between
-/// frames, where it takes n + d comparisons for d inversions; quadratic on anything else. It exchanges neighbours only,
-/// each two entries at most once, and can tell of it.
+/// frames, where it takes n + d comparisons for d inversions; quadratic otherwise. It only swaps neighbours, any two
+/// entries at most once, and can report each swap.
 struct insertion_sort {
     static constexpr std::string_view name = "insertion";
     static constexpr std::string_view summary =
         "insertion sort, the traditional method: linear on almost sorted lists, else quadratic";
 
-    /// @param on_swap gets the entry that is passed and the one that moves before it; false ends the sort there
+    /// @param on_swap as in `insert_each`
     template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps>
     static constexpr void sort(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}) {
         insert_each(list, counters, on_swap);

@@ -6,9 +6,9 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Radix sort of the keys' bits, eleven at a time from the lowest. When to use: long lists that are not almost sorted;
-/// it takes as long whatever the order. A list that is in order is left as it is, and digits that
-/// all keys share are passed over. Short lists are sorted by insertion.
+/// LSD radix sort of the keys with digits of 11 bits. When to use: long lists that are not almost sorted; its time does
+/// not depend on the order. Sorted lists are left unchanged, passes over digits that all keys share are skipped, and
+/// short lists are sorted by insertion.
 class radix_sort {
 public:
     static constexpr std::string_view name = "radix";
@@ -54,7 +54,7 @@ private:
     static constexpr std::size_t passes = 3;
     static constexpr std::size_t digits = std::size_t{1} << bits;
 
-    /// Of the key as a whole number in the order of the floats; -0 and 0, which are equal keys, are neighbours.
+    /// A digit of the key, mapped to an integer of the same order; the equal keys -0 and 0 map to adjacent integers.
     [[nodiscard]] static constexpr std::size_t digit(const projection& p, std::size_t pass) noexcept {
         const auto pattern = std::bit_cast<std::uint32_t>(p.key);
         const std::uint32_t ordered = pattern ^ (pattern >> 31 ? ~std::uint32_t{0} : std::uint32_t{1} << 31);

@@ -5,9 +5,9 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Shell sort, the paper's improved method (section 2): insertion sort over entries a gap apart, for ever smaller gaps.
-/// When to use: lists with entries far from their place, which it brings near in few steps; on lists that are almost
-/// sorted the passes over large gaps are comparisons for nothing.
+/// Shell sort, the paper's improved method (section 2): insertion sort over entries at a distance of a gap, for
+/// decreasing gaps. When to use: lists with entries far from their place, which large gaps move in few steps; on almost
+/// sorted lists the passes over large gaps are wasted comparisons.
 class shell_sort {
 public:
     static constexpr std::string_view name = "shell";
@@ -16,10 +16,10 @@ public:
 
     enum class gap_sequence : std::uint8_t { shell, ciura, tokuda, ciura_eight, four_one };
     struct config {
-        /// shell: n/2, n/4, … 1 (Shell 1959). ciura: measured best up to 701 (Ciura 2001), beyond it each 2.25 times
-        /// the one before. tokuda: (9 (9/4)^k - 4) / 5, rounded up (Tokuda 1992). These grow in number with the list,
-        /// so that even a sorted one takes O(N log N) comparisons. Two do not: ciura_eight, what Ciura published and no
-        /// more; four_one, 4 and 1.
+        /// shell: n/2, n/4, … 1 (Shell 1959). ciura: the empirically best gaps up to 701 (Ciura 2001), continued by a
+        /// factor of 2.25. tokuda: (9 (9/4)^k - 4) / 5, rounded up (Tokuda 1992). The number of these gaps grows with
+        /// the list, so that even a sorted one takes O(n log n) comparisons. The other two are fixed: ciura_eight, only
+        /// the published gaps of Ciura; four_one, 4 and 1.
         gap_sequence gaps = gap_sequence::ciura;
     };
     static constexpr std::tuple parameters{choice_parameter{
@@ -41,7 +41,7 @@ public:
     }
 
 private:
-    /// Ascending; the last gap is beyond half of any list of 2^32 entries, and the next would not fit.
+    /// Ascending; the last gap exceeds half of any list of 2^32 entries, and the next one would overflow.
     using table = std::array<std::uint32_t, 27>;
 
     static constexpr std::size_t ciura_published = 8;
@@ -65,7 +65,8 @@ private:
     static_assert(tokuda[1] == 4 && tokuda[2] == 9 && tokuda[3] == 20 && tokuda[4] == 46 && tokuda[8] == 1182);
     static_assert(ciura.back() >= std::uint32_t{1} << 31 && tokuda.back() >= std::uint32_t{1} << 31);
 
-    /// Each is about 9/4 of the one before; one that had overflowed, by 2^32, would be less than twice as large.
+    /// Detects overflow: each gap is about 9/4 of the previous one, and one reduced by 2^32 would be less than twice
+    /// it.
     static constexpr auto more_than_double = [](const table& gaps) {
         for (std::size_t i = 1; i < gaps.size(); ++i)
             if (gaps[i] / 2 < gaps[i - 1]) return false;
@@ -73,7 +74,7 @@ private:
     };
     static_assert(more_than_double(ciura) && more_than_double(tokuda));
 
-    /// Of every sequence that does not hang on the length of the list.
+    /// The gaps of a sequence that does not depend on the length of the list.
     [[nodiscard]] static constexpr std::span<const std::uint32_t> ascending(gap_sequence gaps) noexcept {
         switch (gaps) {
             case gap_sequence::tokuda: return tokuda;

@@ -5,8 +5,8 @@ import aabb.std;
 
 export namespace aabb {
 
-/// std::sort, a baseline that gains nothing from order between frames. When to use: objects that jump.
-/// It moves entries out of sight, so it counts comparisons only.
+/// std::sort, a baseline that does not exploit temporal coherence. When to use: objects that jump. Its moves cannot be
+/// observed, so it counts comparisons only.
 struct std_sort {
     static constexpr std::string_view name = "std";
     static constexpr std::string_view summary = "std::sort: n log n whatever the order";

@@ -8,13 +8,13 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Three sorted lists: a pair is reported when its projections overlap on all three (paper, section 2). An axis on
-/// which all boxes overlap tells nothing and is left out. When to use: to study the paper; it walks every pair that
-/// overlaps on any one axis.
+/// Sweep and prune along three sorted lists: a pair is reported if its projections overlap on all three (paper, section
+/// 2). An axis on which all boxes overlap is skipped. When to use: to study the paper; it visits every pair that
+/// overlaps on any single axis.
 ///
-/// What is known of a pair between two lists is one bit. The bits of all pairs would take n²/8 bytes, so the lists are
-/// walked once for each block of rows that fits in 16 MiB, each time for the pairs of that block only: memory is at
-/// most 16 MiB (or one row, n/8 bytes, if that is more) + 32 bytes an object.
+/// Between two lists, one bit per pair is kept. The bits of all pairs would take n²/8 bytes, so the lists are walked
+/// once per block of rows that fits in 16 MiB, for the pairs of that block only. Memory is at most 16 MiB (or one row,
+/// n/8 bytes, if that is more) + 32 bytes per object.
 class all_axes_sweep {
 public:
     static constexpr std::string_view name = "all_axes";
@@ -79,14 +79,13 @@ public:
 private:
     static constexpr std::size_t most_words = (std::size_t{16} << 20) / sizeof(std::uint64_t);
 
-    /// A box on an axis.
     struct interval {
         float lower;
         float upper;
         std::uint32_t rank;
     };
 
-    /// Numbers the objects by their place in the first list, and finds where each one's overlaps end there.
+    /// Ranks the objects by their place in the first list, and finds for each the end of its overlaps there.
     template <class Entry>
     void rank(std::span<const box> boxes, std::span<const Entry> list, int axis) {
         if (rank_.size() < boxes.size()) rank_.resize(boxes.size());
@@ -100,8 +99,8 @@ private:
         }
     }
 
-    /// Visits every pair that overlaps on the axis, by ranks i < j, where first <= i < last. Of two above the block
-    /// neither is held against the other, so that all blocks together visit no pair twice.
+    /// Visits every pair that overlaps on the axis, by ranks i < j, where first <= i < last. Pairs with both ranks
+    /// above the block are skipped, so that no two blocks visit the same pair.
     template <class Entry, CounterPolicy Counters, class Visit>
     void walk(std::span<const box> boxes, std::span<const Entry> list, int axis, std::size_t first, std::size_t last,
               Counters& counters, Visit visit) {
@@ -133,8 +132,8 @@ private:
     std::vector<std::uint64_t> marks_;  // bit (i, j): the pair overlaps on the first two lists
     std::vector<std::uint32_t> rank_;   // by id
     std::vector<std::uint32_t> end_;    // by rank
-    std::vector<interval> swept_;       // of an axis, in order: of the block's ranks and those above
-    std::vector<interval> within_;      // of the block's alone
+    std::vector<interval> swept_;       // sorted intervals on an axis, of the block's ranks and those above
+    std::vector<interval> within_;      // sorted intervals of the block's ranks only
 };
 
 static_assert(ListSweep<all_axes_sweep>);

@@ -9,18 +9,18 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The classic sort and sweep (Baraff 1992; Cohen, Lin, Manocha and Ponamgi, "I-COLLIDE", 1995): lists of both ends of
-/// all intervals, kept sorted by insertion sort, whose swaps are where overlaps begin and end; the overlapping pairs
-/// are kept from frame to frame. When to use: little motion. A frame in which nothing moved tests no pair; one in which
-/// much did costs a test for each two ends of different kinds that pass each other.
+/// The classic incremental sweep and prune (Baraff 1992; Cohen, Lin, Manocha and Ponamgi, "I-COLLIDE", 1995): lists of
+/// both ends of all intervals are kept sorted by insertion sort, whose swaps mark where overlaps begin and end; the
+/// overlapping pairs are kept between frames. When to use: little motion. A frame without motion tests no pair; a frame
+/// with much motion costs a test for each lower and upper end that pass each other.
 ///
-/// A frame in which as many swaps were followed as starting anew would take steps is started anew: the lists are sorted
-/// by std::sort, and one of them is swept for all pairs. So no frame costs more than about twice the less of the two.
+/// Once a frame has followed as many swaps as a restart would take steps, it restarts: the lists are sorted by
+/// std::sort, and one of them is swept for all pairs. No frame therefore costs more than about twice the cheaper way.
 ///
-/// A pair is put in when it begins to overlap on an axis and its boxes overlap on all: the order in which axes are
-/// sorted does not matter then, and there is never a pair that overlaps neither now nor did in the frame before. Memory
-/// is 16 bytes an object and axis, 24 an object for the boxes of the frame before, up to 36 while arrivals are brought
-/// in or all is started anew, and 16 to 32 bytes a pair, of as many as there were at most.
+/// A pair is inserted when it begins to overlap on an axis and its boxes overlap on all axes. The order of the axes
+/// therefore does not matter, and the set never contains a pair that overlaps in neither of the last two frames. Memory
+/// is 16 bytes per object and axis, 24 per object for the boxes of the previous frame, up to 36 during insertions and
+/// restarts, and 16 to 32 bytes per pair, for the greatest number of pairs so far.
 class incremental_sweep : public kept_pairs {
 public:
     static constexpr std::string_view name = "incremental";
@@ -87,14 +87,14 @@ private:
         });
     }
 
-    /// What sorting all lists and sweeping one takes; never 0.
+    /// The estimated number of steps of a restart, which sorts all lists and sweeps one; never 0.
     [[nodiscard]] std::uint64_t steps_anew() const noexcept {
         std::uint64_t steps = tests_anew_ + 1;
         for (const auto& list : ends_) steps += list.size() * std::bit_width(list.size());
         return steps;
     }
 
-    /// The lists of the axes that have one, and the others are empty.
+    /// Whether the lists of the active axes have the same length and the others are empty.
     [[nodiscard]] bool are_of_one_length() const {
         const std::size_t ends = ends_[static_cast<std::size_t>(std::countr_zero(axes_))].size();
         bool same = true;
@@ -102,7 +102,7 @@ private:
         return same;
     }
 
-    /// A list from scratch, of all objects.
+    /// Builds the list of a new axis.
     void begin_axis(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         std::vector<interval_end>& list = ends_[axis];
         assert(list.empty());
@@ -130,7 +130,7 @@ private:
                 known > 0 && precedes(arriving_[left - 1], list[known - 1]) ? list[--known] : arriving_[--left];
     }
 
-    /// Of the axes with a list.
+    /// The axis with the greatest separation among those with a list.
     [[nodiscard]] std::size_t longest_axis(const vec3d& separation) const {
         auto longest = static_cast<std::size_t>(std::countr_zero(axes_));
         for (std::size_t k = longest + 1; k < 3; ++k)
@@ -139,13 +139,13 @@ private:
         return longest;
     }
 
-    /// Takes over what the swaps did not tell.
-    /// @param begun axes with a list from now on
+    /// Applies the changes of the pairs that no swap reports: those of new axes and arrivals.
+    /// @param begun axes that have a list from this frame on
     template <CounterPolicy Counters>
     void bring_up_to(axis_set begun, std::span<const box> boxes, const membership& objects, const vec3d& separation,
                      Counters& counters) {
         if (begun) {
-            // All overlapped on a new axis until now, so no other pair can have changed on it.
+            // On a new axis all boxes overlapped until now, so pairs can only end on it.
             pairs_.erase_if([&](index_pair p) {
                 counters.add(work::box_tests);
                 return !overlaps(boxes[p.a], boxes[p.b]);
@@ -163,12 +163,12 @@ private:
         tests_anew_ = std::max(tests_anew_, tests);
     }
 
-    axis_set axes_ = 0;                              // with a list
+    axis_set axes_ = 0;                              // axes with a list
     std::array<std::vector<interval_end>, 3> ends_;  // sorted
-    std::vector<box> before_;                        // by id, of the frame before
-    std::uint64_t swaps_left_ = 0;                   // of this frame; 0 where it is started anew
-    std::uint64_t tests_anew_ = 0;                   // that a sweep of a list took, at most, since all was started anew
-    // While arrivals are brought in, or all is started anew:
+    std::vector<box> before_;                        // boxes of the previous frame, by id
+    std::uint64_t swaps_left_ = 0;                   // remaining swaps of this frame; 0: the frame restarts
+    std::uint64_t tests_anew_ = 0;                   // greatest number of tests of a list sweep since the last restart
+    // Used for arrivals and restarts:
     std::vector<interval_end> arriving_;
     interval_sweep sweep_;
 };

@@ -5,8 +5,8 @@ import aabb.std;
 
 export namespace aabb {
 
-/// One sorted list: each box is tested, on the other two axes, against those that begin before it ends. When to use:
-/// almost always; memory is linear in the objects.
+/// Sweep and prune along one axis (Cohen, Lin, Manocha and Ponamgi, "I-COLLIDE", 1995, prune on three): each box is
+/// tested on the other two axes against those that begin before it ends. When to use: almost always; linear memory.
 class one_axis_sweep {
 public:
     static constexpr std::string_view name = "one_axis";
@@ -14,8 +14,8 @@ public:
 
     enum class axis_choice : std::uint8_t { automatic, x, y, z };
     struct config {
-        /// auto: the axis on which the boxes' centres vary most. It changes only when another varies half as much
-        /// again, since the new list must be sorted from scratch.
+        /// auto: the axis with the greatest variance of the boxes' centres. It changes only if the variance on another
+        /// is 50% greater, since a new list is sorted from scratch.
         axis_choice axis = axis_choice::automatic;
     };
     static constexpr std::tuple parameters{choice_parameter{
@@ -53,9 +53,9 @@ public:
 private:
     using quad = float __attribute__((vector_size(16)));
 
-    /// A box as the scan sees it, the same for all axes; aligned, so that none lies across two cache lines.
+    /// A box with permuted axes; aligned, so that none straddles two cache lines.
     struct alignas(32) swept_box {
-        quad bounds;  ///< on the axes u and v that are not swept: u max, v max, -u min, -v min
+        quad bounds;  ///< on the other axes u and v: u max, v max, -u min, -v min
         float begin;  ///< on the swept axis
         float end;
         std::uint32_t id;
@@ -63,7 +63,7 @@ private:
     };
     static_assert(sizeof(swept_box) == 32);
 
-    /// Four comparisons at once: which of them fails cannot be foreseen, so branches would cost more.
+    /// Four comparisons at once: branches would be more expensive, since the failing one is hard to predict.
     [[nodiscard]] static inline bool all_at_most(quad lower, quad upper) noexcept {
         return __builtin_reduce_and(lower <= upper) != 0;
     }
@@ -85,7 +85,7 @@ private:
     config config_;
     int axis_ = 0;
     chosen_axis longest_;
-    std::vector<swept_box> swept_;  // the boxes of the subset at hand, in sorted order
+    std::vector<swept_box> swept_;  // the boxes of the current subset, sorted by `begin`
 };
 
 static_assert(ListSweep<one_axis_sweep>);

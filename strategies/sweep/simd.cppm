@@ -5,24 +5,24 @@ import aabb.std;
 
 export namespace aabb {
 
-/// One sorted list, many boxes at a time: a vector of boxes is tested against each box that began before them and has
-/// not ended. When to use: on a processor with wide vectors, always.
+/// Sweep and prune along one sorted list by vectors: each active box, which began earlier and has not ended, is tested
+/// against a whole vector of boxes. When to use: always on processors with wide vectors.
 ///
-/// The two axes across the list are tested in whole numbers of 16 bits, both in one word, so that a vector of 512 bits
-/// tests 16 boxes in five instructions. They only reject; what is left, little more than the pairs, is tested as it is.
+/// The two axes across the list are tested in quantized u16 coordinates packed in a u32, so that a vector of 512 bits
+/// tests 16 boxes in five instructions. This conservative test leaves few candidates, which are then tested exactly.
 class simd_sweep {
 public:
     static constexpr std::string_view name = "simd";
     static constexpr std::string_view summary = "sorts along one axis and tests a vector of boxes at a time";
 
-    /// @throws input_error where there are more objects than an entry can tell apart.
+    /// @throws input_error if there are more objects than the index bits of an entry can represent.
     axis_set axes(std::span<const box> boxes, const membership& objects) {
         if (boxes.size() > column_entry::index_bits)
             throw input_error("simd takes at most " + std::to_string(column_entry::index_bits) + " objects");
         return axis_set{1} << longest_.choose(boxes, objects);
     }
 
-    /// Of a sorted list.
+    /// Sweeps a sorted list.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         const auto& list = subset.lists[static_cast<std::size_t>(longest_.axis())];
@@ -32,7 +32,7 @@ public:
               std::numeric_limits<std::uint64_t>::max(), counters);
     }
 
-    /// Of columns.
+    /// Sweeps columns.
     template <CounterPolicy Counters>
     std::uint64_t sweep(const column_block& block, std::vector<index_pair>& pairs, std::uint64_t most,
                         Counters& counters) {
@@ -41,15 +41,15 @@ public:
         active_ends_.resize(n + width);
         std::uint64_t tests = 0;
         std::size_t active = 0;
-        found_ = 0;
-        std::size_t window = 0;  // from which vectors are numbered
+        candidate_count_ = 0;
+        std::size_t window = 0;  // the entry from which vectors are numbered
         for (std::size_t first = 0; first < n && tests <= most; first += width) {
-            if (found_ > enough || first - window >= most_vectors * width) {
+            if (candidate_count_ > enough || first - window >= most_vectors * width) {
                 report(block, window, pairs);
                 window = first;
             }
-            // Room for all that this vector may add.
-            make_room(found_ + active + 3 * width);
+            // Reserve space for all candidates that this vector may add.
+            make_room(candidate_count_ + active + 3 * width);
             const vector_of_entries vector(&block.entries[first], block.ends);
             const auto number = static_cast<std::uint32_t>((first - window) / width);
             tests += active + width - 1;
@@ -70,7 +70,7 @@ private:
     static constexpr std::size_t enough = 2048;
     static constexpr std::size_t most_vectors = std::size_t{1} << (32 - width);
 
-    /// Entries side by side.
+    /// A vector of entries as a structure of arrays.
     struct vector_of_entries {
         simd::words lower;
         simd::words upper;
@@ -86,14 +86,14 @@ private:
             later_on = fields[3] & ~column_entry::index_bits;
         }
 
-        /// Bit l is set where entry l may overlap this one across the columns, and this column has the pair.
+        /// Bit l is set if entry l may overlap `e` across the columns, and this column owns the pair.
         [[nodiscard]] inline std::uint32_t met_by(const column_entry& e) const noexcept {
             return simd::bits(((later_on & e.index) | simd::excess(lower, simd::all(e.upper)) |
                                simd::excess(simd::all(e.lower), upper)) == 0U);
         }
     };
 
-    /// Of a few entries, the lanes of a vector that each of them meets.
+    /// For each of a few entries, the lanes of a vector that it may overlap.
     using met_lanes = std::array<std::uint16_t, width>;
 
     void make_room(std::size_t candidates) {
@@ -102,17 +102,17 @@ private:
         met_.resize(candidates);
     }
 
-    /// Those of so many entries that meet any, without a branch: whether there are any cannot be foreseen.
+    /// Stores the entries that may overlap any lane as candidates, branch-free since that is hard to predict.
     inline void keep(simd::words entries, std::uint32_t present, const met_lanes& met, simd::words lanes,
                      std::uint32_t vector) noexcept {
-        const simd::words some = simd::load_halves(met.data()) & lanes;
-        const std::uint32_t any = simd::bits(some != 0U) & present;
-        simd::store_where(&candidates_[found_], entries, any);
-        found_ += simd::store_where(&met_[found_], some | vector << width, any);
+        const simd::words overlapped = simd::load_halves(met.data()) & lanes;
+        const std::uint32_t any = simd::bits(overlapped != 0U) & present;
+        simd::store_where(&candidates_[candidate_count_], entries, any);
+        candidate_count_ += simd::store_where(&met_[candidate_count_], overlapped | vector << width, any);
     }
 
-    /// Those that began before the vector, against it.
-    /// @returns how many of those, and of the vector, reach beyond it
+    /// Tests the active entries against the vector, and updates the active entries.
+    /// @returns the number of entries that stay active beyond the vector
     [[nodiscard]] std::size_t sweep_active(const column_block& block, const vector_of_entries& vector,
                                            std::uint32_t number, std::size_t first, std::size_t active) noexcept {
         const auto next = static_cast<std::uint32_t>(first + width);
@@ -137,7 +137,7 @@ private:
         return stay;
     }
 
-    /// Those of the vector, against the ones after them.
+    /// Tests the entries of the vector against each other.
     void sweep_within(const column_block& block, const vector_of_entries& vector, std::uint32_t number,
                       std::size_t first) noexcept {
         const simd::words after = simd::all(~std::uint32_t{1}) << simd::places();
@@ -149,15 +149,15 @@ private:
         keep(simd::places() + static_cast<std::uint32_t>(first), simd::every_lane, met, lanes, number);
     }
 
-    /// Appends what really overlaps.
+    /// Tests the candidates exactly and appends the overlapping pairs.
     void report(const column_block& block, std::size_t window, std::vector<index_pair>& pairs) {
         std::size_t next = pairs.size();
         std::size_t most = next;
-        for (std::size_t c = 0; c < found_; ++c)
+        for (std::size_t c = 0; c < candidate_count_; ++c)
             most += static_cast<std::size_t>(std::popcount(met_[c] & simd::every_lane));
         if (most > pairs.capacity()) pairs.reserve(std::max(most, 2 * pairs.capacity()));
         pairs.resize(most);
-        for (std::size_t c = 0; c < found_; ++c) {
+        for (std::size_t c = 0; c < candidate_count_; ++c) {
             const std::uint32_t met = met_[c];
             const std::uint32_t i = block.entries[candidates_[c]].index & column_entry::index_bits;
             const box a = block.boxes[i];
@@ -170,17 +170,17 @@ private:
             }
         }
         pairs.resize(next);
-        found_ = 0;
+        candidate_count_ = 0;
     }
 
-    /// Entries of a list, with whole numbers over the extent of its boxes.
+    /// Converts a list to entries, quantized over the bounds of its boxes.
     template <class Subset, class List>
     void to_entries(const Subset& subset, const List& list) {
         column_plan plan;
         plan.axis = longest_.axis();
-        box all = empty_box();
-        for (const auto& e : list) all = merged(all, subset.boxes[e.id]);
-        plan.fit(all);
+        box bounds = empty_box();
+        for (const auto& e : list) bounds = merged(bounds, subset.boxes[e.id]);
+        plan.fit(bounds);
         const std::size_t n = (list.size() + width - 1) / width * width;
         entries_.assign(n, {~std::uint32_t{0}, 0, static_cast<std::uint32_t>(list.size()), 0});
         list_ends_.assign(list.size() + 1, 0);
@@ -202,13 +202,13 @@ private:
     }
 
     chosen_axis longest_;
-    std::vector<column_entry> entries_;     // of a list
-    std::vector<std::uint32_t> list_ends_;  // the same
-    std::vector<std::uint32_t> active_;     // entries that reach into the vector at hand
+    std::vector<column_entry> entries_;     // of a swept list
+    std::vector<std::uint32_t> list_ends_;  // of a swept list
+    std::vector<std::uint32_t> active_;     // entries that began before the current vector and have not ended
     std::vector<std::uint32_t> active_ends_;
-    std::vector<std::uint32_t> candidates_;  // entries that may overlap some of a vector
-    std::vector<std::uint32_t> met_;         // by candidate: which vector of the window, and a bit for each lane
-    std::size_t found_ = 0;
+    std::vector<std::uint32_t> candidates_;  // entries that may overlap lanes of a vector
+    std::vector<std::uint32_t> met_;         // by candidate: number of the vector in the window, and a bit per lane
+    std::size_t candidate_count_ = 0;
 };
 
 static_assert(ListSweep<simd_sweep> && ColumnSweep<simd_sweep>);

@@ -8,19 +8,19 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Sort and sweep in regions: a coarse grid over two axes, each region with sorted lists of ends of its own on all
-/// three, kept from frame to frame like those of `incremental`. After Tracy, Buss and Woods, "Efficient large-scale
-/// sweep and prune methods with AABB insertion and removal" (IEEE Virtual Reality 2009), from its abstract: it too
-/// subdivides space, and cuts lists into segments so that to put an object in does not pass by all others. Here
-/// regions are so small that each list is one such segment. When to use: many objects, few of which move at a time.
+/// Incremental sweep and prune in regions: a coarse grid over two axes, whose regions have sorted lists of ends on all
+/// three axes, kept between frames as in `incremental`. After Tracy, Buss and Woods, "Efficient large-scale sweep and
+/// prune methods with AABB insertion and removal" (IEEE Virtual Reality 2009), from its abstract: it also subdivides
+/// space, and cuts lists into segments so that an insertion does not pass all other objects. Here regions are so small
+/// that each list is one such segment. When to use: many objects, few of which move at a time.
 ///
-/// Only regions with an object that moved are looked at. An object that reaches into another region is put behind the
-/// ends of that region's lists and is sorted to its place, which finds its pairs; where it leaves one, those that it
-/// overlapped there are looked at. A frame in which these steps were as many as starting anew would take is started
-/// anew, with another grid, and so is one in which twice or half as many objects are present.
+/// Only regions with moved objects are processed. An object that enters a region is appended to the region's lists and
+/// sorted to its place, which finds its pairs; when it leaves one, its pairs there are tested. Once a frame has taken
+/// as many steps as a restart would, it restarts with a new grid, as does a frame after the number of objects has
+/// doubled or halved.
 ///
-/// Memory is 48 bytes an object and region, 37 an object, 80 a region, and 16 to 32 bytes a pair, of as many as there
-/// were at most of each.
+/// Memory is 48 bytes per object and region, 37 per object, 80 per region, and 16 to 32 bytes per pair, for the
+/// greatest number of each so far.
 class subdivided_sweep : public kept_pairs {
 public:
     static constexpr std::string_view name = "subdivided";
@@ -28,7 +28,7 @@ public:
         "a coarse grid of regions, each with lists that are kept between frames as those of incremental are";
 
     struct config {
-        /// Along each of the two axes that are cut. auto: as many as leave 16 objects a region of four mean extents.
+        /// Number along each of the two cut axes. auto: as many as leave 16 objects per region of four mean extents.
         std::optional<std::uint32_t> regions;
     };
     static constexpr std::tuple parameters{
@@ -60,19 +60,19 @@ public:
 
     [[nodiscard]] static constexpr axis_set axes() noexcept { return every_axis; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t all = bytes_of(regions_, touched_, places_, moved_, before_, sweep_, pairs_);
+        std::size_t total = bytes_of(regions_, touched_, places_, moved_, before_, sweep_, pairs_);
         for (const region& r : regions_)
-            for (const auto& list : r.ends) all += bytes_of(list);
-        return all;
+            for (const auto& list : r.ends) total += bytes_of(list);
+        return total;
     }
 
 private:
     struct region {
-        std::array<std::vector<interval_end>, 3> ends;  ///< sorted, but for arrivals behind them
+        std::array<std::vector<interval_end>, 3> ends;  ///< sorted, except for arrivals at the end
         bool is_touched = false;
     };
 
-    /// The regions that a box reaches into, on the two axes that are cut; as it is made none.
+    /// The range of regions that a box overlaps on the two cut axes; empty by default.
     struct region_range {
         std::array<std::uint16_t, 2> first{1, 1};
         std::array<std::uint16_t, 2> last{0, 0};
@@ -83,12 +83,12 @@ private:
         friend bool operator==(const region_range&, const region_range&) = default;
     };
 
-    static constexpr double most_regions = 256;  // along an axis
+    static constexpr double most_regions = 256;  // per axis
     static constexpr double objects_a_region = 16;
     static constexpr double extents_a_region = 4;
 
-    /// Grows with x, rounding included, so that two boxes that overlap reach into one region. What lies beyond the grid
-    /// is in the outermost.
+    /// Monotone in x, rounding included, so that overlapping boxes share a region. Coordinates beyond the grid belong
+    /// to the outermost cells.
     [[nodiscard]] std::uint16_t cell(float x, std::size_t k) const noexcept {
         const double along = (double{x} - origin_[k]) * per_unit_[k];
         return static_cast<std::uint16_t>(std::clamp(along, 0.0, static_cast<double>(count_[k] - 1)));
@@ -101,7 +101,7 @@ private:
         }
         return range;
     }
-    /// @param visit gets each region of a range that another has not
+    /// @param visit gets each region of a range that is not in the other range
     void for_each_region(const region_range& range, const region_range& other, auto visit) {
         for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
             for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j)
@@ -138,21 +138,21 @@ private:
         touched_.clear();
     }
 
-    /// Brings lists and pairs up to the frame, for as long as steps are left.
+    /// Updates lists and pairs to the frame, and stops early when no steps are left.
     template <class Sort, CounterPolicy Counters>
     void follow(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         moved_.assign(boxes.size(), 0);
         for (std::uint32_t id = 0; id < boxes.size() && steps_left_ > 0; ++id) {
             if (!objects.contains(id) || (!objects.is_arrival(id) && boxes[id] == before_[id])) continue;
             moved_[id] = 1;
-            const region_range now = range_of(boxes[id]);
-            spend(regions_in(now));
+            const region_range range = range_of(boxes[id]);
+            spend(regions_in(range));
             if (steps_left_ == 0) return;
-            for_each_region(now, {}, [&](std::uint32_t r) { touch(r); });
-            if (now == places_[id]) continue;
-            for_each_region(places_[id], now, [&](std::uint32_t r) { leave(r, id, boxes, counters); });
-            for_each_region(now, places_[id], [&](std::uint32_t r) { enter(r, id, boxes); });
-            places_[id] = now;
+            for_each_region(range, {}, [&](std::uint32_t r) { touch(r); });
+            if (range == places_[id]) continue;
+            for_each_region(places_[id], range, [&](std::uint32_t r) { leave(r, id, boxes, counters); });
+            for_each_region(range, places_[id], [&](std::uint32_t r) { enter(r, id, boxes); });
+            places_[id] = range;
         }
         for (const std::uint32_t r : touched_) {
             for (std::size_t k = 0; k < 3 && steps_left_ > 0; ++k) sort_again(r, k, boxes, sort, counters);
@@ -161,7 +161,7 @@ private:
         touched_.clear();
     }
 
-    /// Swaps tell nothing of pairs that part when one of them leaves the region in which they met.
+    /// Removes an object from a region. No swap reports pairs that end because of this, so they are tested here.
     template <CounterPolicy Counters>
     void leave(std::uint32_t r, std::uint32_t id, std::span<const box> boxes, Counters& counters) {
         spend(regions_[r].ends[0].size());
@@ -173,7 +173,7 @@ private:
         }
     }
 
-    /// As if it came from beyond all others.
+    /// Appends the ends of an object, as if it came from beyond all others, so that sorting finds its pairs.
     void enter(std::uint32_t r, std::uint32_t id, std::span<const box> boxes) {
         for (std::size_t k = 0; k < 3; ++k) {
             regions_[r].ends[k].push_back(lower_end(boxes, id, k));
@@ -228,7 +228,7 @@ private:
         steps_anew_ += tests;
     }
 
-    /// Cuts the two axes on which the boxes' centres vary most.
+    /// Cuts the two axes with the greatest variance of the boxes' centres.
     void plan(std::span<const box> boxes, const membership& objects) {
         planned_ = objects.size();
         const spread along = spread_of(boxes, objects);
@@ -252,18 +252,18 @@ private:
     }
 
     config config_;
-    std::size_t planned_ = 0;  // objects that were present when the grid was planned
+    std::size_t planned_ = 0;  // number of present objects when the grid was planned
     std::array<int, 2> cut_{0, 1};
     std::array<std::uint32_t, 2> count_{1, 1};
     std::array<double, 2> origin_{};
     std::array<double, 2> per_unit_{};
     std::vector<region> regions_;
-    std::vector<std::uint32_t> touched_;  // regions with an object that moved in this frame
+    std::vector<std::uint32_t> touched_;  // regions with objects that moved in this frame
     std::vector<region_range> places_;    // by id
-    std::vector<std::uint8_t> moved_;     // by id, whether it did in this frame
-    std::vector<box> before_;             // by id, of the frame before
-    std::uint64_t steps_left_ = 0;        // of this frame; 0 where it is started anew
-    std::uint64_t steps_anew_ = 1;        // that starting anew took the last time
+    std::vector<std::uint8_t> moved_;     // whether the object moved in this frame, by id
+    std::vector<box> before_;             // boxes of the previous frame, by id
+    std::uint64_t steps_left_ = 0;        // remaining steps of this frame; 0: the frame restarts
+    std::uint64_t steps_anew_ = 1;        // number of steps of the last restart
     interval_sweep sweep_;
 };
 

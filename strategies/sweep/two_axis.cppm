@@ -8,16 +8,16 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Two sorted lists: while boxes are met along one, those met and not yet left are kept in the order of the other, and
-/// a box is tested only against those of them that can reach it on both axes. After Capannini and Larsson, "Efficient
-/// collision culling by a succinct bi-dimensional sweep and prune algorithm" (SCCG 2016), and their adaptive one of
-/// 2018, from what others write of both: theirs keeps ends in a tree of many bits a node and plans for several threads.
-/// Here one bit stands for a box, by its place in the second list, words of them are walked over, and a box is found to
-/// have ended only when it is met again. When to use: many boxes at a time along every axis.
+/// Sweep and prune along two sorted lists: the sweep along one keeps the active boxes in the order of the other, so
+/// that a box is tested only against the active ones whose intervals may overlap its own on both axes. After Capannini
+/// and Larsson, "Efficient collision culling by a succinct bi-dimensional sweep and prune algorithm" (SCCG 2016), and
+/// their adaptive version of 2018, as described by others: theirs keeps ends in a tree with many bits per node and
+/// plans for several threads. Here a bitmap over the places in the second list marks active boxes, and an ended box is
+/// removed lazily, when it is visited again. When to use: many boxes at a time along every axis.
 ///
-/// How far back a box must look follows from the greatest upper end so far in the second list. Boxes four times as long
-/// there as the mean would spoil that for all behind them: they are kept apart, and each box is tested against all of
-/// those that are active.
+/// The range of candidates before a box follows from the prefix maximum of upper ends in the second list. Boxes more
+/// than four times as long there as the mean would inflate it, so they are kept in a separate list, and each box is
+/// tested against all active ones of these.
 class two_axis_sweep {
 public:
     static constexpr std::string_view name = "two_axis";
@@ -36,13 +36,13 @@ public:
 
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
-        const auto& met = subset.lists[static_cast<std::size_t>(swept_axis_)];
-        if (met.size() < 2) return;
+        const auto& list = subset.lists[static_cast<std::size_t>(swept_axis_)];
+        if (list.size() < 2) return;
         rank(subset, subset.lists[static_cast<std::size_t>(kept_axis_)]);
         std::uint64_t tests = 0;
-        for (const auto& e : met) {
+        for (const auto& e : list) {
             tests += meet<Subset>(rank_[e.id]);
-            if (found_ > enough) report(pairs);
+            if (pair_count_ > enough) report(pairs);
         }
         report(pairs);
         counters.add(work::box_tests, tests);
@@ -55,12 +55,12 @@ public:
 
 private:
     using quad = float __attribute__((vector_size(16)));
-    static constexpr std::size_t bits = 64;  // of a word
+    static constexpr std::size_t bits = 64;  // per word of the bitmap
     static constexpr std::size_t enough = 2048;
 
-    /// A box as the sweep sees it; aligned, so that none lies across two cache lines.
+    /// A box with permuted axes; aligned, so that none straddles two cache lines.
     struct alignas(32) ranked_box {
-        quad bounds;  ///< on the axis kept in order and the third: max, max, -min, -min
+        quad bounds;  ///< on the kept and the third axis: max, max, -min, -min
         float begin;  ///< on the swept axis
         float end;
         std::uint32_t id;
@@ -77,11 +77,11 @@ private:
     }
 
     void report(std::vector<index_pair>& pairs) {
-        pairs.insert(pairs.end(), pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(found_));
-        found_ = 0;
+        pairs.insert(pairs.end(), pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(pair_count_));
+        pair_count_ = 0;
     }
 
-    /// Numbers boxes by their place in the list that keeps them in order, and finds how far back each must look there.
+    /// Ranks boxes by their place in the kept list, and finds the first candidate word of each.
     template <class Subset, class List>
     void rank(const Subset& subset, const List& list) {
         const std::size_t n = list.size();
@@ -92,8 +92,8 @@ private:
         word_begins_.resize((n + bits - 1) / bits);
         active_.assign(word_begins_.size(), 0);
         long_active_.clear();
-        found_ = 0;
-        // A box meets each of the others once at most, and one entry is written over by the next.
+        pair_count_ = 0;
+        // A box adds at most one pair per other box, and a rejected pair is overwritten by the next.
         if (pairs_.size() < n + enough) pairs_.resize(n + enough);
         if (candidates_.size() < n + 1) candidates_.resize(n + 1);
         const int third = 3 - swept_axis_ - kept_axis_;
@@ -115,16 +115,16 @@ private:
         }
     }
 
-    /// Lists the active boxes from a word on, up to the words that begin beyond a place. Most words have a few bits,
-    /// how many cannot be foreseen.
+    /// Lists the active boxes from a word up to the last word that begins at or below `last`. Most words have up to
+    /// three bits, which are extracted without branches, since their number is hard to predict.
     std::size_t candidates(std::size_t word, float last) noexcept {
-        std::size_t found = 0;
+        std::size_t count = 0;
         for (; word < active_.size() && word_begins_[word] <= last; ++word) {
             std::uint64_t left = active_[word];
             const auto take = [&] {
-                candidates_[found] =
+                candidates_[count] =
                     static_cast<std::uint32_t>(word * bits) + static_cast<std::uint32_t>(std::countr_zero(left));
-                found += static_cast<std::size_t>(left != 0);
+                count += static_cast<std::size_t>(left != 0);
                 left &= left - 1;
             };
             take();
@@ -132,12 +132,12 @@ private:
             take();
             while (left != 0) take();
         }
-        return found;
+        return count;
     }
 
-    /// Tests a box against those that it can reach, and puts it among them. Without a branch a test: neither whether
-    /// two boxes overlap nor whether one has ended can be foreseen.
-    /// @returns how many it was tested against
+    /// Tests a box against its active candidates, and activates it. Tests are branch-free, since both overlaps and
+    /// ended boxes are hard to predict.
+    /// @returns the number of tests
     template <class Subset>
     std::size_t meet(std::uint32_t rank) {
         const ranked_box a = ranked_[rank];
@@ -147,25 +147,25 @@ private:
                    static_cast<std::size_t>(Subset::owns(a.owned, b.owned));
         };
         const std::size_t near = candidates(first_word_[rank], a.bounds[0]);
-        std::size_t found = found_;
+        std::size_t count = pair_count_;
         for (std::size_t c = 0; c < near; ++c) {
             const std::uint32_t other = candidates_[c];
             const ranked_box& b = ranked_[other];
-            pairs_[found] = ordered_pair(a.id, b.id);
-            found += overlaps(b);
+            pairs_[count] = ordered_pair(a.id, b.id);
+            count += overlaps(b);
             active_[other / bits] &= ~(std::uint64_t{b.end < a.begin} << other % bits);
         }
         const std::size_t far = long_active_.size();
         std::size_t stay = 0;
         for (std::size_t c = 0; c < far; ++c) {
             const ranked_box& b = ranked_[long_active_[c]];
-            pairs_[found] = ordered_pair(a.id, b.id);
-            found += overlaps(b);
+            pairs_[count] = ordered_pair(a.id, b.id);
+            count += overlaps(b);
             long_active_[stay] = long_active_[c];
             stay += static_cast<std::size_t>(b.end >= a.begin);
         }
         long_active_.resize(stay);
-        found_ = found;
+        pair_count_ = count;
         if (is_long(a))
             long_active_.push_back(rank);
         else
@@ -177,18 +177,18 @@ private:
     chosen_axis kept_;
     int swept_axis_ = 0;
     int kept_axis_ = 1;
-    float longest_short_ = 0;  // on the axis kept in order
-    // By the place in the list that keeps boxes in order:
+    float longest_short_ = 0;  // greatest extent of a box that is not long, on the kept axis
+    // Indexed by rank, the place in the kept list:
     std::vector<ranked_box> ranked_;
-    std::vector<std::uint32_t> first_word_;  // of active_ in which a box that this one overlaps may stand
-    std::vector<float> reached_;             // the greatest upper end of those up to here that are not long
+    std::vector<std::uint32_t> first_word_;  // the first word of active_ with candidates of the box
+    std::vector<float> reached_;             // prefix maximum of the upper ends of boxes that are not long
     std::vector<std::uint32_t> rank_;        // by id
-    std::vector<std::uint64_t> active_;      // a bit for each box that was met, is not long, and was not seen to end
-    std::vector<float> word_begins_;         // the lower end of the first box of a word of active_
+    std::vector<std::uint64_t> active_;      // bitmap of active boxes that are not long
+    std::vector<float> word_begins_;         // lower end of the first box of each word of active_
     std::vector<std::uint32_t> long_active_;
-    std::vector<std::uint32_t> candidates_;  // of the box at hand
-    std::vector<index_pair> pairs_;          // found, not yet reported
-    std::size_t found_ = 0;
+    std::vector<std::uint32_t> candidates_;  // of the current box
+    std::vector<index_pair> pairs_;          // pairs that are not yet reported
+    std::size_t pair_count_ = 0;
 };
 
 static_assert(ListSweep<two_axis_sweep>);
