@@ -1,5 +1,5 @@
-/// What turns strategies into entries of lists and combinations of them into rows of tables, for the generated units of
-/// the registry. It knows no kinds.
+/// Turns strategies into list entries and their combinations into table rows, for the generated units of the registry.
+/// It does not depend on the kinds.
 export module aabb.composed;
 
 import aabb.pipeline;
@@ -32,8 +32,8 @@ template <Strategy S>
             [](const strategy_choice& choice) { return is_exact_as<S>(configured<S>(choice.settings)); }};
 }
 
-/// A combination of the strategies that are compiled together; `make`, which takes a choice of each and what else the
-/// stage is made of, is null where the combination is refused.
+/// A combination of strategies that are compiled together. `make` takes a choice of each and the other parts of the
+/// stage; it is null if the combination is rejected.
 template <class Make>
 struct row {
     std::vector<std::string_view> names;
@@ -41,7 +41,7 @@ struct row {
     Make make;
 };
 
-/// Calls `take` with each combination of one type a list.
+/// Calls `take` with each combination of one type per list.
 template <class... Chosen, class Take>
 void for_each_combination(Take& take) {
     take.template operator()<Chosen...>();
@@ -51,21 +51,21 @@ void for_each_combination(Take& take, type_list<First...>, Rest... rest) {
     (for_each_combination<Chosen..., First>(take, rest...), ...);
 }
 
-/// Calls `make` with the counters that are asked for.
+/// Calls `make` with the requested type of counters.
 template <class Make>
 [[nodiscard]] auto with_counters(instrumentation wanted, Make make) {
     if (wanted == instrumentation::counters) return make(work_counters{});
     return make(no_counters{});
 }
 
-/// A global search composed statically, behind the interface of a stage.
+/// A statically composed broad phase behind the interface of a stage.
 template <class... Parts>
 struct global_search_of {
     [[nodiscard]] static std::unique_ptr<global_stage> make(std::span<const strategy_choice> choices,
                                                             instrumentation wanted) {
         return with_counters(wanted, [&]<class Counters>(Counters) -> std::unique_ptr<global_stage> {
             auto choice = choices.begin();
-            // Braces are evaluated from left to right.
+            // The elements of a braced list are evaluated from left to right.
             using search = global_search<Parts..., Counters>;
             return std::make_unique<searched_by<search>>(
                 search{make_strategy<Parts>(configured<Parts>((choice++)->settings))...});
@@ -75,7 +75,7 @@ struct global_search_of {
 using global_search_rows = std::vector<
     row<std::unique_ptr<global_stage> (*)(std::span<const strategy_choice> choices, instrumentation wanted)>>;
 
-/// A local detection likewise, with a build that is chosen apart from the tree.
+/// A statically composed narrow phase, whose tree builder is chosen separately.
 template <class... Parts>
 struct local_detection_of {
     [[nodiscard]] static std::unique_ptr<local_stage> make(std::span<const strategy_choice> choices,
@@ -91,8 +91,8 @@ struct local_detection_of {
 using local_detection_rows = std::vector<row<std::unique_ptr<local_stage> (*)(
     std::span<const strategy_choice> choices, tree_builder builder, instrumentation wanted)>>;
 
-/// Every combination of one strategy a list.
-/// @tparam Stage `Stage<Parts...>::make` makes the stage of these strategies
+/// A row for every combination of one strategy per list.
+/// @tparam Stage `Stage<Parts...>::make` makes the stage from these strategies
 template <class Rows, template <class... Parts> class Stage, class... Lists>
 [[nodiscard]] Rows rows_of(Lists... lists) {
     Rows rows;
@@ -105,25 +105,25 @@ template <class Rows, template <class... Parts> class Stage, class... Lists>
     return rows;
 }
 
-/// All rows that these functions return.
+/// Concatenates the rows of these functions.
 template <class Rows>
-[[nodiscard]] Rows joined(std::initializer_list<Rows (*)()> parts) {
-    Rows all;
-    for (const auto part : parts) {
-        Rows some = part();
-        all.insert(all.end(), some.begin(), some.end());
+[[nodiscard]] Rows joined(std::initializer_list<Rows (*)()> functions) {
+    Rows rows;
+    for (const auto function : functions) {
+        Rows part = function();
+        rows.insert(rows.end(), part.begin(), part.end());
     }
-    return all;
+    return rows;
 }
 
-/// What `make` makes of the strategy of that name, as it is configured.
+/// The result of `make` for the named strategy with its settings.
 template <class Result, class... Strategies, class Make>
 [[nodiscard]] Result made(type_list<Strategies...>, const strategy_choice& choice, Make make) {
     Result result{};
-    const auto try_one = [&]<class S>(type_list<S>) {
+    const auto try_strategy = [&]<class S>(type_list<S>) {
         if (S::name == choice.name) result = make(make_strategy<S>(configured<S>(choice.settings)));
     };
-    (try_one(type_list<Strategies>{}), ...);
+    (try_strategy(type_list<Strategies>{}), ...);
     return result;
 }
 

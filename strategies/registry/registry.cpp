@@ -17,7 +17,7 @@ std::unique_ptr<triangle_test> triangle_test_named(const strategy_choice& choice
 
 namespace {
 
-/// Of a choice that is known.
+/// The strategy of a choice, whose name must be known.
 const strategy_info& strategy_of(strategy_kind kind, const strategy_choice& choice) {
     return *std::ranges::find(strategies(kind), choice.name, &strategy_info::name);
 }
@@ -31,7 +31,7 @@ const composed::local_detection_rows& local_rows() {
     return rows;
 }
 
-/// The kinds of a stage that are compiled together, or that are not.
+/// The kinds of a stage that are compiled alone (`apart`), or those compiled together.
 std::vector<strategy_kind> kinds_of(stage of, bool apart) {
     std::vector<strategy_kind> kinds = kinds_of(of);
     std::erase_if(kinds, [&](strategy_kind kind) { return info_of(kind).apart != apart; });
@@ -42,7 +42,7 @@ void require_known(const composition& c, stage of) {
     for (const strategy_kind kind : kinds_of(of)) require_known(kind, c[kind]);
 }
 
-/// Of the kinds that are compiled together, in their order.
+/// The choices of the kinds that are compiled together, in their order.
 std::vector<strategy_choice> choices_of(const composition& c, stage of) {
     std::vector<strategy_choice> choices;
     for (const strategy_kind kind : kinds_of(of, false)) choices.push_back(c[kind]);
@@ -66,27 +66,27 @@ const auto& accepted_row_for(const Rows& rows, const composition& c, stage of) {
 
 template <class Rows>
 std::vector<composition> every_composition(const Rows& rows, stage of) {
-    std::vector<composition> all;
+    std::vector<composition> compositions;
     const std::vector<strategy_kind> kinds = kinds_of(of, false);
     for (const auto& row : rows) {
         if (!row.make) continue;
-        composition& c = all.emplace_back();
+        composition& c = compositions.emplace_back();
         for (std::size_t i = 0; i < kinds.size(); ++i) c[kinds[i]] = {std::string(row.names[i]), {}};
     }
-    // Those that stand apart, with the usual strategies and with the first ones.
+    // Strategies that are compiled alone are combined with the default and with the first strategies of other kinds.
     for (const strategy_kind kind : kinds_of(of, true))
         for (const strategy_info& info : strategies(kind)) {
             if (info.name == info_of(kind).fallback) continue;
             composition c;
             c[kind] = {info.name, {}};
-            all.push_back(c);
+            compositions.push_back(c);
             for (const strategy_kind other : kinds) c[other] = {strategies(other).front().name, {}};
-            if (row_for(rows, c, of).make) all.push_back(c);
+            if (row_for(rows, c, of).make) compositions.push_back(c);
         }
-    return all;
+    return compositions;
 }
 
-/// The one kind that has a strategy of this name.
+/// The kind of this strategy name, if it is unique.
 std::optional<strategy_kind> only_kind_of(const std::string& name) {
     std::optional<strategy_kind> only;
     for (const strategy_kind kind : strategy_kinds) {
@@ -110,12 +110,12 @@ std::vector<strategy_kind> kinds_of(stage of) {
 }
 
 std::span<const strategy_info> strategies(strategy_kind kind) {
-    static const by_kind<std::vector<strategy_info>> all = [] {
-        by_kind<std::vector<strategy_info>> made;
-        for (const strategy_kind one : strategy_kinds) made[one] = registry::infos_of(one);
-        return made;
+    static const by_kind<std::vector<strategy_info>> infos = [] {
+        by_kind<std::vector<strategy_info>> table;
+        for (const strategy_kind k : strategy_kinds) table[k] = registry::infos_of(k);
+        return table;
     }();
-    return all[kind];
+    return infos[kind];
 }
 
 std::vector<std::string> strategy_names(strategy_kind kind) {
@@ -135,7 +135,7 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
     std::set<std::string_view> seen;
     for (const setting& s : choice.settings) {
         if (!seen.insert(s.name).second) throw input_error(choice.name + ": " + s.name + " is given twice");
-        // What was a parameter once may be a kind by now.
+        // Earlier versions had parameters that are kinds of their own now.
         const auto same_name = std::ranges::find(strategy_kind_infos, s.name, &strategy_kind_info::name);
         const auto own = std::ranges::find(strategy_of(kind, choice).parameters, s.name, &parameter_info::name);
         if (same_name != strategy_kind_infos.end() && own == strategy_of(kind, choice).parameters.end())

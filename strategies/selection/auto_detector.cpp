@@ -50,7 +50,7 @@ auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t 
     if (const std::string sentence = needs_meshes(composed_of(selected_)); !sentence.empty())
         throw input_error(sentence);
     std::erase_if(selected_,
-                  [](const selected_strategy& one) { return info_of(one.kind).stage == stage::local_detection; });
+                  [](const selected_strategy& s) { return info_of(s.kind).stage == stage::local_detection; });
 }
 
 auto_detector::auto_detector(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of,

@@ -4,13 +4,14 @@ namespace aabb {
 
 namespace {
 
-/// What serves the scene better than the usual strategy; where none does, why the last that might does not.
+/// The strategy that fits the scene better than the default; if none does, the reason of the last candidate.
 struct fitting {
-    std::string name;  ///< empty where none does
+    std::string name;  ///< empty if none fits
     scene_fit fit;
 };
 
-/// Among all of the kind where it stands apart, since they go with anything; else the one that the composition has.
+/// Candidates are all strategies of a kind that is compiled alone, since these combine with any others; otherwise only
+/// the strategy in the composition.
 fitting fitting_of(strategy_kind kind, const composition& completed, const scene_outlook& scene) {
     fitting last;
     for (const strategy_info& info : strategies(kind)) {
@@ -23,9 +24,9 @@ fitting fitting_of(strategy_kind kind, const composition& completed, const scene
     return last;
 }
 
-/// What is named among what is fastest by itself, or where that is a sort, without a partition: what lies in columns is
-/// sorted anew in each frame, which gains by `bucket` only. Where that is refused, among what usually goes with what is
-/// named, and then among the first that is not.
+/// Completes the named strategies with the fastest ones, but with a named sort without a partition, since columns are
+/// sorted from scratch in each frame, for which only `bucket` is fast. If that combination is rejected, the strategies
+/// usual beside the named ones are tried, and then the first accepted combination.
 composition completed(const named_strategies& named) {
     const composition usual(named);
     composition whole;
@@ -40,13 +41,13 @@ composition completed(const named_strategies& named) {
             return refusal_of(whole, of).empty();
         };
         if (take(fastest) || take(usual) || std::ranges::any_of(every_composition(of), take)) continue;
-        // What is named is refused whatever else there is.
+        // The named strategies are rejected in any combination.
         take(usual);
     }
     return whole;
 }
 
-/// Of a strategy that depends on no scene; what it says of itself follows.
+/// The rule for a strategy that does not depend on the scene, followed by its summary.
 std::string usual_rule(strategy_kind kind, const strategy_choice& choice) {
     const std::string why = choice == composition()[kind] ? "the usual one" : "what goes with what is named";
     return why + ": " + std::ranges::find(strategies(kind), choice.name, &strategy_info::name)->summary;
@@ -95,20 +96,20 @@ std::vector<selected_strategy> select_strategies(const named_strategies& named, 
     const composition whole = select_composition(named, scene);
     scene_outlook seen = scene;
     seen.exact_triangles = is_exact(whole, stage::local_detection);
-    std::vector<selected_strategy> all;
+    std::vector<selected_strategy> selected;
     for (const strategy_kind kind : strategy_kinds) {
         std::string rule;
         for (const statement& reason : fitting_of(kind, whole, seen).fit.because)
             rule += (rule.empty() ? "" : "; ") + to_text(reason);
         if (rule.empty()) rule = usual_rule(kind, whole[kind]);
-        all.push_back({kind, whole[kind], named[kind] ? "as it is named" : rule});
+        selected.push_back({kind, whole[kind], named[kind] ? "as it is named" : rule});
     }
-    return all;
+    return selected;
 }
 
 composition composed_of(const std::vector<selected_strategy>& selected) {
     composition c;
-    for (const selected_strategy& one : selected) c[one.kind] = one.choice;
+    for (const selected_strategy& s : selected) c[s.kind] = s.choice;
     return c;
 }
 

@@ -1,4 +1,4 @@
-/// What serves a scene: `auto`, by rules that say why.
+/// The selection of strategies for a scene (`auto`), by rules that explain themselves.
 export module aabb.selection;
 
 import aabb.geometry;
@@ -8,31 +8,31 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Of moving meshes: each object is held against one other a frame, as a guess.
+/// The outlook of a scene of moving meshes, assuming one narrow-phase query per two objects and frame.
 [[nodiscard]] scene_outlook outlook_of(std::span<const mesh> meshes, std::size_t objects, std::size_t frames);
 
-/// What one kind of strategy gets, and the rule that says so, a sentence.
+/// The strategy selected for a kind, and the rule that selected it, as a sentence.
 struct selected_strategy {
     strategy_kind kind;
     strategy_choice choice;
     std::string rule;
 };
 
-/// Whether what is selected for the kind depends on the scene.
+/// Whether the selection for a kind depends on the scene.
 [[nodiscard]] bool depends_on_scene(strategy_kind kind);
 
-/// A strategy for each kind: what is named stays; where some strategy of the kind says which scenes it serves (`fit`),
-/// the first one that serves this one, or the usual one; the others are what is fastest by itself, or where that cannot
-/// be composed with it, what can.
-/// @throws input_error on an unknown name or parameter.
+/// Selects a strategy for each kind. Named strategies are kept. In kinds whose strategies state which scenes they serve
+/// (`fit`), the first one that serves this scene is selected, or the default. Other kinds use the fastest strategy, or
+/// if it is rejected in this combination, one that is accepted.
+/// @throws input_error on an unknown name or parameter
 [[nodiscard]] composition select_composition(const named_strategies& named, const scene_outlook& scene);
 
-/// The same in two steps. The first does not depend on the scene, and may take ten microseconds; the second changes a
-/// composition in place, and takes less than one. It may have been selected for another scene before.
+/// The same in two steps. The first does not depend on the scene and takes up to ten microseconds; the second changes a
+/// composition in place, which may have been selected for another scene before, in less than one microsecond.
 [[nodiscard]] composition complete_composition(const named_strategies& named);
 void select_for_scene(composition& completed, const named_strategies& named, const scene_outlook& scene);
 
-/// The same with the rules that it follows from, in the order of the kinds.
+/// The same with the rules, in the order of the kinds.
 [[nodiscard]] std::vector<selected_strategy> select_strategies(const named_strategies& named,
                                                                const scene_outlook& scene);
 [[nodiscard]] composition composed_of(const std::vector<selected_strategy>& selected);
