@@ -19,11 +19,12 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Global search (paper, section 2): sorted projection lists kept between frames, an optional partition, a sweep.
+/// The broad phase (global search in the paper, section 2): sorted projection lists kept between frames, an optional
+/// partition, and a sweep.
 ///
-/// Objects have stable ids, which index the boxes of a frame; only those inserted take part. Nothing is allocated once
-/// the buffers have grown to the scene. Memory that runs out in `insert` or `search` changes nothing; in `update` it
-/// may end the use of the search, which says so then.
+/// Objects have stable ids, which index the boxes of a frame; only inserted objects take part. Nothing is allocated
+/// once the buffers have grown to the scene. std::bad_alloc in `insert` or `search` has no effect; in `update` it may
+/// make the search unusable, which later calls then report.
 template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters = no_counters>
 class global_search {
     static constexpr bool cuts = CuttingPartition<Partition>;
@@ -37,15 +38,15 @@ public:
     global_search(Sort sort, Partition partition, Sweep sweep)
         : sort_(std::move(sort)), partition_(std::move(partition)), sweep_(std::move(sweep)) {}
 
-    /// @throws input_error when the object is present already.
+    /// @throws input_error if the object is already present
     void insert(std::uint32_t id) { objects_.insert(id); }
-    /// @throws input_error when the object is not present.
+    /// @throws input_error if the object is not present
     void remove(std::uint32_t id) { objects_.remove(id); }
 
-    /// Sorts and partitions the boxes of a frame, indexed by id. They are looked at again by `search`.
-    /// @throws input_error on a box that is not finite or inverted, when ids reach beyond the boxes, when there are
-    /// boxes but no object was ever inserted, or when the partition or `require_ieee_arithmetic` refuses; another
-    /// update must succeed before the next search then.
+    /// Sorts and partitions the boxes of a frame, indexed by id. `search` reads them again.
+    /// @throws input_error on a box that is not finite or inverted, if a present object has no box, if there are boxes
+    /// but no object was ever inserted, or if the partition or `require_ieee_arithmetic` rejects the frame; then
+    /// another update must succeed before the next search
     void update(std::span<const box> boxes) {
         frame_.begin();
         require_ieee_arithmetic();
@@ -78,8 +79,8 @@ public:
         frame_.taken();
     }
 
-    /// Appends every overlapping pair, each once, a < b, in no particular order.
-    /// @throws input_error when the last update did not succeed, or there was none, and as `require_ieee_arithmetic`.
+    /// Appends every overlapping pair once, with a < b, in unspecified order.
+    /// @throws input_error if the last update failed or there was none, and as `require_ieee_arithmetic`
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
         require_ieee_arithmetic();
@@ -96,10 +97,10 @@ public:
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] axis_set sorted_axes() const noexcept { return lists_.axes(); }
 
-    /// Heap bytes of the projection lists and the record of which object is present.
+    /// Heap bytes of the projection lists and the set of present objects.
     [[nodiscard]] std::size_t projection_bytes() const noexcept { return lists_.bytes() + objects_.bytes(); }
     [[nodiscard]] std::size_t sort_bytes() const noexcept { return bytes_of(sort_); }
-    /// Heap bytes of the partition and its subsets; 0 without one.
+    /// Heap bytes of the partition and its subsets; 0 without a partition.
     [[nodiscard]] std::size_t partition_bytes() const noexcept {
         if constexpr (cuts)
             return bytes_of(partition_) + subsets_.bytes();
@@ -120,8 +121,8 @@ private:
     frame_state frame_;
 };
 
-/// With a sweep that keeps pairs from frame to frame there are no projection lists and no subsets: it has lists of its
-/// own, and needs of the sort only that it tells of its swaps.
+/// The specialization for sweeps that keep pairs between frames, without projection lists and subsets: such a sweep has
+/// lists of its own, and only requires that the sort reports its swaps.
 template <SortPolicy Sort, PartitionPolicy Partition, CoherentSweep Sweep, CounterPolicy Counters>
 class global_search<Sort, Partition, Sweep, Counters> {
     static_assert(aabb::is_accepted<sentence_of<Sort, Partition, Sweep>()>);
@@ -166,7 +167,7 @@ private:
     frame_state frame_;
 };
 
-/// With a partition that brings a search of its own there are no projection lists.
+/// The specialization for partitions with a search of their own, without projection lists.
 template <SortPolicy Sort, SearchingPartition Partition, ListSweep Sweep, CounterPolicy Counters>
 class global_search<Sort, Partition, Sweep, Counters> {
     static_assert(aabb::is_accepted<sentence_of<Sort, Partition, Sweep>()>);

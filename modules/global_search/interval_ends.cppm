@@ -7,11 +7,11 @@ import aabb.std;
 import :pair_set;
 import :policies;
 
-// What sweeps share that keep the overlapping pairs between frames and follow the swaps of a sort.
+// Shared by the sweeps that keep the overlapping pairs between frames and follow the swaps of a sort.
 export namespace aabb {
 
-/// One end of an object's interval on an axis. A lower end comes before an upper end of the same value, so touching is
-/// overlapping.
+/// One end of an object's interval on an axis. A lower end precedes an upper end of the same value, so that touching
+/// counts as overlapping.
 struct interval_end {
     float key;
     std::uint32_t id : 31;
@@ -23,7 +23,7 @@ struct interval_end {
 };
 static_assert(sizeof(interval_end) == 8);
 
-/// That `interval_end` can tell apart.
+/// The number of ids that `interval_end` can represent.
 inline constexpr std::size_t most_interval_objects = std::size_t{1} << 31;
 
 [[nodiscard]] inline interval_end lower_end(std::span<const box> boxes, std::uint32_t id, std::size_t axis) {
@@ -33,7 +33,7 @@ inline constexpr std::size_t most_interval_objects = std::size_t{1} << 31;
     return {boxes[id].max[static_cast<int>(axis)], id, 1};
 }
 
-/// Where the end lies now.
+/// The current coordinate of the end.
 [[nodiscard]] inline float key_of(const interval_end& e, std::span<const box> boxes, std::size_t axis) {
     return e.is_upper ? boxes[e.id].max[static_cast<int>(axis)] : boxes[e.id].min[static_cast<int>(axis)];
 }
@@ -42,15 +42,15 @@ inline void sort_ends(std::vector<interval_end>& list) {
     std::ranges::sort(list, [](const auto& e, const auto& f) { return precedes(e, f); });
 }
 
-/// Puts a pair in where an overlap may begin with a swap, and takes it out where one ends.
-/// @param before the boxes of the frame before
+/// Updates the pairs after a swap: inserts a pair whose overlap begins, and erases one whose overlap ends.
+/// @param before the boxes of the previous frame
 template <CounterPolicy Counters>
 inline void take_note_of_swap(const interval_end& passed, const interval_end& mover, std::span<const box> before,
                               std::span<const box> boxes, pair_set& pairs, Counters& counters) {
     if (passed.is_upper == mover.is_upper) return;
     const index_pair pair = ordered_pair(passed.id, mover.id);
     counters.add(work::box_tests);
-    // Few of the pairs whose overlap ends on this axis overlapped on the others: a test spares the look-up.
+    // Few pairs that stop overlapping on this axis overlapped on the others, so a test avoids most look-ups.
     if (mover.is_upper) {
         if (overlaps(before[pair.a], before[pair.b])) pairs.erase(pair);
     } else if (overlaps(boxes[pair.a], boxes[pair.b])) {
@@ -58,7 +58,7 @@ inline void take_note_of_swap(const interval_end& passed, const interval_end& mo
     }
 }
 
-/// What they hand out, and with which strategies they go.
+/// The kept pairs, and the rule which strategies these sweeps can be combined with.
 class kept_pairs {
 public:
     template <class... All>
@@ -74,10 +74,10 @@ protected:
     pair_set pairs_;
 };
 
-/// Sweeps a list of ends for the pairs of which one at least is new.
+/// Sweeps a list of ends for all pairs with at least one new object.
 class interval_sweep {
 public:
-    /// @returns how many pairs were tested
+    /// @returns the number of tested pairs
     std::uint64_t find(std::span<const interval_end> list, std::span<const box> boxes, pair_set& pairs, auto is_new) {
         std::uint64_t tests = 0;
         place_.resize(boxes.size());
@@ -105,8 +105,8 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(place_, active_); }
 
 private:
-    std::array<std::vector<std::uint32_t>, 2> active_;  // those met and not yet left, known ones and new ones
-    std::vector<std::uint32_t> place_;                  // of an active object in its vector
+    std::array<std::vector<std::uint32_t>, 2> active_;  // active objects: known ones, then new ones
+    std::vector<std::uint32_t> place_;                  // by id: index of an active object in its vector
 };
 
 }  // namespace aabb

@@ -5,24 +5,24 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Which objects are present, and which came and left since the frame before. Ids are stable.
+/// The set of present objects, with the arrivals and departures since the previous frame. Ids are stable.
 class membership {
 public:
-    /// @throws input_error when the object is present already.
+    /// @throws input_error if the object is already present
     void insert(std::uint32_t id) {
         if (id == state_.size())
             state_.push_back(state::absent);
         else if (id > state_.size())
             state_.resize(std::size_t{id} + 1, state::absent);
         if (contains(id)) refuse(id, " is inserted twice");
-        // An object that leaves and comes back before the next frame never left.
+        // An object that is removed and inserted again between two frames counts as known.
         const bool comes = state_[id] == state::absent;
         arrivals_ += comes;
         state_[id] = comes ? state::coming : state::known;
         ++size_;
     }
 
-    /// @throws input_error when the object is not present.
+    /// @throws input_error if the object is not present
     void remove(std::uint32_t id) {
         if (!contains(id)) refuse(id, " is removed but was never inserted");
         --size_;
@@ -44,15 +44,15 @@ public:
     [[nodiscard]] bool any_departures() const noexcept { return departures_; }
     [[nodiscard]] inline bool is_leaving(std::uint32_t id) const noexcept { return state_[id] == state::leaving; }
 
-    /// Calls `take` with each that came, ascending.
+    /// Calls `take` with the id of each arrival, ascending.
     void for_each_arrival(auto take) const {
         if (arrivals_ == 0) return;
         for (std::size_t id = 0; id < state_.size(); ++id)
             if (state_[id] == state::coming) take(static_cast<std::uint32_t>(id));
     }
 
-    /// @throws input_error when an object that is present has no box, or when there are boxes but `insert` was never
-    /// called: who forgets it would find no pair, without a word.
+    /// @throws input_error if a present object has no box, or if there are boxes but `insert` was never called, since
+    /// a user who forgets that call would silently get no pairs
     void require_boxes_for_all(std::size_t boxes) const {
         if (state_.empty() && boxes > 0)
             throw input_error("no object was inserted; call insert(id) for each box first");
@@ -62,7 +62,7 @@ public:
                                   std::to_string(boxes) + " boxes");
     }
 
-    /// To be called when arrivals and departures have been taken note of.
+    /// Marks arrivals and departures as processed.
     void settle() {
         if (departures_) std::ranges::replace(state_, state::leaving, state::absent);
         if (arrivals_ > 0) std::ranges::replace(state_, state::coming, state::known);
@@ -75,7 +75,7 @@ public:
 private:
     enum class state : std::uint8_t { absent, coming, known, leaving };
 
-    // Apart, so that what is called for every object is short.
+    // Out of line, so that the functions called per object stay small enough to inline.
     [[noreturn]] static void refuse(std::uint32_t id, const char* why) {
         throw input_error("object " + std::to_string(id) + why);
     }

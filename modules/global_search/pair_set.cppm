@@ -8,14 +8,14 @@ import aabb.std;
 
 export namespace aabb {
 
-/// A set of pairs that can be walked as an array: the pairs stand in a vector, and a hash table with linear probing,
-/// at most half full, finds their places.
+/// A set of pairs that is iterated as an array: the pairs are stored in a vector, and a hash table with linear probing
+/// and a load factor of at most 1/2 finds their indices.
 class pair_set {
 public:
     [[nodiscard]] inline std::span<const index_pair> pairs() const noexcept { return pairs_; }
 
-    /// Nothing happens when the pair is there already.
-    /// @throws input_error beyond 2^32 - 1 pairs.
+    /// Has no effect if the pair is already present.
+    /// @throws input_error beyond 2^32 - 1 pairs
     inline void insert(index_pair pair) {
         if (2 * (pairs_.size() + 1) > table_.size()) grow();
         const std::size_t slot = slot_of(pair);
@@ -25,13 +25,13 @@ public:
         table_[slot] = static_cast<std::uint32_t>(pairs_.size() - 1);
     }
 
-    /// Nothing happens when the pair is not there.
+    /// Has no effect if the pair is absent.
     inline void erase(index_pair pair) {
         if (pairs_.empty()) return;
         const std::size_t slot = slot_of(pair);
         const std::uint32_t place = table_[slot];
         if (place == none) return;
-        // The last pair takes the place of the one that goes.
+        // The last pair replaces the erased one.
         table_[slot_of(pairs_.back())] = place;
         pairs_[place] = pairs_.back();
         pairs_.pop_back();
@@ -55,14 +55,14 @@ public:
 private:
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-    /// Where the search for a pair begins: the high bits of a product with 2^64 over the golden ratio.
+    /// The slot where probing begins: Fibonacci hashing, the high bits of a product with 2^64 over the golden ratio.
     [[nodiscard]] inline std::size_t home_of(index_pair pair) const noexcept {
         const std::uint64_t both = std::uint64_t{pair.a} << 32 | pair.b;
         const std::uint64_t mixed = (both ^ both >> 29) * 0x9e3779b97f4a7c15U;
         return mixed >> (64 - std::countr_zero(table_.size()));
     }
 
-    /// The slot of a pair, or the free one where it would stand.
+    /// The slot of a pair, or the free slot into which it would be inserted.
     [[nodiscard]] inline std::size_t slot_of(index_pair pair) const noexcept {
         std::size_t slot = home_of(pair);
         while (table_[slot] != none && pairs_[table_[slot]] != pair) slot = next(slot);
@@ -71,7 +71,7 @@ private:
 
     [[nodiscard]] inline std::size_t next(std::size_t slot) const noexcept { return (slot + 1) & (table_.size() - 1); }
 
-    /// Moves back what was pushed on past the gap, so that every search still ends at a free slot.
+    /// Shifts displaced entries back into the gap, so that probing needs no tombstones.
     inline void close_gap(std::size_t gap) {
         for (std::size_t at = next(gap); table_[at] != none; at = next(at)) {
             const std::size_t home = home_of(pairs_[table_[at]]);
@@ -90,7 +90,7 @@ private:
     }
 
     std::vector<index_pair> pairs_;
-    std::vector<std::uint32_t> table_;  // a power of two of places in pairs_
+    std::vector<std::uint32_t> table_;  // indices into pairs_; the size is a power of two
 };
 
 }  // namespace aabb

@@ -8,7 +8,7 @@ import :policies;
 
 export namespace aabb {
 
-/// Counts the pairs of a list that stand in the wrong order, the measure of "almost sorted", by merging: n log n steps.
+/// Counts the inversions of a list, the measure of "almost sorted", by merge sort in O(n log n).
 class inversion_counter {
 public:
     [[nodiscard]] std::uint64_t count(std::span<const projection> list) {
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(keys_, merged_); }
 
 private:
-    /// Each key of the second run passes what is left of the first.
+    /// Each key of the second run that moves passes the rest of the first run.
     [[nodiscard]] std::uint64_t merge(std::size_t begin, std::size_t middle, std::size_t end) {
         std::uint64_t inversions = 0;
         std::size_t left = begin;
@@ -46,20 +46,20 @@ private:
     std::vector<float> merged_;
 };
 
-/// Stands where nothing is counted.
+/// Replaces `inversion_counter` in searches without counters.
 struct no_inversion_counter {
     [[nodiscard]] static constexpr std::uint64_t count(std::span<const projection>) noexcept { return 0; }
 };
 
-/// The sorted projection lists of global search, kept between frames (paper, section 2).
+/// The sorted projection lists of the broad phase, kept between frames (paper, section 2).
 ///
-/// What was never in a list before, a new axis or an object that arrives, is sorted by std::sort, since insertion sort
-/// is quadratic there. Afterwards the sort policy gets the entries whose key changed, in the order of the list, and
-/// they are merged with those that stood still, which are never sorted again. Where all move that is the whole list.
+/// New entries, of a new axis or an arriving object, are sorted by std::sort, since insertion sort would be quadratic
+/// there. The sort policy sorts only the entries whose key has changed, in the order of the list; they are then merged
+/// with the unchanged ones, which are never sorted again. If all objects move, this is the whole list.
 template <CounterPolicy Counters>
 class projection_lists {
 public:
-    /// Takes arrivals and departures over; the order of what is in the lists stays.
+    /// Applies arrivals and departures, and keeps the order of the other entries.
     void settle(const membership& objects) {
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_axis(axes_, k)) continue;
@@ -71,7 +71,7 @@ public:
         arrivals_ += objects.arrivals();
     }
 
-    /// Brings the lists of these axes up to the boxes of a frame, and drops the others.
+    /// Sorts the lists of these axes for the boxes of a frame, and drops the other lists.
     template <SortPolicy Sort>
     void sort(std::span<const box> boxes, axis_set axes, Sort& sort, Counters& counters) {
         assert(axes != 0 && (axes & ~every_axis) == 0);
@@ -101,12 +101,12 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(lists_, moved_); }
 
 private:
-    /// For n entries; at once where there was none, growing by half where there was.
+    /// Reserves memory for n entries; a list that must grow again grows by half.
     static void make_room(std::vector<projection>& list, std::size_t n) {
         if (n > list.capacity()) list.reserve(std::max(n, list.capacity() + list.capacity() / 2));
     }
 
-    /// Any one list, which has every object.
+    /// Any one of the lists, since each contains all objects.
     [[nodiscard]] const std::vector<projection>& members() const noexcept {
         assert(axes_ != 0);
         return lists_[static_cast<std::size_t>(std::countr_zero(axes_))];
@@ -152,11 +152,11 @@ private:
         if (known == 0) return sort_new(boxes, axis, list);
         moved_.assign(list.begin() + static_cast<std::ptrdiff_t>(known), list.end());
         sort_new(boxes, axis, moved_);
-        no_counters uncounted;  // as what std::sort does is
+        no_counters uncounted;  // like the work of std::sort
         merge_moved_into(list, known, uncounted);
     }
 
-    /// From the back, so that it needs no room of its own.
+    /// Merges from the back, in place.
     void merge_moved_into(std::span<projection> list, std::size_t still, CounterPolicy auto& counters) {
         assert(list.size() == still + moved_.size());
         std::size_t out = list.size();
@@ -173,17 +173,17 @@ private:
         assert(out == still);
     }
 
-    /// Behind those of a sorted list that do not follow the entry; doubling steps from the back find it.
+    /// The upper bound of an entry in a sorted list, by galloping search from the back.
     static std::size_t place_of(const projection& entry, std::span<const projection> list,
                                 CounterPolicy auto& counters) {
-        std::size_t reach = 1;
+        std::size_t step = 1;
         const auto follows = [&](std::size_t i) {
             counters.add(work::comparisons);
             return precedes(entry, list[i]);
         };
-        while (reach <= list.size() && follows(list.size() - reach)) reach *= 2;
-        std::size_t low = reach > list.size() ? 0 : list.size() - reach + 1;
-        std::size_t high = list.size() - reach / 2;
+        while (step <= list.size() && follows(list.size() - step)) step *= 2;
+        std::size_t low = step > list.size() ? 0 : list.size() - step + 1;
+        std::size_t high = list.size() - step / 2;
         while (low < high) {
             const std::size_t middle = low + (high - low) / 2;
             if (follows(middle))
@@ -194,10 +194,10 @@ private:
         return low;
     }
 
-    std::array<std::vector<projection>, 3> lists_;  // only those of axes_ have entries
+    std::array<std::vector<projection>, 3> lists_;  // empty for axes that are not in axes_
     std::vector<projection> moved_;
     axis_set axes_ = 0b001;
-    std::size_t arrivals_ = 0;  // at the end of each list, until they are sorted
+    std::size_t arrivals_ = 0;  // number of unsorted entries at the end of each list
     [[no_unique_address]] std::conditional_t<Counters::enabled, inversion_counter, no_inversion_counter> inversions_;
 };
 

@@ -7,19 +7,19 @@ import :projection;
 // Sums and products as they are written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
-// How boxes lie along the axes: what strategies choose axes by.
+// The distribution of boxes along the axes, by which strategies choose axes.
 
 export namespace aabb {
 
-/// Variance of the boxes' centres and mean of their extents, by axis.
+/// The variance of the boxes' centres and the mean of their extents, by axis.
 struct spread {
     std::size_t objects;
     vec3d variance;  ///< of the doubled centres, times the number of objects
     vec3d extent;    ///< mean
 };
 
-/// Of the boxes of these objects. Sums are taken in the order of ids, so that they do not depend on how a sort leaves
-/// ties, and from the first centre, so that far from the origin no digits are lost.
+/// The spread of the present objects' boxes. Sums are taken in the order of ids, so that they do not depend on how a
+/// sort orders ties, and relative to the first centre, so that no digits cancel far from the origin.
 [[nodiscard]] inline spread spread_of(std::span<const box> boxes, const membership& objects) {
     spread result{};
     vec3d first{};
@@ -46,8 +46,8 @@ struct spread {
     return result;
 }
 
-/// How far the last lower end lies above the first upper end, by axis. Where that is not above 0 all boxes overlap, and
-/// the axis tells nothing.
+/// The distance from the least upper end to the greatest lower end, by axis. If it is not positive, all boxes overlap
+/// on the axis, so that it separates no pair.
 [[nodiscard]] inline vec3d separation_of(std::span<const box> boxes, const membership& objects) {
     vec3f last_lower = empty_box().max;
     vec3f first_upper = empty_box().min;
@@ -63,22 +63,22 @@ struct spread {
     return separation;
 }
 
-/// The axes on which some two boxes are apart; at least one axis.
+/// The axes on which some two boxes are disjoint; at least one axis.
 [[nodiscard]] constexpr axis_set separating_axes(const vec3d& separation) noexcept {
     axis_set axes = 0;
     for (int k = 0; k < 3; ++k) axes |= static_cast<axis_set>(separation[k] > 0) << k;
     return axes ? axes : axis_set{1};
 }
 
-/// The axis on which the boxes' centres vary most. It changes only when another varies half as much again, since a new
-/// list must be sorted from scratch.
+/// The axis with the greatest variance of the boxes' centres. It changes only if the variance on another axis is 50%
+/// greater, since a new list is sorted from scratch.
 class chosen_axis {
 public:
     int choose(std::span<const box> boxes, const membership& objects) {
         return choose(spread_of(boxes, objects), every_axis);
     }
 
-    /// One of these; at least one.
+    /// @param among the candidate axes; at least one
     int choose(const spread& along, axis_set among) {
         const auto is_among = [among](int k) { return has_axis(among, static_cast<std::size_t>(k)); };
         const double margin = chosen_ && is_among(axis_) ? 1.5 : 1.0;

@@ -8,17 +8,17 @@ import :policies;
 
 export namespace aabb {
 
-/// The subsets of one frame: for each list the entries of all subsets, subset after subset. Filled from sorted lists in
-/// order, so the sublists come sorted for free.
+/// The subsets of one frame: per list the entries of all subsets, subset after subset. Since they are filled from
+/// sorted lists in order, the sublists are sorted.
 class subset_lists {
 public:
-    /// Nothing is partitioned: one subset of all, without a list of its own.
+    /// Removes all subsets: the frame is not partitioned.
     void clear() noexcept { starts_.resize(1); }
 
-    /// @param axes whose lists are to be distributed; at least one
-    /// @throws input_error when the partition makes more than 2^24 + 64 n copies of n objects.
+    /// @param axes axes whose lists are distributed; at least one
+    /// @throws input_error if the partition makes more than 2^24 + 64 n copies of n objects
     template <CuttingPartition Partition, CounterPolicy Counters>
-    void distribute(const Partition& partition, const whole_subset& all, axis_set axes, Counters& counters) {
+    void distribute(const Partition& partition, const whole_subset& scene, axis_set axes, Counters& counters) {
         assert((axes & every_axis) != 0);
         bool counted = false;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -26,15 +26,15 @@ public:
                 entries_[k].clear();
                 continue;
             }
-            if (!counted) count(partition, all.boxes, all.lists[k]);
+            if (!counted) count(partition, scene.boxes, scene.lists[k]);
             counted = true;
             entries_[k].resize(starts_.back());
             next_.assign(starts_.begin(), starts_.end() - 1);
-            for (const projection& p : all.lists[k])
-                partition.for_each_subset(p.id, all.boxes[p.id], [&](std::uint32_t s, axis_set owned) {
+            for (const projection& p : scene.lists[k])
+                partition.for_each_subset(p.id, scene.boxes[p.id], [&](std::uint32_t s, axis_set owned) {
                     entries_[k][next_[s]++] = {p.id, owned};
                 });
-            // The partition said the same of every box as when it was counted.
+            // The partition must return the same subsets of every box as when they were counted.
             assert(std::ranges::equal(next_, std::span(starts_).subspan(1)));
         }
         counters.add(work::subsets, size());
@@ -55,13 +55,13 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(starts_, next_, entries_); }
 
 private:
-    /// Room for a scene of few objects, some of them huge, and far more than a search of many gains by: 128 MiB and 512
-    /// bytes an object a list.
+    /// Enough for a scene of few objects, some of them huge, and far more than a search of many objects gains from: 128
+    /// MiB and 512 bytes per object and list.
     [[nodiscard]] static constexpr std::uint64_t most_copies(std::size_t objects) noexcept {
         return (std::uint64_t{1} << 24) + 64 * std::uint64_t{objects};
     }
 
-    /// Sets starts_: of each subset the number of entries before it.
+    /// Sets `starts_`, the number of entries before each subset.
     template <class Partition>
     void count(const Partition& partition, std::span<const box> boxes, std::span<const projection> any) {
         const std::uint32_t subsets = partition.subset_count();
@@ -72,7 +72,7 @@ private:
                 ++starts_[s + 1];
                 ++copies;
             });
-            // While they are counted: to walk over them all could take hours.
+            // Checked while counting, since visiting all copies could take hours.
             if (copies > most_copies(any.size())) refuse(partition, boxes, any);
         }
         for (std::size_t s = 0; s < subsets; ++s) starts_[s + 1] += starts_[s];
@@ -94,7 +94,7 @@ private:
     std::array<std::vector<subset_entry>, 3> entries_;
 };
 
-/// What stands in place of the subsets where nothing is cut.
+/// Replaces `subset_lists` in a search without partition.
 struct no_subsets {};
 
 }  // namespace aabb
