@@ -9,11 +9,11 @@ import :model;
 
 export namespace aabb {
 
-/// Walks two trees together (paper, section 3), the longer of two nodes opened first, depth first.
+/// Simultaneous depth-first traversal of two BVHs (paper, section 3), which opens the longer of two nodes first.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class depth_first_walk {
 public:
-    /// Hands each pair of intersecting triangles (a of A, b of B) to `emit`, as a list of one, until that returns true.
+    /// Passes each pair of intersecting triangles (a of A, b of B) to `emit` as a list of one, until it returns true.
     template <class Emit>
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal /*goal*/, Emit emit) {
@@ -22,7 +22,7 @@ public:
         drain(test, a, b, to_a, emit);
     }
 
-    /// Those of one mesh, in either order.
+    /// The same for the pairs of one mesh, in either order.
     template <class Emit>
     void within(const Triangle& test, const model<Tree>& m, Emit emit) {
         constexpr same_frame here;
@@ -47,23 +47,23 @@ public:
 private:
     using cursor = typename Tree::cursor;
 
-    /// A pair of nodes still to be opened; the box of B's node stands in A's frame.
+    /// A pair of nodes to be opened; the box of B's node is in A's frame.
     struct node_pair {
         cursor a;
         cursor b;
         box b_bounds;
     };
 
-    /// B stands where A does.
+    /// The identity, for the traversal of a tree with itself.
     struct same_frame {
         [[nodiscard]] box operator()(const box& b) const noexcept { return b; }
         [[nodiscard]] triangle3f operator()(const triangle3f& t) const noexcept { return t; }
     };
 
-    /// Whose node of a pair has not been tested against the other yet.
+    /// The node of a pair that has not been tested against the other yet.
     enum class side : std::uint8_t { a, b, both };
 
-    /// Forgets an earlier query, which may have stopped half-way.
+    /// Discards the state of an earlier query, which may have stopped early.
     void begin() {
         require_ieee_arithmetic();
         stack_.clear();
@@ -82,8 +82,8 @@ private:
             const bool b_is_leaf = tree_b.is_leaf(at.b);
             if (a_is_leaf && b_is_leaf) {
                 if (!intersect(test, a, b, to_a, at)) continue;
-                const index_pair found{tree_a.triangle(at.a), tree_b.triangle(at.b)};
-                if (emit(std::span<const index_pair>(&found, 1))) return;
+                const index_pair triangles{tree_a.triangle(at.a), tree_b.triangle(at.b)};
+                if (emit(std::span<const index_pair>(&triangles, 1))) return;
             } else if (b_is_leaf || (!a_is_leaf && length(tree_a.bounds(at.a)) >= length(at.b_bounds))) {
                 const auto [left, right] = tree_a.children(at.a, a.triangles());
                 push_if_near(a, b, to_a, {right, at.b, at.b_bounds}, side::a);
@@ -103,7 +103,7 @@ private:
         return test.intersects(a.triangles().triangle(a.tree().triangle(at.a)), image(b, to_a, at.b));
     }
 
-    /// The triangle of a leaf of B, in A's frame. A leaf meets many nodes of A in turn, so the last one is kept.
+    /// The triangle of a leaf of B in A's frame. The last one is cached, since a leaf meets many nodes of A in a row.
     template <class Frame>
     [[nodiscard]] const triangle3f& image(const model<Tree>& b, const Frame& to_a, const cursor& leaf) {
         const std::uint32_t triangle = b.tree().triangle(leaf);
@@ -112,8 +112,8 @@ private:
         return image_;
     }
 
-    /// The box of a child of B's node, in A's frame. A leaf without a box goes on with its parent's, or with that of
-    /// its triangle as it stands in A's frame.
+    /// The box of a child of B's node in A's frame. A leaf without a box uses its parent's, or that of its transformed
+    /// triangle.
     template <class Frame>
     [[nodiscard]] box bounds_in_a(const model<Tree>& b, const Frame& to_a, const cursor& child, const box& parent) {
         if constexpr (!Tree::has_leaf_boxes)
@@ -138,7 +138,7 @@ private:
             const bool b_is_leaf = b.tree().is_leaf(next.b);
             const bool tests_triangles =
                 test == leaf_test_choice::triangle_box || test == leaf_test_choice::moller_triangle_box;
-            // Without boxes of their own there is nothing to test leaves by.
+            // Two leaves without boxes can only be tested by their triangles.
             if (a_is_leaf && b_is_leaf && test != leaf_test_choice::triangle_aabb) return true;
             if (test == leaf_test_choice::none && (untested == side::a ? a_is_leaf : b_is_leaf)) return true;
             if (tests_triangles && a_is_leaf)
@@ -154,7 +154,7 @@ private:
         return test == leaf_test_choice::triangle_box ? triangle_meets_box(t, b) : moller_triangle_meets_box(t, b);
     }
 
-    /// Of two nodes the longer one is opened first.
+    /// The measure by which the node to open first is chosen.
     [[nodiscard]] static float length(const box& b) noexcept {
         const int k = longest_axis(b);
         return b.max[k] - b.min[k];
@@ -162,9 +162,9 @@ private:
 
     [[no_unique_address]] Counters counters_;
     std::vector<node_pair> stack_;
-    std::vector<cursor> nodes_;  // of one tree, still to be held against itself
+    std::vector<cursor> nodes_;  // nodes of one tree that are still to be tested against themselves
     static constexpr std::uint32_t no_triangle = 0xffffffff;
-    std::uint32_t image_of_ = no_triangle;  // triangle of B
+    std::uint32_t image_of_ = no_triangle;  // the triangle of B whose image is cached
     triangle3f image_{};
 };
 

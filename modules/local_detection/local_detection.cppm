@@ -21,9 +21,9 @@ depth_first_walk<Tree, Triangle, Counters> walk_in(...);
 
 export namespace aabb {
 
-/// Local detection (paper, section 3): walks two trees together, box against box, down to pairs of triangles. The work
-/// is done in A's frame (`relative_pose`). Nothing is allocated once the walk's memory has grown to the deepest query,
-/// and to what queries keep. Every query throws input_error as `require_ieee_arithmetic` and `relative_pose` do.
+/// The narrow phase (local detection in the paper, section 3): traverses two BVHs together down to pairs of triangles,
+/// in A's frame (`relative_pose`). Nothing is allocated once the buffers have grown to the largest query. Every query
+/// throws input_error as `require_ieee_arithmetic` and `relative_pose` do.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class local_detection {
     static_assert(aabb::is_accepted<sentence_of<Tree, Triangle>()>);
@@ -34,12 +34,12 @@ public:
     = default;
     explicit local_detection(Triangle triangle) : triangle_(std::move(triangle)) {}
 
-    /// Appends every pair of intersecting triangles (a of A, b of B), each once, in no particular order.
+    /// Appends every pair of intersecting triangles (a of A, b of B) once, in unspecified order.
     void all_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
         append_whole(pairs, [&] {
-            between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> found) {
-                pairs.insert(pairs.end(), found.begin(), found.end());
+            between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
+                pairs.insert(pairs.end(), batch.begin(), batch.end());
                 return false;
             });
         });
@@ -48,34 +48,34 @@ public:
     [[nodiscard]] std::uint64_t count_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                             const pose& pose_b) {
         std::uint64_t count = 0;
-        between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> found) {
-            count += found.size();
+        between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
+            count += batch.size();
             return false;
         });
         return count;
     }
 
-    /// Any one intersecting pair.
+    /// Some intersecting pair, if there is one.
     [[nodiscard]] std::optional<index_pair> first_pair(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                                        const pose& pose_b) {
         std::optional<index_pair> first;
-        between(a, pose_a, b, pose_b, walk_goal::first_pair, [&](std::span<const index_pair> found) {
-            first = found.front();
+        between(a, pose_a, b, pose_b, walk_goal::first_pair, [&](std::span<const index_pair> batch) {
+            first = batch.front();
             return true;
         });
         return first;
     }
 
-    /// Appends every pair of intersecting triangles a < b of one mesh, neighbours that share a vertex included.
+    /// Appends every pair of intersecting triangles a < b of one mesh, including neighbours that share a vertex.
     void self_pairs(const model<Tree>& m, std::vector<index_pair>& pairs) {
         append_whole(pairs, [&] { each_self_pair(m, [&](index_pair pair) { pairs.push_back(pair); }); });
     }
 
-    /// Hands over the same pairs, one after the other as they are found, and keeps none.
+    /// Passes each of the same pairs to `take` as it is found, without storing any.
     template <class Take>
     void each_self_pair(const model<Tree>& m, const Take& take) {
-        walk_.within(triangle_, m, [&](std::span<const index_pair> found) {
-            for (const index_pair p : found) take(ordered_pair(p.a, p.b));
+        walk_.within(triangle_, m, [&](std::span<const index_pair> batch) {
+            for (const index_pair p : batch) take(ordered_pair(p.a, p.b));
             return false;
         });
     }

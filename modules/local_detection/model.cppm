@@ -5,8 +5,8 @@ import :policies;
 
 export namespace aabb {
 
-/// Whether the boxes made of a mesh hold its triangles as they lie now. After a refit that did not come to its end they
-/// may not, and a query would miss pairs without a word: it is refused until a refit succeeds.
+/// Whether the boxes of a mesh contain its current triangles. After a failed refit they may not, and a query would
+/// silently yield false negatives, so queries are rejected until a refit succeeds.
 class mesh_fit {
 public:
     template <class Refit>
@@ -16,8 +16,8 @@ public:
         fits_ = true;
     }
 
-    /// Before a query.
-    /// @throws input_error when the last refit did not succeed.
+    /// Must be called before a query.
+    /// @throws input_error if the last refit failed
     void require() const {
         if (!fits_) throw input_error("the last refit of a model did not succeed; refit it before the next query");
     }
@@ -26,12 +26,12 @@ private:
     bool fits_ = true;
 };
 
-/// A mesh with its tree, built in the mesh's own frame. The mesh must outlive it.
+/// A mesh with its BVH, built in the local frame of the mesh. The mesh must outlive it.
 template <TreePolicy Tree>
 class model {
 public:
-    /// @throws input_error on a mesh that `require_valid` refuses, and as `require_ieee_arithmetic`.
-    /// @param builder of what the tree packs
+    /// @param builder builds the nodes or the order that the tree packs
+    /// @throws input_error on a mesh that `require_valid` rejects, and as `require_ieee_arithmetic`
     template <TreeBuilder Builder>
     model(const mesh& m, const Builder& builder, Tree tree = {})
         : mesh_(&m), triangles_(m.triangles.size()), tree_(std::move(tree)) {
@@ -44,9 +44,10 @@ public:
         bounds_ = tree_.bounds(tree_.root(m));
     }
 
-    /// After vertices of the mesh have moved.
-    /// @param boxes scratch, one box an internal node, or a triangle
-    /// @throws input_error when the mesh is no longer valid or of as many triangles, and as `require_ieee_arithmetic`.
+    /// Must be called after vertices of the mesh have moved.
+    /// @param boxes scratch memory, one box per internal node or per triangle
+    /// @throws input_error if the mesh is invalid or its number of triangles has changed, and as
+    /// `require_ieee_arithmetic`
     void refit(std::vector<box>& boxes) {
         fit_.renew([&] {
             require_ieee_arithmetic();
@@ -59,20 +60,20 @@ public:
 
     [[nodiscard]] const mesh& triangles() const noexcept { return *mesh_; }
     [[nodiscard]] const Tree& tree() const noexcept { return tree_; }
-    /// Where every query begins.
-    /// @throws input_error when the last refit did not succeed.
+    /// The node at which every query begins.
+    /// @throws input_error if the last refit failed
     [[nodiscard]] typename Tree::cursor root() const {
         require_fit();
         return tree_.root(*mesh_);
     }
-    /// @throws input_error when the last refit did not succeed.
+    /// @throws input_error if the last refit failed
     void require_fit() const { fit_.require(); }
-    /// No other model has it but a copy.
+    /// Unique among models, except that copies share it.
     [[nodiscard]] std::uint64_t number() const noexcept { return number_; }
-    /// Whoever has the same holds the same boxes of the same mesh: each refit gives another one.
+    /// Models of equal state have the same boxes of the same mesh; each refit changes the state.
     [[nodiscard]] std::uint64_t state() const noexcept { return state_; }
-    /// Of the root.
-    /// @throws input_error when the last refit did not succeed.
+    /// The box of the root.
+    /// @throws input_error if the last refit failed
     [[nodiscard]] const box& bounds() const {
         require_fit();
         return bounds_;
@@ -81,7 +82,7 @@ public:
 private:
     [[nodiscard]] static std::uint64_t next_number() noexcept {
         static constinit std::uint64_t last = 0;
-        return __atomic_add_fetch(&last, 1, __ATOMIC_RELAXED);  // <atomic> beside a module of headers is refused
+        return __atomic_add_fetch(&last, 1, __ATOMIC_RELAXED);  // clang rejects <atomic> beside a module of headers
     }
 
     const mesh* mesh_;

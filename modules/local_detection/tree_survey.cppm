@@ -5,12 +5,12 @@ import :policies;
 
 export namespace aabb {
 
-/// What a walk over a whole tree finds.
+/// The result of validating a whole tree.
 struct tree_survey {
-    std::string fault;          ///< the first thing that is wrong; empty where the tree is right
-    std::size_t depth = 0;      ///< edges from the root to the deepest leaf
-    bool tight = true;          ///< every box is the smallest that holds its triangles
-    double area_inflation = 0;  ///< sum of the boxes' areas over that of the smallest ones, less 1
+    std::string fault;          ///< the first fault; empty if the tree is valid
+    std::size_t depth = 0;      ///< number of edges from the root to the deepest leaf
+    bool tight = true;          ///< every box is the smallest that contains its triangles
+    double area_inflation = 0;  ///< total area of the boxes relative to that of the tight ones, minus 1
 };
 
 namespace detail {
@@ -22,7 +22,7 @@ public:
 
     [[nodiscard]] tree_survey survey() {
         open_.push_back({tree_.root(mesh_), empty_box(), 0});
-        // Deep trees must not cost stack.
+        // An explicit stack, since trees may be too deep for recursion.
         while (!open_.empty() && result_.fault.empty()) {
             node& at = open_.back();
             if (tree_.is_leaf(at.cursor))
@@ -43,11 +43,11 @@ public:
     }
 
 private:
-    /// A node on the way from the root.
+    /// A node on the path from the root.
     struct node {
         typename Tree::cursor cursor;
-        box below;  // of the triangles seen under it
-        unsigned opened;
+        box below;        // box of the visited triangles below it
+        unsigned opened;  // number of visited children
     };
 
     void visit_leaf(node& leaf) {
@@ -93,7 +93,7 @@ private:
 
 }  // namespace detail
 
-/// Walks the tree of a mesh: every triangle in one leaf, every box around what is below it.
+/// Validates the tree of a mesh: each triangle is in exactly one leaf, and each box contains the triangles below it.
 template <TreePolicy Tree>
 [[nodiscard]] tree_survey survey_of(const Tree& tree, const mesh& m) {
     return detail::tree_surveyor<Tree>(tree, m).survey();

@@ -8,7 +8,7 @@ import :stage;
 
 export namespace aabb {
 
-/// Global search that may divide a scene, as any may that is chosen at run time (`global_stage::divide`).
+/// A broad phase that may divide objects, as any one chosen at run time may (`global_stage::divide`).
 template <class Global>
 concept DividingSearch = requires(Global& global, const mesh_scene& scene) {
     { global.divide(scene) } -> std::same_as<std::unique_ptr<scene_parts>>;
@@ -16,16 +16,16 @@ concept DividingSearch = requires(Global& global, const mesh_scene& scene) {
 
 static_assert(DividingSearch<global_stage>);
 
-/// Both stages together on a scene of moving meshes: global search proposes pairs of objects, local detection decides.
-/// Neither stage knows the other; the buffer of candidate pairs is all there is between them. Where global search asks
-/// for it (`DividingSearch`) both see parts of objects in place of whole ones; contacts are those of objects all the
-/// same. Of a search whose type says that it divides nothing, nothing is there for parts.
+/// Both stages on a scene of moving meshes: the broad phase proposes candidate pairs of objects, and the narrow phase
+/// decides on them. The stages are independent and only share the buffer of candidates. If the broad phase divides
+/// objects (`DividingSearch`), both stages see parts instead of objects, but contacts always name whole objects. For a
+/// broad phase whose type divides nothing, the code for parts is not compiled.
 template <class Global, class Local>
 class basic_pipeline {
     static constexpr bool may_divide = DividingSearch<Global>;
 
 public:
-    /// Takes the objects, all present, and builds the models of the scene. Scene and stages must outlive the pipeline.
+    /// Inserts all objects and builds the models of the scene. Scene and stages must outlive the pipeline.
     basic_pipeline(const mesh_scene& scene, Global& global, Local& local)
         : scene_(scene), global_(&global), local_(local) {
         if constexpr (may_divide) parts_ = global.divide(scene);
@@ -33,21 +33,22 @@ public:
         if (!parts_) world_.emplace(scene);
         for (std::uint32_t id = 0; id < pieces(); ++id) global.insert(id);
     }
-    /// Without global search every two objects are candidates; they get no boxes in the world, so may lie anywhere.
+    /// Without a broad phase all pairs of objects are candidates. Objects have no world boxes, so they may lie
+    /// anywhere.
     basic_pipeline(const mesh_scene& scene, Local& local)
         requires may_divide
         : scene_(scene), local_(local) {
         add_models();
     }
 
-    /// An object that was removed comes back, or one goes, from the next frame on; there must be global search.
-    /// @throws input_error where there is no such object, where it is present already, or is not.
+    /// Inserts a removed object again, or removes one, from the next frame on. Requires a broad phase.
+    /// @throws input_error if the object does not exist, is already present, or is not present
     void insert(std::uint32_t object) { change_pieces_of(object, true); }
     void remove(std::uint32_t object) { change_pieces_of(object, false); }
 
-    /// One frame, in three steps that can be timed apart. The first takes the poses, one an object, and fits the trees
-    /// of meshes that have deformed.
-    /// @throws input_error on a pose that is not rigid or takes an object beyond the range of float, by its number.
+    /// A frame has three steps that can be timed separately. The first takes one pose per object and refits the trees
+    /// of deformed meshes.
+    /// @throws input_error on a pose that is not rigid or moves an object beyond the range of float, with its number
     void update(std::span<const pose> poses) {
         frame_.begin();
         searched_ = false;
@@ -58,7 +59,7 @@ public:
         if (searches()) global_->update(boxes());
         frame_.taken();
     }
-    /// @throws input_error when the last update did not succeed, or there was none.
+    /// @throws input_error if the last update failed or there was none
     void search() {
         frame_.require_taken();
         searched_ = false;
@@ -73,7 +74,7 @@ public:
             take_every_two();
         searched_ = true;
     }
-    /// @throws input_error when the last search did not succeed, or there was none since the last update.
+    /// @throws input_error if the last search failed or there was none since the last update
     void detect() {
         contacts_.clear();
         require_searched();
@@ -83,25 +84,25 @@ public:
                 triangle_pairs_.clear();
                 local_.all_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b], triangle_pairs_);
                 if (parts_) parts_->name_triangles({a, b}, triangle_pairs_);
-                // Room for all at once: asking for it contact by contact takes longer than writing them.
+                // Resizing once is faster than `push_back`, whose capacity checks take longer than the writes.
                 const std::size_t before = contacts_.size();
                 contacts_.resize(before + triangle_pairs_.size());
                 contact* to = contacts_.data() + before;
                 const index_pair objects = candidates_[i];
-                for (const index_pair found : triangle_pairs_) *to++ = {objects.a, objects.b, found.a, found.b};
+                for (const auto [t, u] : triangle_pairs_) *to++ = {objects.a, objects.b, t, u};
             }
         });
     }
 
-    /// In place of `detect`: any one contact, how many there are.
-    /// @throws input_error as `detect`.
+    /// Alternatives to `detect`: some contact, and the number of contacts.
+    /// @throws input_error as `detect`
     [[nodiscard]] std::optional<contact> first_contact() {
         require_searched();
         for (std::size_t i = 0; i < candidates_.size(); ++i) {
             const auto [a, b] = models_of(i);
-            if (auto found = local_.first_pair(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b])) {
-                if (parts_) parts_->name_triangles({a, b}, {&*found, 1});
-                return contact{candidates_[i].a, candidates_[i].b, found->a, found->b};
+            if (auto pair = local_.first_pair(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b])) {
+                if (parts_) parts_->name_triangles({a, b}, {&*pair, 1});
+                return contact{candidates_[i].a, candidates_[i].b, pair->a, pair->b};
             }
         }
         return std::nullopt;
@@ -116,17 +117,17 @@ public:
         return count;
     }
 
-    /// In the world, by object; by piece where meshes are divided; empty without global search.
+    /// World boxes by object, or by piece if meshes are divided; empty without a broad phase.
     [[nodiscard]] std::span<const box> boxes() const noexcept {
         if (parts_) return parts_->boxes();
         return world_ ? world_->boxes() : std::span<const box>();
     }
-    /// Pairs of objects whose boxes overlap, in no particular order; where meshes are divided, one for each two pieces
-    /// of two objects whose boxes do.
+    /// Pairs of objects whose boxes overlap, in unspecified order; if meshes are divided, once per overlapping pair of
+    /// their pieces.
     [[nodiscard]] std::span<const index_pair> candidates() const noexcept { return candidates_; }
-    /// In no particular order.
+    /// In unspecified order.
     [[nodiscard]] std::span<const contact> contacts() const noexcept { return contacts_; }
-    /// Of local detection: the meshes, or what they are divided into.
+    /// Number of models in the narrow phase: the meshes, or their parts if they are divided.
     [[nodiscard]] std::uint32_t models() const noexcept {
         if (parts_) return parts_->models();
         return static_cast<std::uint32_t>(scene_.meshes.size());
@@ -135,12 +136,12 @@ public:
         return (world_ ? world_->bytes() : 0) + bytes_of(poses_, candidates_) + (parts_ ? bytes_of(parts_->found) : 0) +
                bytes_of(triangle_pairs_, contacts_);
     }
-    /// What parts take beside that.
+    /// Additional heap bytes for the parts of divided meshes.
     [[nodiscard]] std::size_t division_bytes() const noexcept { return parts_ ? parts_->bytes() : 0; }
 
 private:
     [[nodiscard]] bool searches() const noexcept { return !may_divide || global_ != nullptr; }
-    /// As global search sees them.
+    /// Number of objects or parts in the broad phase.
     [[nodiscard]] std::uint32_t pieces() const noexcept {
         return parts_ ? parts_->pieces() : static_cast<std::uint32_t>(scene_.mesh_of.size());
     }
@@ -156,7 +157,7 @@ private:
         return parts_ ? parts_->deforms(model) : scene_.deforms(model);
     }
 
-    /// All pieces of an object come or go, or none where one of them must not.
+    /// Inserts or removes all pieces of an object, or none if one of these operations fails.
     void change_pieces_of(std::uint32_t object, bool come) {
         const auto change = [&](std::uint32_t id, bool comes) { comes ? global_->insert(id) : global_->remove(id); };
         assert(searches());
@@ -175,7 +176,7 @@ private:
         }
     }
 
-    /// Refitting refuses a mesh of which no box could be made.
+    /// Refits deformed meshes, which also validates them.
     void follow_meshes() {
         if (parts_) parts_->follow();
         for (std::uint32_t m = 0; m < models(); ++m)
@@ -207,7 +208,7 @@ private:
     const mesh_scene& scene_;
     Global* global_ = nullptr;
     Local& local_;
-    // With global search that asks for it; with any other there are objects in the world.
+    // Set if the broad phase divides objects; otherwise `world_` contains the boxes of the objects.
     [[no_unique_address]] std::conditional_t<may_divide, std::unique_ptr<scene_parts>, no_scene_parts> parts_;
     std::optional<posed_boxes> world_;
     std::vector<pose> poses_;

@@ -6,46 +6,46 @@ import :searched_by;
 
 export namespace aabb {
 
-/// In place of local detection, where objects are boxes.
+/// Replaces the narrow phase if objects are boxes.
 struct boxes_only {};
 
-/// Collision detection composed at compile time: what it is not made of has no code and no memory in it.
+/// Collision detection composed at compile time: unused strategies take no code and no memory.
 /// `detector<global_search<S, P, W>>` finds overlapping boxes; `detector<global_search<S, P, W>,
-/// mesh_detection<B, T, R>>` finds intersecting triangles of moving meshes. A stage that counts its work is one with
-/// `work_counters` as its last argument; one that prepares its boxes is a `prepared_search`.
+/// mesh_detection<B, T, R>>` finds intersecting triangles of moving meshes. With `work_counters` as the last argument a
+/// stage counts its work; a `prepared_search` prepares its boxes.
 template <class Search, class Detection = boxes_only>
 class detector {
 public:
-    /// Builds the trees; every object is present.
-    /// @param mesh_of the mesh of each object, by its place in `meshes`
-    /// @throws input_error on an object of a mesh that is not there, and on a mesh that `require_valid` refuses.
+    /// Builds the trees; all objects are present.
+    /// @param mesh_of index in `meshes` of each object's mesh
+    /// @throws input_error on an invalid mesh index, and on a mesh that `require_valid` rejects
     detector(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of, Search search = Search(),
              Detection detection = Detection())
         : scene_(std::move(meshes), std::move(mesh_of)),
           search_(std::move(search)),
           detection_(std::move(detection)),
           pipeline_(scene_, search_, detection_) {}
-    // Its parts refer to each other.
+    // Not copyable, since its members refer to each other.
     detector(const detector&) = delete;
     detector& operator=(const detector&) = delete;
 
-    /// An object that was removed comes back, or one goes; frames have a pose for it all the same.
-    /// @throws input_error where there is no such object, where it is present already, or is not.
+    /// Inserts a removed object again, or removes one; frames contain poses of removed objects, too.
+    /// @throws input_error if the object does not exist, is already present, or is not present
     void insert(std::uint32_t object) { pipeline_.insert(object); }
     void remove(std::uint32_t object) { pipeline_.remove(object); }
 
-    /// A frame: every two triangles of two objects that intersect, each once, by objects a < b, in no particular order,
-    /// until the next frame. Nothing is allocated once the buffers have grown to the scene.
-    /// @param poses one an object, rigid (`require_rigid`), in the units of the meshes
-    /// @throws input_error on a pose that is not rigid or takes an object beyond the range of float, by its number, and
-    /// as `require_ieee_arithmetic`; the next frame may succeed.
+    /// Processes a frame: returns every pair of intersecting triangles of two objects once, by objects a < b, in
+    /// unspecified order, valid until the next frame. Nothing is allocated once the buffers have grown to the scene.
+    /// @param poses one rigid pose (`require_rigid`) per object, in the units of the meshes
+    /// @throws input_error on a pose that is not rigid or moves an object beyond the range of float, with its number,
+    /// and as `require_ieee_arithmetic`; the next frame may succeed
     [[nodiscard]] std::span<const contact> contacts(std::span<const pose> poses) {
         find_candidates(poses);
         pipeline_.detect();
         return pipeline_.contacts();
     }
-    /// The same frame for less: any one contact, or how many there are.
-    /// @throws input_error as `contacts`.
+    /// Cheaper queries of a frame: some contact, or the number of contacts.
+    /// @throws input_error as `contacts`
     [[nodiscard]] std::optional<contact> first_contact(std::span<const pose> poses) {
         find_candidates(poses);
         return pipeline_.first_contact();
@@ -54,12 +54,12 @@ public:
         find_candidates(poses);
         return pipeline_.count_contacts();
     }
-    /// Of the last frame: pairs of objects whose boxes overlap, a < b, in no particular order.
+    /// The pairs of objects a < b whose boxes overlap in the last frame, in unspecified order.
     [[nodiscard]] std::span<const index_pair> candidates() const noexcept { return pipeline_.candidates(); }
 
     [[nodiscard]] const Search& global() const noexcept { return search_; }
     [[nodiscard]] const Detection& local() const noexcept { return detection_; }
-    /// Held on the heap beside the meshes, by part of both stages; "buffers" are between them and of what is found.
+    /// Heap bytes without the meshes, by part of both stages; "buffers" hold candidates and contacts.
     [[nodiscard]] std::vector<part_bytes> bytes() const {
         std::vector<part_bytes> parts = bytes_by_part(search_);
         for (part_bytes& part : detection_.bytes()) parts.push_back(std::move(part));
@@ -79,26 +79,26 @@ private:
     basic_pipeline<Search, Detection> pipeline_;
 };
 
-/// Of boxes.
+/// The specialization for boxes.
 template <class Search>
 class detector<Search, boxes_only> {
 public:
     detector() = default;
     explicit detector(Search search) : search_(std::move(search)) {}
-    // As every detector: what strategies keep from frame to frame would be lost in the one that is moved from.
+    // Not movable, as any detector: a move would leave strategies without the state that they keep between frames.
     detector(const detector&) = delete;
     detector& operator=(const detector&) = delete;
 
-    /// An object comes (its id must not be present) or goes (its id must be); ids are places in the frames, and stay.
-    /// @throws input_error where it is present already, or is not.
+    /// Inserts or removes an object; its id is its stable index in the boxes of all frames.
+    /// @throws input_error if the object to insert is already present, or the object to remove is not
     void insert(std::uint32_t id) { search_.insert(id); }
     void remove(std::uint32_t id) { search_.remove(id); }
 
-    /// A frame: every two present objects whose boxes overlap, each once, a < b, in no particular order, until the next
-    /// frame. Nothing is allocated once the buffers have grown to the scene.
-    /// @param boxes by id, also of who is not present; closed, so that touching is overlapping
-    /// @throws input_error on a box that is not finite or inverted, where a present object has no box, where there are
-    /// boxes but nothing was ever inserted, and as `require_ieee_arithmetic`; the next frame may succeed.
+    /// Processes a frame: returns every pair of present objects whose boxes overlap once, a < b, in unspecified order,
+    /// valid until the next frame. Nothing is allocated once the buffers have grown to the scene.
+    /// @param boxes by id, including absent objects; closed, so that touching counts as overlapping
+    /// @throws input_error on a box that is not finite or inverted, if a present object has no box, if there are boxes
+    /// but no object was ever inserted, and as `require_ieee_arithmetic`; the next frame may succeed
     [[nodiscard]] std::span<const index_pair> pairs(std::span<const box> boxes) {
         search_.update(boxes);
         pairs_.clear();
@@ -107,7 +107,7 @@ public:
     }
 
     [[nodiscard]] const Search& global() const noexcept { return search_; }
-    /// Held on the heap, by part of the search; "buffers" are of what is found.
+    /// Heap bytes by part of the search; "buffers" hold the pairs.
     [[nodiscard]] std::vector<part_bytes> bytes() const {
         std::vector<part_bytes> parts = bytes_by_part(search_);
         parts.push_back({"buffers", bytes_of(pairs_)});
