@@ -1,5 +1,5 @@
-/// What everything else stands on: how input is refused, what of a half-made change stays, the bytes that things hold,
-/// and the arithmetic that answers need.
+/// The foundation of all other modules: rejection of invalid input, exception safety, memory accounting, threads, and
+/// the arithmetic that exact results require.
 export module aabb.base;
 
 import aabb.std;

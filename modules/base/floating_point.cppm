@@ -3,8 +3,8 @@ module;
 #error "aabblab needs the arithmetic of IEEE 754: compile without -ffast-math, -Ofast or -ffinite-math-only"
 #endif
 
-/// What answers may assume of floating-point arithmetic. Interfaces are compiled with the options of whoever imports
-/// them, so a file whose results hang on every rounding says itself that sums and products stay as they are written.
+/// The floating-point arithmetic on which exact results depend. Interfaces are compiled with the options of their
+/// importers, so each file whose results depend on every rounding disables reordering and contraction by pragmas.
 export module aabb.base:floating_point;
 
 import aabb.std;
@@ -14,12 +14,12 @@ import :frame_state;
 
 namespace aabb::detail {
 
-// Volatile: read when the program runs, or the compiler would compute in the arithmetic that it believes in.
+// Volatile, so that the checks run in the actual arithmetic instead of being folded by the compiler.
 inline const volatile double least_double = std::numeric_limits<double>::denorm_min();
 inline const volatile double near_one = 1 + 0x1p-30;
 inline const volatile double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// @throws input_error that says what is wrong with the arithmetic.
+/// @throws input_error with the fault of the arithmetic
 [[noreturn]] void refuse_arithmetic(bool keeps_denormals, bool rounds_to_nearest, bool knows_nan) {
     if (!keeps_denormals)
         throw input_error(
@@ -41,16 +41,16 @@ inline const volatile double not_a_number = std::numeric_limits<double>::quiet_N
 
 export namespace aabb {
 
-/// Every query asks this first; it costs some additions. Always inline: it asks for whoever compiles the query, since
-/// `-ffp-contract=fast` fuses whatever a file says, and no macro tells of it.
-/// @throws input_error where the thread flushes denormals to zero, as a library linked with -ffast-math makes it do, or
-/// does not round to nearest; where products are fused into sums, or NaN is taken for a number.
+/// Every query calls this first, at the cost of a few additions. Always inline, so that it checks the options of the
+/// importer: `-ffp-contract=fast` overrides the pragmas, and no macro reveals it.
+/// @throws input_error if the thread flushes denormals to zero, as a library linked with -ffast-math makes it do, or
+/// does not round to nearest; if products are fused into sums, or comparisons ignore NaN
 [[gnu::always_inline]] inline void require_ieee_arithmetic() {
     const double least = detail::least_double;
     const double root = detail::near_one;
     const bool keeps_denormals = least + least != 0;
     const bool rounds_to_nearest = 1 + least == 1 - least;
-    const bool fuses = root * root - (1 + 0x1p-29) != 0;  // the exact square has 2^-60 more
+    const bool fuses = root * root - (1 + 0x1p-29) != 0;  // the exact square is greater by 2^-60
     const double nan = detail::not_a_number;
     const bool knows_nan = nan != nan;
     if (!keeps_denormals || !rounds_to_nearest || !knows_nan || fuses) [[unlikely]]

@@ -7,26 +7,26 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Input that cannot be used: a malformed file, an unknown name, a NaN, a pose that is not rigid.
-/// `what()` is one sentence for the user; the program prints it and exits with status 2.
+/// Invalid input: a malformed file, an unknown name, a NaN, a pose that is not rigid. `what()` is one sentence for the
+/// user; the program prints it and exits with status 2.
 class input_error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// Whether a stage has a frame to search, and whether it can take another one. Stages keep lists and pairs from frame
-/// to frame, so one that an exception left half-changed (std::bad_alloc, mostly) would be wrong later on without a
-/// word: it is refused for good.
+/// Tracks whether a stage has a frame to search, and whether it can take another one. Stages keep lists and pairs
+/// between frames, so an exception in the middle of a change (mostly std::bad_alloc) would make later results silently
+/// wrong. The stage is therefore unusable from then on.
 class frame_state {
 public:
-    /// At the beginning of an update: whatever comes of it, the frame before is over.
-    /// @throws input_error when a change was left half-made.
+    /// Must be called at the beginning of an update; it invalidates the previous frame.
+    /// @throws input_error if an earlier change was interrupted by an exception
     void begin() {
         if (state_ == state::broken) throw_broken();
         state_ = state::none;
     }
 
-    /// Makes a change of what is kept; an exception that leaves it ends the use of the stage.
+    /// Runs a change of state that persists between frames; an exception in it makes the stage unusable.
     template <class Change>
     void change(Change make) {
         const state before = std::exchange(state_, state::broken);
@@ -34,14 +34,14 @@ public:
         state_ = before;
     }
 
-    /// At the end of an update.
+    /// Must be called at the end of an update.
     void taken() noexcept {
         assert(state_ == state::none);
         state_ = state::taken;
     }
 
-    /// Before a search.
-    /// @throws input_error when no update, or not the last one, came to its end.
+    /// Must be called before a search.
+    /// @throws input_error if the last update failed or there was none
     void require_taken() const {
         if (state_ == state::broken) throw_broken();
         if (state_ == state::none)
@@ -58,7 +58,7 @@ private:
     state state_ = state::none;
 };
 
-/// Calls `append`, which appends to a list; when it throws, what it had appended is taken back.
+/// Calls `append`, which appends to a list; if it throws, the list is restored.
 template <class T, class Allocator, class Append>
 void append_whole(std::vector<T, Allocator>& list, Append append) {
     const std::size_t before = list.size();

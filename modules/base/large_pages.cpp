@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t page = std::size_t{2} << 20;
 
 #if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
-// They watch what malloc gives.
+// Sanitizers only check memory from malloc.
 void* take(std::size_t bytes, std::size_t alignment) {
     void* memory = nullptr;
     return posix_memalign(&memory, alignment, bytes) == 0 ? memory : nullptr;
@@ -37,7 +37,7 @@ void* take_large(std::size_t bytes) {
     void* const memory = take(bytes, in_large_pages ? page : large_alignment);
     if (memory == nullptr) throw std::bad_alloc();
 #if defined(__linux__)
-    // Only asked for: where it is refused, pages are small and nothing else differs.
+    // Only a hint: if it fails, pages are small and nothing else changes.
     if (in_large_pages) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));
 #endif
     return memory;

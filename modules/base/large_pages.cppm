@@ -16,11 +16,10 @@ void give_large(void* memory) noexcept;
 
 export namespace aabb {
 
-/// Memory of TBB for arrays from 128 KiB on. Of up to 64 MiB it keeps what is given back for whoever asks next: the
-/// system clears each page before it gives it, and threads that ask at once wait for each other. TBB's
-/// `scalable_allocation_command` gives back what it keeps. Arrays from 4 MiB on stand in pages of 2 MiB where the
-/// system gives them to those who ask, as Linux does: what is written here and there over many megabytes misses the
-/// processor's table of pages less often. Smaller arrays get ordinary memory.
+/// An allocator that takes arrays from 128 KiB on from TBB, and smaller ones from the standard allocator. TBB caches
+/// freed blocks of up to 64 MiB, since the system clears each new page and serializes concurrent requests;
+/// `scalable_allocation_command` empties that cache. Arrays from 4 MiB on use huge pages of 2 MiB where the system
+/// offers them on request, as Linux does, so that scattered writes over many megabytes cause fewer TLB misses.
 template <class T>
 struct large_pages {
     using value_type = T;
@@ -39,7 +38,7 @@ struct large_pages {
         std::allocator<T>().deallocate(memory, n);
     }
 
-    /// Where nothing is said, nothing is written: what follows a `resize` fills it anyway.
+    /// Default-initializes elements without writing them, since the code after a `resize` fills them anyway.
     template <class U>
     static constexpr void construct(U* at) noexcept {
         static_assert(std::is_trivially_default_constructible_v<U>);
@@ -53,11 +52,11 @@ struct large_pages {
     friend constexpr bool operator==(const large_pages&, const large_pages&) noexcept { return true; }
 
 private:
-    /// A vector never asks for more than its `max_size`, so the product holds.
+    /// No overflow in `allocate`, since a vector never requests more than its `max_size`.
     static constexpr bool is_large(std::size_t n) noexcept { return n >= (std::size_t{128} << 10) / sizeof(T); }
 };
 
-/// A vector in such memory. `resize`, and a constructor that is told a size alone, leave its elements unwritten.
+/// A vector with this allocator. `resize`, and the constructor from a size, leave elements uninitialized.
 template <class T>
 using large_vector = std::vector<T, large_pages<T>>;
 

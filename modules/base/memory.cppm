@@ -4,7 +4,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Base of what is used by its address: it is not copied, and goes whole by whichever base it is held.
+/// The base of polymorphic interfaces: not copyable, with a virtual destructor.
 struct kept_in_place {
     kept_in_place() = default;
     kept_in_place(const kept_in_place&) = delete;
@@ -12,7 +12,7 @@ struct kept_in_place {
     virtual ~kept_in_place() = default;
 };
 
-/// Heap bytes a part holds; 0 for one that holds none and so need not say.
+/// Heap bytes of a part; 0 for a part without `bytes()`, which owns no heap memory.
 template <class Part>
 [[nodiscard]] constexpr std::size_t bytes_of(const Part& part) {
     if constexpr (requires { part.bytes(); })
@@ -21,18 +21,18 @@ template <class Part>
         return 0;
 }
 
-/// Heap bytes behind a vector.
+/// Heap bytes of a vector's own array.
 template <class T, class Allocator>
 [[nodiscard]] constexpr std::size_t bytes_of(const std::vector<T, Allocator>& v) {
     return v.capacity() * sizeof(T);
 }
 
-/// Of several such parts.
+/// The sum over several parts.
 template <class T, std::size_t N>
 [[nodiscard]] constexpr std::size_t bytes_of(const std::array<T, N>& parts) {
-    std::size_t all = 0;
-    for (const T& part : parts) all += bytes_of(part);
-    return all;
+    std::size_t total = 0;
+    for (const T& part : parts) total += bytes_of(part);
+    return total;
 }
 template <class... Parts>
     requires(sizeof...(Parts) > 1)
@@ -40,7 +40,7 @@ template <class... Parts>
     return (bytes_of(parts) + ...);
 }
 
-/// Empties a vector and gives its memory back.
+/// Empties a vector and frees its memory.
 template <class T, class Allocator>
 constexpr void release(std::vector<T, Allocator>& v) {
     std::vector<T, Allocator>().swap(v);

@@ -4,15 +4,15 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The shortest decimals that read back to the same number.
+/// The shortest decimal representation that parses to the same number.
 template <std::floating_point Real>
 [[nodiscard]] std::string shortest(Real number) {
     std::array<char, 32> text{};
     return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
-/// A sentence about numbers, which stand in it as their names in braces: "a list of {pairs} pairs". Programs read the
-/// numbers, `to_text` makes the sentence.
+/// A sentence with numbers, which are referred to by their names in braces: "a list of {pairs} pairs". Programs read
+/// the numbers; `to_text` formats the sentence.
 struct statement {
     struct number {
         std::string_view name;
@@ -21,29 +21,29 @@ struct statement {
         bool operator==(const number&) const = default;
     };
 
-    std::string_view text;  ///< that outlives it
+    std::string_view text;  ///< must outlive the statement
     std::array<number, 4> numbers{};
 
-    /// 0 where there is no such number.
+    /// The number of this name; 0 if there is none.
     [[nodiscard]] constexpr double operator[](std::string_view name) const {
-        for (const number& one : numbers)
-            if (one.name == name) return one.value;
+        for (const number& n : numbers)
+            if (n.name == name) return n.value;
         return 0;
     }
     bool operator==(const statement&) const = default;
 };
 
-[[nodiscard]] inline std::string to_text(const statement& told) {
-    // Counts in full, all else to the digits of a float.
+[[nodiscard]] inline std::string to_text(const statement& s) {
+    // Counts are written in full, other numbers with the precision of a float.
     constexpr double greatest_count = 0x1p63;
-    std::string text(told.text);
-    for (const statement::number& one : told.numbers) {
-        const std::size_t at = one.name.empty() ? std::string::npos : text.find("{" + std::string(one.name) + "}");
+    std::string text(s.text);
+    for (const auto& [name, value] : s.numbers) {
+        const std::size_t at = name.empty() ? std::string::npos : text.find("{" + std::string(name) + "}");
         if (at == std::string::npos) continue;
-        const bool is_count = one.value >= 0 && one.value < greatest_count && one.value == std::floor(one.value);
+        const bool is_count = value >= 0 && value < greatest_count && value == std::floor(value);
         text.replace(
-            at, one.name.size() + 2,
-            is_count ? std::to_string(static_cast<std::uint64_t>(one.value)) : shortest(static_cast<float>(one.value)));
+            at, name.size() + 2,
+            is_count ? std::to_string(static_cast<std::uint64_t>(value)) : shortest(static_cast<float>(value)));
     }
     return text;
 }

@@ -14,7 +14,7 @@ struct worker_threads::arena {
     tbb::task_arena of;
 };
 
-// TBB warns when it is asked for more threads than there are processors.
+// TBB warns if it is asked for more threads than processors, so the number is limited.
 worker_threads::worker_threads(unsigned count)
     : count_(count),
       arena_(count > 1 ? std::make_unique<arena>(
@@ -34,7 +34,7 @@ void worker_threads::share_out(std::size_t n, void (*call)(void* work, std::size
             },
             tbb::simple_partitioner());
     };
-    // Who waits for the rest of this work takes up no other, which might be long.
+    // Isolated, so that a thread that waits for the rest of this work does not start another task, which may be long.
     arena_->of.execute([&] { tbb::this_task_arena::isolate(share); });
 }
 

@@ -4,7 +4,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Threads that work for one object. They linger for a while after each call, and begin the next one at once.
+/// A thread pool of one object. Threads stay awake for a while after each call, so that the next one starts at once.
 class worker_threads {
 public:
     explicit worker_threads(unsigned count);
@@ -14,28 +14,28 @@ public:
 
     [[nodiscard]] unsigned count() const noexcept { return count_; }
 
-    /// Calls `work(i, worker)` for each i below `n`, in no particular order on more than one thread; no two calls with
-    /// one number of a worker, which is below `count`, at a time. An exception ends it, and leaves it.
+    /// Calls `work(i, worker)` for each i < `n`, in unspecified order on more than one thread. Calls with the same
+    /// worker, a number < `count`, never run concurrently. The first exception stops the loop and is rethrown.
     template <class Work>
     void for_each_index(std::size_t n, Work work) {
-        const auto call = [](void* made, std::size_t i, std::size_t worker) { (*static_cast<Work*>(made))(i, worker); };
+        const auto call = [](void* of, std::size_t i, std::size_t worker) { (*static_cast<Work*>(of))(i, worker); };
         if (count_ > 1 && n > 1) return share_out(n, call, &work);
         for (std::size_t i = 0; i < n; ++i) work(i, std::size_t{0});
     }
 
-    /// Calls `work(begin, end)` for ranges of `size` numbers below `n`, the last one shorter, like `for_each_index`.
+    /// Calls `work(begin, end)` for ranges of `size` indices < `n`, the last one shorter, like `for_each_index`.
     template <class Work>
     void for_each_range(std::size_t n, std::size_t size, Work work) {
         for_each_index((n + size - 1) / size,
                        [&](std::size_t r, std::size_t) { work(r * size, std::min(n, (r + 1) * size)); });
     }
 
-    /// Calls both, on two threads where a second is free. Either may call this again, or share out work that does not
-    /// ask for the worker. An exception leaves it; whether the other one is called then is not said.
+    /// Calls both functions, on two threads if a second one is idle. Either may call `both` again, or distribute work
+    /// that does not use the worker's number. An exception is rethrown; the other function may then not be called.
     template <class First, class Second>
     void both(First first, Second second) {
-        const auto call_first = [](void* made) { (*static_cast<First*>(made))(); };
-        const auto call_second = [](void* made) { (*static_cast<Second*>(made))(); };
+        const auto call_first = [](void* of) { (*static_cast<First*>(of))(); };
+        const auto call_second = [](void* of) { (*static_cast<Second*>(of))(); };
         if (count_ > 1) return share_both(call_first, &first, call_second, &second);
         first();
         second();
@@ -48,7 +48,7 @@ private:
     void share_both(void (*first)(void*), void* of_first, void (*second)(void*), void* of_second);
 
     unsigned count_;
-    std::unique_ptr<arena> arena_;  // none for one thread
+    std::unique_ptr<arena> arena_;  // null for one thread
 };
 
 }  // namespace aabb

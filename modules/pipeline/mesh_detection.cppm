@@ -5,7 +5,7 @@ import :stage;
 
 export namespace aabb {
 
-/// Local detection with the models it is asked about, numbered from 0; its functions are those of `local_stage`.
+/// The narrow phase with its models, numbered from 0. The functions are those of `local_stage`.
 template <TreeBuilder Build, TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class mesh_detection {
 public:
@@ -62,13 +62,13 @@ private:
     Tree tree_;  // without nodes
     std::deque<model<Tree>> models_;
     local_detection<Tree, Triangle, Counters> detection_;
-    std::vector<box> refitted_;  // scratch of the largest tree
+    std::vector<box> refitted_;  // scratch memory for refits
 };
 
 template <class Detection>
 class detected_by;
 
-/// Local detection whose type is known, as a stage.
+/// A statically composed narrow phase behind the interface of a stage.
 template <TreeBuilder Build, TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class detected_by<mesh_detection<Build, Tree, Triangle, Counters>> final : public local_stage {
 public:
@@ -104,7 +104,7 @@ public:
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent;
         if constexpr (requires { Tree::leaves_out; })
-            for (const absence what : Tree::leaves_out) absent.push_back({what});
+            for (const absence feature : Tree::leaves_out) absent.push_back({feature});
         if constexpr (!Counters::enabled) absent.push_back({absence::counters});
         return absent;
     }

@@ -15,7 +15,7 @@ export import :tested_by;
 
 export namespace aabb {
 
-/// Of stages that are chosen at run time.
+/// The pipeline of stages that are chosen at run time.
 using pipeline = basic_pipeline<global_stage, local_stage>;
 
 }  // namespace aabb

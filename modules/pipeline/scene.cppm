@@ -3,57 +3,58 @@ export module aabb.pipeline:scene;
 import aabb.geometry;
 import aabb.std;
 
-// What happens in a scene, frame by frame; a scene is played once, from frame 0 to the last, so only one frame is held.
-// Whoever searches its frames tells it what was found, so that what happens next may depend on it.
+// Scenes generate their frames one by one, from the first to the last, so only one frame is in memory. The run reports
+// the pairs or contacts of each frame back to the scene, so that the next frame may depend on them.
 
 export namespace aabb {
 
-/// Boxes that move. Object i of a frame is its box i.
+/// A scene of moving boxes; the index of a box is the id of its object.
 class box_scene : public kept_in_place {
 public:
     [[nodiscard]] virtual std::size_t objects() const = 0;
-    /// Frames played in all, the first one included.
+    /// Total number of frames, including the first one.
     [[nodiscard]] virtual std::size_t frames() const = 0;
-    /// The boxes of the next frame; false after the last.
-    /// @throws input_error on a recording that is cut off or holds a box that is not valid.
+    /// Generates the boxes of the next frame; returns false after the last.
+    /// @throws input_error on a recording that is truncated or contains an invalid box
     virtual bool next(std::vector<box>& boxes) = 0;
-    /// Which objects take part in the frame last played, by id, 0 or 1; empty where all do. The box of an absent object
-    /// is valid and overlaps no other, so that whoever ignores this finds the same pairs.
+    /// Whether each object is present in the current frame, by id, 0 or 1; empty if all are. The box of an absent
+    /// object is valid and overlaps no other, so that a search which ignores this finds the same pairs.
     [[nodiscard]] virtual std::span<const std::uint8_t> present() const { return {}; }
-    /// Takes the overlapping pairs of the frame last played, sorted, before it is asked for the next. A scene that is
-    /// played without a search hears of none.
+    /// Takes the sorted overlapping pairs of the current frame, before the next one is generated. Not called in runs
+    /// without a search.
     virtual void take_pairs(std::span<const index_pair> /*pairs*/) {}
 };
 
-/// Meshes, which mesh each object is, and the objects' poses frame by frame.
+/// A scene of meshes, whose objects are instances of them with a pose per frame.
 class mesh_scene : public kept_in_place {
 public:
     std::vector<mesh> meshes;
-    std::vector<std::uint32_t> mesh_of;  ///< by object
+    std::vector<std::uint32_t> mesh_of;  ///< index of each object's mesh
 
     [[nodiscard]] virtual std::size_t frames() const = 0;
-    /// The poses of the next frame, one an object; false after the last. Vertices of meshes that deform move too.
+    /// Generates the poses of the next frame, one per object, and moves the vertices of deforming meshes; returns false
+    /// after the last frame.
     virtual bool next(std::vector<pose>& poses) = 0;
-    /// Whether vertices of this mesh move from frame to frame, so that trees and boxes of it must be fitted anew.
+    /// Whether vertices of this mesh move between frames, so that its trees and boxes must be refitted.
     [[nodiscard]] virtual bool deforms(std::uint32_t /*mesh*/) const { return false; }
-    /// Whether what comes next hangs on contacts, so that a scene that hears of none is another.
+    /// Whether later frames depend on the contacts, so that a run without them has different frames.
     [[nodiscard]] virtual bool reacts() const { return false; }
-    /// Takes the contacts of the frame last played, sorted, before it is asked for the next: stepping in time begins
-    /// here. A scene that is played without a search hears of none.
+    /// Takes the sorted contacts of the current frame, before the next one is generated; a simulation steps here. Not
+    /// called in runs without a search.
     virtual void take_contacts(std::span<const contact> /*contacts*/) {}
 };
 
-/// Meshes and which one each object is, whose poses come from whoever has them: it plays no frames itself.
+/// Meshes and their objects without frames: the poses come from the user.
 class given_scene final : public mesh_scene {
 public:
-    /// @param objects the mesh of each object, by its place in `all`
-    /// @throws input_error on an object of a mesh that is not there.
-    given_scene(std::vector<mesh> all, std::vector<std::uint32_t> objects) {
+    /// @param objects index of each object's mesh
+    /// @throws input_error on an invalid mesh index
+    given_scene(std::vector<mesh> models, std::vector<std::uint32_t> objects) {
         for (std::size_t object = 0; object < objects.size(); ++object)
-            if (objects[object] >= all.size())
+            if (objects[object] >= models.size())
                 throw input_error("object " + std::to_string(object) + " is mesh " + std::to_string(objects[object]) +
-                                  ", but there are " + std::to_string(all.size()) + " meshes");
-        meshes = std::move(all);
+                                  ", but there are " + std::to_string(models.size()) + " meshes");
+        meshes = std::move(models);
         mesh_of = std::move(objects);
     }
 

@@ -6,7 +6,7 @@ import :stage;
 
 export namespace aabb {
 
-/// What a global search whose type is known holds on the heap, part by part; what it is made without is no part.
+/// Heap bytes of a statically composed broad phase by part, only for parts that it has.
 template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters>
 [[nodiscard]] std::vector<part_bytes> bytes_by_part(const global_search<Sort, Partition, Sweep, Counters>& search) {
     std::vector<part_bytes> parts{{"projections", search.projection_bytes()}, {"sort", search.sort_bytes()}};
@@ -18,7 +18,7 @@ template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, Counter
 template <class Search>
 class searched_by;
 
-/// A global search whose type is known, as a stage.
+/// A statically composed broad phase behind the interface of a stage.
 template <SortPolicy Sort, PartitionPolicy Partition, SweepPolicy Sweep, CounterPolicy Counters>
 class searched_by<global_search<Sort, Partition, Sweep, Counters>> final : public global_stage {
 public:
@@ -60,17 +60,17 @@ private:
     global_search<Sort, Partition, Sweep, Counters> search_;
 };
 
-/// What happens to boxes before a global search sees them. `before(search, counted)` returns a stage that hands them on
-/// to that search, changed, and its pairs back, or the search itself where nothing is to be done. Such a stage may
-/// divide the scene (`global_stage::divide`), so that boxes of parts come to it.
+/// A preparation of boxes before the broad phase. `before(search, counted)` returns a stage that passes changed boxes
+/// to the search and translates its pairs back, or the search itself if there is nothing to prepare. The stage may
+/// divide objects (`global_stage::divide`), and then receives the boxes of parts.
 template <class P>
 concept PreparePolicy =
     Strategy<P> && requires(const P policy, std::unique_ptr<global_stage> search, instrumentation counted) {
         { policy.before(std::move(search), counted) } -> std::same_as<std::unique_ptr<global_stage>>;
     };
 
-/// A global search behind a strategy that prepares its boxes: what `global_stage` says of its functions holds here. The
-/// two know each other as stages, at one call a frame.
+/// A broad phase behind a strategy that prepares its boxes, with the functions of `global_stage`. The two interact
+/// through the interface of a stage, by one virtual call per frame.
 template <PreparePolicy Prepare, class Search>
 class prepared_search {
 public:

@@ -8,7 +8,7 @@ import :stage;
 
 export namespace aabb {
 
-/// A triangle test whose type is known, as one alone.
+/// A statically composed triangle test behind the run-time interface.
 template <TrianglePolicy Triangle>
 class tested_by final : public triangle_test {
 public:
