@@ -2,7 +2,7 @@ module aabb.costs;
 
 namespace aabb {
 
-// Here, so that no program that imports the interface initialises it, and all that imports it, for nothing.
+// Defined here, so that importers of the interface do not initialize it.
 static cost_model in_force;
 
 const cost_model& machine_costs() noexcept {

@@ -1,46 +1,46 @@
-/// What elementary work takes on the machine at hand. Strategies hold ways to the same answer against each other by it;
-/// which way they take changes how long the answer takes, never the answer.
+/// The cost of elementary work on the current machine. Strategies compare alternative algorithms by these costs; the
+/// choice affects the time, but never the result.
 export module aabb.costs;
 
 import aabb.std;
 
 export namespace aabb {
 
-/// In nanoseconds, each for one piece of counted work. Only costs of one group are ever held against each other. The
-/// defaults are those of an AMD EPYC (Zen 5).
+/// Nanoseconds per unit of counted work. Only costs of the same group are compared with each other. The defaults were
+/// measured on an AMD EPYC (Zen 5).
 struct cost_model {
-    // A list of neighbours, against a search by columns in every frame (`list_plan`).
-    double search_box = 8;     ///< a box that is searched
-    double search_pair = 7.5;  ///< a pair of boxes that the search finds
-    double keep_box = 3;       ///< a box that is grown by a margin and kept with its list
-    double watch_box = 0.75;   ///< a box that is looked at for how far it has moved
-    double test_pair = 1.35;   ///< a pair of the list that is tested
+    // Verlet lists compared with a search by columns in every frame (`list_plan`).
+    double search_box = 8;     ///< searching a box
+    double search_pair = 7.5;  ///< finding a pair of boxes by a search
+    double keep_box = 3;       ///< growing a box by a margin and keeping it with its list
+    double watch_box = 0.75;   ///< measuring the displacement of a box
+    double test_pair = 1.35;   ///< testing a listed pair
 
     // Segments of an axial cut (`axial_cut`).
-    double list_entry = 6;   ///< an entry of a sorted list, brought up to a frame
+    double list_entry = 6;   ///< updating an entry of a sorted list to a frame
     double cut_entry = 8;    ///< an entry of a box in a subset (`work::subset_copies`)
     double cut_subset = 16;  ///< a subset (`work::subsets`)
     double cut_test = 1;     ///< a test of two boxes in a subset (`work::box_tests`)
 
     // Columns (`columns`).
-    double column_entry = 6;  ///< an entry of a box, brought to its place in a column (`work::subset_copies`)
+    double column_entry = 6;  ///< placing an entry of a box in a column (`work::subset_copies`)
     double column = 16;       ///< a column (`work::subsets`)
     double column_test = 1;   ///< a test of an entry against a vector of them (`work::box_tests` over `simd::width`)
 
-    // Trees, for few queries or for many (`aabb.selection`).
-    double median_triangle = 81;  ///< a triangle that a tree by `median` is built of
-    double sah_triangle = 115;    ///< one that a tree by `sah` is built of
-    double node_visit = 46;       ///< a pair of nodes that a query visits, with its triangles (`work::node_visits`)
+    // Trees for few or many queries (`aabb.selection`).
+    double median_triangle = 81;  ///< building a tree by `median`, per triangle
+    double sah_triangle = 115;    ///< building a tree by `sah`, per triangle
+    double node_visit = 46;       ///< visiting a pair of nodes in a query, with its triangles (`work::node_visits`)
 
     friend bool operator==(const cost_model&, const cost_model&) = default;
 };
 
-/// One of them, for whoever fits, keeps or shows all.
+/// Metadata of one cost, for code that fits, stores or prints all of them.
 struct cost_info {
     double cost_model::* value;
     std::string_view name;
     std::string_view unit;
-    std::string_view of;  ///< the work, in a few words
+    std::string_view of;  ///< a short description of the work
 };
 
 inline constexpr std::array<cost_info, 15> cost_infos{{
@@ -61,9 +61,9 @@ inline constexpr std::array<cost_info, 15> cost_infos{{
     {&cost_model::node_visit, "node_visit", "ns/visit", "visiting a pair of nodes"},
 }};
 
-/// The costs in force: the defaults, unless others were set. Strategies read them when they plan.
+/// The current costs, by default those of `cost_model`. Strategies read them when they plan.
 [[nodiscard]] const cost_model& machine_costs() noexcept;
-/// For the whole process: before anything is composed, and while nobody else reads them.
+/// Sets the costs of the process. Must be called before strategies are composed; not thread-safe.
 void set_machine_costs(const cost_model& costs) noexcept;
 
 }  // namespace aabb

@@ -4,18 +4,18 @@ import aabb.std;
 
 export namespace aabb {
 
-/// What the work of a run is counted in. The names are the CSV columns.
+/// The kinds of counted work. Their names are CSV columns.
 enum class work : std::uint8_t {
-    comparisons,         ///< key comparisons of the sort, and of bringing what it sorted back into the list
+    comparisons,         ///< key comparisons of the sort, and of merging the sorted entries into the list
     moves,               ///< entries of lists moved by the same
-    inversions,          ///< pairs in the wrong order in the lists handed to the sort
-    restarts,            ///< times that a sweep gave up following swaps and started anew
-    box_tests,           ///< overlap tests of two boxes, full or on the axes left
-    subsets,             ///< subsets that the partition made, empty ones too
+    inversions,          ///< inversions in the lists passed to the sort
+    restarts,            ///< frames in which a sweep stopped following swaps and restarted
+    box_tests,           ///< overlap tests of two boxes, on all or the remaining axes
+    subsets,             ///< subsets of the partition, including empty ones
     subset_copies,       ///< entries of boxes in subsets of the partition
-    segments_wanted,     ///< into which an axial cut was to cut its axes, summed over the axes
-    segments_got,        ///< and into which it did
-    pieces,              ///< that split_large made of boxes, split_mesh of meshes, of those that it split
+    segments_wanted,     ///< desired segments of an axial cut, summed over the axes
+    segments_got,        ///< actual segments of an axial cut, summed over the axes
+    pieces,              ///< pieces of the boxes divided by split_large, or of the meshes divided by split_mesh
     node_visits,         ///< pairs of tree nodes taken from the stack
     triangle_box_tests,  ///< tests of a leaf's triangle against a box
     triangle_tests,      ///< tests of two triangles
@@ -26,25 +26,25 @@ inline constexpr std::array<std::string_view, 13> work_names = {
     "subset_copies", "segments_wanted", "segments_got", "pieces",   "node_visits", "triangle_box_tests",
     "triangle_tests"};
 
-/// Counts nothing and costs nothing: what timing runs are made with.
+/// Counts nothing at no cost, for timed runs.
 struct no_counters {
     static constexpr bool enabled = false;
     static constexpr void add(work, std::uint64_t = 1) noexcept {}
     [[nodiscard]] constexpr std::uint64_t operator[](work) const noexcept { return 0; }
 };
 
-/// Counts every kind of work; for passes that are not timed.
+/// Counts all kinds of work, for runs that are not timed.
 struct work_counters {
     static constexpr bool enabled = true;
     std::array<std::uint64_t, work_names.size()> counts{};
 
-    constexpr void add(work what, std::uint64_t times = 1) noexcept { counts[static_cast<std::size_t>(what)] += times; }
-    [[nodiscard]] constexpr std::uint64_t operator[](work what) const noexcept {
-        return counts[static_cast<std::size_t>(what)];
+    constexpr void add(work kind, std::uint64_t times = 1) noexcept { counts[static_cast<std::size_t>(kind)] += times; }
+    [[nodiscard]] constexpr std::uint64_t operator[](work kind) const noexcept {
+        return counts[static_cast<std::size_t>(kind)];
     }
 };
 
-/// What was counted, whatever the policy.
+/// The counts of any counter policy.
 [[nodiscard]] constexpr work_counters work_of(const work_counters& counters) noexcept {
     return counters;
 }
@@ -52,12 +52,12 @@ struct work_counters {
     return {};
 }
 
-/// A policy that receives the work done.
+/// A policy that counts work or ignores it.
 template <class C>
-concept CounterPolicy = requires(C counters, work what) {
+concept CounterPolicy = requires(C counters, work kind) {
     { C::enabled } -> std::convertible_to<bool>;
-    counters.add(what);
-    counters.add(what, std::uint64_t{2});
+    counters.add(kind);
+    counters.add(kind, std::uint64_t{2});
 };
 
 }  // namespace aabb

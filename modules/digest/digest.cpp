@@ -33,7 +33,7 @@ digest& digest::operator=(digest&&) noexcept = default;
 
 void digest::add(std::uint32_t frame, std::span<const index_pair> sorted) {
     assert(std::ranges::is_sorted(sorted));
-    // Few at a time would be copied into a buffer of the hash first.
+    // Hashed in blocks, since short updates are copied into the buffer of the hash first.
     constexpr std::size_t at_once = 256;
     std::array<std::uint32_t, 3 * at_once> records{};
     while (!sorted.empty()) {

@@ -6,7 +6,7 @@ import aabb.std;
 export namespace aabb {
 
 /// XXH3-64 over the sorted records of a result, little-endian u32s: `frame, a, b` for pairs of boxes or triangles,
-/// `frame, a, b, triangle of a, triangle of b` for contacts. Equal for equal sets, whatever computed them.
+/// `frame, a, b, triangle of a, triangle of b` for contacts. Engines with equal results have equal digests.
 class digest {
 public:
     digest();
@@ -14,10 +14,10 @@ public:
     digest(digest&&) noexcept;
     digest& operator=(digest&&) noexcept;
 
-    /// @param sorted the pairs of one frame, ascending, each once; frames are added in order.
+    /// @param sorted the pairs of one frame, ascending and unique; frames must be added in order
     void add(std::uint32_t frame, std::span<const index_pair> sorted);
 
-    /// Any record of u32s.
+    /// Adds a record of any length.
     void add(std::span<const std::uint32_t> record);
 
     [[nodiscard]] std::uint64_t value() const;

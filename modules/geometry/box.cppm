@@ -18,18 +18,18 @@ struct box {
 };
 static_assert(sizeof(box) == 24);
 
-/// The box that holds nothing; neutral for `merged`.
+/// The empty box, the neutral element of `merged`.
 [[nodiscard]] constexpr box empty_box() noexcept {
     constexpr float huge = std::numeric_limits<float>::infinity();
     return {{huge, huge, huge}, {-huge, -huge, -huge}};
 }
 
-/// Boxes are closed: touching is overlapping. No short cuts, so that the loop around it vectorises.
+/// Boxes are closed, so touching counts as overlapping. Without early exits, so that loops over it vectorize.
 [[nodiscard]] constexpr bool overlaps(const box& a, const box& b) noexcept {
-    unsigned apart = 0;
+    unsigned disjoint = 0;
     for (int k = 0; k < 3; ++k)
-        apart |= static_cast<unsigned>(a.min[k] > b.max[k]) | static_cast<unsigned>(b.min[k] > a.max[k]);
-    return apart == 0;
+        disjoint |= static_cast<unsigned>(a.min[k] > b.max[k]) | static_cast<unsigned>(b.min[k] > a.max[k]);
+    return disjoint == 0;
 }
 
 [[nodiscard]] constexpr bool contains(const box& outer, const box& inner) noexcept {
@@ -51,7 +51,7 @@ static_assert(sizeof(box) == 24);
     return merged(merged(bounds_of(t[0]), bounds_of(t[1])), bounds_of(t[2]));
 }
 
-/// Of a box that holds something; in double, so that it cannot overflow.
+/// The surface area of a box that is not empty, in double to avoid overflow.
 [[nodiscard]] constexpr double surface_area(const box& b) noexcept {
     const double x = double{b.max[0]} - double{b.min[0]};
     const double y = double{b.max[1]} - double{b.min[1]};
@@ -59,7 +59,7 @@ static_assert(sizeof(box) == 24);
     return 2 * (x * y + y * z + z * x);
 }
 
-/// The axis on which the box is longest; the lowest of equals.
+/// The axis with the greatest extent; the lowest such axis.
 [[nodiscard]] constexpr int longest_axis(const box& b) noexcept {
     int longest = 0;
     for (int k = 1; k < 3; ++k)
@@ -77,16 +77,16 @@ static_assert(sizeof(box) == 24);
     return valid != 0;
 }
 
-/// Refuses boxes with NaN, infinity or min > max.
-/// @throws input_error that names the first such box by its index and says what is wrong with it.
+/// Rejects boxes with NaN, infinity or min > max.
+/// @throws input_error with the index of the first such box and its fault
 inline void require_valid(std::span<const box> boxes) {
     bool valid = true;
     for (const box& b : boxes) valid &= is_valid(b);
     if (valid) return;
     const auto bad = std::ranges::find_if_not(boxes, is_valid);
-    const std::string which = "box " + std::to_string(bad - boxes.begin());
-    if (!is_finite(bad->min) || !is_finite(bad->max)) throw input_error(which + " has a coordinate that is not finite");
-    throw input_error(which + " is inverted: its minimum is above its maximum");
+    const std::string name = "box " + std::to_string(bad - boxes.begin());
+    if (!is_finite(bad->min) || !is_finite(bad->max)) throw input_error(name + " has a coordinate that is not finite");
+    throw input_error(name + " is inverted: its minimum is above its maximum");
 }
 
 }  // namespace aabb

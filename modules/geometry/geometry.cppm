@@ -1,4 +1,4 @@
-/// Points, triangles, boxes, meshes and poses, and what is decided by their coordinates alone.
+/// Points, triangles, boxes, meshes and poses, and predicates on their coordinates.
 export module aabb.geometry;
 
 export import aabb.base;

@@ -4,7 +4,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Two indices, objects or triangles. As a pair of objects of one scene: a < b.
+/// A pair of objects or triangles. Pairs of objects of one scene have a < b.
 struct index_pair {
     std::uint32_t a;
     std::uint32_t b;
@@ -16,7 +16,7 @@ struct index_pair {
     return a < b ? index_pair{a, b} : index_pair{b, a};
 }
 
-/// Two triangles of two objects that intersect; a < b are objects.
+/// Two intersecting triangles of the objects a < b.
 struct contact {
     std::uint32_t a;
     std::uint32_t b;

@@ -5,7 +5,7 @@ import :box;
 
 export namespace aabb {
 
-/// Triangle mesh: V float vertices and T triangles of vertex indices, both in file order.
+/// A triangle mesh: float vertices, and triangles of three vertex indices, both in file order.
 struct mesh {
     std::vector<vec3f> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -22,16 +22,16 @@ struct mesh {
 
 /// The box of the vertices that triangles use.
 [[nodiscard]] inline box bounds_of(const mesh& m) noexcept {
-    box all = empty_box();
-    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) all = merged(all, bounds_of(m.triangle(t)));
-    return all;
+    box bounds = empty_box();
+    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) bounds = merged(bounds, bounds_of(m.triangle(t)));
+    return bounds;
 }
 
 /// Trees mark leaves with the top bit of an index, so a mesh has fewer than 2^31 triangles.
 inline constexpr std::size_t most_triangles = 0x7fffffff;
 
-/// Refuses a mesh that cannot be searched: no triangles or too many, an index out of range, a coordinate not finite.
-/// @throws input_error that names the first triangle or vertex at fault.
+/// Rejects a mesh with no triangles or too many, an index out of range, or a coordinate that is not finite.
+/// @throws input_error with the first faulty triangle or vertex
 inline void require_valid(const mesh& m) {
     if (m.triangles.empty()) throw input_error("the mesh has no triangles");
     if (m.triangles.size() > most_triangles) throw input_error("the mesh has more than 2^31 - 1 triangles");
@@ -45,8 +45,8 @@ inline void require_valid(const mesh& m) {
             throw input_error("vertex " + std::to_string(v) + " has a coordinate that is not finite");
 }
 
-/// Refuses a mesh that deforms and is no longer one of so many triangles.
-/// @throws input_error as `require_valid`, and with both numbers.
+/// Rejects a deformed mesh that is invalid or whose number of triangles has changed.
+/// @throws input_error as `require_valid`, or with both numbers
 inline void require_still_valid(const mesh& m, std::size_t triangles) {
     require_valid(m);
     if (m.triangles.size() != triangles)

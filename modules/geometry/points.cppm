@@ -7,7 +7,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Point or vector in 3-space; an aggregate, indexed by axis (0 = x, 1 = y, 2 = z).
+/// A point or vector in three dimensions; an aggregate, indexed by axis (0 = x, 1 = y, 2 = z).
 template <class Real>
 struct vec3 {
     Real at[3];
@@ -30,7 +30,7 @@ template <class Real>
     return {p[0] + q[0], p[1] + q[1], p[2] + q[2]};
 }
 
-/// Scalar product, summed left to right.
+/// The dot product, summed left to right.
 template <class Real>
 [[nodiscard]] constexpr Real dot(const vec3<Real>& p, const vec3<Real>& q) noexcept {
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
@@ -45,7 +45,7 @@ template <class Real>
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-/// A triangle by its three corners; may have zero area.
+/// A triangle by its three corners, which may be degenerate.
 template <class Real>
 struct triangle3 {
     vec3<Real> corner[3];
@@ -58,14 +58,14 @@ struct triangle3 {
 using triangle3f = triangle3<float>;
 using triangle3d = triangle3<double>;
 
-/// What a triangle test decides on.
+/// The input of a triangle test.
 template <class Real>
 struct triangle_pair {
     triangle3<Real> a;
     triangle3<Real> b;
 };
 
-/// Without rounding.
+/// Converts to double without rounding.
 [[nodiscard]] constexpr triangle3d in_double(const triangle3d& t) noexcept {
     return t;
 }
@@ -73,7 +73,7 @@ struct triangle_pair {
     return {{{t[0][0], t[0][1], t[0][2]}, {t[1][0], t[1][1], t[1][2]}, {t[2][0], t[2][1], t[2][2]}}};
 }
 
-/// Rounded to nearest, where there is anything to round.
+/// Converts to float, rounded to nearest.
 [[nodiscard]] constexpr triangle3f in_float(const triangle3f& t) noexcept {
     return t;
 }
@@ -84,7 +84,7 @@ struct triangle_pair {
     return {{rounded(t[0]), rounded(t[1]), rounded(t[2])}};
 }
 
-/// Three numbers, and a copy of the last one that does not count.
+/// A vector of three numbers; the fourth lane is a copy of the third and ignored.
 template <class Real>
 using lanes = Real __attribute__((vector_size(4 * sizeof(Real))));
 
@@ -93,13 +93,13 @@ template <class Real>
     return lanes<Real>{p[0], p[1], p[2], p[2]};
 }
 
-/// One coordinate of all corners.
+/// One coordinate of all three corners.
 template <class Real>
 [[nodiscard]] inline lanes<Real> corners_along(const triangle3<Real>& t, int axis) noexcept {
     return lanes<Real>{t[0][axis], t[1][axis], t[2][axis], t[2][axis]};
 }
 
-/// Of a comparison of lanes: bit i is set where it holds in lane i.
+/// Bit i is set if a comparison holds in lane i.
 template <class Mask>
 [[nodiscard]] inline unsigned bits(const Mask& mask) noexcept {
     using flags = bool __attribute__((ext_vector_type(4)));

@@ -8,7 +8,7 @@ import :box;
 
 export namespace aabb {
 
-/// Rigid motion x -> R x + t, in double. `rotation` is row-major.
+/// A rigid motion x -> R x + t in double; `rotation` is row-major.
 struct pose {
     std::array<double, 9> rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     vec3d translation = {0, 0, 0};
@@ -28,8 +28,8 @@ struct pose {
     return worst;
 }
 
-/// Refuses what is not a rigid motion: NaN, infinity, R not orthonormal within 1e-6, or a reflection.
-/// @throws input_error that says which.
+/// Rejects poses that are not rigid: NaN, infinity, R not orthonormal within 1e-6, or a reflection.
+/// @throws input_error with the fault
 inline void require_rigid(const pose& p) {
     for (const double r : p.rotation)
         if (!std::isfinite(r)) throw input_error("the pose is not rigid: its rotation has an entry that is not finite");
@@ -45,49 +45,50 @@ inline void require_rigid(const pose& p) {
     if (determinant < 0) throw input_error("the pose is not rigid: its rotation is a reflection (determinant -1)");
 }
 
-/// Motion x -> Σ columns[j] x[j] + shift of boxes, whose bounds have to be moved outward by the margin.
+/// A motion x -> Σ columns[j] x[j] + shift of boxes, whose bounds must be moved outward by the margin.
 struct box_motion {
     std::array<vec3d, 3> columns;
     vec3d shift;
     vec3d margin;
 };
 
-/// How far rounding takes the image of a vertex (`relative_pose::to_boxes`) at most: to float, along each axis, 2^-24
-/// of the magnitudes that the margin is 2^-48 of, or half the least denormal. Twice that covers rounding in double.
+/// A bound on the rounding error of a vertex's image (`relative_pose::to_boxes`): rounding to float contributes, on
+/// each axis, 2^-24 of the magnitudes of which the margin is 2^-48, or half the least denormal. Twice that also covers
+/// rounding in double.
 [[nodiscard]] inline double most_rounding(const box_motion& p) noexcept {
     return (p.margin[0] + p.margin[1] + p.margin[2]) * 0x1p25 + 0x1p-147;
 }
 
-/// How far apart the images of a vertex under two poses (`relative_pose::to_boxes`) can be, rounded as they are, and so
-/// those of any point of a triangle.
-/// @param reach box of the vertices
-[[nodiscard]] inline double most_apart(const box_motion& p, const box_motion& q, const box& reach) noexcept {
+/// A bound on the distance between the rounded images of a vertex under two poses (`relative_pose::to_boxes`), and so
+/// between those of any point of a triangle.
+/// @param bounds box of the vertices
+[[nodiscard]] inline double most_apart(const box_motion& p, const box_motion& q, const box& bounds) noexcept {
     const auto length = [](const vec3d& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
     vec3d between{};
-    double apart = most_rounding(p) + most_rounding(q);
+    double distance = most_rounding(p) + most_rounding(q);
     for (int k = 0; k < 3; ++k) between[k] = p.shift[k] - q.shift[k];
     for (int j = 0; j < 3; ++j) {
-        const double centre = (double{reach.min[j]} + double{reach.max[j]}) / 2;
+        const double centre = (double{bounds.min[j]} + double{bounds.max[j]}) / 2;
         vec3d turned{};
         for (int k = 0; k < 3; ++k) {
             turned[k] = p.columns[static_cast<std::size_t>(j)][k] - q.columns[static_cast<std::size_t>(j)][k];
             between[k] += turned[k] * centre;
         }
-        apart += length(turned) * (double{reach.max[j]} - double{reach.min[j]}) / 2;
+        distance += length(turned) * (double{bounds.max[j]} - double{bounds.min[j]}) / 2;
     }
-    return apart + length(between);
+    return distance + length(between);
 }
 
-/// Takes vertices and boxes of mesh B into the frame of mesh A.
+/// Transforms vertices and boxes of mesh B into the frame of mesh A.
 ///
-/// The image of a vertex defines the truth for every triangle test: z = Rᴬᵀ(Rᴮ x + (tᴮ - tᴬ)) in double, each sum left
-/// to right, no fused multiply-add, rounded to float once. The translations are subtracted first, so that two meshes
-/// moved together keep their vertices, bit by bit, however far: as long as tᴮ - tᴬ does not change.
+/// The image of a vertex defines the ground truth of every triangle test: z = Rᴬᵀ(Rᴮ x + (tᴮ - tᴬ)) in double, each
+/// sum left to right without fused multiply-add, rounded to float once. Translations are subtracted first, so that two
+/// meshes moved together keep their images bit for bit, as long as tᴮ - tᴬ does not change.
 class relative_pose {
 public:
-    /// @param reach box of the vertices of B in B's frame; only boxes and vertices inside it may be taken over.
-    /// @throws input_error when they may lie beyond the range of float in A's frame.
-    relative_pose(const pose& a, const pose& b, const box& reach) {
+    /// @param bounds box of the vertices of B in B's frame; only boxes and vertices inside it may be transformed
+    /// @throws input_error if their images may exceed the range of float
+    relative_pose(const pose& a, const pose& b, const box& bounds) {
         const vec3d& from = a.translation;
         const vec3d& to = b.translation;
         between_ = lanes{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
@@ -101,7 +102,7 @@ public:
         lanes world = magnitudes(between_);
         for (int j = 0; j < 3; ++j)
             world +=
-                magnitudes(columns_b_[j]) * std::max(std::abs(double{reach.min[j]}), std::abs(double{reach.max[j]}));
+                magnitudes(columns_b_[j]) * std::max(std::abs(double{bounds.min[j]}), std::abs(double{bounds.max[j]}));
         lanes magnitude{};
         for (int k = 0; k < 3; ++k) {
             magnitude += magnitudes(rows_a_[k]) * world[k];
@@ -110,21 +111,20 @@ public:
         }
         for (int j = 0; j < 3; ++j) absolute_turn_[j] = magnitudes(turn_[j]);
         for (int i = 0; i < 3; ++i) {
-            // The vertex formula rounds at most 7 times on the way of any term, the box formula at most 10 times (3 in
-            // the product matrix or shift, 5 to the centre or 6 to the radius with the margin in it, and their sum):
-            // each within γ_k = k u / (1 - k u) of the real value, times the sum of magnitudes; 32 u covers both and
-            // the growing.
+            // The vertex formula rounds any term at most 7 times, the box formula at most 10 times (3 in the product
+            // matrix or shift, 5 to the centre or 6 to the radius including the margin, and their sum): the errors are
+            // within γ_k = k u / (1 - k u) times the sum of magnitudes; 32 u covers both and the growing.
             margin_[i] = 32 * (std::numeric_limits<double>::epsilon() / 2) * magnitude[i] +
                          std::numeric_limits<double>::denorm_min();
         }
-        if (!is_valid((*this)(reach)))
+        if (!is_valid((*this)(bounds)))
             throw input_error("seen from one mesh, the other lies beyond the range of float");
     }
 
-    /// False where every image is known to be the vertex itself.
+    /// False if every image is known to equal the vertex.
     [[nodiscard]] inline bool moves() const noexcept { return moves_; }
 
-    /// Image of a vertex of B, as defined above.
+    /// The image of a vertex of B, as defined above.
     [[nodiscard]] inline vec3f operator()(const vec3f& x) const noexcept {
         const lanes turned =
             (columns_b_[0] * double{x[0]} + columns_b_[1] * double{x[1]}) + columns_b_[2] * double{x[2]};
@@ -136,7 +136,7 @@ public:
         return {(*this)(t[0]), (*this)(t[1]), (*this)(t[2])};
     }
 
-    /// Images of several vertices at once, by coordinate: equal to those of the vertices one by one.
+    /// The images of several vertices at once, by coordinate, equal to those of the single vertices.
     template <class Doubles>
     [[nodiscard]] inline std::array<Doubles, 3> images(const std::array<Doubles, 3>& x) const noexcept {
         std::array<Doubles, 3> world = x;
@@ -151,8 +151,8 @@ public:
         return seen;
     }
 
-    /// A box in A's frame that holds the image of every vertex in the box. The bounds are taken in double, grown by the
-    /// margin derived above and rounded to nearest like the images: rounding is monotone, so none can leave the box.
+    /// A box in A's frame that contains the image of every vertex in the box. The bounds are computed in double, grown
+    /// by the margin derived above and rounded to nearest like the images. Rounding is monotone, so no image leaves it.
     [[nodiscard]] inline box operator()(const box& b) const noexcept {
         lanes centre = shift_;
         lanes radius = margin_;
@@ -163,8 +163,8 @@ public:
         return {in_float(centre - radius), in_float(centre + radius)};
     }
 
-    /// How boxes are taken to A's frame, so that the image of every vertex stays inside when the bounds are rounded to
-    /// nearest, as it was.
+    /// The motion of boxes to A's frame. The image of every vertex stays inside if the bounds are rounded to nearest,
+    /// like the image.
     [[nodiscard]] inline box_motion to_boxes() const noexcept {
         box_motion there;
         for (int i = 0; i < 3; ++i) {
@@ -175,15 +175,15 @@ public:
         return there;
     }
 
-    /// How boxes of A are taken to B's frame: where such a box holds a point of the image of a triangle of B, its own
-    /// image holds that point of the triangle.
+    /// The motion of A's boxes to B's frame: if a box contains a point of the image of a triangle of B, the moved box
+    /// contains that point of the triangle.
     ///
-    /// The inverse is the adjugate over the determinant. It is within 16 u of the real one an entry, and what it is the
-    /// inverse of within 3 u; sums of six terms round five times, so 64 u of all magnitudes covers these. A point of an
-    /// image is further off by what rounding to float does: 2^-24 of the magnitudes that the margin is 2^-48 of, and
-    /// half the least denormal.
-    /// @param reach box of A
-    [[nodiscard]] inline box_motion back_to_boxes(const box& reach) const noexcept {
+    /// The inverse is the adjugate over the determinant. Each entry is within 16 u of the true inverse, and the
+    /// inverted matrix within 3 u; sums of six terms round five times, so 64 u of all magnitudes covers these errors.
+    /// Rounding the image to float adds 2^-24 of the magnitudes of which the margin is 2^-48, and half the least
+    /// denormal.
+    /// @param bounds box of A
+    [[nodiscard]] inline box_motion back_to_boxes(const box& bounds) const noexcept {
         const auto cross = [](const lanes& p, const lanes& q) {
             return vec3d{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
         };
@@ -193,7 +193,8 @@ public:
         double magnitude = 0;
         for (int i = 0; i < 3; ++i) {
             determinant += turn_[0][i] * rows[0][i];
-            magnitude += std::abs(shift_[i]) + std::max(std::abs(double{reach.min[i]}), std::abs(double{reach.max[i]}));
+            magnitude +=
+                std::abs(shift_[i]) + std::max(std::abs(double{bounds.min[i]}), std::abs(double{bounds.max[i]}));
         }
         box_motion back{};
         for (int i = 0; i < 3; ++i) {
@@ -209,14 +210,14 @@ public:
         return back;
     }
 
-    /// How much longer the box of a cube is in the other frame than the cube, on average of the axes: from 1 to 5/3.
+    /// The factor by which the box of a cube grows in the other frame, averaged over the axes: from 1 to 5/3.
     [[nodiscard]] inline double growth() const noexcept {
         const lanes sum = absolute_turn_[0] + absolute_turn_[1] + absolute_turn_[2];
         return (sum[0] + sum[1] + sum[2]) / 3;
     }
 
 private:
-    using lanes = double __attribute__((vector_size(32)));  // x, y, z and nothing
+    using lanes = double __attribute__((vector_size(32)));  // x, y, z and an unused lane
 
     [[nodiscard]] static inline lanes magnitudes(const lanes& v) noexcept { return __builtin_elementwise_abs(v); }
     [[nodiscard]] static inline vec3f in_float(const lanes& v) noexcept {
@@ -225,7 +226,7 @@ private:
 
     [[nodiscard]] static bool turns(const pose& p) noexcept { return p.rotation != pose{}.rotation; }
 
-    // What does not turn is not multiplied by 1 and 0, which would change nothing.
+    // Identity rotations are skipped, since multiplying by 1 and 0 would change nothing.
     bool turns_a_ = false;
     bool turns_b_ = false;
     bool moves_ = false;
@@ -238,13 +239,13 @@ private:
     lanes margin_{};
 };
 
-/// The box, in the world, of a mesh at a pose, for global search: grown so that two meshes whose triangles meet in A's
-/// frame (`relative_pose`) always have overlapping world boxes.
+/// The world box of a mesh at a pose, for the broad phase. It is grown so that two meshes whose triangles intersect in
+/// A's frame (`relative_pose`) always have overlapping world boxes.
 ///
-/// What separates the two frames, over a length L = A's reach plus B's diameter, each box bearing its own share of L:
-/// - the rounding of images to float, at most 2^-24 L, or half the least denormal, 2^-150;
-/// - the distance of a pose from a rotation, at most 1e-6 an entry of R Rᵀ (`require_rigid`), so 3e-6 L;
-/// - the rounding in double of images and of the sums below, at most 16 u (|t| + L), u = 2^-53.
+/// The two frames differ, over a length L = A's radius plus B's diameter of which each box contributes its own part, by
+/// - rounding of images to float, at most 2^-24 L, or half the least denormal, 2^-150;
+/// - the deviation of a pose from a rotation, at most 1e-6 per entry of R Rᵀ (`require_rigid`), so 3e-6 L;
+/// - rounding in double of images and of the sums below, at most 16 u (|t| + L), u = 2^-53.
 /// The box grows by 2^-18 L > (2^-24 + 3e-6) L, 2^-48 (|t| + L) and 2^-146.
 [[nodiscard]] inline box world_bounds(const box& local, const pose& p) noexcept {
     double length = 0;
