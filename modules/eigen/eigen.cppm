@@ -1,6 +1,6 @@
-/// Poses, points, boxes and meshes to and from Eigen. No type of Eigen's is named here: how those are aligned and how
-/// wide their vectors are follows from the options of whoever includes them, and a module file that held them would ask
-/// these options of everybody who imports it. So it asks for no alignment, and who does not use Eigen needs none.
+/// Conversions of poses, points, boxes and meshes to and from Eigen. The module names no Eigen types, since their
+/// alignment and vector width depend on the compiler options of the includer, which a module would impose on all
+/// importers. It therefore requires no alignment, and users without Eigen do not need the library.
 export module aabb.eigen;
 
 import aabb.geometry;
@@ -8,8 +8,8 @@ import aabb.std;
 
 export namespace aabb {
 
-/// A motion in three dimensions: Eigen::Isometry3d, Eigen::Affine3d, Eigen::AffineCompact3f, aligned or not. A
-/// projective one has a row that a pose has no place for.
+/// A motion in three dimensions: Eigen::Isometry3d, Eigen::Affine3d, Eigen::AffineCompact3f, aligned or not. Projective
+/// transforms are excluded, since a pose cannot represent their last row.
 template <class T>
 concept EigenTransform = requires(const T& from, T& to) {
     requires int { T::Dim }
@@ -20,7 +20,7 @@ concept EigenTransform = requires(const T& from, T& to) {
     to.translation()(0) = from.translation()(0);
 };
 
-/// @throws input_error where the transform is not rigid, as an affine one need not be (`require_rigid`).
+/// @throws input_error if the transform is not rigid (`require_rigid`), as an affine one may be
 template <EigenTransform T>
 [[nodiscard]] inline pose to_pose(const T& transform) {
     pose p;
@@ -45,8 +45,8 @@ template <EigenTransform T>
     return transform;
 }
 
-/// Numbers side by side in memory, `Rows` a column (or a row, where the matrix stores those one after the other):
-/// Eigen::Matrix3Xf, Eigen::Map of it, Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>.
+/// A matrix with direct access and `Rows` elements per column (or per row, if it is row-major): Eigen::Matrix3Xf,
+/// Eigen::Map of it, Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>.
 template <class Matrix, int Rows>
 concept EigenColumns = requires(const Matrix& m) {
     requires int { Matrix::IsRowMajor ? Matrix::ColsAtCompileTime : Matrix::RowsAtCompileTime }
@@ -67,7 +67,7 @@ float scalar_in(const box& of);
 template <class Element>
 using scalar_of = decltype(scalar_in(std::declval<const Element&>()));
 
-/// The columns of a matrix as the elements of our own that are laid out like them.
+/// Views the columns of a matrix as elements of the same memory layout.
 template <class Element, class Matrix>
 [[nodiscard]] inline std::span<const Element> elements_in(const Matrix& m) {
     static_assert(std::same_as<typename Matrix::Scalar, scalar_of<Element>>);
@@ -82,16 +82,17 @@ template <class Element, class Matrix>
 
 export namespace aabb {
 
-/// Eigen's view of points, triangles or boxes, one a column: `map_over<Eigen::Map<Eigen::Matrix3Xf>>(mesh.vertices)`. A
-/// box is its lower ends, then its upper ones.
-/// @tparam Map of a matrix of the elements' numbers, which is const where the elements are
+/// An Eigen view of points, triangles or boxes, one per column:
+/// `map_over<Eigen::Map<Eigen::Matrix3Xf>>(mesh.vertices)`. The column of a box contains its lower ends, then its upper
+/// ones.
+/// @tparam Map map of a matrix of the elements' numbers, const if the elements are const
 template <class Map, class Elements>
 [[nodiscard]] inline Map map_over(Elements& elements) {
     using element = typename Elements::value_type;
     using scalar = detail::scalar_of<element>;
     constexpr std::size_t rows = sizeof(element) / sizeof(scalar);
     static_assert(EigenColumns<Map, int{rows}> && std::same_as<typename Map::Scalar, scalar>);
-    // Found by its first member, which is an array of them or begins with one.
+    // The first member of an element is an array of numbers, or begins with one.
     auto* const numbers = reinterpret_cast<decltype(Map(nullptr, rows, 0).data())>(elements.data());
     const auto count = static_cast<std::ptrdiff_t>(elements.size());
     if constexpr (Map::IsRowMajor)
@@ -100,23 +101,23 @@ template <class Map, class Elements>
         return Map(numbers, rows, count);
 }
 
-/// The points in a user's matrix, which are not copied.
-/// @throws input_error where others stand between them.
+/// Views the points in a user's matrix without a copy.
+/// @throws input_error if they are not contiguous
 template <EigenColumns<3> Matrix>
 [[nodiscard]] inline std::span<const vec3<typename Matrix::Scalar>> points_in(const Matrix& m) {
     return detail::elements_in<vec3<typename Matrix::Scalar>>(m);
 }
 
-/// The boxes in a user's matrix of floats, lower ends above upper ones, which are not copied.
-/// @throws input_error where others stand between them.
+/// Views the boxes in a user's matrix of floats, lower ends above upper ones, without a copy.
+/// @throws input_error if they are not contiguous
 template <EigenColumns<6> Matrix>
 [[nodiscard]] inline std::span<const box> boxes_in(const Matrix& m) {
     return detail::elements_in<box>(m);
 }
 
-/// A mesh of the user's points and triangles, one a column, or one a row where there are three columns and not three
-/// rows. Coordinates are rounded to float; the corners of triangles are counted from 0.
-/// @throws input_error as `require_valid`.
+/// Copies a mesh from matrices of points and triangles, one per column, or one per row if there are three columns and
+/// not three rows. Coordinates are rounded to float; vertex indices start at 0.
+/// @throws input_error as `require_valid`
 template <class Vertices, class Triangles>
     requires requires(const Vertices& v, const Triangles& t) {
         { v(0, 0) } -> std::convertible_to<float>;
@@ -131,22 +132,22 @@ template <class Vertices, class Triangles>
         for (std::ptrdiff_t i = 0; i < count; ++i)
             take([&](std::ptrdiff_t k) { return in_columns ? m(k, i) : m(i, k); });
     };
-    mesh made;
+    mesh result;
     for_each(vertices, [&](auto at) {
-        made.vertices.push_back({static_cast<float>(at(0)), static_cast<float>(at(1)), static_cast<float>(at(2))});
+        result.vertices.push_back({static_cast<float>(at(0)), static_cast<float>(at(1)), static_cast<float>(at(2))});
     });
     for_each(triangles, [&](auto at) {
         const auto corner = [&](std::ptrdiff_t k) {
             const std::int64_t v = at(k);
             if (v < 0 || v > std::numeric_limits<std::uint32_t>::max())
-                throw input_error("triangle " + std::to_string(made.triangles.size()) + " uses vertex " +
+                throw input_error("triangle " + std::to_string(result.triangles.size()) + " uses vertex " +
                                   std::to_string(v) + ", which there cannot be");
             return static_cast<std::uint32_t>(v);
         };
-        made.triangles.push_back({corner(0), corner(1), corner(2)});
+        result.triangles.push_back({corner(0), corner(1), corner(2)});
     });
-    require_valid(made);
-    return made;
+    require_valid(result);
+    return result;
 }
 
 }  // namespace aabb

@@ -26,9 +26,9 @@ parts parts_of(double x) noexcept {
     return exponent == 0 ? parts{fraction, 0} : parts{fraction | std::uint64_t{1} << 52, exponent - 1};
 }
 
-/// Exact sum of up to 24 products of three finite doubles: one fixed-point number wide enough for all of them
-/// (Kulisch's accumulator), so that nothing overflows, underflows or is rounded. Digits of 32 bits stand in signed
-/// words of 64, whose upper halves collect carries until the sign is asked for.
+/// The exact sum of up to 24 products of three finite doubles: a fixed-point number wide enough for all of them
+/// (Kulisch's accumulator), so that nothing overflows, underflows or is rounded. Digits of 32 bits are stored in i64,
+/// whose upper halves collect carries until the sign is computed.
 class product_sum {
 public:
     void add(double x, double y, double z) noexcept {
@@ -88,7 +88,7 @@ public:
     }
 
     [[nodiscard]] scaled_double rounded() const noexcept {
-        // Digits of the magnitude, the lowest first.
+        // The digits of the magnitude, lowest first.
         std::array<std::uint32_t, words + 2> digits{};
         const bool negative = sign() < 0;
         std::int64_t carry = 0;
@@ -101,7 +101,7 @@ public:
         }
         while (count > first_ && digits[static_cast<std::size_t>(count) - 1] == 0) --count;
         if (count <= first_) return {0, 0};
-        // The leading digit and three more have 97 bits that count, which rounds once, in effect, to 53.
+        // The leading digit and three more have at least 97 significant bits, so that in effect one rounding yields 53.
         wide leading = 0;
         for (int k = 1; k <= 4; ++k)
             leading = leading << 32 | (count - k >= 0 ? digits[static_cast<std::size_t>(count - k)] : 0);
@@ -111,14 +111,14 @@ public:
     }
 
 private:
-    static constexpr int words = 3 * 2045 / 32 + 6;  // the greatest place of a mantissa is 2045
+    static constexpr int words = 3 * 2045 / 32 + 6;  // the greatest exponent of a mantissa is 2045
 
     std::array<std::int64_t, words> words_{};
     int first_ = words;
     int last_ = 0;
 };
 
-/// p - q, if no coordinate needs rounding (Knuth's two-sum; an overflow leaves a NaN behind and counts as rounded).
+/// Computes p - q and returns whether it is exact (Knuth's two-sum; an overflow yields NaN and counts as inexact).
 bool exact_difference(const vec3d& p, const vec3d& q, vec3d& difference) noexcept {
     bool exact = true;
     for (int k = 0; k < 3; ++k) {
@@ -135,9 +135,9 @@ __extension__ using wide_signed = __int128;
 
 using vec3i = vec3<std::int64_t>;
 
-/// Points in whole steps of a grid, whose step on each axis is the power of two of which the largest coordinate has at
-/// least 2^59 and less than 2^60. What lies between two steps is cut off, so that a coordinate is off by less than one
-/// step and a difference, below 2^61, by less than two.
+/// Quantizes points to a grid, whose step on each axis is the power of two such that the largest coordinate is at least
+/// 2^59 and less than 2^60 steps. Coordinates are truncated, so their error is less than one step, and that of a
+/// difference, which is below 2^61, less than two.
 class grid {
 public:
     explicit grid(std::initializer_list<const vec3d*> points) noexcept {
@@ -145,7 +145,7 @@ public:
             double largest = 0;
             for (const vec3d* p : points) largest = std::max(largest, std::abs((*p)[k]));
             const int exponent = std::max(static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52), 1) - 1023;
-            // In two factors, as their product may lie beyond the range of double.
+            // Two factors, since their product may exceed the range of double.
             const int up = 59 - exponent;
             first_[k] = power_of_two(up / 2);
             second_[k] = power_of_two(up - up / 2);
@@ -153,18 +153,18 @@ public:
     }
 
     [[nodiscard]] vec3i operator()(const vec3d& p) noexcept {
-        vec3i made;
+        vec3i steps_at;
         for (int k = 0; k < 3; ++k) {
             const double steps = p[k] * first_[k] * second_[k];
-            made[k] = static_cast<std::int64_t>(steps);
-            is_exact_ &= static_cast<double>(made[k]) == steps;
-            // What is too small for a double in steps has become zero.
+            steps_at[k] = static_cast<std::int64_t>(steps);
+            is_exact_ &= static_cast<double>(steps_at[k]) == steps;
+            // A coordinate that underflows to zero steps is inexact.
             is_exact_ &= steps != 0 || p[k] == 0;
         }
-        return made;
+        return steps_at;
     }
 
-    /// Nothing was cut off so far.
+    /// Whether no coordinate has been truncated so far.
     [[nodiscard]] bool is_exact() const noexcept { return is_exact_; }
 
 private:
@@ -184,10 +184,10 @@ vec3w wide_cross(const vec3i& p, const vec3i& q) noexcept {
     return {component(1, 2), component(2, 0), component(0, 1)};
 }
 
-/// The sign of normal · p in steps of a grid, of differences below 2^61 as `grid` gives them. Where something was cut
-/// off, six products of three differences that are off by less than 2 make less than 6 · 3 · 2 · 2^122 (1 + 2^-59) <
+/// The sign of normal · p in steps of a grid, for differences below 2^61 from `grid`. If coordinates were truncated,
+/// the error of six products of three differences with errors below 2 is less than 6 · 3 · 2 · 2^122 (1 + 2^-59) <
 /// 2^128.
-/// @returns whether it is certain
+/// @returns whether the sign is certain
 bool volume_sign(const vec3w& normal, const vec3i& p, bool is_exact, int& sign) noexcept {
     // The normal is below 2^123. Its upper and lower 64 bits times p below 2^61, three times, fit 128 bits.
     wide_signed high = 0;
@@ -202,8 +202,8 @@ bool volume_sign(const vec3w& normal, const vec3i& p, bool is_exact, int& sign) 
     return is_exact || high >= least || high <= -least;
 }
 
-/// The sign of the component of p × q between the axes x and y, likewise: two products of two are off by less than
-/// 2 · 2 · 2 · 2^61 (1 + 2^-60) < 2^65.
+/// Likewise, the sign of the component of p × q between the axes x and y: the error of two products of two differences
+/// is less than 2 · 2 · 2 · 2^61 (1 + 2^-60) < 2^65.
 bool area_sign(const vec3i& p, const vec3i& q, int x, int y, bool is_exact, int& sign) noexcept {
     const wide_signed area = wide_signed{p[x]} * q[y] - wide_signed{p[y]} * q[x];
     sign = static_cast<int>(area > 0) - static_cast<int>(area < 0);
@@ -279,21 +279,21 @@ bool are_on_lattice(const triangle3d& s, const triangle3d& t, const vec3d& exten
     vec3d rounder{};
     for (int k = 0; k < 3; ++k) {
         if (extent[k] != 0 && !(extent[k] >= 0x1p-200 && extent[k] <= 0x1p200)) return false;
-        // The extent is at least 2^15 units, and less than 2^16. Between 2^52 units and twice as many a double has no
-        // digit below one: what is below 2^50 units is rounded to units where one and a half of that are added.
+        // The extent is at least 2^15 units and less than 2^16. From 2^52 to 2^53 units the last digit of a double is
+        // one unit, so adding 1.5 · 2^52 units rounds a coordinate below 2^50 units to whole units.
         const std::uint64_t exponent = extent[k] == 0 ? 1023 : std::bit_cast<std::uint64_t>(extent[k]) >> 52;
         rounder[k] = 1.5 * std::bit_cast<double>((exponent + 52 - 15) << 52);
     }
     const lanes<double> round = coordinates(rounder);
     const lanes<double> largest = round / 8;
     const auto is_flat = coordinates(extent) == 0;
-    auto all = round == round;
+    auto on_lattice = round == round;
     for (const triangle3d* of : {&s, &t})
         for (int i = 0; i < 3; ++i) {
             const lanes<double> p = coordinates((*of)[i]);
-            all &= is_flat | (((p + round) - round == p) & (p <= largest) & (p >= -largest));
+            on_lattice &= is_flat | (((p + round) - round == p) & (p <= largest) & (p >= -largest));
         }
-    return bits(all) == 7;
+    return bits(on_lattice) == 7;
 }
 
 scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {

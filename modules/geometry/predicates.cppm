@@ -1,5 +1,5 @@
-/// Signs of orientations of points, exact for any finite doubles: −0, denormals, the largest and the smallest together;
-/// in the arithmetic that `require_ieee_arithmetic` accepts.
+/// Exact orientation predicates for all finite doubles, including −0, denormals and mixed magnitudes, in the arithmetic
+/// that `require_ieee_arithmetic` accepts.
 export module aabb.geometry:predicates;
 
 import aabb.std;
@@ -10,7 +10,7 @@ import :points;
 
 export namespace aabb {
 
-/// On which side of a plane the corners of a triangle lie: a bit each, bit i for corner i.
+/// The sides of a plane on which the corners of a triangle lie; bit i stands for corner i.
 struct corner_sides {
     unsigned above = 0;  ///< positive
     unsigned below = 0;  ///< negative
@@ -32,63 +32,63 @@ struct corner_sides {
     }
 };
 
-/// Sign (-1, 0, 1) of det(b - a, c - a, d - a): the side of the plane through a, b and c on which d lies. Zero when the
-/// four lie in one plane. Slow; `orientations` asks it when rounded arithmetic cannot tell.
+/// The sign (-1, 0, 1) of det(b - a, c - a, d - a): the side of the plane through a, b and c on which d lies, 0 for
+/// coplanar points. Slow; `orientations` falls back to it if rounded arithmetic cannot decide.
 [[nodiscard]] int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept;
 
-/// The sides of the plane of `t` on which the corners of `s` lie, each as by `exact_side`.
+/// The sides of the plane of `t` on which the corners of `s` lie, as by `exact_side`.
 [[nodiscard]] corner_sides exact_sides(const triangle3d& s, const triangle3d& t) noexcept;
 
-/// Sign of the component `axis` of (b - a) × (c - a): the way that a, b, c turn when seen along that axis.
+/// The sign of the component `axis` of (b - a) × (c - a): the orientation of a, b, c projected along that axis.
 [[nodiscard]] int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept;
 
-/// Whether all coordinates are multiples of a unit on their axis of which the extent has less than 2^16. False for
-/// extents whose products would leave the range of double, and where coordinates are too large to tell.
+/// Whether all coordinates are multiples of a unit on their axis such that the extent is less than 2^16 units. False
+/// for extents whose products would leave the range of double, and for coordinates that are too large to decide.
 [[nodiscard]] bool are_on_lattice(const triangle3d& s, const triangle3d& t, const vec3d& extent) noexcept;
 
-/// A number whose exponent may lie beyond that of a double: mantissa 2^exponent, |mantissa| in [1/2, 1), or both 0.
+/// A number whose exponent may exceed that of a double: mantissa 2^exponent, |mantissa| in [1/2, 1), or both 0.
 struct scaled_double {
     double mantissa;
     int exponent;
 };
 
-/// The determinant of `exact_side`, and the component of `exact_turn`, within 1.001 · 2^-53 of their value.
+/// The determinant of `exact_side` and the component of `exact_turn`, within 1.001 · 2^-53 of their value.
 [[nodiscard]] scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept;
 [[nodiscard]] scaled_double exact_area(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept;
 
-/// The same signs, fast, for the corners of two triangles: computed in double, and again exactly where the result lies
-/// within its own rounding error. The bound of that error is one number for all corners (a semi-static filter, Meyer
-/// and Pion, "FPG: a code generator for fast and certified geometric predicates", 2008).
+/// Filtered predicates for the corners of two triangles: computed in double, and exactly only if the result lies within
+/// its rounding error. The error bound is one number for all corners (a semi-static filter, Meyer and Pion, "FPG: a
+/// code generator for fast and certified geometric predicates", 2008).
 ///
 /// Bounds, with u = 2^-53 and E the extent of the corners' box on an axis. A difference of coordinates is at most E and
-/// carries one rounding, a factor (1 + δ) with |δ| <= u, even where the coordinates were floats.
-/// - Turn, two terms: each carries the roundings of two differences, a product and the last subtraction. The error is
-///   at most 2 ((1 + u)^4 - 1) E E, below 8.1 u E E.
+/// has one rounding, a factor (1 + δ) with |δ| <= u, even if the coordinates were floats.
+/// - Turn, two terms: each has the roundings of two differences, a product and the last subtraction. The error is at
+///   most 2 ((1 + u)^4 - 1) E E, below 8.1 u E E.
 /// - Side, six terms: four roundings as above; one for the third difference, one for the product with it, at most two
 ///   for the sum of three: 6 ((1 + u)^8 - 1) E E E, below 48.1 u E E E.
 /// E itself and the products of the bound are rounded at most six times: less than 0.9 u more. Extents between 2^-200
-/// and 2^200 keep overflow away, and what underflow can add, less than 2^-870, is far below u E E E >= 2^-653: one more
-/// u. Other extents make the bound infinite or NaN, so that everything is computed exactly; floats never get there. An
-/// extent of zero makes the bound zero, and the computed zero is exact.
+/// and 2^200 cannot overflow, and the contribution of underflow, less than 2^-870, is far below u E E E >= 2^-653: one
+/// more u. Other extents make the bound infinite or NaN, so that everything is computed exactly; floats never have such
+/// extents. An extent of zero makes the bound zero, and the computed zero is exact.
 ///
-/// Where that leaves a sign open, all coordinates may be multiples of a unit on their axis of which E has less than
-/// 2^16, as points of a lattice are. Then a difference is a whole number below 2^16, a component of the normal one
-/// below 2^33, and what is added up to a volume stays below 3 · 2^49: nothing was rounded, and the bound is zero.
+/// If the filter fails, all coordinates may lie on a lattice: multiples of a unit on their axis such that E is less
+/// than 2^16 units. Then differences are integers below 2^16, components of the normal below 2^33, and the sums of a
+/// volume below 3 · 2^49, so nothing was rounded and the bound is zero.
 class orientations {
 public:
-    /// All points asked for are corners of `s` or `t`, which outlive this and lie in the box from `low` to `high`.
+    /// All queried points must be corners of `s` or `t`, which outlive this object and lie in the box `low` to `high`.
     inline orientations(const triangle3d& s, const triangle3d& t, const lanes<double>& low,
                         const lanes<double>& high) noexcept
         : s_(s), t_(t) {
-        const lanes<double> given = high - low;
-        const auto in_range = (given == 0) | ((given >= 0x1p-200) & (given <= 0x1p200));
-        const lanes<double> extent = in_range ? given : lanes<double>{} + std::numeric_limits<double>::infinity();
+        const lanes<double> width = high - low;
+        const auto in_range = (width == 0) | ((width >= 0x1p-200) & (width <= 0x1p200));
+        const lanes<double> extent = in_range ? width : lanes<double>{} + std::numeric_limits<double>::infinity();
         extent_ = {extent[0], extent[1], extent[2]};
         side_error_ = 50 * unit * extent[0] * extent[1] * extent[2];
     }
 
-    /// The sides of the other's plane on which each triangle's corners lie. Some stay open where the rest proves that
-    /// the triangles are apart.
+    /// The sides of the other's plane on which each triangle's corners lie. Some may stay undecided if the others prove
+    /// that the triangles are disjoint.
     /// @returns whether one triangle lies strictly on one side of the other's plane
     [[nodiscard]] inline bool part(corner_sides& s_to_t, corner_sides& t_to_s) noexcept {
         const lanes<double> of_s = volumes(s_, t_);
@@ -118,8 +118,8 @@ public:
         return on_lattice() ? certain_sign(computed, 0) : exact_side(a, b, c, d);
     }
 
-    /// side(s0, s1, t0, t1) <= 0 and side(s0, s2, t0, t2) >= 0. Both are computed at once: which of them decides cannot
-    /// be predicted.
+    /// Whether side(s0, s1, t0, t1) <= 0 and side(s0, s2, t0, t2) >= 0. Both are always computed, since a branch would
+    /// be hard to predict.
     [[nodiscard]] inline bool in_order(const vec3d& s0, const vec3d& s1, const vec3d& s2, const vec3d& t0,
                                        const vec3d& t1, const vec3d& t2) noexcept {
         const int first = certain_sign(volume(s0, s1, t0, t1), side_error_);
@@ -140,7 +140,7 @@ public:
         return on_lattice() ? certain_sign(computed, 0) : exact_turn(a, b, c, axis);
     }
 
-    /// Do a, b and each corner of `t` turn in one way, which is not `own`, seen along that axis?
+    /// Whether a, b and each corner of `t` have the same orientation along that axis, and one that differs from `own`.
     [[nodiscard]] inline bool beyond(const vec3d& a, const vec3d& b, int own, const triangle3d& t, int axis) noexcept {
         const int x = (axis + 1) % 3;
         const int y = (axis + 2) % 3;
@@ -162,7 +162,7 @@ public:
 private:
     static constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
-    /// Zero where the error may be larger. Without branches: signs cannot be predicted.
+    /// Zero if the error may exceed the value. Branch-free, since signs are hard to predict.
     [[nodiscard]] static inline int certain_sign(double computed, double error) noexcept {
         return static_cast<int>(computed > error) - static_cast<int>(computed < -error);
     }
@@ -174,7 +174,7 @@ private:
         return dot(cross(b - a, c - a), d - a);
     }
 
-    /// Of the corners of `s` over the plane of `t`.
+    /// The volumes of the corners of `s` over the plane of `t`.
     [[nodiscard]] static inline lanes<double> volumes(const triangle3d& s, const triangle3d& t) noexcept {
         const vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
         const auto along = [&](int k) { return normal[k] * (corners_along(s, k) - t[0][k]); };
@@ -185,7 +185,7 @@ private:
         return is_lattice_ ? 0 : 10 * unit * extent_[x] * extent_[y];
     }
 
-    /// Asked where the filter has failed, and answered once.
+    /// Evaluated lazily if the filter fails, and only once.
     [[nodiscard]] inline bool on_lattice() noexcept {
         if (is_lattice_known_) return is_lattice_;
         is_lattice_known_ = true;

@@ -8,15 +8,15 @@ import :strategy_choice;
 
 export namespace aabb {
 
-/// A parameter as `aabblab list` shows it.
+/// A parameter as shown by `aabblab list`.
 struct parameter_info {
     std::string name;
     parameter_values values;
-    std::string fallback;  ///< the default; empty where there is none and the parameter must be set
+    std::string fallback;  ///< the default; empty if the parameter must be set
     std::string help;
 };
 
-/// Calls `take` with each parameter of a strategy or a scene, in the order in which it declares them.
+/// Calls `take` with each parameter of a strategy or a scene, in the order of their declaration.
 template <Configurable S, class Take>
 constexpr void for_each_parameter(const Take& take) {
     if constexpr (!std::same_as<config_of<S>, no_config>)
@@ -32,8 +32,8 @@ template <Configurable S>
     return infos;
 }
 
-/// The configuration that the settings describe.
-/// @throws input_error on an unknown parameter, a value that is not one, or one without a default that is not set.
+/// The configuration described by settings.
+/// @throws input_error on an unknown parameter, an invalid value, or a missing parameter without a default
 template <Configurable S>
 [[nodiscard]] config_of<S> configured(std::span<const setting> settings) {
     config_of<S> config{};

@@ -4,7 +4,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Edit distance (insert, delete, replace, swap of neighbours count 1 each).
+/// The edit distance with transpositions (Damerau 1964): insert, delete, replace, and swap of neighbours cost 1 each.
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) above[j] = j;
@@ -21,9 +21,9 @@ export namespace aabb {
     return above[b.size()];
 }
 
-/// The known name closest to an unknown one, the first of equals; empty where none is near: where more than a third of
-/// the letters of the longer one differ. A name that holds the unknown one whole ("grid" in "uniform_grid") is as near
-/// as a single slip, and so is one that makes up half of it.
+/// The known name closest to an unknown one, the first of equals; empty if in all of them more than a third of the
+/// letters of the longer name differ. A name that contains the unknown one ("grid" in "uniform_grid") counts as one
+/// edit, and so does one contained in it with at least half of its length.
 [[nodiscard]] inline std::string nearest_name(std::string_view unknown, std::span<const std::string> known) {
     std::string_view nearest;
     std::size_t least = std::string_view::npos;
@@ -41,17 +41,17 @@ export namespace aabb {
     return std::string(nearest);
 }
 
-/// The sentence for an unknown name: what it was meant to be, and which name is nearest, or, where none is, all of
-/// them, or where they are listed if they do not fit into a line.
-/// @param listing the command that lists them, where one does
+/// The error message for an unknown name, with the nearest name; if none is near, with all names, or with the command
+/// that lists them if they do not fit into a line.
+/// @param listing the command that lists the names, if there is one
 [[nodiscard]] inline std::string unknown_name(std::string_view what, std::string_view name,
                                               std::span<const std::string> known, std::string_view listing = {}) {
     std::string text = "unknown " + std::string(what) + " '" + std::string(name) + "'";
     if (const std::string nearest = nearest_name(name, known); !nearest.empty())
         return text + "; did you mean '" + nearest + "'?";
-    std::string all;
-    for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
-    if (!all.empty() && all.size() <= 120) return text + "; expected one of " + all;
+    std::string names;
+    for (const std::string& candidate : known) names += (names.empty() ? "" : ", ") + candidate;
+    if (!names.empty() && names.size() <= 120) return text + "; expected one of " + names;
     return listing.empty() ? text : text + "; see " + std::string(listing);
 }
 

@@ -4,7 +4,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// What a stage may do without.
+/// A feature that a stage may lack.
 enum class absence : std::uint8_t {
     partition,
     sort,
@@ -27,20 +27,20 @@ inline constexpr std::array absence_texts = std::to_array<std::string_view>(
      "no indices of nodes", "no work counters"});
 static_assert(absence_texts.size() == static_cast<std::size_t>(absence::counters) + 1);
 
-[[nodiscard]] inline std::string to_text(absence what) {
-    return std::string(absence_texts[static_cast<std::size_t>(what)]);
+[[nodiscard]] inline std::string to_text(absence feature) {
+    return std::string(absence_texts[static_cast<std::size_t>(feature)]);
 }
 
-/// What a stage does without, and why.
+/// A feature that a stage lacks, and the reason.
 struct omission {
     absence what;
-    std::string_view why{};  ///< that outlives it; empty where it is how the strategy is made
+    std::string_view why{};  ///< must outlive this object; empty if the strategy never has the feature
 
     bool operator==(const omission&) const = default;
 };
 /// "no sort: so few boxes are tested each against each"
-[[nodiscard]] inline std::string to_text(const omission& one) {
-    return to_text(one.what) + (one.why.empty() ? "" : ": ") + std::string(one.why);
+[[nodiscard]] inline std::string to_text(const omission& o) {
+    return to_text(o.what) + (o.why.empty() ? "" : ": ") + std::string(o.why);
 }
 
 }  // namespace aabb

@@ -8,7 +8,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Whole numbers in [least, most].
+/// Integers in [least, most].
 struct whole_values {
     std::uint64_t least = 0;
     std::uint64_t most = 0;
@@ -21,11 +21,11 @@ struct number_values {
     bool or_equal = false;
     bool or_auto = false;
 };
-/// One of these.
+/// One of several names.
 struct name_values {
     std::vector<std::string> names;
 };
-/// Any text but an empty one.
+/// Any text that is not empty.
 struct text_values {
     std::string what;  ///< completes "must be …"
 };
@@ -49,7 +49,7 @@ using parameter_values = std::variant<whole_values, number_values, name_values, 
     return std::get<text_values>(values).what;
 }
 
-/// One of several names; the field is an enumeration numbered from 0 in the order of the names.
+/// A parameter with one of several names; the field is an enumeration numbered from 0 in the order of the names.
 template <class Config, class Enum, std::size_t N>
 struct choice_parameter {
     std::string_view name;
@@ -66,14 +66,14 @@ struct choice_parameter {
     }
 
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
-        const auto found = std::ranges::find(names, text);
-        if (found == names.end()) return false;
-        config.*field = static_cast<Enum>(found - names.begin());
+        const auto match = std::ranges::find(names, text);
+        if (match == names.end()) return false;
+        config.*field = static_cast<Enum>(match - names.begin());
         return true;
     }
 };
 
-/// A whole number in [least, most], as text; with `or_auto`, "auto" too, which leaves the optional empty.
+/// An integer parameter in [least, most]; with `or_auto` also "auto", which leaves the optional empty.
 template <class Config, class Value, std::integral Whole>
 struct integer_parameter {
     std::string_view name;
@@ -110,8 +110,8 @@ struct integer_parameter {
     }
 };
 
-/// A real number in (above, at_most], or with `or_equal` in [above, at_most], as text; with `or_auto`, "auto" too,
-/// which leaves the optional empty.
+/// A real parameter in (above, at_most], or with `or_equal` in [above, at_most]; with `or_auto` also "auto", which
+/// leaves the optional empty.
 template <class Config, class Value>
 struct number_parameter {
     std::string_view name;
@@ -147,8 +147,8 @@ struct number_parameter {
     }
 };
 
-/// A text as it is, mostly the name of a file. It is never empty: a field that is empty by default must be set. A text
-/// with a comma cannot be written in a strategy's `name:parameter=value,…`, so these are parameters of scenes.
+/// A text parameter, mostly the name of a file. It is never empty: a field that is empty by default must be set. Since
+/// a text with a comma cannot be written in a strategy's `name:parameter=value,…`, only scenes have such parameters.
 template <class Config>
 struct text_parameter {
     std::string_view name;

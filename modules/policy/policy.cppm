@@ -1,4 +1,4 @@
-/// What every kind of strategy has in common: a name, a summary, parameters that text sets, a say in what it goes with.
+/// The common parts of all strategies: a name, a summary, parameters set by text, and rejection of combinations.
 export module aabb.policy;
 
 export import aabb.base;

@@ -4,7 +4,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The configuration of a strategy that has no parameters.
+/// The configuration of a strategy without parameters.
 struct no_config {};
 
 namespace detail {
@@ -14,19 +14,19 @@ template <class S>
 no_config config_in(...);
 }  // namespace detail
 
-/// The documented `config` struct of a strategy; `no_config` where it has none.
+/// The `config` struct of a strategy; `no_config` if it has none.
 template <class S>
 using config_of = decltype(detail::config_in<S>(0));
 
-/// A thing with a name and one sentence about itself, that text can configure. Where it has parameters it holds an
-/// aggregate `config` and a tuple `parameters` that binds names to the fields.
+/// A type with a name and a summary that can be configured by text. If it has parameters, it contains an aggregate
+/// `config` and a tuple `parameters` that binds names to its fields.
 template <class S>
 concept Configurable = requires {
     { S::name } -> std::convertible_to<std::string_view>;
     { S::summary } -> std::convertible_to<std::string_view>;
 } && (std::same_as<config_of<S>, no_config> || requires { S::parameters; });
 
-/// What every strategy is: configurable and, where it has parameters, made from its configuration.
+/// A strategy is configurable and, if it has parameters, constructible from its configuration.
 template <class S>
 concept Strategy =
     Configurable<S> && (std::same_as<config_of<S>, no_config> || requires(config_of<S> config) { S{config}; });
@@ -39,7 +39,7 @@ template <Strategy S>
         return S{config};
 }
 
-/// Whether results with the strategy are exact. One that approximates says `static constexpr bool exact = false`.
+/// Whether a strategy yields exact results. One that approximates declares `static constexpr bool exact = false`.
 template <Strategy S>
 inline constexpr bool strategy_is_exact = [] {
     if constexpr (requires { S::exact; })
@@ -48,7 +48,7 @@ inline constexpr bool strategy_is_exact = [] {
         return true;
 }();
 
-/// The same, as configured: where exactness depends on a parameter the `config` has a member `is_exact()`.
+/// The same with a configuration: if exactness depends on a parameter, `config` has a member `is_exact()`.
 template <Strategy S>
 [[nodiscard]] constexpr bool is_exact_as(const config_of<S>& config) {
     if constexpr (requires { config.is_exact(); })
@@ -77,8 +77,8 @@ constexpr std::string_view refusal_by() {
 
 export namespace aabb {
 
-/// Why a combination of policies makes no sense, in the words of the policy that refuses it; empty where it makes
-/// sense. A policy refuses with a member `template <class... All> static constexpr std::string_view refuses()`.
+/// Why a combination of policies is rejected, in the words of the rejecting policy; empty if it is accepted. A policy
+/// rejects by a member `template <class... All> static constexpr std::string_view refuses()`.
 template <class... Policies>
 [[nodiscard]] constexpr std::string_view refusal() {
     std::string_view reason;
@@ -86,13 +86,13 @@ template <class... Policies>
     return reason;
 }
 
-/// A sentence as a template argument, so that the compiler prints it where a `static_assert` of `is_accepted` fails.
+/// A sentence as a template argument, so that the compiler prints it if a `static_assert` of `is_accepted` fails.
 template <std::size_t N>
 struct sentence {
     char text[N + 1]{};
 };
 
-/// The refusal of a combination as such an argument.
+/// The reason of a rejection as such an argument.
 template <class... Policies>
 [[nodiscard]] constexpr auto sentence_of() {
     sentence<refusal<Policies...>().size()> copy;
@@ -100,8 +100,8 @@ template <class... Policies>
     return copy;
 }
 
-/// Whether the sentence refuses nothing: `static_assert(aabb::is_accepted<sentence_of<Sort, Sweep>()>)`. Clang prints
-/// the sentence only where the name is qualified.
+/// Whether a combination is accepted: `static_assert(aabb::is_accepted<sentence_of<Sort, Sweep>()>)`. Clang prints the
+/// sentence only if the name is qualified.
 template <sentence Reason>
 inline constexpr bool is_accepted = Reason.text[0] == '\0';
 

@@ -14,7 +14,7 @@ struct setting {
     friend auto operator<=>(const setting&, const setting&) = default;
 };
 
-/// A strategy by name, with the settings that differ from its defaults.
+/// A strategy by name, with settings that override its defaults.
 struct strategy_choice {
     std::string name;
     std::vector<setting> settings;
@@ -22,7 +22,7 @@ struct strategy_choice {
     friend auto operator<=>(const strategy_choice&, const strategy_choice&) = default;
 };
 
-/// The choice as the command line takes it: `shell:gaps=ciura,other=2`.
+/// The choice in the syntax of the command line: `shell:gaps=ciura,other=2`.
 [[nodiscard]] inline std::string to_text(const strategy_choice& choice) {
     std::string text = choice.name;
     for (const setting& s : choice.settings)
@@ -38,52 +38,53 @@ struct strategy_choice {
     if (colon == std::string_view::npos) return choice;
     text.remove_prefix(colon + 1);
     while (true) {
-        const std::string_view one = text.substr(0, text.find(','));
-        const std::size_t equals = one.find('=');
+        const std::string_view item = text.substr(0, text.find(','));
+        const std::size_t equals = item.find('=');
         if (equals == std::string_view::npos || equals == 0)
-            throw input_error("'" + std::string(one) + "' after '" + choice.name + ":' is not of the form name=value");
-        choice.settings.push_back({std::string(one.substr(0, equals)), std::string(one.substr(equals + 1))});
-        if (one.size() == text.size()) return choice;
-        text.remove_prefix(one.size() + 1);
+            throw input_error("'" + std::string(item) + "' after '" + choice.name + ":' is not of the form name=value");
+        choice.settings.push_back({std::string(item.substr(0, equals)), std::string(item.substr(equals + 1))});
+        if (item.size() == text.size()) return choice;
+        text.remove_prefix(item.size() + 1);
     }
 }
 
-/// What is known of a scene before it is played. What boxes do from frame to frame is left to strategies that watch it:
+/// The properties of a scene that are known before a run. The motion of boxes is left to strategies that observe it:
 /// `neighbour_list`, and the plans of `columns`.
 struct scene_outlook {
     std::size_t frames = 1;
-    std::size_t triangles = 0;    ///< of all meshes; 0 where there are boxes only
-    std::size_t queries = 1;      ///< of two meshes, that trees are to serve
-    std::size_t meshes = 2;       ///< that the triangles are of; at least 1
-    bool exact_triangles = true;  ///< the strategies beside it are exact
+    std::size_t triangles = 0;    ///< total number in all meshes; 0 for scenes of boxes
+    std::size_t queries = 1;      ///< expected number of narrow-phase queries of two meshes
+    std::size_t meshes = 2;       ///< number of meshes; at least 1
+    bool exact_triangles = true;  ///< the other strategies of the narrow phase are exact
 
-    /// Of fewer, what is kept for later frames does not pay where it serves: the first list of neighbours or front,
-    /// which takes about as long as two searches.
+    /// With fewer frames, state kept for later frames is not worth its cost: the first Verlet list or BVTT front takes
+    /// about as long as two searches.
     static constexpr std::size_t fewest_frames_to_keep = 4;
 
-    /// From so many queries on, what a build takes longer for each triangle comes back where each query takes less by
-    /// that share. A query of two meshes visits about 21 pairs of nodes times the root of their triangles: counted with
-    /// meshes of 5,000 to 200,000. Meshes are taken to be alike.
-    /// @param longer in ns
+    /// The number of queries from which a slower build is worth its cost, if each query takes less by a share. A query
+    /// of two meshes visits about 21 pairs of nodes times the square root of their triangles, as counted with meshes of
+    /// 5,000 to 200,000 triangles. Meshes are assumed to be of equal size.
+    /// @param longer additional build time per triangle in nanoseconds
+    /// @param share relative saving per query
     [[nodiscard]] inline std::size_t queries_that_repay(double longer, double share) const {
         constexpr double visits_a_root = 21;
         constexpr double many = 1e18;
         if (triangles == 0) return static_cast<std::size_t>(many);
-        const double all = longer * static_cast<double>(triangles) /
-                           (machine_costs().node_visit * visits_a_root * share * std::sqrt(triangles_of_two()));
-        return static_cast<std::size_t>(std::clamp(std::ceil(all), 0.0, many));
+        const double least = longer * static_cast<double>(triangles) /
+                             (machine_costs().node_visit * visits_a_root * share * std::sqrt(triangles_of_two()));
+        return static_cast<std::size_t>(std::clamp(std::ceil(least), 0.0, many));
     }
     [[nodiscard]] inline double triangles_of_two() const {
         return 2 * static_cast<double>(triangles) / static_cast<double>(meshes);
     }
 };
 
-/// Whether a strategy serves a scene better than the usual one of its kind, and the settings with which it does. A
-/// strategy that `auto` may choose has a member `static scene_fit fit(const scene_outlook&)`.
+/// Whether a strategy serves a scene better than the default of its kind, and with which settings. A strategy that
+/// `auto` may choose has a member `static scene_fit fit(const scene_outlook&)`.
 struct scene_fit {
     bool serves = false;
     std::vector<setting> settings{};
-    std::vector<statement> because{};  ///< why, or why not; empty where nothing is to be said
+    std::vector<statement> because{};  ///< the reasons for or against it; may be empty
 };
 
 }  // namespace aabb

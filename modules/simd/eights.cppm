@@ -1,5 +1,5 @@
-/// Eight numbers at a time, whatever a register of the processor takes: for what comes in eights by its nature, such as
-/// the children of a node.
+/// Vectors of eight elements, independent of the register width, for data that come in eights, such as the children of
+/// a wide node.
 export module aabb.simd:eights;
 
 import aabb.std;
@@ -40,41 +40,41 @@ template <class Number, class Vector>
     return least(low < high ? low : high);
 }
 
-/// Number i is number `Place(i)` of the two vectors, one behind the other.
+/// Element i is element `Place(i)` of the concatenated vectors.
 template <class Result, auto Place, class Vector, std::size_t... I>
 [[nodiscard, gnu::always_inline]] inline Result shuffled(Vector a, Vector b, std::index_sequence<I...>) noexcept {
     return __builtin_bit_cast(Result, __builtin_shufflevector(a, b, static_cast<int>(Place(I))...));
 }
 
-/// Bit i for number i of a comparison.
+/// Bit i is set if a comparison holds in lane i.
 template <class Flags>
 [[nodiscard, gnu::always_inline]] inline std::uint32_t bits_of_eight(Flags flags) noexcept {
     using bools = bool __attribute__((ext_vector_type(8)));
     return __builtin_bit_cast(std::uint8_t, __builtin_convertvector(flags, bools));
 }
 
-/// The same of sixteen numbers of 16 bits.
+/// The same for sixteen lanes of 16 bits.
 [[nodiscard, gnu::always_inline]] inline std::uint32_t bits_of_sixteen(sixteen_halves flags) noexcept {
     using bools = bool __attribute__((ext_vector_type(16)));
     return __builtin_bit_cast(std::uint16_t, __builtin_convertvector(flags, bools));
 }
 
-/// The other way round: number i is all ones where bit i is set.
+/// The inverse of `bits_of_eight`: lane i is all ones if bit i is set.
 [[nodiscard, gnu::always_inline]] inline eight_words flags_of_eight(std::uint8_t bits) noexcept {
     constexpr eight_words bit{1, 2, 4, 8, 16, 32, 64, 128};
     return __builtin_bit_cast(eight_words, (bit & std::uint32_t{bits}) == bit);
 }
 
-/// Of each of eight numbers the whole part, no more than 254, and 0 where it is less or not a number.
+/// Truncates each lane to an integer, clamped to 0 to 254; NaN becomes 0.
 [[nodiscard, gnu::always_inline]] inline eight_bytes whole_bytes(eight_floats v) noexcept {
     using eight_ints = std::int32_t __attribute__((vector_size(32)));
-    const eight_floats none{};
-    const eight_floats above = v > none ? v : none;
-    const eight_floats most = none + 254;
+    const eight_floats zero{};
+    const eight_floats above = v > zero ? v : zero;
+    const eight_floats most = zero + 254;
     return __builtin_convertvector(__builtin_convertvector(above < most ? above : most, eight_ints), eight_bytes);
 }
 
-/// Of each of sixteen numbers the whole part, as far as 16 bits reach. It never falls when the number grows.
+/// Truncates each lane to an i16, clamped to its range. The conversion is monotone.
 [[nodiscard, gnu::always_inline]] inline sixteen_halves whole_halves(sixteen_floats v) noexcept {
     using sixteen_ints = std::int32_t __attribute__((vector_size(64)));
     const sixteen_floats most = sixteen_floats{} + 32767;

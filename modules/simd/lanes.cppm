@@ -3,14 +3,14 @@ module;
 #include <immintrin.h>
 #endif
 
-/// As many numbers at a time as a register of the processor takes for which this was configured: 16, 8 or 4. Everything
-/// is said in vectors of the compiler; intrinsics stand only where it has no word for what the processor can do.
+/// Vectors of the register width for which the build was configured: 16, 8 or 4 lanes. The code uses the compiler's
+/// vector extensions, and intrinsics only for operations that these lack.
 export module aabb.simd:lanes;
 
 import aabb.std;
 import :width;
 
-// Intrinsics of either width, whichever is used: vectors go through memory, which leaves no trace when optimised.
+// Intrinsics of both widths; vectors are passed through memory, which the optimizer removes.
 namespace aabb::simd::detail {
 
 #if defined(__AVX512F__)
@@ -20,15 +20,15 @@ namespace aabb::simd::detail {
 #endif
 
 #if defined(__AVX2__)
-/// For each set of lanes, eight places of 8 bits: where those lanes stand, one after the other.
+/// For each set of lanes, the permutation that packs them, as eight bytes.
 inline constexpr std::array<std::uint64_t, 256> packed_places = [] {
-    std::array<std::uint64_t, 256> all{};
+    std::array<std::uint64_t, 256> permutations{};
     for (std::uint64_t set = 0; set < 256; ++set) {
         unsigned n = 0;
         for (std::uint64_t lane = 0; lane < 8; ++lane)
-            if (set >> lane & 1U) all[set] |= lane << 8 * n++;
+            if (set >> lane & 1U) permutations[set] |= lane << 8 * n++;
     }
-    return all;
+    return permutations;
 }();
 
 [[gnu::always_inline]] inline void store_of_eight(void* to, const void* from, std::uint32_t set) noexcept {
@@ -44,7 +44,7 @@ export namespace aabb::simd {
 
 using floats = float __attribute__((vector_size(4 * width)));
 using words = std::uint32_t __attribute__((vector_size(4 * width)));
-using flags = std::int32_t __attribute__((vector_size(4 * width)));  ///< of a comparison: -1 where it holds
+using flags = std::int32_t __attribute__((vector_size(4 * width)));  ///< result of a comparison: -1 in lanes that hold
 
 inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1);
 
@@ -71,28 +71,29 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
     std::memcpy(to, &v, sizeof v);
 }
 
-/// Bit i is set where the comparison holds in lane i.
-[[nodiscard, gnu::always_inline]] inline std::uint32_t bits(flags held) noexcept {
+/// Bit i is set if the comparison holds in lane i.
+[[nodiscard, gnu::always_inline]] inline std::uint32_t bits(flags comparison) noexcept {
     using bools = bool __attribute__((ext_vector_type(width)));
     using pattern = std::conditional_t<width == 16, std::uint16_t, std::uint8_t>;
-    return __builtin_bit_cast(pattern, __builtin_convertvector(held, bools)) & every_lane;
+    return __builtin_bit_cast(pattern, __builtin_convertvector(comparison, bools)) & every_lane;
 }
 
-/// Bit l of word i is set where l is below number i of `ends`, which may be negative.
+/// Bit l of lane i is set if l is less than lane i of `ends`, which may be negative.
 [[nodiscard, gnu::always_inline]] inline words lanes_below(words ends) noexcept {
     const auto signed_ends = reinterpret_cast<flags>(ends);
-    const flags some = signed_ends > 0 ? signed_ends : flags{};
-    const flags most = some < static_cast<int>(width) ? some : flags{} + static_cast<int>(width);
-    return every_lane >> (static_cast<std::uint32_t>(width) - reinterpret_cast<words>(most));
+    const flags positive = signed_ends > 0 ? signed_ends : flags{};
+    const flags clamped = positive < static_cast<int>(width) ? positive : flags{} + static_cast<int>(width);
+    return every_lane >> (static_cast<std::uint32_t>(width) - reinterpret_cast<words>(clamped));
 }
 
-/// Those below `end`.
+/// The set of the lanes below `end`.
 [[nodiscard, gnu::always_inline]] inline std::uint32_t lanes_below(std::size_t end) noexcept {
     return end >= width ? every_lane : (std::uint32_t{1} << end) - 1;
 }
 
-/// Stores the lanes whose bit is set, one after the other; whatever stands behind them, up to a whole vector, is lost.
-/// @returns how many
+/// Compress-store: stores the lanes whose bit is set contiguously. May overwrite the rest of a whole vector behind
+/// them.
+/// @returns the number of stored lanes
 [[gnu::always_inline]] inline std::size_t store_where(std::uint32_t* to, words v, std::uint32_t set) noexcept {
     const auto stored = static_cast<std::size_t>(std::popcount(set));
 #if defined(__AVX512F__)

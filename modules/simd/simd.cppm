@@ -1,4 +1,4 @@
-/// As many numbers at a time as a register of this processor takes.
+/// Vectors of the width of this processor's registers, and vectors of eight.
 export module aabb.simd;
 
 export import :eights;
