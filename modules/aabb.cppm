@@ -1,4 +1,5 @@
-/// AABB Lab's core: what strategies are made of and what runs them. Strategies are modules of their own
+/// AABB Lab's core: the building blocks of strategies and the stages that run them. Each strategy is a module of its
+/// own
 /// (`aabb.sort.std`, …).
 export module aabb;
 

@@ -4,7 +4,7 @@ import aabb.base;
 import aabb.std;
 import :points;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

@@ -3,7 +3,7 @@ export module aabb.geometry:intersection;
 import aabb.std;
 import :pose;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

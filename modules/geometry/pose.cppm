@@ -3,7 +3,7 @@ export module aabb.geometry:pose;
 import aabb.std;
 import :box;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {
@@ -145,10 +145,10 @@ public:
                 world[i] = (columns_b_[0][i] * x[0] + columns_b_[1][i] * x[1]) + columns_b_[2][i] * x[2];
         for (int i = 0; i < 3; ++i) world[i] += between_[i];
         if (!turns_a_) return world;
-        std::array<Doubles, 3> seen;
+        std::array<Doubles, 3> image;
         for (int i = 0; i < 3; ++i)
-            seen[i] = (rows_a_[0][i] * world[0] + rows_a_[1][i] * world[1]) + rows_a_[2][i] * world[2];
-        return seen;
+            image[i] = (rows_a_[0][i] * world[0] + rows_a_[1][i] * world[1]) + rows_a_[2][i] * world[2];
+        return image;
     }
 
     /// A box in A's frame that contains the image of every vertex in the box. The bounds are computed in double, grown

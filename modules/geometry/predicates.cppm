@@ -5,7 +5,7 @@ export module aabb.geometry:predicates;
 import aabb.std;
 import :points;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

@@ -3,7 +3,7 @@ export module aabb.geometry:triangle_box;
 import aabb.std;
 import :box;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb::detail {
@@ -59,24 +59,24 @@ export namespace aabb {
                                              float least = 0x1p-149F) noexcept {
     if (!overlaps(bounds_of(t), b)) return false;
     constexpr float tiny = 0x1p-126F;
-    detail::centred_triangle seen{};
+    detail::centred_triangle local{};
     vec3f slack{};
     float size = 0;
     for (int k = 0; k < 3; ++k) {
         const float centre = b.min[k] / 2 + b.max[k] / 2;
         float furthest = 0;
         for (int i = 0; i < 3; ++i) {
-            seen.corner[i][k] = t[i][k] - centre;
-            furthest = std::max(furthest, std::abs(seen.corner[i][k]));
+            local.corner[i][k] = t[i][k] - centre;
+            furthest = std::max(furthest, std::abs(local.corner[i][k]));
         }
         const float half = std::max(b.max[k] - centre, centre - b.min[k]);
         slack[k] = growth * (furthest + half) + least;
-        seen.half[k] = half + slack[k];
+        local.half[k] = half + slack[k];
         size += furthest + half;
     }
     if (!(size <= 0x1p40F)) return true;
-    for (int i = 0; i < 3; ++i) seen.edge[static_cast<std::size_t>(i)] = seen.corner[(i + 1) % 3] - seen.corner[i];
-    const auto& [e, f, last] = seen.edge;
+    for (int i = 0; i < 3; ++i) local.edge[static_cast<std::size_t>(i)] = local.corner[(i + 1) % 3] - local.corner[i];
+    const auto& [e, f, last] = local.edge;
     float distance = 0;
     float radius = tiny * (1 + size);
     for (int k = 0; k < 3; ++k) {
@@ -84,34 +84,34 @@ export namespace aabb {
         const int y = (k + 2) % 3;
         const float p = e[x] * f[y];
         const float q = e[y] * f[x];
-        distance += (p - q) * seen.corner[0][k];
-        radius += std::abs(p - q) * seen.half[k] + (std::abs(p) + std::abs(q)) * slack[k];
+        distance += (p - q) * local.corner[0][k];
+        radius += std::abs(p - q) * local.half[k] + (std::abs(p) + std::abs(q)) * slack[k];
     }
-    return std::abs(distance) <= radius && !detail::edge_separates(seen, tiny);
+    return std::abs(distance) <= radius && !detail::edge_separates(local, tiny);
 }
 
 /// The same axes as published, in float without a margin, as a baseline: it has false negatives for touching triangles
 /// and boxes. (Of the two ends of an edge, whose projections differ only by rounding, it may take the other one.)
 [[nodiscard]] inline bool moller_triangle_meets_box(const triangle3f& t, const box& b) noexcept {
-    detail::centred_triangle seen{};
+    detail::centred_triangle local{};
     for (int k = 0; k < 3; ++k) {
         const float centre = (b.min[k] + b.max[k]) * 0.5F;
-        seen.half[k] = (b.max[k] - b.min[k]) * 0.5F;
-        for (int i = 0; i < 3; ++i) seen.corner[i][k] = t[i][k] - centre;
+        local.half[k] = (b.max[k] - b.min[k]) * 0.5F;
+        for (int i = 0; i < 3; ++i) local.corner[i][k] = t[i][k] - centre;
     }
-    for (int i = 0; i < 3; ++i) seen.edge[static_cast<std::size_t>(i)] = seen.corner[(i + 1) % 3] - seen.corner[i];
-    if (detail::edge_separates(seen, 0)) return false;
-    const box around = bounds_of(seen.corner);
+    for (int i = 0; i < 3; ++i) local.edge[static_cast<std::size_t>(i)] = local.corner[(i + 1) % 3] - local.corner[i];
+    if (detail::edge_separates(local, 0)) return false;
+    const box around = bounds_of(local.corner);
     for (int k = 0; k < 3; ++k)
-        if (around.min[k] > seen.half[k] || around.max[k] < -seen.half[k]) return false;
+        if (around.min[k] > local.half[k] || around.max[k] < -local.half[k]) return false;
     // The corners of the box that are extreme along the normal.
-    const vec3f normal = cross(seen.edge[0], seen.edge[1]);
+    const vec3f normal = cross(local.edge[0], local.edge[1]);
     vec3f lowest{};
     vec3f highest{};
     for (int k = 0; k < 3; ++k) {
-        const float half = normal[k] > 0 ? seen.half[k] : -seen.half[k];
-        lowest[k] = -half - seen.corner[0][k];
-        highest[k] = half - seen.corner[0][k];
+        const float half = normal[k] > 0 ? local.half[k] : -local.half[k];
+        lowest[k] = -half - local.corner[0][k];
+        highest[k] = half - local.corner[0][k];
     }
     return dot(normal, lowest) <= 0 && dot(normal, highest) >= 0;
 }

@@ -46,8 +46,7 @@ public:
 
     /// Must be called after vertices of the mesh have moved.
     /// @param boxes scratch memory, one box per internal node or per triangle
-    /// @throws input_error if the mesh is invalid or its number of triangles has changed, and as
-    /// `require_ieee_arithmetic`
+    /// @throws input_error if the mesh is invalid or has another number of triangles, and as `require_ieee_arithmetic`
     void refit(std::vector<box>& boxes) {
         fit_.renew([&] {
             require_ieee_arithmetic();

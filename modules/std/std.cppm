@@ -1,6 +1,6 @@
-/// The standard library as a module: what `import std` will be where libstdc++ has it. It exports the names that are
-/// used here; a name that is missing is added to its list. Macros (`assert`, `INFINITY`, `stderr`) and placement `new`
-/// need their headers still.
+/// The standard library as a module, until libstdc++ provides `import std`. It exports only the names that the project
+/// uses; missing ones are added to the lists. Macros (`assert`, `INFINITY`, `stderr`) and placement `new` still need
+/// their headers.
 module;
 #include <algorithm>
 #include <array>

@@ -62,8 +62,7 @@ private:
     std::vector<index_pair> pairs_;
 };
 
-/// Brute-force search for few boxes: each is tested against all others, a vector at a time, which takes less time than
-/// sorting or cutting them.
+/// Brute-force search for few boxes: testing all pairs by vectors is faster than sorting or cutting.
 class few_boxes {
 public:
     /// @param group boxes in ascending order of ids
@@ -356,8 +355,7 @@ private:
         collect(pairs);
     }
 
-    /// Appends the pairs of the other workers in the order of the groups, so that the order of the result does not
-    /// depend on the threads.
+    /// Appends the pairs of the other workers by group, so that their order does not depend on the scheduling.
     void collect(std::vector<index_pair>& pairs) {
         std::size_t total = pairs.size();
         for (const worker& w : workers_) total += w.pairs.size();

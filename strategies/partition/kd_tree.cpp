@@ -5,7 +5,7 @@ module aabb.partition.kd_tree;
 
 import aabb.costs;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {
@@ -46,8 +46,7 @@ struct sampled {
         return *middle;
     }
 
-    /// The cost of a subset with this number of boxes within bounds: its entries, and the tests of a sweep along the
-    /// best swept axis.
+    /// The cost of a subset of `count` boxes within bounds: entries, and tests of a sweep along its best swept axis.
     [[nodiscard]] double cost(double count, const box& within, axis_set swept) const {
         const cost_model& ns = machine_costs();
         double share = 1;
@@ -360,8 +359,7 @@ std::uint32_t kd_tree_partition::leaf_of(std::uint32_t at, std::size_t side) con
     return nodes_[at].children[0];
 }
 
-/// Collects the boxes of each group in ascending order of ids. A box visits its leaves in ascending order, so the
-/// leaves of a group are consecutive.
+/// Collects the boxes of each group, ascending by id. The leaves of a box ascend, so those of a group are consecutive.
 void kd_tree_partition::gather() {
     group_of_.assign(leaves_, 0);
     group_starts_.resize(groups_.size());

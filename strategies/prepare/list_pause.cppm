@@ -24,15 +24,15 @@ public:
 
     /// Advances by one frame and ends the back-off once a list seems worth its cost. If the sample already moves too
     /// far for any list, so does the whole scene, and the rest of the eight frames is skipped.
-    /// @param seen estimates; its law is that of the sample
+    /// @param outlook estimates; its law is that of the sample
     /// @param drawn as in `drawn_id`
     /// @returns whether all eight frames were in vain; another sample is watched next
-    bool pass(std::span<const box> boxes, const membership& objects, list_outlook& seen, std::uint32_t& drawn) {
+    bool pass(std::span<const box> boxes, const membership& objects, list_outlook& outlook, std::uint32_t& drawn) {
         --left_;
         const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
         if (std::has_single_bit(age) && !move_too_far_) {
-            seen.law.observe(age, glimpse_.least_motion(boxes, objects));
-            const list_plan plan = plan_list(seen);
+            outlook.law.observe(age, glimpse_.least_motion(boxes, objects));
+            const list_plan plan = plan_list(outlook);
             if (plan.frames > 1) {
                 left_ = 0;
                 return false;
@@ -42,8 +42,8 @@ public:
         const bool in_vain = left_ == 0;
         if (in_vain) left_ = glimpse::longest + rest(objects.size());
         if (left_ == glimpse::longest) {
-            seen.look_anew(boxes, objects, drawn);
-            seen.law.forget();
+            outlook.look_anew(boxes, objects, drawn);
+            outlook.law.forget();
             glimpse_.keep(boxes, drawn);
             move_too_far_ = false;
         }

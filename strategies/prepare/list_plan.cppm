@@ -5,7 +5,7 @@ export import aabb.prepare.displacement_law;
 export import aabb.prepare.sample;
 import aabb.std;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 // The cost per frame of a Verlet list whose boxes are grown by a margin m and which serves k frames, including the one
@@ -24,8 +24,7 @@ export namespace aabb {
 
 /// By which factor the number of overlapping pairs grows with the margin of the boxes. For uniformly spread boxes the
 /// number is proportional to the mean over pairs of the product of their summed extents on the three axes, a polynomial
-/// in the margin. An axis on which the boxes lie closer together than their extents is ignored: they overlap on it
-/// already.
+/// in the margin. An axis on which boxes lie closer together than their extents is ignored: they overlap on it anyway.
 class growth_of_pairs {
 public:
     growth_of_pairs() = default;
@@ -164,35 +163,35 @@ inline constexpr double worth_a_list = 0.9;
 
 /// Whether it is worth its cost to find the sure pairs of a list, which later frames then do not test. Finding them
 /// takes as long as two tests of each pair.
-[[nodiscard]] inline bool pays_to_tell_sure(const list_outlook& seen, std::size_t listed, double margin) {
-    const double sure = static_cast<double>(seen.pairs) * seen.growth.sure(margin);
-    const double frames_left = seen.law.until(margin) - static_cast<double>(seen.law.age());
+[[nodiscard]] inline bool pays_to_tell_sure(const list_outlook& outlook, std::size_t listed, double margin) {
+    const double sure = static_cast<double>(outlook.pairs) * outlook.growth.sure(margin);
+    const double frames_left = outlook.law.until(margin) - static_cast<double>(outlook.law.age());
     return sure * frames_left > 2 * static_cast<double>(listed);
 }
 
 /// The plan with the least cost per frame; among those within 1% of it the longest, since the displacement may be
 /// underestimated.
-[[nodiscard]] inline list_plan plan_list(const list_outlook& seen, double worth = worth_a_list,
+[[nodiscard]] inline list_plan plan_list(const list_outlook& outlook, double worth = worth_a_list,
                                          const cost_model& cost = machine_costs()) {
     constexpr double as_little = 1.01;
     constexpr std::size_t longest = 1024;
-    const auto n = static_cast<double>(seen.boxes);
+    const auto n = static_cast<double>(outlook.boxes);
     list_plan best;
-    const std::size_t frames_left = seen.horizon.frames_left;
-    if (seen.law.age() == 0 || frames_left < 2) return best;
-    const double search = cost_of_search(n, seen.listed(0), cost);
-    const double exponent = seen.law.exponent();
+    const std::size_t frames_left = outlook.horizon.frames_left;
+    if (outlook.law.age() == 0 || frames_left < 2) return best;
+    const double search = cost_of_search(n, outlook.listed(0), cost);
+    const double exponent = outlook.law.exponent();
     // Numbers of served frames after the one that makes the list: 1, 2, 3, 4, 6, 8, 12, …, up to all remaining frames.
     for (std::size_t after = 1, next = 2; after < longest;
          after = std::exchange(next, next + std::bit_floor(next) / 2)) {
         after = std::min(after, frames_left - 1);
-        const double margin = seen.law.after(after, exponent);
-        if (!(margin <= seen.growth.longest_margin())) break;
-        const double listed = seen.listed(margin);
+        const double margin = outlook.law.after(after, exponent);
+        if (!(margin <= outlook.growth.longest_margin())) break;
+        const double listed = outlook.listed(margin);
         const double served = cost_of_service(n, listed, cost) / search;
         if (served >= std::min(best.cost, worth)) break;
         const double making = cost_of_making(n, listed, cost) / static_cast<double>(after + 1) +
-                              cost_of_new_memory(n, listed, seen.horizon, cost);
+                              cost_of_new_memory(n, listed, outlook.horizon, cost);
         const double per_frame = served + making / search;
         if (per_frame <= as_little * best.cost) best = {after + 1, margin, std::min(per_frame, best.cost)};
         if (after == frames_left - 1) break;

@@ -5,7 +5,7 @@ import aabb.prepare.pair_list;
 import aabb.prepare.mean_extent;
 import aabb.prepare.relative_motion;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {

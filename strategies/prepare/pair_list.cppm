@@ -7,7 +7,7 @@ export import aabb.geometry;
 export import aabb.simd;
 import aabb.std;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

@@ -4,7 +4,7 @@ export module aabb.prepare.pieces;
 import aabb.policy;
 import aabb.std;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

@@ -2,7 +2,7 @@ module aabb.prepare.split_mesh;
 
 import aabb.split_mesh;
 
-// Sums and products as they are written: see aabb.base:floating_point.
+// Results depend on every rounding: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {

@@ -10,8 +10,7 @@ struct fitting {
     scene_fit fit;
 };
 
-/// Candidates are all strategies of a kind that is compiled alone, since these combine with any others; otherwise only
-/// the strategy in the composition.
+/// Considers all strategies of a kind that is compiled alone; otherwise only the one in the composition.
 fitting fitting_of(strategy_kind kind, const composition& completed, const scene_outlook& scene) {
     fitting last;
     for (const strategy_info& info : strategies(kind)) {
@@ -73,14 +72,14 @@ composition complete_composition(const named_strategies& named) {
 }
 
 void select_for_scene(composition& completed, const named_strategies& named, const scene_outlook& scene) {
-    scene_outlook seen = scene;
+    scene_outlook outlook = scene;
     for (const strategy_kind kind : strategy_kinds) {
         if (named[kind] || !depends_on_scene(kind)) continue;
         strategy_choice& choice = completed[kind];
         choice.settings.clear();
         if (info_of(kind).apart) choice.name = info_of(kind).fallback;
-        seen.exact_triangles = scene.triangles == 0 || is_exact(completed, stage::local_detection);
-        fitting best = fitting_of(kind, completed, seen);
+        outlook.exact_triangles = scene.triangles == 0 || is_exact(completed, stage::local_detection);
+        fitting best = fitting_of(kind, completed, outlook);
         if (!best.fit.serves) continue;
         choice = {std::move(best.name), std::move(best.fit.settings)};
     }
@@ -94,12 +93,12 @@ composition select_composition(const named_strategies& named, const scene_outloo
 
 std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_outlook& scene) {
     const composition whole = select_composition(named, scene);
-    scene_outlook seen = scene;
-    seen.exact_triangles = is_exact(whole, stage::local_detection);
+    scene_outlook outlook = scene;
+    outlook.exact_triangles = is_exact(whole, stage::local_detection);
     std::vector<selected_strategy> selected;
     for (const strategy_kind kind : strategy_kinds) {
         std::string rule;
-        for (const statement& reason : fitting_of(kind, whole, seen).fit.because)
+        for (const statement& reason : fitting_of(kind, whole, outlook).fit.because)
             rule += (rule.empty() ? "" : "; ") + to_text(reason);
         if (rule.empty()) rule = usual_rule(kind, whole[kind]);
         selected.push_back({kind, whole[kind], named[kind] ? "as it is named" : rule});
