@@ -53,7 +53,7 @@ struct box_motion {
 };
 
 /// A bound on the rounding error of a vertex's image (`relative_pose::to_boxes`): rounding to float contributes, on
-/// each axis, 2^-24 of the magnitudes of which the margin is 2^-48, or half the least denormal. Twice that also covers
+/// each axis, 2^-24 of the magnitudes whose 2^-48 is the margin, or half the least denormal. Twice that also covers
 /// rounding in double.
 [[nodiscard]] inline double most_rounding(const box_motion& p) noexcept {
     return (p.margin[0] + p.margin[1] + p.margin[2]) * 0x1p25 + 0x1p-147;
@@ -180,7 +180,7 @@ public:
     ///
     /// The inverse is the adjugate over the determinant. Each entry is within 16 u of the true inverse, and the
     /// inverted matrix within 3 u; sums of six terms round five times, so 64 u of all magnitudes covers these errors.
-    /// Rounding the image to float adds 2^-24 of the magnitudes of which the margin is 2^-48, and half the least
+    /// Rounding the image to float adds 2^-24 of the magnitudes whose 2^-48 is the margin, and half the least
     /// denormal.
     /// @param bounds box of A
     [[nodiscard]] inline box_motion back_to_boxes(const box& bounds) const noexcept {
@@ -242,7 +242,7 @@ private:
 /// The world box of a mesh at a pose, for the broad phase. It is grown so that two meshes whose triangles intersect in
 /// A's frame (`relative_pose`) always have overlapping world boxes.
 ///
-/// The two frames differ, over a length L = A's radius plus B's diameter of which each box contributes its own part, by
+/// The two frames differ, over a length L = A's radius plus B's diameter, to which each box adds its own part, by
 /// - rounding of images to float, at most 2^-24 L, or half the least denormal, 2^-150;
 /// - the deviation of a pose from a rotation, at most 1e-6 per entry of R Rᵀ (`require_rigid`), so 3e-6 L;
 /// - rounding in double of images and of the sums below, at most 16 u (|t| + L), u = 2^-53.

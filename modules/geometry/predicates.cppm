@@ -109,7 +109,7 @@ public:
         return s_to_t.on_one_side() || t_to_s.on_one_side();
     }
 
-    /// As `exact_side`.
+    /// The result of `exact_side`, filtered.
     [[nodiscard]] inline int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
         const double computed = volume(a, b, c, d);
         const int sign = certain_sign(computed, side_error_);
@@ -129,7 +129,7 @@ public:
         return side(s0, s1, t0, t1) <= 0 && side(s0, s2, t0, t2) >= 0;
     }
 
-    /// As `exact_turn`.
+    /// The result of `exact_turn`, filtered.
     [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
         const int x = (axis + 1) % 3;
         const int y = (axis + 2) % 3;

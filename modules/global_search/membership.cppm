@@ -52,7 +52,7 @@ public:
     }
 
     /// @throws input_error if a present object has no box, or if there are boxes but `insert` was never called, since
-    /// a user who forgets that call would silently get no pairs
+    /// a program without that call would silently get no pairs
     void require_boxes_for_all(std::size_t boxes) const {
         if (state_.empty() && boxes > 0)
             throw input_error("no object was inserted; call insert(id) for each box first");

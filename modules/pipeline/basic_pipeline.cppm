@@ -33,8 +33,7 @@ public:
         if (!parts_) world_.emplace(scene);
         for (std::uint32_t id = 0; id < pieces(); ++id) global.insert(id);
     }
-    /// Without a broad phase all pairs of objects are candidates. Objects have no world boxes, so they may lie
-    /// anywhere.
+    /// A pipeline without a broad phase, in which all pairs of objects are candidates and objects may lie anywhere.
     basic_pipeline(const mesh_scene& scene, Local& local)
         requires may_divide
         : scene_(scene), local_(local) {
@@ -125,7 +124,7 @@ public:
     /// Pairs of objects whose boxes overlap, in unspecified order; if meshes are divided, once per overlapping pair of
     /// their pieces.
     [[nodiscard]] std::span<const index_pair> candidates() const noexcept { return candidates_; }
-    /// In unspecified order.
+    /// The contacts of the last `detect`, in unspecified order.
     [[nodiscard]] std::span<const contact> contacts() const noexcept { return contacts_; }
     /// Number of models in the narrow phase: the meshes, or their parts if they are divided.
     [[nodiscard]] std::uint32_t models() const noexcept {

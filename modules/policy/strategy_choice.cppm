@@ -57,8 +57,8 @@ struct scene_outlook {
     std::size_t meshes = 2;       ///< number of meshes; at least 1
     bool exact_triangles = true;  ///< the other strategies of the narrow phase are exact
 
-    /// With fewer frames, state kept for later frames is not worth its cost: the first Verlet list or BVTT front takes
-    /// about as long as two searches.
+    /// The least number of frames for which state kept between frames is worth its cost: the first Verlet list or BVTT
+    /// front takes about as long as two searches.
     static constexpr std::size_t fewest_frames_to_keep = 4;
 
     /// The number of queries from which a slower build is worth its cost, if each query takes less by a share. A query

@@ -20,7 +20,7 @@ namespace aabb::simd::detail {
 #endif
 
 #if defined(__AVX2__)
-/// For each set of lanes, the permutation that packs them, as eight bytes.
+/// The permutation that packs each set of lanes, as eight bytes.
 inline constexpr std::array<std::uint64_t, 256> packed_places = [] {
     std::array<std::uint64_t, 256> permutations{};
     for (std::uint64_t set = 0; set < 256; ++set) {

@@ -131,7 +131,7 @@ private:
         fill_result result;
     };
 
-    /// With more copies, groups are not worth their cost.
+    /// The limit on copies above which groups are not worth their cost.
     [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept { return 65'536 + 4 * boxes; }
 
     void classify(std::span<const box> boxes, std::size_t number) {

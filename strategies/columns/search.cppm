@@ -7,7 +7,7 @@ import aabb.std;
 export namespace aabb {
 
 /// Sleep detection: keeps the pairs of a frame for as long as nothing moves. A frame is kept only if a sample of its
-/// boxes has not moved since the previous frame, so moving scenes only pay for comparing the sample. If the sample is
+/// boxes has not moved since the previous frame, so moving scenes only compare the sample. If the sample is
 /// at rest but other boxes move, exponential back-off keeps ever fewer frames, down to one in 64.
 class frame_at_rest {
 public:
@@ -253,7 +253,7 @@ private:
         column_worker<Sort, Partition, Sweep, own_counters> own;
         std::vector<index_pair> pairs;
     };
-    /// Where the pairs of a group are stored if a worker other than the first one searched it.
+    /// The location of a group's pairs if a worker other than the first one searched it.
     struct pairs_of_group {
         std::size_t worker = 0;
         std::size_t begin = 0;

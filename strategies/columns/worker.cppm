@@ -200,7 +200,7 @@ public:
 private:
     static constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::max();
 
-    /// With more copies, columns are not worth their cost.
+    /// The limit on copies above which columns are not worth their cost.
     [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept {
         return std::min(65'536 + 16 * boxes, std::size_t{1} << 30);
     }

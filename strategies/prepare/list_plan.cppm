@@ -10,7 +10,7 @@ import aabb.std;
 
 // The cost per frame of a Verlet list whose boxes are grown by a margin m and which serves k frames, including the one
 // that makes it (Verlet, "Computer 'experiments' on classical fluids", 1967; Chialvo and Debenedetti, "On the use of
-// the Verlet neighbor list in molecular dynamics", 1990, who minimize it likewise):
+// the Verlet neighbor list in molecular dynamics", 1990, minimize it likewise):
 //
 //     M(m) / k + S(m),  m = d(k - 1),
 //     M(m) = n (keep + search) + L(m) find,  searching n boxes that are grown and kept,
@@ -22,9 +22,10 @@ import aabb.std;
 // costs n search + P find. The cost per box and per pair is a machine cost (`cost_model`).
 export namespace aabb {
 
-/// By which factor the number of overlapping pairs grows with the margin of the boxes. For uniformly spread boxes the
-/// number is proportional to the mean over pairs of the product of their summed extents on the three axes, a polynomial
-/// in the margin. An axis on which boxes lie closer together than their extents is ignored: they overlap on it anyway.
+/// The factor by which the number of overlapping pairs grows with the margin of the boxes. For uniformly spread boxes,
+/// the number is proportional to the mean over pairs of the product of their summed extents on the three axes, a
+/// polynomial in the margin. An axis on which boxes lie closer together than their extents is ignored: they overlap on
+/// it anyway.
 class growth_of_pairs {
 public:
     growth_of_pairs() = default;

@@ -360,8 +360,8 @@ private:
 
     /// Searching fewer boxes takes no longer than watching them.
     static constexpr std::size_t fewest_boxes = 2 * simd::width + 1;
-    /// With fewer frames left, the first frame gets no list: the motion is unknown yet, and making a list in newly
-    /// allocated memory takes as long as searching several frames.
+    /// The least number of remaining frames for which the first frame gets a list: its motion is unknown, and a list in
+    /// newly allocated memory takes as long as searching several frames.
     static constexpr std::size_t fewest_frames_of_first_list = 64;
     /// The margin of the first list, in typical extents: the best single margin over the benchmark scenes.
     static constexpr double extents_of_first_margin = 0.1;

@@ -19,9 +19,9 @@ export namespace aabb {
 /// frames repay it. If boxes move much less than estimated, the list is reduced to a smaller margin once that is worth
 /// its cost. Searches are assumed to cost what `columns` costs; with a slower search, lists are given up too early.
 ///
-/// With `every` the search runs after a fixed number of frames, whatever has moved by then: pairs that were more than
-/// two margins apart at the last search are false negatives until the next one. There are never false positives. When
-/// to use: objects that move little per frame, or might; `every` only to measure the cost of stale lists.
+/// With `every` the search runs after a fixed number of frames, whatever has moved by then: pairs at a distance of more
+/// than two margins at the last search are false negatives until the next one. There are never false positives.
+/// When to use: objects that move little per frame, or might; `every` only to measure the cost of stale lists.
 struct neighbour_list_prepare {
     static constexpr std::string_view name = "neighbour_list";
     static constexpr std::string_view summary =

@@ -93,7 +93,7 @@ private:
         }
     };
 
-    /// For each of a few entries, the lanes of a vector that it may overlap.
+    /// The lanes of a vector that each of a few entries may overlap.
     using met_lanes = std::array<std::uint16_t, width>;
 
     void make_room(std::size_t candidates) {

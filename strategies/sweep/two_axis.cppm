@@ -135,7 +135,7 @@ private:
         return count;
     }
 
-    /// Tests a box against its active candidates, and activates it. Tests are branch-free, since both overlaps and
+    /// Compares a box with its active candidates, and activates it. Tests are branch-free, since both overlaps and
     /// ended boxes are hard to predict.
     /// @returns the number of tests
     template <class Subset>
