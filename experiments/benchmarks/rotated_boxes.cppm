@@ -5,7 +5,7 @@ export module aabblab.rotated_boxes;
 import aabb.geometry;
 import aabb.std;
 
-// Evaluates sums and products exactly as written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabblab {

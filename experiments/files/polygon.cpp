@@ -2,7 +2,7 @@ module aabblab.files;
 
 import :polygon;
 
-// Evaluates sums and products exactly as written: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabblab {

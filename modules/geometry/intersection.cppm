@@ -3,7 +3,7 @@ export module aabb.geometry:intersection;
 import aabb.std;
 import :pose;
 
-// Results depend on every rounding: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

@@ -5,7 +5,7 @@ export module aabb.geometry:predicates;
 import aabb.std;
 import :points;
 
-// Results depend on every rounding: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 export namespace aabb {

@@ -3,7 +3,7 @@ export module aabb.geometry:triangle_box;
 import aabb.std;
 import :box;
 
-// Results depend on every rounding: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb::detail {

@@ -4,7 +4,7 @@ import aabb.std;
 import :membership;
 import :projection;
 
-// Results depend on every rounding: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 // The distribution of boxes along the axes, by which strategies choose axes.

@@ -5,7 +5,7 @@ module aabb.partition.kd_tree;
 
 import aabb.costs;
 
-// Results depend on every rounding: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {

@@ -5,7 +5,7 @@ export import aabb.prepare.displacement_law;
 export import aabb.prepare.sample;
 import aabb.std;
 
-// Results depend on every rounding: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 // The cost per frame of a Verlet list whose boxes are grown by a margin m and which serves k frames, including the one

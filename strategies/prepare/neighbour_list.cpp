@@ -5,7 +5,7 @@ import aabb.prepare.pair_list;
 import aabb.prepare.mean_extent;
 import aabb.prepare.relative_motion;
 
-// Results depend on every rounding: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {

@@ -4,7 +4,7 @@ export import aabb.global_search;
 export import aabb.simd;
 import aabb.std;
 
-// Results depend on every rounding: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb::detail {

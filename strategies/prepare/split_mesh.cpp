@@ -2,7 +2,7 @@ module aabb.prepare.split_mesh;
 
 import aabb.split_mesh;
 
-// Results depend on every rounding: see aabb.base:floating_point.
+// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)
 
 namespace aabb {
