@@ -58,7 +58,7 @@ inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
     return all;
 }
 /// Exact ones that play scenes of boxes, so many that any strategies of three kinds that go together stand in one:
-/// hardly a fault needs four (Kuhn, Wallace, Gallo 2004). `validate` and `validate extreme` play all.
+/// hardly a fault needs four (Kuhn, Wallace, Gallo 2004). Nothing runs every product of four kinds and their settings.
 inline std::vector<aabb::composition> global_compositions() {
     using three = std::pair<aabb::strategy_kind, std::string>;
     constexpr aabb::stage stage = aabb::stage::global_search;
