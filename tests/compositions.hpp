@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdlib>
+#include <stdexcept>
+
 #include "testing.hpp"
 
 import aabb;
@@ -57,15 +60,24 @@ inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
     std::erase_if(all, [&](const aabb::composition& c) { return !refusal_of(c, stage).empty(); });
     return all;
 }
-/// Exact ones that play scenes of boxes, so many that any strategies of three kinds that go together stand in one:
-/// hardly a fault needs four (Kuhn, Wallace, Gallo 2004). Nothing runs every product of four kinds and their settings.
+/// Whether tests run every composition instead of a selection: AABBLAB_COMPOSITIONS=all.
+inline bool wants_every_composition() {
+    const char* const wanted = std::getenv("AABBLAB_COMPOSITIONS");
+    if (wanted && std::string_view(wanted) != "all")
+        throw std::invalid_argument("AABBLAB_COMPOSITIONS is '" + std::string(wanted) + "'; it must be all or unset");
+    return wanted != nullptr;
+}
+/// Exact compositions for scenes of boxes. The selection contains any strategies of three kinds, with their settings,
+/// that can be combined: hardly a fault needs four (Kuhn, Wallace, Gallo 2004).
 inline std::vector<aabb::composition> global_compositions() {
     using three = std::pair<aabb::strategy_kind, std::string>;
     constexpr aabb::stage stage = aabb::stage::global_search;
-    std::vector<std::pair<aabb::composition, std::vector<three>>> all;
-    for (const aabb::composition& c : all_compositions(stage)) {
-        if (!is_exact(c, stage) || !needs_meshes(c).empty()) continue;
-        std::vector<three>& threes = all.emplace_back(c, std::vector<three>()).second;
+    std::vector<aabb::composition> all = all_compositions(stage);
+    std::erase_if(all, [](const aabb::composition& c) { return !is_exact(c, stage) || !needs_meshes(c).empty(); });
+    if (wants_every_composition()) return all;
+    std::vector<std::pair<aabb::composition, std::vector<three>>> candidates;
+    for (const aabb::composition& c : all) {
+        std::vector<three>& threes = candidates.emplace_back(c, std::vector<three>()).second;
         for (const aabb::strategy_kind left_out : kinds_of(stage)) {
             aabb::composition others = c;
             others[left_out] = {};
@@ -76,17 +88,18 @@ inline std::vector<aabb::composition> global_compositions() {
     std::set<three> seen;
     // First those of which most is new.
     for (std::ptrdiff_t least_new = 4; least_new > 0; --least_new)
-        for (const auto& [composition, threes] : all) {
+        for (const auto& [composition, threes] : candidates) {
             if (std::ranges::count_if(threes, [&](const three& t) { return !seen.contains(t); }) < least_new) continue;
             seen.insert(threes.begin(), threes.end());
             taken.push_back(composition);
         }
     return taken;
 }
-/// Every tree with the exact triangle test, and the others with each tree as it is by default: a test knows nothing of
-/// the tree that hands it triangles.
+/// The selection combines every tree with the exact triangle test, and each default tree with the other tests: a test
+/// does not depend on the tree that calls it.
 inline std::vector<aabb::composition> local_compositions() {
     std::vector<aabb::composition> all = all_compositions(aabb::stage::local_detection);
+    if (wants_every_composition()) return all;
     std::erase_if(all, [](const aabb::composition& c) {
         return c[aabb::strategy_kind::triangle].name != "exact" && !c[aabb::strategy_kind::tree].settings.empty();
     });
