@@ -28,7 +28,7 @@ void run(CLI::App& program, int argc, char** argv) {
     } catch (const CLI::CallForHelp&) {
         print(program.help());
     } catch (const CLI::ParseError& error) {
-        throw aabb::input_error(refusal_of(program, error));
+        throw aabb::input_error(rejection_of(program, error));
     }
     flush_output();
 }

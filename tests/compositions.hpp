@@ -57,7 +57,7 @@ inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
             for (const aabb::strategy_choice& choice : all_choices(kind)) longer.emplace_back(c)[kind] = choice;
         all = std::move(longer);
     }
-    std::erase_if(all, [&](const aabb::composition& c) { return !refusal_of(c, stage).empty(); });
+    std::erase_if(all, [&](const aabb::composition& c) { return !rejection_of(c, stage).empty(); });
     return all;
 }
 /// Whether tests run every composition instead of a selection: AABBLAB_COMPOSITIONS=all.

@@ -8,7 +8,7 @@ namespace aabblab {
 
 namespace {
 
-std::string label_of(contender_name name) {
+std::string label_of(candidate_name name) {
     std::ranges::replace(name.choices.all, "none", "");
     return name.engine.empty() ? text_in_line(name.choices) : name.engine;
 }

@@ -191,7 +191,7 @@ void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
 
 template <aabb::CoherentSweep Sweep, class Sort, class... Sorts>
 [[nodiscard]] auto sort_for(aabb::type_list<Sort, Sorts...>) {
-    if constexpr (aabb::refusal<Sort, Sweep>().empty())
+    if constexpr (aabb::rejection<Sort, Sweep>().empty())
         return Sort{};
     else
         return sort_for<Sweep>(aabb::type_list<Sorts...>{});

@@ -29,7 +29,7 @@ struct piece {
 struct trial {
     std::string scene;
     bool held_out;  ///< used to check the fit, not for it
-    std::function<std::vector<piece>(aabb::instrumentation)> play;
+    std::function<std::vector<piece>(aabb::instrumentation)> run_frames;
     std::vector<std::pair<cost_group, timed_work>> observations = {};  ///< by piece
 };
 
@@ -67,19 +67,19 @@ struct frame_sample {
     [[nodiscard]] double count(aabb::work what) const { return static_cast<double>(work[what]); }
 };
 
-struct box_play {
+struct box_run {
     box_frames frames;
     aabb::composition composed;
     aabb::cost_model planned_by;
 };
 
-std::vector<frame_sample> sample_frames(const box_play& run, aabb::instrumentation counted) {
+std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentation counted) {
     const costs_in_scope costs(run.planned_by);
-    scene_play scene(std::make_unique<aabb::known_boxes>(*run.frames));
-    player p(contender_of(run.composed, false), scene, counted);
+    scene_frames scene(std::make_unique<aabb::known_boxes>(*run.frames));
+    stage_runner p(candidate_of(run.composed, false), scene, counted);
     aabb::work_counters before;
     std::vector<frame_sample> samples;
-    play(scene, p, [&](const played_frame& frame) {
+    run_frames(scene, p, [&](const searched_frame& frame) {
         frame_sample sample{
             1e6 * (frame.took.update.cpu_ms + frame.took.search.cpu_ms), static_cast<double>(frame.pairs.size()), {}};
         const aabb::work_counters work = p.counters();
@@ -127,12 +127,11 @@ using work_of_frame = std::function<std::vector<double>(const frame_sample&)>;
 
 trial usual_frames(const generated_scene& scene, cost_group group, const aabb::composition& c,
                    const aabb::cost_model& planned_by, work_of_frame work) {
-    return {
-        scene.name, scene.held_out,
-        [group, run = box_play{scene.frames, c, planned_by}, work = std::move(work)](aabb::instrumentation counted) {
-            const frame_sample mean = mean_of(sample_frames(run, counted), first_usual, 1);
-            return std::vector{piece{group, work(mean), mean.ns}};
-        }};
+    return {scene.name, scene.held_out,
+            [group, run = box_run{scene.frames, c, planned_by}, work = std::move(work)](aabb::instrumentation counted) {
+                const frame_sample mean = mean_of(sample_frames(run, counted), first_usual, 1);
+                return std::vector{piece{group, work(mean), mean.ns}};
+            }};
 }
 
 /// A Verlet list that is rebuilt in every even frame and reused in every odd one.
@@ -140,7 +139,7 @@ trial built_and_reused(const generated_scene& scene) {
     aabb::composition c;
     c[aabb::strategy_kind::prepare] = {"neighbour_list", {{"every", "2"}}};
     return {scene.name, scene.held_out,
-            [n = scene.n, run = box_play{scene.frames, c, {}}](aabb::instrumentation counted) {
+            [n = scene.n, run = box_run{scene.frames, c, {}}](aabb::instrumentation counted) {
                 const std::vector<frame_sample> samples = sample_frames(run, counted);
                 const frame_sample built = mean_of(samples, first_usual, 2);
                 const frame_sample reused = mean_of(samples, first_usual + 1, 2);
@@ -233,11 +232,11 @@ std::size_t frames_for(std::size_t objects) {
 
 void add_trial(std::vector<trial>& trials, const scene_choice& choice, bool held_out, const std::string& build,
                cost_group group) {
-    const auto triangles = static_cast<double>(outlook_of(scene_play(choice)).triangles);
+    const auto triangles = static_cast<double>(traits_of(scene_frames(choice)).triangles);
     aabb::composition c;
     c[aabb::strategy_kind::build] = {build, {}};
     trials.push_back({choice.kind + " " + settings_text(choice), held_out, [=](aabb::instrumentation counted) {
-                          const observation result = observe(choice, contender_of(c, true), {.counted = counted});
+                          const observation result = observe(choice, candidate_of(c, true), {.counted = counted});
                           const auto visits = static_cast<double>(result.work[aabb::work::node_visits]);
                           const double queries = result.first.detect.cpu_ms + result.rest.detect.cpu_ms;
                           return std::vector{piece{group, {triangles}, 1e6 * result.build.cpu_ms},
@@ -325,11 +324,11 @@ std::vector<group_observations> counted_and_timed(std::vector<trial> trials, dou
         return seconds - std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     };
     for (trial& t : trials)
-        for (piece& p : t.play(aabb::instrumentation::counters))
+        for (piece& p : t.run_frames(aabb::instrumentation::counters))
             t.observations.emplace_back(p.group, timed_work{t.scene, std::move(p.work), {}});
     progress shown("seconds of measuring", static_cast<std::size_t>(seconds));
     const auto time = [&](trial& t, std::size_t) {
-        const std::vector<piece> timed = t.play(aabb::instrumentation::none);
+        const std::vector<piece> timed = t.run_frames(aabb::instrumentation::none);
         for (std::size_t p = 0; p < timed.size(); ++p) t.observations[p].second.ns.push_back(timed[p].ns);
         shown.at(static_cast<std::size_t>(seconds - std::max(0.0, remaining())));
     };

@@ -40,7 +40,7 @@ struct collide_request {
     }
 };
 
-nlohmann::ordered_json geometry_of(const found_pair& pair) {
+nlohmann::ordered_json geometry_of(const intersecting_pair& pair) {
     const aabb::triangle_intersection& common = *pair.common;
     nlohmann::ordered_json geometry{{"kind", name_of(common.kind)}};
     for (std::uint32_t i = 0; i < common.size; ++i) geometry["corners"].push_back(common.corners[i].at);
@@ -63,7 +63,7 @@ void print_json(const collide_request& request, const mesh_result& result) {
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
     if (result.neighbours) summary["neighbours"] = *result.neighbours;
     nlohmann::ordered_json first, geometry;
-    for (const std::optional<found_pair>& pair : result.first) {
+    for (const std::optional<intersecting_pair>& pair : result.first) {
         first.push_back(pair ? nlohmann::ordered_json{pair->triangles.a, pair->triangles.b} : nullptr);
         geometry.push_back(pair && pair->common ? geometry_of(*pair) : nullptr);
     }
@@ -76,7 +76,7 @@ void print_json(const collide_request& request, const mesh_result& result) {
 }
 
 /// Describes a pair: "triangles 3 and 5 intersect: segment 2 …".
-std::string text_of(const found_pair& pair) {
+std::string text_of(const intersecting_pair& pair) {
     return fmt::format("triangles {} and {} intersect{}\n", pair.triangles.a, pair.triangles.b,
                        pair.common ? ": " + to_text(*pair.common) : "");
 }

@@ -198,7 +198,7 @@ void wrap_help(CLI::App& program) {
     program.formatter(std::make_shared<wrapped_help>());
 }
 
-std::string refusal_of(const CLI::App& program, const CLI::ParseError& error) {
+std::string rejection_of(const CLI::App& program, const CLI::ParseError& error) {
     const CLI::App* innermost = &program;
     std::string prefix;
     while (!innermost->get_subcommands().empty()) {

@@ -87,7 +87,7 @@ void add_commands(const command_parser& program);
 void wrap_help(CLI::App& program);
 
 /// The message for a rejected command line, with the closest known command or option if one is unknown.
-[[nodiscard]] std::string refusal_of(const CLI::App& program, const CLI::ParseError& error);
+[[nodiscard]] std::string rejection_of(const CLI::App& program, const CLI::ParseError& error);
 
 /// @throws aabb::input_error if an otherwise valid command line has no command.
 void require_command(const CLI::App& program);

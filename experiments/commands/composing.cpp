@@ -13,7 +13,7 @@ std::string usual_of(aabb::strategy_kind kind) {
     if (aabb::depends_on_scene(kind)) return "as it serves the scene";
     const aabb::strategy_kind_info& info = info_of(kind);
     const std::string text(info.fallback);
-    return info.beside == info.fallback ? text : text + ", or what goes with what is named";
+    return info.default_with == info.fallback ? text : text + ", or what goes with what is named";
 }
 
 /// The options of a stage: "--sort, --partition and --sweep".

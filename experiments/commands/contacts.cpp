@@ -53,8 +53,8 @@ void find_contacts(const contacts_request& request) {
         if (request.geometry) columns += "," + std::string(intersection_columns);
         rows.emplace(*request.out, columns);
     }
-    scene_play scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
-    search_method method = method_of(choice, outlook_of(scene));
+    scene_frames scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
+    search_method method = method_of(choice, traits_of(scene));
     const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
     print(request.json ? json_of(method, result) : text_of(request, method, result));
 }

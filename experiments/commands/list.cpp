@@ -71,7 +71,7 @@ listed listed_of(const auto& info) {
     if constexpr (requires { info.order; }) members["order"] = info.order;
     if constexpr (requires { info.adaptive; }) members["adaptive"] = info.adaptive;
     if constexpr (requires { info.has_meshes; }) members["has_meshes"] = info.has_meshes;
-    if constexpr (requires { info.plays_file; }) members["has_seed"] = !info.plays_file;
+    if constexpr (requires { info.reads_file; }) members["has_seed"] = !info.reads_file;
     if constexpr (requires { info.unit; }) members["unit"] = info.unit;
     if constexpr (requires { info.group; }) members["recorded"] = group_of(info);
     if constexpr (requires { info.direction; })

@@ -38,8 +38,8 @@ std::string text_of(const pairs_request& request, const search_method& method, c
 
 void find_pairs(const pairs_request& request) {
     const search_choice choice = request.method.choice();
-    scene_play scene(open_recording(request.recording));
-    search_method method = method_of(choice, outlook_of(scene));
+    scene_frames scene(open_recording(request.recording));
+    search_method method = method_of(choice, traits_of(scene));
     std::optional<number_table> rows;
     if (request.out) {
         require_other_file(*request.out, request.recording);

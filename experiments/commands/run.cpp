@@ -24,10 +24,10 @@ int run(const run_request& request) {
                                          : open_experiment(request.config, request.quick);
     // Quick runs have their own folder, so that they do not block the full run.
     const std::filesystem::path folder = request.out.value_or("results/" + e.name + (request.quick ? "-quick" : ""));
-    if (request.process) return play_share(e, folder, *request.process) ? 0 : 1;
-    const std::vector<std::string> failures = play_experiment(
-        e, folder, request.resume ? existing_results::resume : existing_results::refuse,
-        "the same command with --resume", request.counts ? printed::tables_and_counts : printed::tables);
+    if (request.process) return run_process(e, folder, *request.process) ? 0 : 1;
+    const std::vector<std::string> failures =
+        run_experiment(e, folder, request.resume ? existing_results::resume : existing_results::reject,
+                       "the same command with --resume", request.counts ? printed::tables_and_counts : printed::tables);
     print("Every repeat is a row of " + visible((folder / "results.csv").string()) +
           ",\nevery line of a scene's table one of " + visible((folder / "summary.csv").string()) + "\n");
     return failures.empty() ? 0 : 1;

@@ -31,7 +31,7 @@ public:
     world_boxes(const scene_choice& choice, motion_file* motion)
         : scene_(choice), motion_(motion), world_(*scene_.meshes()) {
         if (scene_.meshes()->reacts())
-            finder_.emplace(contender_of(aabb::composition(), true), scene_, aabb::instrumentation::none);
+            finder_.emplace(candidate_of(aabb::composition(), true), scene_, aabb::instrumentation::none);
     }
 
     [[nodiscard]] const aabb::mesh_scene& meshes() const { return *scene_.meshes(); }
@@ -52,10 +52,10 @@ public:
     }
 
 private:
-    scene_play scene_;
+    scene_frames scene_;
     motion_file* motion_;
     aabb::posed_boxes world_;
-    std::optional<player> finder_;  // finds the contacts to which the scene reacts
+    std::optional<stage_runner> finder_;  // finds the contacts to which the scene reacts
 };
 
 class observed_scene final : public aabb::box_scene {
@@ -80,7 +80,7 @@ private:
 
 /// The seed option, else 1 if the kind has a seed.
 std::optional<std::uint64_t> seed_of(const scene_request& request, const scene_info& kind) {
-    if (!request.seed) return kind.plays_file ? std::nullopt : std::optional<std::uint64_t>(1);
+    if (!request.seed) return kind.reads_file ? std::nullopt : std::optional<std::uint64_t>(1);
     return parse_whole(*request.seed, 0, std::numeric_limits<std::uint64_t>::max(),
                        "--seed must be a whole number from 0 to 18446744073709551615");
 }

@@ -17,7 +17,7 @@ namespace {
 experiment built_in_experiment() {
     experiment e;
     for (const scene_info& info : scene_kinds())
-        if (!info.has_meshes && !info.plays_file)
+        if (!info.has_meshes && !info.reads_file)
             e.scenes.push_back({info.name, {{"objects", "1000"}, {"frames", "5"}}, {}, 1});
     e.scenes.insert(e.scenes.end(),
                     {{"mesh_pair", {{"frames", "4"}}, {"icosphere:triangles=1280", "torus_knot:triangles=2000"}, 1},
@@ -55,11 +55,11 @@ int validate(const validate_request& request) {
     const experiment e = request.config ? open_experiment(*request.config, request.quick) : built_in_experiment();
     std::size_t wrong = 0;
     for (const scene_choice& scene : e.scenes) {
-        const scene_validation result = validate_scene(scene, contenders_for(e, scene));
+        const scene_validation result = validate_scene(scene, candidates_for(e, scene));
         print(heading_of(scene) + ", all pairs of " + std::to_string(result.frames) + " frames against " +
               result.exact_by + ", digest " + result.digest + "\n\n");
         table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"answer", false}}, {}};
-        for (const validated_row& v : result.contenders) {
+        for (const validated_row& v : result.candidates) {
             t.rows.push_back({text_of(v.name), std::to_string(v.candidates),
                               v.contacts ? std::to_string(*v.contacts) : "-", result_of(v)});
             if (v.failure.empty()) continue;

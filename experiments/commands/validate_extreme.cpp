@@ -18,7 +18,7 @@ int validate_extreme(const extreme_request& request) {
     outlive_reader();
     const std::filesystem::path folder =
         request.out.value_or(request.quick ? "results/extreme-quick" : "results/extreme");
-    const suite_report report = play_extreme_suite(folder, request.cases, request.quick, true);
+    const suite_report report = run_extreme_suite(folder, request.cases, request.quick, true);
     print("\nEvery answer is in " + visible((folder / "extreme.csv").string()) + "\n");
     print(report.failures.empty() ? "All that must be exact is exact, and what must be refused is refused.\n"
                                   : std::to_string(report.failures.size()) + " answers are not what they must be.\n");

@@ -109,13 +109,14 @@ std::string text_of(const aabb::composition& c) {
     return to_text(c, aabb::stage::global_search) + " + " + to_text(c, aabb::stage::local_detection);
 }
 
-bool is_refused(const aabb::composition& c) {
-    return !refusal_of(c, aabb::stage::global_search).empty() || !refusal_of(c, aabb::stage::local_detection).empty();
+bool is_rejected(const aabb::composition& c) {
+    return !rejection_of(c, aabb::stage::global_search).empty() ||
+           !rejection_of(c, aabb::stage::local_detection).empty();
 }
 
 void add_composition(const document& doc, int line, const aabb::composition& c, each_once<aabb::composition>& list) {
     for (const aabb::stage stage : {aabb::stage::global_search, aabb::stage::local_detection})
-        if (const std::string_view reason = aabb::refusal_of(c, stage); !reason.empty())
+        if (const std::string_view reason = aabb::rejection_of(c, stage); !reason.empty())
             doc.fail(line, to_text(c, stage) + ": " + std::string(reason));
     if (!list.add(c, text_of(c))) doc.fail(line, "this composition is listed twice: " + text_of(c));
 }
@@ -141,7 +142,7 @@ std::vector<aabb::named_strategies> named_by(const document& doc, const node& co
         const bool is_named = std::ranges::none_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
             return product[kind] && std::ranges::count(strategies[kind].others, product[kind]->name) > 0;
         });
-        return !is_named && is_refused(aabb::composition(product));
+        return !is_named && is_rejected(aabb::composition(product));
     });
     return products;
 }

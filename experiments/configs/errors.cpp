@@ -104,7 +104,7 @@ std::vector<error_curve> curves_of(const document& doc) {
 }
 
 /// Rejects keys that belong only to the other sort of study.
-void refuse_keys(const document& doc, std::initializer_list<std::string_view> keys, const std::string& reason) {
+void reject_keys(const document& doc, std::initializer_list<std::string_view> keys, const std::string& reason) {
     for (const std::string_view key : keys)
         if (const node* entry = doc.root().find(key)) {
             const std::string name = "[" + std::string(key) + "]";
@@ -183,14 +183,14 @@ void read_sized(const document& doc, experiment_size size, error_study& study) {
     study.hits = pairs_of(doc, "hits", size);
     if (study.curves.empty()) {
         if (study.hits.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]], or [[hits]]");
-        refuse_keys(doc, {"pairs", "scene", "plot", "measure"}, "is for curves, and this config has none");
+        reject_keys(doc, {"pairs", "scene", "plot", "measure"}, "is for curves, and this config has none");
     } else if (study.curves[0].triangles.empty()) {
-        refuse_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these play each [[scene]] whole");
+        reject_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these play each [[scene]] whole");
         study.plots = plots_of(doc);
         study.whole = whole_of(doc, study, size);
         study.notes = study.whole->notes;
     } else {
-        refuse_keys(doc, {"plot", "measure"}, "is for compositions; triangle tests alone are plotted over their time");
+        reject_keys(doc, {"plot", "measure"}, "is for compositions; triangle tests alone are plotted over their time");
         read_triangles(doc, size, study);
     }
 }

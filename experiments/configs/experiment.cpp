@@ -29,8 +29,8 @@ std::vector<std::string> engines_of(const document& doc) {
     const node* engines = doc.root().find("engines");
     if (!engines) return names;
     for (const located_text& engine : doc.texts_of("engines", *engines)) {
-        if (const std::string refusal = aabb::refusal_of_engine(engine.text); !refusal.empty())
-            doc.fail(engine.line, refusal);
+        if (const std::string rejection = aabb::rejection_of_engine(engine.text); !rejection.empty())
+            doc.fail(engine.line, rejection);
         if (std::ranges::find(names, engine.text) != names.end())
             doc.fail(engine.line, "engines lists '" + engine.text + "' twice");
         names.push_back(engine.text);

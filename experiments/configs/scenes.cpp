@@ -44,7 +44,7 @@ std::vector<located_text> kinds_of(const document& doc, node list) {
         const auto is_named = [&](const auto& in) {
             return std::ranges::count(in, info.name, &located_text::text) > 0;
         };
-        if (!info.has_meshes && !info.plays_file && !is_named(*excluded) && !is_named(names))
+        if (!info.has_meshes && !info.reads_file && !is_named(*excluded) && !is_named(names))
             names.push_back({info.name, list.line});
     }
     return names;
@@ -57,7 +57,7 @@ void require_known_keys(const document& doc, const node& scene, const scene_info
     const node* quick = scene.find("quick");
     if (quick && is_false(*quick)) quick = nullptr;
     for (const node* table : {&scene, quick})
-        if (const node* seed = table && info.plays_file ? table->find("seed") : nullptr)
+        if (const node* seed = table && info.reads_file ? table->find("seed") : nullptr)
             doc.fail(seed->line, info.name + " plays a file as it is and has no seed");
     std::vector<std::string> known{"kind", "seed", "quick"};
     if (info.has_meshes) known.insert(known.end(), {"meshes", "without_data"});
@@ -91,12 +91,12 @@ std::vector<std::string> meshes_of(const document& doc, const node& scene, std::
 }
 
 /// The settings of a scene, each with its alternatives.
-std::vector<alternatives> settings_of(const document& doc, const node& scene, bool plays_file) {
+std::vector<alternatives> settings_of(const document& doc, const node& scene, bool reads_file) {
     std::vector<alternatives> settings;
     for (const node& entry : scene.items) {
         if (std::ranges::find(own_keys, entry.key) != std::end(own_keys)) continue;
         settings.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
-        if (plays_file && entry.key == "file")
+        if (reads_file && entry.key == "file")
             for (const located_text& name : settings.back().second)
                 doc.at(name.line, [&] { static_cast<void>(found_file(name.text, doc.folder())); });
     }
@@ -138,10 +138,10 @@ void add_content(aabb::digest& digest, const scene_choice& choice, const scene_i
     if (info.has_meshes) {
         const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
         add_meshes(digest, scene->meshes);
-        if (info.plays_file) add_frames<aabb::pose>(digest, *scene, scene->mesh_of.size());
+        if (info.reads_file) add_frames<aabb::pose>(digest, *scene, scene->mesh_of.size());
     } else {
         const std::unique_ptr<aabb::box_scene> scene = make_box_scene(choice);
-        if (info.plays_file) add_frames<aabb::box>(digest, *scene, scene->objects());
+        if (info.reads_file) add_frames<aabb::box>(digest, *scene, scene->objects());
     }
 }
 
@@ -162,7 +162,7 @@ int line_naming(const node& in, const std::string& strategy) {
 }
 
 /// Rejects compositions with strategies that need meshes if the scene has only boxes.
-void require_playable(const document& doc, const written_scene& scene, const experiment& e) {
+void require_runnable(const document& doc, const written_scene& scene, const experiment& e) {
     if (scene.info->has_meshes) return;
     const node* compose = doc.root().find("compose");
     for (const aabb::composition& c : every_composition(e))
@@ -189,7 +189,7 @@ void add_content(const document& doc, const written_scene& scene, aabb::digest& 
     } catch (const aabb::input_error& error) {
         const std::string sentence = error.what();
         const auto file = std::ranges::find(scene.choice.settings, "file", &aabb::setting::name);
-        const bool of_file = scene.info->plays_file && scene.file_line > 0 && !file->value.empty() &&
+        const bool of_file = scene.info->reads_file && scene.file_line > 0 && !file->value.empty() &&
                              sentence.starts_with(found_file(file->value, doc.folder()).string());
         doc.fail(of_file ? scene.file_line : scene.line, sentence);
     }
@@ -210,8 +210,8 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
     for (const located_text& kind : names) {
         const scene_info& info = info_of(doc, kind);
         const std::vector<std::string> meshes = meshes_of(doc, scene, notes);
-        const std::vector<alternatives> keys = settings_of(doc, scene, info.plays_file);
-        const auto seeds = info.plays_file ? std::vector<std::optional<std::uint64_t>>(1) : all_seeds;
+        const std::vector<alternatives> keys = settings_of(doc, scene, info.reads_file);
+        const auto seeds = info.reads_file ? std::vector<std::optional<std::uint64_t>>(1) : all_seeds;
         std::vector<std::size_t> factors = sizes_of(keys);
         factors.push_back(seeds.size());
         doc.require_few(written.line, "scenes", factors, scenes.all().size());
@@ -252,7 +252,7 @@ void read_scenes(const document& doc, experiment_size size, experiment& e) {
     e.scenes.clear();
     aabb::digest content;
     for (const written_scene& scene : written.all()) {
-        require_playable(doc, scene, e);
+        require_runnable(doc, scene, e);
         if (!checked.contains(scene.choice)) add_content(doc, scene, content);
         e.scenes.push_back(scene.choice);
     }

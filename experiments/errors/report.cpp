@@ -197,7 +197,7 @@ private:
     }
 
     [[nodiscard]] std::optional<place> place_of(const aabb::composition& c) const {
-        const contender_name name = contender_of(c, has_meshes(scene_.scene)).name;
+        const candidate_name name = candidate_of(c, has_meshes(scene_.scene)).name;
         const auto line = std::ranges::find(scene_.lines, name, &summary_line::name);
         if (line == scene_.lines.end()) return std::nullopt;
         const auto value_of = [&](const metric& m) {
@@ -217,7 +217,7 @@ private:
     [[nodiscard]] bool has_floor() const { return y_.name == "wrong_share" && exact_pairs() > 0; }
     [[nodiscard]] std::uint64_t exact_pairs() const {
         const summary_line& line = scene_.lines[0];
-        return line.contacts.value_or(line.pairs) + line.missing.value_or(0) - line.invented.value_or(0);
+        return line.contacts.value_or(line.pairs) + line.false_negatives.value_or(0) - line.false_positives.value_or(0);
     }
     [[nodiscard]] double least_share() const { return 1 / static_cast<double>(exact_pairs()); }
 

@@ -37,11 +37,11 @@ std::string indented_all(std::string_view heading, const std::vector<std::string
 constexpr double share_of_part = 0.25;
 
 /// Why work did not finish, in place of its output.
-std::string reason_of(const work_apart& work) {
+std::string reason_of(const child_result& work) {
     return text_of(attempt{work.end, {}, work.reason, work.seconds});
 }
 
-std::string text_of(const contender_name& name, aabb::stage stage) {
+std::string text_of(const candidate_name& name, aabb::stage stage) {
     const std::string text = text_in_line(name.choices, kinds_of(stage));
     return text.empty() ? name.engine : text;
 }
@@ -49,30 +49,30 @@ std::string text_of(const contender_name& name, aabb::stage stage) {
 /// Two frames, so that buffers have grown and data that is kept between frames exists.
 constexpr std::size_t explained_frames = 2;
 
-std::string explained(scene_play& scene, const contender& candidate) {
-    player p(candidate, scene, aabb::instrumentation::none);
-    play(scene, p, [](const played_frame&) {}, explained_frames);
-    const contender_name& name = candidate.name;
+std::string explained(scene_frames& scene, const candidate& tested) {
+    stage_runner p(tested, scene, aabb::instrumentation::none);
+    play(scene, p, [](const searched_frame&) {}, explained_frames);
+    const candidate_name& name = tested.name;
     std::string text = text_of("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
     text += text_of(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
     if (scene.meshes())
         text += text_of("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
     std::vector<std::string> planned;
-    for (const aabb::stage_plan& plan : p.plans()) planned.push_back(to_text(plan.told));
+    for (const aabb::stage_plan& plan : p.plans()) planned.push_back(to_text(plan.measures_table));
     text += indented_all("planned from what was seen", planned);
     std::vector<std::string> left_out;
     for (const aabb::omission& absent : omissions_of(name, p.left_out())) left_out.push_back(to_text(absent));
     return text + indented_all("left out", left_out);
 }
 
-void explain_contender(staged_scene& scene, const contender& candidate, const time_limits& limits) {
-    const work_apart work =
-        scene.apart([&](scene_play& play, const telling& tell) { tell(explained(play, candidate)); },
-                    share_of_part * limits.to_play());
+void explain_candidate(staged_scene& scene, const candidate& tested, const time_limits& limits) {
+    const child_result work =
+        scene.in_child([&](scene_frames& play, const output_sender& send) { send(explained(play, tested)); },
+                       share_of_part * limits.to_run());
     // A candidate rejects only invalid input.
-    if (work.end == ending::refused) throw aabb::input_error(work.reason);
-    print(indented("  ", text_of(candidate.name)));
-    print(work.end == ending::done ? work.told : indented("    ", "its bytes and plans: " + reason_of(work)));
+    if (work.end == ending::rejected) throw aabb::input_error(work.reason);
+    print(indented("  ", text_of(tested.name)));
+    print(work.end == ending::done ? work.measures_table : indented("    ", "its bytes and plans: " + reason_of(work)));
 }
 
 /// Lists parts of the config that do not apply to the scene.
@@ -87,16 +87,18 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
 
 /// Prints the scene and its measures, unless its input is invalid.
 void explain_measures(staged_scene& scene, const time_limits& limits) {
-    const work_apart work = scene.apart(
-        [](scene_play& play, const telling& tell) { tell(to_text(told(measure_scene(play)), output_width())); },
-        share_of_part * limits.to_play());
-    if (work.end == ending::refused) throw aabb::input_error(work.reason);
+    const child_result work = scene.in_child(
+        [](scene_frames& play, const output_sender& send) {
+            send(to_text(measures_table(measure_scene(play)), output_width()));
+        },
+        share_of_part * limits.to_run());
+    if (work.end == ending::rejected) throw aabb::input_error(work.reason);
     print_paragraph(heading_of(scene.choice()));
     table unmeasured = empty_table({"measured", ""});
     unmeasured.rows = {{"objects", grouped(scene.scene().objects())},
                        {"frames", grouped(scene.scene().frames())},
                        {"all else", reason_of(work)}};
-    print((work.end == ending::done ? work.told : to_text(unmeasured, output_width())) + "\n");
+    print((work.end == ending::done ? work.measures_table : to_text(unmeasured, output_width())) + "\n");
 }
 
 void print_selected(const std::vector<aabb::selected_strategy>& selected) {
@@ -110,14 +112,14 @@ void print_selected(const std::vector<aabb::selected_strategy>& selected) {
 /// @returns whether the results of all runs agree
 bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named, const time_limits& limits) {
     const bool meshes = scene.scene().meshes() != nullptr;
-    std::vector<aabb::selected_strategy> selected = select_strategies(named, outlook_of(scene.scene()));
+    std::vector<aabb::selected_strategy> selected = select_strategies(named, traits_of(scene.scene()));
     const aabb::composition c = composed_of(selected);
     if (!meshes)
         std::erase_if(selected, [](const aabb::selected_strategy& s) {
             return info_of(s.kind).stage == aabb::stage::local_detection;
         });
     print_selected(selected);
-    explain_contender(scene, contender_of(c, meshes), limits);
+    explain_candidate(scene, candidate_of(c, meshes), limits);
     print("\n");
     flush_output();
     return print_savings(scene, c, limits);
@@ -135,13 +137,13 @@ bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& 
         same &= explain_automatic(scene, named, limits);
         print("\n");
     }
-    const std::vector<contender> contenders = contenders_for(e, scene.choice());
-    for (const contender& candidate : contenders) {
-        if (candidate.name.is_automatic()) continue;
-        explain_contender(scene, candidate, limits);
+    const std::vector<candidate> candidates = candidates_for(e, scene.choice());
+    for (const candidate& tested : candidates) {
+        if (tested.name.is_automatic()) continue;
+        explain_candidate(scene, tested, limits);
         flush_output();
     }
-    if (contenders.size() > e.automatic.size()) print("\n");
+    if (candidates.size() > e.automatic.size()) print("\n");
     return same;
 }
 

@@ -25,7 +25,7 @@ namespace aabblab {
 
 /// All omissions of a configuration.
 /// @param by_stages the omissions that its stages report
-[[nodiscard]] std::vector<aabb::omission> omissions_of(const contender_name& name,
+[[nodiscard]] std::vector<aabb::omission> omissions_of(const candidate_name& name,
                                                        std::vector<aabb::omission> by_stages);
 
 /// Prints what each strategy of a composition saves in the scene, and its omissions. The composition runs interleaved

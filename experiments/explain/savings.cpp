@@ -22,7 +22,7 @@ constexpr std::size_t most_objects_of_any = 20'000;
 struct variant {
     std::string kind;  ///< the strategy kind in which it differs from the selected one; empty if none
     std::string name;  ///< of the strategy in its place
-    contender candidate;
+    candidate tested;
     std::vector<observation> times{};     ///< empty if no run finished
     std::optional<attempt> broken_off{};  ///< its first run, if that did not finish
     bool is_hopeless = false;             ///< far slower than the selected one
@@ -40,9 +40,9 @@ std::vector<variant> variants_by_strategy(const aabb::composition& selected, aab
         if (info.name == selected[kind].name) continue;
         aabb::composition c = selected;
         c[kind] = {info.name, {}};
-        if (refusal_of(c, info_of(kind).stage).empty() && is_exact(c, info_of(kind).stage) &&
+        if (rejection_of(c, info_of(kind).stage).empty() && is_exact(c, info_of(kind).stage) &&
             (meshes || needs_meshes(c).empty()))
-            variants.push_back({std::string(name_of(kind)), info.name, contender_of(c, meshes)});
+            variants.push_back({std::string(name_of(kind)), info.name, candidate_of(c, meshes)});
     }
     return variants;
 }
@@ -54,8 +54,8 @@ std::vector<variant> variants_by_settings(const aabb::composition& selected, aab
         for (const aabb::strategy_choice& choice : info.contrasts) {
             aabb::composition c = selected;
             c[kind] = choice;
-            if (c != selected && refusal_of(c, info_of(kind).stage).empty())
-                variants.push_back({std::string(name_of(kind)), to_text(choice), contender_of(c, meshes)});
+            if (c != selected && rejection_of(c, info_of(kind).stage).empty())
+                variants.push_back({std::string(name_of(kind)), to_text(choice), candidate_of(c, meshes)});
         }
     return variants;
 }
@@ -67,7 +67,7 @@ double median_ms(std::span<const observation> times) {
 /// The omissions, without their reasons.
 std::vector<aabb::absence> omitted_by(const variant& v) {
     std::vector<aabb::absence> absences;
-    for (const aabb::omission& absent : omissions_of(v.candidate.name, v.times.back().left_out))
+    for (const aabb::omission& absent : omissions_of(v.tested.name, v.times.back().left_out))
         if (std::ranges::find(absences, absent.what) == absences.end()) absences.push_back(absent.what);
     return absences;
 }
@@ -104,13 +104,13 @@ void print_omissions(std::span<const variant> variants) {
     print(wrapped("-: none that was played has it. Below 0: having it takes less. ?: as above.") + "\n");
 }
 
-contender with_counters(contender candidate) {
+candidate with_counters(candidate tested) {
     const auto counting = [](const auto& make) {
         return [make](aabb::instrumentation) { return make(aabb::instrumentation::counters); };
     };
-    candidate.make_global = counting(candidate.make_global);
-    if (candidate.make_local) candidate.make_local = counting(candidate.make_local);
-    return candidate;
+    tested.make_global = counting(tested.make_global);
+    if (tested.make_local) tested.make_local = counting(tested.make_local);
+    return tested;
 }
 
 std::vector<std::string> ratio_cells(const variant& v, std::span<const observation> selected) {
@@ -144,10 +144,10 @@ void print_unfinished(const std::vector<variant>& variants) {
 /// @returns whether the results of all variants agree
 bool print_disagreements(const std::vector<variant>& variants) {
     // Inexact candidates find other pairs by design, and move a reactive scene differently.
-    if (!variants.front().candidate.exact || !variants.front().candidate.exact_boxes) return true;
+    if (!variants.front().tested.exact || !variants.front().tested.exact_boxes) return true;
     std::vector<std::vector<observation>> times;
     for (const variant& v : variants) times.push_back(v.times);
-    const std::vector<std::size_t> wrong = who_disagrees(times);
+    const std::vector<std::size_t> wrong = disagreeing(times);
     for (const std::size_t i : wrong)
         print_paragraph(called(variants[i]) + " finds other pairs than what is selected: one of the two is wrong.");
     return wrong.empty();
@@ -155,10 +155,10 @@ bool print_disagreements(const std::vector<variant>& variants) {
 
 }  // namespace
 
-std::vector<aabb::omission> omissions_of(const contender_name& name, std::vector<aabb::omission> by_stages) {
+std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector<aabb::omission> by_stages) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         // The stages report the omissions of all other kinds.
-        if (!info_of(kind).apart || name[kind].empty()) continue;
+        if (!info_of(kind).in_child || name[kind].empty()) continue;
         const std::span<const aabb::strategy_info> strategies = aabb::strategies(kind);
         const auto strategy =
             std::ranges::find(strategies, aabb::parse_strategy(name[kind]).name, &aabb::strategy_info::name);
@@ -169,31 +169,31 @@ std::vector<aabb::omission> omissions_of(const contender_name& name, std::vector
 }
 
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
-    const scene_play& scene = staged.scene();
+    const scene_frames& scene = staged.scene();
     const bool meshes = scene.meshes() != nullptr;
     const bool is_small = scene.objects() <= most_objects_of_any;
-    std::vector<variant> variants{{"", "as selected", contender_of(selected, meshes)}};
+    std::vector<variant> variants{{"", "as selected", candidate_of(selected, meshes)}};
     std::vector<variant> by_settings;
     std::string alone;  // kinds without any other strategy that fits the composition
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
-        if (!is_small && !info_of(kind).apart) continue;
+        if (!is_small && !info_of(kind).in_child) continue;
         const std::vector<variant> of_kind = variants_by_strategy(selected, kind, meshes);
         variants.insert(variants.end(), of_kind.begin(), of_kind.end());
         std::ranges::move(variants_by_settings(selected, kind, meshes), std::back_inserter(by_settings));
         if (of_kind.empty()) alone += (alone.empty() ? "" : ", ") + std::string(name_of(kind));
     }
-    variants.push_back({"", "counters of all work", with_counters(variants.front().candidate)});
+    variants.push_back({"", "counters of all work", with_counters(variants.front().tested)});
     const std::size_t in_table = variants.size();
     std::ranges::move(by_settings, std::back_inserter(variants));
-    std::vector<contender> contenders;
-    for (const variant& v : variants) contenders.push_back(v.candidate);
-    turns outcome = play_in_turn(staged, contenders, most_frames, rounds, limits);
+    std::vector<candidate> candidates;
+    for (const variant& v : variants) candidates.push_back(v.tested);
+    turns outcome = run_interleaved(staged, candidates, most_frames, rounds, limits);
     if (outcome.times[0].empty()) {
-        const attempt& selected_play = *outcome.broken_off[0];
-        if (selected_play.end == ending::refused) throw aabb::input_error(selected_play.reason);
-        print_paragraph("what each choice saves is not known; as selected: " + text_of(selected_play) +
-                        (selected_play.end == ending::stopped ? "; increase --seconds" : "") + ".");
+        const attempt& selected_run = *outcome.broken_off[0];
+        if (selected_run.end == ending::rejected) throw aabb::input_error(selected_run.reason);
+        print_paragraph("what each choice saves is not known; as selected: " + text_of(selected_run) +
+                        (selected_run.end == ending::stopped ? "; increase --seconds" : "") + ".");
         return true;
     }
     for (std::size_t i = 0; i < variants.size(); ++i) {

@@ -7,7 +7,7 @@ import aabblab.tables;
 
 export namespace aabblab {
 
-enum class contender_role : std::uint8_t { composition, engine, triangle_test };
+enum class candidate_role : std::uint8_t { composition, engine, triangle_test };
 enum class row_group : std::uint8_t { boxes, meshes, cases };
 
 /// The result of one candidate in one scene, or on one pair of triangles in every order of corners.
@@ -16,16 +16,16 @@ struct extreme_row {
     std::string scene;  ///< or the name of the case
     std::string about;
     std::string kind{};  ///< the class of a case
-    std::string contender;
+    std::string candidate;
     std::string precision{};  ///< of the coordinates of a case, for triangle tests
-    contender_role role = contender_role::composition;
+    candidate_role role = candidate_role::composition;
     bool must_be_exact = true;
-    bool as_expected = true;       ///< if false, the suite fails
-    std::size_t stated_bytes = 0;  ///< memory bound of a composition; 0 if none is stated
-    aabb::judgement made{};        ///< for a case, counts the orders of corners with a wrong result
+    bool as_expected = true;        ///< if false, the suite fails
+    std::size_t stated_bytes = 0;   ///< memory bound of a composition; 0 if none is stated
+    aabb::extreme_result result{};  ///< for a case, counts the orders of corners with a wrong result
 
     /// "moller", "moller in float"
-    [[nodiscard]] std::string full_name() const { return contender + (precision.empty() ? "" : " in " + precision); }
+    [[nodiscard]] std::string full_name() const { return candidate + (precision.empty() ? "" : " in " + precision); }
 };
 
 /// The scenes of `aabb::extreme_scenes`, every class of generated pairs as two meshes, and real meshes with zero-area
@@ -38,11 +38,11 @@ struct extreme_list {
 
 /// Runs compositions, at full size with each named value of their parameters, then engines, then the default
 /// composition with each inexact triangle test.
-[[nodiscard]] std::vector<extreme_row> play_scenes(std::span<const aabb::extreme_scene> scenes,
-                                                   aabb::extreme_size size);
+[[nodiscard]] std::vector<extreme_row> run_extreme_scenes(std::span<const aabb::extreme_scene> scenes,
+                                                          aabb::extreme_size size);
 
 /// Runs triangle tests in float and in double, and compositions and engines on two meshes of one triangle each.
-[[nodiscard]] std::vector<extreme_row> play_cases(std::span<const aabb::triangle_case> cases);
+[[nodiscard]] std::vector<extreme_row> run_triangle_cases(std::span<const aabb::triangle_case> cases);
 
 /// One row per scene: compositions in one column, then engines.
 [[nodiscard]] table scene_table(std::span<const extreme_row> rows, row_group group);
@@ -64,7 +64,7 @@ struct extreme_list {
 [[nodiscard]] std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file);
 
 /// The distinct reasons of rejections, each with the scenes in which it occurs.
-[[nodiscard]] std::vector<std::string> refusals_in(std::span<const extreme_row> rows);
+[[nodiscard]] std::vector<std::string> rejections_in(std::span<const extreme_row> rows);
 /// A sentence for each row that is not as expected.
 [[nodiscard]] std::vector<std::string> failures_in(std::span<const extreme_row> rows);
 /// A sentence per scene with a memory bound: the maximum that compositions allocated.

@@ -33,64 +33,64 @@ row_list with(const row_list& rows, Value extreme_row::* member, const Value& va
 }
 
 /// The distinct names with this role.
-std::vector<std::string> contenders_in(std::span<const extreme_row> rows, contender_role role) {
+std::vector<std::string> candidates_in(std::span<const extreme_row> rows, candidate_role role) {
     std::vector<std::string> names;
-    for (const auto& [name, of_contender] : by(rows, &extreme_row::contender))
-        if (of_contender.front()->role == role) names.push_back(name);
+    for (const auto& [name, of_candidate] : by(rows, &extreme_row::candidate))
+        if (of_candidate.front()->role == role) names.push_back(name);
     return names;
 }
 
 /// "-12 +3" are false negatives and false positives; "-" if there are none.
-std::string counts(std::uint64_t missing, std::uint64_t invented) {
-    std::string text = missing > 0 ? "-" + std::to_string(missing) : "";
-    if (invented > 0) text += (text.empty() ? "+" : " +") + std::to_string(invented);
+std::string counts(std::uint64_t false_negatives, std::uint64_t false_positives) {
+    std::string text = false_negatives > 0 ? "-" + std::to_string(false_negatives) : "";
+    if (false_positives > 0) text += (text.empty() ? "+" : " +") + std::to_string(false_positives);
     return text.empty() ? "-" : text;
 }
 
 /// Sums up candidates that must be exact: "312 exact", "312 refused", or "3 WRONG".
 std::string sum_cell(const row_list& rows) {
     if (rows.empty()) return "-";
-    std::set<std::string> contenders;
+    std::set<std::string> candidates;
     std::set<std::string> failed;
-    bool refused = true;
+    bool rejected = true;
     for (const extreme_row* row : rows) {
-        contenders.insert(row->contender);
-        if (!row->as_expected) failed.insert(row->contender);
-        refused = refused && row->made.said == aabb::verdict::refused;
+        candidates.insert(row->candidate);
+        if (!row->as_expected) failed.insert(row->candidate);
+        rejected = rejected && row->result.outcome == aabb::verdict::rejected;
     }
     if (!failed.empty()) return std::to_string(failed.size()) + " WRONG";
-    return std::to_string(contenders.size()) + (refused ? " refused" : " exact");
+    return std::to_string(candidates.size()) + (rejected ? " refused" : " exact");
 }
 
 /// The cell of one candidate: "exact", "refused", "WRONG", or its counts of errors if it may be inexact; "-" if it was
 /// not run.
 std::string cell(const row_list& rows) {
     if (rows.empty()) return "-";
-    std::uint64_t missing = 0;
-    std::uint64_t invented = 0;
-    bool refused = false;
+    std::uint64_t false_negatives = 0;
+    std::uint64_t false_positives = 0;
+    bool rejected = false;
     bool wrong = false;
     for (const extreme_row* row : rows) {
         if (!row->as_expected) return "WRONG";
-        missing += row->made.missing;
-        invented += row->made.invented;
-        refused = refused || row->made.said == aabb::verdict::refused;
-        wrong = wrong || row->made.said == aabb::verdict::wrong;
+        false_negatives += row->result.false_negatives;
+        false_positives += row->result.false_positives;
+        rejected = rejected || row->result.outcome == aabb::verdict::rejected;
+        wrong = wrong || row->result.outcome == aabb::verdict::wrong;
     }
-    if (missing + invented > 0) return counts(missing, invented);
-    return refused ? "refused" : wrong ? "wrong" : "exact";
+    if (false_negatives + false_positives > 0) return counts(false_negatives, false_positives);
+    return rejected ? "refused" : wrong ? "wrong" : "exact";
 }
 
 /// One row per text: the first columns summarise its rows, then there is one column per name.
 template <class First>
-table contender_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* text,
+table candidate_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* text,
                       const std::vector<std::string>& names, First first) {
     table t{std::move(columns), {}};
     for (const std::string& name : names) t.columns.push_back({name});
     for (const auto& [value, same] : by(rows, text)) {
         std::vector<std::string>& cells = t.rows.emplace_back(1, value);
         std::ranges::move(first(same), std::back_inserter(cells));
-        for (const std::string& name : names) cells.push_back(cell(with(same, &extreme_row::contender, name)));
+        for (const std::string& name : names) cells.push_back(cell(with(same, &extreme_row::candidate, name)));
     }
     return t;
 }
@@ -106,36 +106,36 @@ std::vector<extreme_row> filtered(std::span<const extreme_row> rows, Wanted want
 table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* text) {
     std::set<std::string> wrong;
     for (const extreme_row& row : rows)
-        if (row.made.said == aabb::verdict::wrong) wrong.insert(row.*text);
+        if (row.result.outcome == aabb::verdict::wrong) wrong.insert(row.*text);
     const auto shown = filtered(rows, [&](const extreme_row& row) { return wrong.contains(row.*text); });
-    return contender_table({{title, false}}, shown, text, contenders_in(rows, contender_role::triangle_test),
+    return candidate_table({{title, false}}, shown, text, candidates_in(rows, candidate_role::triangle_test),
                            [](const row_list&) { return std::vector<std::string>(); });
 }
 
 constexpr std::array<std::string_view, 3> group_names = {"boxes", "meshes", "cases"};
 constexpr std::array<std::string_view, 3> role_names = {"composition", "engine", "triangle_test"};
 
-constexpr std::array<std::string_view, 2> answers = {"no", "yes"};
+constexpr std::array<std::string_view, 2> yes_no = {"no", "yes"};
 
 constexpr auto columns_of_row = [](auto& r, auto field) {
     field("group", one_of_words(r.group, group_names));
     field("scene", r.scene);
     field("class", r.kind);
-    field("contender", r.contender);
+    field("contender", r.candidate);
     field("precision", r.precision);
     field("role", one_of_words(r.role, role_names));
-    field("must_be_exact", one_of_words(r.must_be_exact, answers));
-    field("answer", one_of_words(r.made.said, aabb::verdict_names));
-    field("as_expected", one_of_words(r.as_expected, answers));
-    field("missing", r.made.missing);
-    field("invented", r.made.invented);
+    field("must_be_exact", one_of_words(r.must_be_exact, yes_no));
+    field("answer", one_of_words(r.result.outcome, aabb::verdict_names));
+    field("as_expected", one_of_words(r.as_expected, yes_no));
+    field("missing", r.result.false_negatives);
+    field("invented", r.result.false_positives);
     for (std::size_t i = 0; i < aabb::difference_class_names.size(); ++i)
-        field("missing_" + std::string(aabb::difference_class_names[i]), r.made.classes.missing[i]);
+        field("missing_" + std::string(aabb::difference_class_names[i]), r.result.classes.false_negatives[i]);
     for (std::size_t i = 0; i < aabb::difference_class_names.size(); ++i)
-        field("invented_" + std::string(aabb::difference_class_names[i]), r.made.classes.invented[i]);
-    field("bytes", r.made.bytes);
+        field("invented_" + std::string(aabb::difference_class_names[i]), r.result.classes.false_positives[i]);
+    field("bytes", r.result.bytes);
     field("stated_bytes", r.stated_bytes);
-    field("reason", r.made.reason);
+    field("reason", r.result.reason);
     field("about", r.about);
 };
 
@@ -146,36 +146,36 @@ table case_table(std::span<const extreme_row> rows) {
     const auto sums_of = [](const row_list& same) {
         std::set<std::string> cases;
         for (const extreme_row* row : same) cases.insert(row->scene);
-        const row_list tests = with(same, &extreme_row::role, contender_role::triangle_test);
+        const row_list tests = with(same, &extreme_row::role, candidate_role::triangle_test);
         return std::vector{std::to_string(cases.size()), sum_cell(with(tests, &extreme_row::must_be_exact, true)),
-                           sum_cell(with(same, &extreme_row::role, contender_role::composition))};
+                           sum_cell(with(same, &extreme_row::role, candidate_role::composition))};
     };
-    return contender_table({{"class", false}, {"cases"}, {"exact tests"}, {"compositions"}}, shown, &extreme_row::kind,
-                           contenders_in(shown, contender_role::engine), sums_of);
+    return candidate_table({{"class", false}, {"cases"}, {"exact tests"}, {"compositions"}}, shown, &extreme_row::kind,
+                           candidates_in(shown, candidate_role::engine), sums_of);
 }
 
 table inexact_case_table(std::span<const extreme_row> rows) {
     // Tests with non-default parameters are in the CSV file only.
     const auto shown = filtered(rows, [](const extreme_row& row) {
-        return row.group == row_group::cases && row.role == contender_role::triangle_test && !row.must_be_exact &&
-               aabb::parse_strategy(row.contender).settings.empty();
+        return row.group == row_group::cases && row.role == candidate_role::triangle_test && !row.must_be_exact &&
+               aabb::parse_strategy(row.candidate).settings.empty();
     });
     return wrong_table("class", shown, &extreme_row::kind);
 }
 
 table scene_table(std::span<const extreme_row> rows, row_group group) {
     const auto shown = filtered(
-        rows, [&](const extreme_row& row) { return row.group == group && row.role != contender_role::triangle_test; });
-    return contender_table(
-        {{"scene", false}, {"compositions"}}, shown, &extreme_row::scene, contenders_in(shown, contender_role::engine),
+        rows, [&](const extreme_row& row) { return row.group == group && row.role != candidate_role::triangle_test; });
+    return candidate_table(
+        {{"scene", false}, {"compositions"}}, shown, &extreme_row::scene, candidates_in(shown, candidate_role::engine),
         [](const row_list& same) {
-            return std::vector{sum_cell(with(same, &extreme_row::role, contender_role::composition))};
+            return std::vector{sum_cell(with(same, &extreme_row::role, candidate_role::composition))};
         });
 }
 
 table inexact_scene_table(std::span<const extreme_row> rows) {
     const auto shown = filtered(rows, [](const extreme_row& row) {
-        return row.group == row_group::meshes && row.role == contender_role::triangle_test;
+        return row.group == row_group::meshes && row.role == candidate_role::triangle_test;
     });
     return wrong_table("scene", shown, &extreme_row::scene);
 }
@@ -185,11 +185,12 @@ table class_table(std::span<const extreme_row> rows) {
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
     const auto shown =
         filtered(rows, [](const extreme_row& row) { return row.group == row_group::meshes && !row.must_be_exact; });
-    for (const auto& [name, of_contender] : by(shown, &extreme_row::contender)) {
+    for (const auto& [name, of_candidate] : by(shown, &extreme_row::candidate)) {
         aabb::differences sum;
-        for (const extreme_row* row : of_contender) sum += row->made.classes;
+        for (const extreme_row* row : of_candidate) sum += row->result.classes;
         std::vector<std::string> cells{name};
-        for (std::size_t c = 0; c < sum.missing.size(); ++c) cells.push_back(counts(sum.missing[c], sum.invented[c]));
+        for (std::size_t c = 0; c < sum.false_negatives.size(); ++c)
+            cells.push_back(counts(sum.false_negatives[c], sum.false_positives[c]));
         t.rows.push_back(std::move(cells));
     }
     return t;
@@ -198,10 +199,10 @@ table class_table(std::span<const extreme_row> rows) {
 std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto limited = filtered(
-        rows, [](const extreme_row& row) { return row.stated_bytes > 0 && row.role == contender_role::composition; });
+        rows, [](const extreme_row& row) { return row.stated_bytes > 0 && row.role == candidate_role::composition; });
     for (const auto& [scene, of_scene] : by(limited, &extreme_row::scene)) {
         std::size_t most = 0;
-        for (const extreme_row* row : of_scene) most = std::max(most, row->made.bytes);
+        for (const extreme_row* row : of_scene) most = std::max(most, row->result.bytes);
         sentences.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions hold at most " + grouped(most) +
                             " bytes, of " + grouped(of_scene.front()->stated_bytes) + " stated");
     }
@@ -217,10 +218,11 @@ std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file) {
                                      std::array<std::string_view, 2>{"precision", "stated_bytes"});
 }
 
-std::vector<std::string> refusals_in(std::span<const extreme_row> rows) {
+std::vector<std::string> rejections_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
-    const auto refused = filtered(rows, [](const extreme_row& row) { return row.made.said == aabb::verdict::refused; });
-    for (const auto& [sentence, same] : by(refused, [](const extreme_row& row) { return row.made.reason; })) {
+    const auto rejected =
+        filtered(rows, [](const extreme_row& row) { return row.result.outcome == aabb::verdict::rejected; });
+    for (const auto& [sentence, same] : by(rejected, [](const extreme_row& row) { return row.result.reason; })) {
         std::vector<std::string> scenes;
         for (const extreme_row* row : same)
             if (std::ranges::find(scenes, row->scene) == scenes.end()) scenes.push_back(row->scene);
@@ -234,7 +236,7 @@ std::vector<std::string> failures_in(std::span<const extreme_row> rows) {
     for (const extreme_row& row : rows)
         if (!row.as_expected)
             sentences.push_back(row.full_name() + " on " + row.scene + ": " +
-                                (row.made.said == aabb::verdict::refused ? "refuses: " : "") + row.made.reason);
+                                (row.result.outcome == aabb::verdict::rejected ? "refuses: " : "") + row.result.reason);
     return sentences;
 }
 

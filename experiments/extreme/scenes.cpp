@@ -52,13 +52,14 @@ aabb::extreme_scene scene_of(const std::string& file) {
 extreme_list all_extreme_scenes(aabb::extreme_size size) {
     extreme_list list{aabb::extreme_scenes(size), {}};
     for (const pair_class_info& info : pair_classes()) list.scenes.push_back(scene_of(info));
-    std::string missing;
+    std::string false_negatives;
     for (const std::string file : degenerate_meshes)
         if (is_mesh(file, {}))
             list.scenes.push_back(scene_of(file));
         else
-            missing += (missing.empty() ? "" : " and ") + file;
-    if (!missing.empty()) list.notes.push_back("left out are " + missing + ", which ./aabblab data fetches");
+            false_negatives += (false_negatives.empty() ? "" : " and ") + file;
+    if (!false_negatives.empty())
+        list.notes.push_back("left out are " + false_negatives + ", which ./aabblab data fetches");
     if (!aabb::can_flush_denormals())
         list.notes.emplace_back("left out are threads that flush denormals, which are not known on this processor");
     return list;

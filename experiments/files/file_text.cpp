@@ -36,12 +36,12 @@ void require_memory(const std::string& what, double bytes) {
 std::size_t size_of_file(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
-    if (status.type() == std::filesystem::file_type::not_found) refuse(file, "no such file");
-    if (status.type() == std::filesystem::file_type::none) refuse(file, "cannot be read: " + error.message());
-    if (is_directory(status)) refuse(file, "is a folder, not a file");
-    if (!is_regular_file(status)) refuse(file, "is not a regular file");
+    if (status.type() == std::filesystem::file_type::not_found) reject(file, "no such file");
+    if (status.type() == std::filesystem::file_type::none) reject(file, "cannot be read: " + error.message());
+    if (is_directory(status)) reject(file, "is a folder, not a file");
+    if (!is_regular_file(status)) reject(file, "is not a regular file");
     const auto size = std::filesystem::file_size(file, error);
-    if (error) refuse(file, "cannot be read: " + error.message());
+    if (error) reject(file, "cannot be read: " + error.message());
     return size;
 }
 
@@ -51,7 +51,7 @@ std::string system_error_text() {
 
 whole_file::whole_file(const std::filesystem::path& file, std::size_t size)
     : name_(file), size_(size), file_(std::fopen(file.c_str(), "rb")) {
-    if (!file_) refuse(file, "cannot be read: " + system_error_text());
+    if (!file_) reject(file, "cannot be read: " + system_error_text());
 }
 
 bool whole_file::has_read(void* to, std::size_t bytes) {
@@ -62,7 +62,7 @@ bool whole_file::has_read(void* to, std::size_t bytes) {
 
 void whole_file::read(void* to, std::size_t bytes) {
     if (!has_read(to, bytes))
-        refuse(name_, "cannot be read beyond byte " + std::to_string(done_) + " of " + std::to_string(size_));
+        reject(name_, "cannot be read beyond byte " + std::to_string(done_) + " of " + std::to_string(size_));
 }
 
 file_text read_whole(const std::filesystem::path& file, std::size_t size, double times) {

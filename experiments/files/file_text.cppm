@@ -7,7 +7,7 @@ import :text_decoder;
 namespace aabblab {
 
 /// Throws an input_error: "FILE: SENTENCE".
-[[noreturn]] inline void refuse(const std::filesystem::path& file, const std::string& sentence) {
+[[noreturn]] inline void reject(const std::filesystem::path& file, const std::string& sentence) {
     throw aabb::input_error(file.string() + ": " + sentence);
 }
 
@@ -15,7 +15,7 @@ struct file_text {
     std::string name;  ///< as the user wrote it
     std::string text;
 
-    [[noreturn]] void fail(const std::string& sentence) const { refuse(name, sentence); }
+    [[noreturn]] void fail(const std::string& sentence) const { reject(name, sentence); }
 };
 
 /// The word in quotes, for a message: at most 40 bytes of it, cut between characters.
@@ -43,7 +43,7 @@ struct file_text {
 /// Like `size_of_file`, but also rejects empty files.
 [[nodiscard]] inline std::size_t require_file(const std::filesystem::path& file) {
     const std::size_t size = size_of_file(file);
-    if (size == 0) refuse(file, "is empty");
+    if (size == 0) reject(file, "is empty");
     return size;
 }
 

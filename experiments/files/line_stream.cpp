@@ -29,15 +29,15 @@ public:
     explicit byte_source(const std::filesystem::path& file, const std::string& name = {})
         : name_(name.empty() ? file.string() : name),
           descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK)) {
-        if (descriptor_ < 0) refuse(name_, errno == ENOENT ? "no such file" : "cannot be read: " + system_error_text());
+        if (descriptor_ < 0) reject(name_, errno == ENOENT ? "no such file" : "cannot be read: " + system_error_text());
         try {
             struct stat status{};
-            if (fstat(descriptor_, &status) != 0) refuse(name_, "cannot be read: " + system_error_text());
-            if (S_ISDIR(status.st_mode)) refuse(name_, "is a folder, not a file");
+            if (fstat(descriptor_, &status) != 0) reject(name_, "cannot be read: " + system_error_text());
+            if (S_ISDIR(status.st_mode)) reject(name_, "is a folder, not a file");
             if (S_ISREG(status.st_mode)) size_ = static_cast<std::uintmax_t>(status.st_size);
             if (S_ISFIFO(status.st_mode)) wait_for_writer();
             // O_NONBLOCK keeps open() from waiting for a writer forever; reads block from here on.
-            if (fcntl(descriptor_, F_SETFL, 0) != 0) refuse(name_, "cannot be read: " + system_error_text());
+            if (fcntl(descriptor_, F_SETFL, 0) != 0) reject(name_, "cannot be read: " + system_error_text());
         } catch (...) {
             close(descriptor_);
             throw;
@@ -70,7 +70,7 @@ public:
         do count = ::read(descriptor_, bytes.data() + before, most);
         while (count < 0 && errno == EINTR);
         if (count < 0)
-            refuse(name_, errno == EISDIR ? "is a folder, not a file" : "cannot be read: " + system_error_text());
+            reject(name_, errno == EISDIR ? "is a folder, not a file" : "cannot be read: " + system_error_text());
         bytes.resize(before + static_cast<std::size_t>(count));
         return count > 0;
     }
@@ -87,7 +87,7 @@ private:
             const ssize_t count = ::read(descriptor_, first.data(), first.size());
             if (count > 0) ahead_ = first[0];
             if (count != 0) return;  // data, or a writer that has not written yet
-            if (std::chrono::steady_clock::now() > end) refuse(name_, "is a named pipe with no writer");
+            if (std::chrono::steady_clock::now() > end) reject(name_, "is a named pipe with no writer");
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
     }
@@ -149,7 +149,7 @@ bool line_stream::next() {
         s.read_on();
     }
     // Valid lines before malformed text are returned first.
-    if (end == std::string::npos && !s.decoder.problem().empty()) refuse(s.source.name(), s.decoder.problem());
+    if (end == std::string::npos && !s.decoder.problem().empty()) reject(s.source.name(), s.decoder.problem());
     if (end == std::string::npos && s.at == s.text.size()) return false;
     const std::size_t length = end == std::string::npos ? std::string::npos : end - s.at;
     s.line = line_without_return(std::string_view(s.text).substr(s.at, length),
@@ -172,7 +172,7 @@ std::uintmax_t line_stream::size() const noexcept {
 }
 
 void line_stream::fail(const std::string& sentence) const {
-    refuse(state_->source.name() + ":" + std::to_string(state_->number), sentence);
+    reject(state_->source.name() + ":" + std::to_string(state_->number), sentence);
 }
 
 std::string text_of_file(const std::filesystem::path& file, std::size_t most) {

@@ -69,7 +69,7 @@ loaded_mesh read_mesh(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     const std::string ending = mesh_ending_of(file);
     const auto reader = std::ranges::find(formats, ending, &format::ending);
-    if (reader == std::end(formats)) refuse(file, aabb::unknown_name("mesh format", ending, mesh_endings()));
+    if (reader == std::end(formats)) reject(file, aabb::unknown_name("mesh format", ending, mesh_endings()));
     if (ending == ".stl")
         if (std::optional<loaded_mesh> binary = read_binary_stl(file, size)) return *std::move(binary);
     // The mesh takes about as much memory as its text.

@@ -82,7 +82,7 @@ public:
     [[nodiscard]] loaded_mesh finish(std::size_t rounded, std::string_view before, std::size_t first) {
         aabb::mesh& m = loaded_.mesh;
         if (greatest_ > m.vertices.size())
-            refuse(std::string(before) + std::to_string(greatest_at_),
+            reject(std::string(before) + std::to_string(greatest_at_),
                    "a face uses vertex " + std::to_string(greatest_ - 1 + first) + ", but there are " +
                        std::to_string(m.vertices.size()) + " vertices, counted from " + std::to_string(first));
         settle_vertices(first);
@@ -90,7 +90,7 @@ public:
             aabb::require_valid(m);
         } catch (const aabb::input_error& error) {
             const std::string left_out = loaded_.report.left_out();
-            refuse(file_, error.what() + (left_out.empty() ? "" : " (" + left_out + ")"));
+            reject(file_, error.what() + (left_out.empty() ? "" : " (" + left_out + ")"));
         }
         cut_polygons(before);
         m.vertices.shrink_to_fit();
@@ -113,7 +113,7 @@ private:
             const polygon_shape shape =
                 cutter.cut(loaded_.mesh.vertices, std::span(loaded_.mesh.triangles).subspan(p.first, p.corners - 2));
             const auto fail = [&](const std::string& sentence) {
-                refuse(std::string(before) + std::to_string(p.place),
+                reject(std::string(before) + std::to_string(p.place),
                        "the boundary of a face of " + std::to_string(p.corners) + " corners " + sentence);
             };
             if (shape == polygon_shape::no_normal) fail("has no normal, as its signed area is zero");
@@ -137,7 +137,7 @@ private:
             for (const std::uint32_t corner : triangle) is_used[corner] = true;
         for (const auto& [index, line] : not_finite_) {
             if (is_used[index])
-                refuse(file_ + (line == 0 ? "" : ":" + std::to_string(line)),
+                reject(file_ + (line == 0 ? "" : ":" + std::to_string(line)),
                        "vertex " + std::to_string(index + first) +
                            " has a coordinate that is not finite, and a face uses it");
             if (!m.triangles.empty()) m.vertices[index] = m.vertices[m.triangles[0][0]];

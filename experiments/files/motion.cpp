@@ -95,7 +95,7 @@ public:
         steps_ = reader.read();
         meshes = std::move(scene_meshes);
         if (meshes.size() > reader.objects())
-            refuse(file, "moves " + std::to_string(reader.objects()) + " objects, but there are " +
+            reject(file, "moves " + std::to_string(reader.objects()) + " objects, but there are " +
                              std::to_string(meshes.size()) + " meshes");
         poses_.resize(reader.objects());
         for (std::size_t object = 0; object < poses_.size(); ++object)

@@ -120,7 +120,7 @@ private:
 
 struct attempt {
     std::optional<loaded_mesh> loaded;
-    std::string refusal;
+    std::string rejection;
     bool has_vertex = false;
     bool reached_end = false;
 };
@@ -149,8 +149,8 @@ loaded_mesh read_off(const file_text& file) {
     for (attempt* other : {&face_lines, &words})
         if (other->loaded) return *std::move(other->loaded);
     for (const attempt* failed : {&lines, &face_lines, &words})
-        if (failed->reached_end) throw aabb::input_error(failed->refusal);
-    throw aabb::input_error(lines.has_vertex ? lines.refusal : words.refusal);
+        if (failed->reached_end) throw aabb::input_error(failed->rejection);
+    throw aabb::input_error(lines.has_vertex ? lines.rejection : words.rejection);
 }
 
 }  // namespace aabblab

@@ -26,8 +26,8 @@ struct output_file::state {
         if (folder >= 0) close(folder);
     }
 
-    [[noreturn]] void refuse(const std::string& why) const { aabblab::refuse(target, "cannot be written: " + why); }
-    [[noreturn]] void fail() const { refuse(system_error_text()); }
+    [[noreturn]] void reject(const std::string& why) const { aabblab::reject(target, "cannot be written: " + why); }
+    [[noreturn]] void fail() const { reject(system_error_text()); }
 
     [[nodiscard]] std::filesystem::path folder_path() const {
         return target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
@@ -60,14 +60,14 @@ output_file::output_file(const std::filesystem::path& file) : state_(std::make_u
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     // The file is named only after all work is done, so an invalid name must be rejected now.
-    if (status.type() == std::filesystem::file_type::none) state_->refuse(error.message());
-    if (is_directory(status)) state_->refuse("it is a folder");
+    if (status.type() == std::filesystem::file_type::none) state_->reject(error.message());
+    if (is_directory(status)) state_->reject("it is a folder");
     if (exists(status) && !is_regular_file(status)) {
         state_->in_place = true;
         state_->file.reset(std::fopen(file.c_str(), "wb"));
     } else {
         if (std::filesystem::is_symlink(file, error)) {
-            if (!exists(status)) state_->refuse("it is a symbolic link to what is not there");
+            if (!exists(status)) state_->reject("it is a symbolic link to what is not there");
             state_->target = std::filesystem::canonical(file);  // the link itself is preserved
         }
         state_->folder = open(state_->folder_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
@@ -94,7 +94,7 @@ void output_file::require_space(double bytes) const {
     const auto available = static_cast<double>(space.available);
     if (bytes <= available) return;
     const auto [needed, free] = different_sizes(bytes, available);
-    refuse(state_->target, "would take " + needed + ", but only " + free + " are free");
+    reject(state_->target, "would take " + needed + ", but only " + free + " are free");
 }
 
 void output_file::write(const void* data, std::size_t bytes) {

@@ -212,7 +212,7 @@ public:
     [[nodiscard]] static std::size_t place(std::uint64_t face) { return face; }
     void end() const {
         if (bytes_.find_first_not_of(" \t\r\n") != std::string_view::npos)
-            refuse(file_, "goes on for " + std::to_string(bytes_.size()) +
+            reject(file_, "goes on for " + std::to_string(bytes_.size()) +
                               " bytes after the last element that its header announces");
     }
     [[nodiscard]] std::size_t rounded() const { return rounded_; }
@@ -222,14 +222,14 @@ public:
 private:
     [[nodiscard]] double number(scalar type) {
         if (bytes_.size() < bytes_of(type))
-            refuse(file_, "ends in element " + std::to_string(index_) + " of " + std::to_string(element_->count) +
+            reject(file_, "ends in element " + std::to_string(index_) + " of " + std::to_string(element_->count) +
                               " elements " + in_quotes(element_->name));
         const double value = number_at(&bytes_.front(), type, big_);
         bytes_.remove_prefix(bytes_of(type));
         return value;
     }
     [[noreturn]] void fail(const std::string& what) const {
-        refuse(file_, element_->name + " " + std::to_string(index_) + " " + what);
+        reject(file_, element_->name + " " + std::to_string(index_) + " " + what);
     }
 
     std::string file_;

@@ -44,13 +44,13 @@ public:
     bool next(std::vector<aabb::box>& boxes) override {
         if (frame_ == frames_) return false;
         const std::string here = "frame " + std::to_string(frame_);
-        if (!file_.has_read(records_.data(), records_.size() * sizeof(box_record))) refuse(name_, "ends in " + here);
+        if (!file_.has_read(records_.data(), records_.size() * sizeof(box_record))) reject(name_, "ends in " + here);
         boxes.resize(records_.size());
         std::ranges::transform(records_, boxes.begin(), unpacked);
         try {
             aabb::require_valid(boxes);
         } catch (const aabb::input_error& error) {
-            refuse(name_, here + ": " + error.what());
+            reject(name_, here + ": " + error.what());
         }
         ++frame_;
         return true;
@@ -67,7 +67,7 @@ private:
 /// Without objects the file size does not bound the number of frames, and running them would take hours.
 void require_few_empty_frames(const std::filesystem::path& file, std::size_t objects, std::size_t frames) {
     if (objects == 0 && frames > 1'000'000)
-        refuse(file, "a recording of 0 objects holds at most 1000000 frames, not " + std::to_string(frames));
+        reject(file, "a recording of 0 objects holds at most 1000000 frames, not " + std::to_string(frames));
 }
 
 /// A header field with the text, truncated to fit; never empty, as Broadmark rejects empty fields.
@@ -83,22 +83,22 @@ std::array<char, 128> field(const std::string& text, const std::string& otherwis
 std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     if (size < sizeof(header))
-        refuse(file, "is no recording: its header takes " + std::to_string(sizeof(header)) +
+        reject(file, "is no recording: its header takes " + std::to_string(sizeof(header)) +
                          " bytes, but the file has " + std::to_string(size));
     whole_file opened(file, size);
     header h{};
-    if (!opened.has_read(&h, sizeof h)) refuse(file, "cannot be read");
+    if (!opened.has_read(&h, sizeof h)) reject(file, "cannot be read");
     if (h.name.back() != 0 || h.type.back() != 0 || h.zero != std::array<std::int32_t, 2>{})
-        refuse(file, "is no recording: its header does not hold two names and two zeros");
+        reject(file, "is no recording: its header does not hold two names and two zeros");
     if (h.objects < 0 || h.last_frame < 0)
-        refuse(file, "its header announces " + std::to_string(h.objects) + " objects and " +
+        reject(file, "its header announces " + std::to_string(h.objects) + " objects and " +
                          std::to_string(h.last_frame) + " frames; neither can be negative");
-    if (!aabb::is_valid(unpacked(h.world))) refuse(file, "the world box in its header is inverted or not finite");
+    if (!aabb::is_valid(unpacked(h.world))) reject(file, "the world box in its header is inverted or not finite");
     // Counts boxes, as the announced size in bytes may overflow.
     const std::uint64_t boxes = static_cast<std::uint64_t>(h.objects) * (static_cast<std::uint64_t>(h.last_frame) + 1);
     const std::uint64_t stored = (size - sizeof(header)) / sizeof(box_record);
     if (boxes != stored || (size - sizeof(header)) % sizeof(box_record) != 0)
-        refuse(file, "its header announces " + std::to_string(boxes) + " boxes (" + std::to_string(h.objects) +
+        reject(file, "its header announces " + std::to_string(boxes) + " boxes (" + std::to_string(h.objects) +
                          " objects, " + std::to_string(h.last_frame) + " + 1 frames), but the file has " +
                          std::to_string(size - sizeof(header)) + " bytes of them, " +
                          std::to_string(sizeof(box_record)) + " each");
@@ -112,7 +112,7 @@ void write_recording(aabb::box_scene& scene, const std::string& name, const std:
                      const std::filesystem::path& file, const std::function<void(std::size_t)>& progress) {
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (scene.objects() > most || scene.frames() > most || scene.frames() == 0)
-        refuse(file, "a recording holds at most 2^31 - 1 objects and from 1 to 2^31 - 1 frames, not " +
+        reject(file, "a recording holds at most 2^31 - 1 objects and from 1 to 2^31 - 1 frames, not " +
                          std::to_string(scene.objects()) + " and " + std::to_string(scene.frames()));
     require_few_empty_frames(file, scene.objects(), scene.frames());
     header h{field(name, "scene"),

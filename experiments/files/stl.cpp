@@ -158,7 +158,7 @@ std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, st
             std::memcpy(&points[3 * t], bytes.data() + triangle_bytes * t + 12, 3 * sizeof points[0]);
         for (std::size_t i = 0; i < 3 * triangles; ++i) {
             if (!aabb::is_finite(points[i]))
-                refuse(file, "triangle " + std::to_string(first + i / 3) + " has a coordinate that is not finite");
+                reject(file, "triangle " + std::to_string(first + i / 3) + " has a coordinate that is not finite");
             hashes[i] = merger.prefetch(points[i]);
         }
         for (std::size_t t = 0; t < triangles; ++t) {

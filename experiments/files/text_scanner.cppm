@@ -77,13 +77,13 @@ public:
 
     /// @throws aabb::input_error with the file, the line and the sentence.
     [[noreturn]] void fail(const std::string& sentence) const {
-        refuse(file_ + ":" + std::to_string(number_), sentence);
+        reject(file_ + ":" + std::to_string(number_), sentence);
     }
     [[noreturn]] void expected(const std::string& what, std::string_view actual) const {
         fail("expected " + what + ", found " + (actual.empty() ? "the end of the line" : in_quotes(actual)));
     }
     /// Reports a file that ends too early.
-    [[noreturn]] void ends(const std::string& where) const { refuse(file_, "ends " + where); }
+    [[noreturn]] void ends(const std::string& where) const { reject(file_, "ends " + where); }
 
     /// Parses an integer in the range of its type.
     template <std::integral Whole>

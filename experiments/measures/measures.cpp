@@ -134,23 +134,23 @@ motion_measures measure_motion(std::span<const aabb::box> before, std::span<cons
 }
 
 scene_measures measure_scene(const scene_choice& choice) {
-    scene_play scene(choice);
+    scene_frames scene(choice);
     return measure_scene(scene);
 }
 
-scene_measures measure_scene(scene_play& scene) {
+scene_measures measure_scene(scene_frames& scene) {
     scene_measures m;
     m.objects = scene.objects();
     m.frames = scene.frames();
-    if (scene.meshes()) m.triangles = outlook_of(scene).triangles;
-    player p(contender_of(aabb::composition(), scene.meshes() != nullptr), scene, aabb::instrumentation::none);
+    if (scene.meshes()) m.triangles = traits_of(scene).triangles;
+    stage_runner p(candidate_of(aabb::composition(), scene.meshes() != nullptr), scene, aabb::instrumentation::none);
     recorded_frame before;
     std::size_t axis = 0;
     double changes = 0;
     std::size_t followed = 0;
-    play(
+    run_frames(
         scene, p,
-        [&](const played_frame& frame) {
+        [&](const searched_frame& frame) {
             recorded_frame current{{p.boxes().begin(), p.boxes().end()}, before.present};
             current.present.resize(current.boxes.size(), scene.meshes() != nullptr);
             for (const std::uint32_t id : scene.arrivals()) current.present[id] = true;
@@ -179,7 +179,7 @@ scene_measures measure_scene(scene_play& scene) {
     return m;
 }
 
-table told(const scene_measures& m) {
+table measures_table(const scene_measures& m) {
     table measured = empty_table({"measured", ""});
     const auto add = [&](const char* name, const std::string& value) { measured.rows.push_back({name, value}); };
     add("objects", grouped(m.objects));

@@ -46,10 +46,10 @@ struct scene_measures {
 /// @throws aabb::input_error if the scene cannot be created or run.
 [[nodiscard]] scene_measures measure_scene(const scene_choice& scene);
 /// Measures a scene that exists already and is at its first frame.
-[[nodiscard]] scene_measures measure_scene(scene_play& scene);
+[[nodiscard]] scene_measures measure_scene(scene_frames& scene);
 
 /// The rows that are printed: "displacement", "0.031 of a mean extent a frame".
-[[nodiscard]] table told(const scene_measures& m);
+[[nodiscard]] table measures_table(const scene_measures& m);
 
 /// "brownian (objects=1000, …)"
 [[nodiscard]] std::string heading_of(const scene_choice& scene);

@@ -20,7 +20,7 @@ std::size_t count_object_pairs(std::span<const aabb::contact> sorted) {
     return pairs;
 }
 
-void add_contacts(number_table& rows, const played_frame& frame, const scene_play& scene,
+void add_contacts(number_table& rows, const searched_frame& frame, const scene_frames& scene,
                   std::optional<hit_geometry>& geometry) {
     const auto mesh_of = [&](std::uint32_t object) -> const aabb::mesh& {
         return scene.meshes()->meshes[scene.meshes()->mesh_of[object]];
@@ -69,9 +69,9 @@ aabb::triangle_intersection hit_geometry::operator()(aabb::index_pair triangles)
     return aabb::carried(test_->intersection(in_double(s), in_double(t)), pose_a_);
 }
 
-search_method method_of(const search_choice& choice, const aabb::scene_outlook& outlook) {
+search_method method_of(const search_choice& choice, const aabb::scene_traits& traits) {
     constexpr auto uncounted = aabb::instrumentation::none;
-    const aabb::composition c = select_composition(choice.named, outlook);
+    const aabb::composition c = select_composition(choice.named, traits);
     search_method method;
     for (const aabb::stage stage : choice.stages) {
         const bool by_engine = choice.engine && stage == choice.stages.back();
@@ -88,15 +88,15 @@ search_method method_of(const search_choice& choice, const aabb::scene_outlook& 
     return method;
 }
 
-frames_result search_frames(scene_play& scene, search_method& method, number_table* rows) {
+frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows) {
     const bool meshes = scene.meshes() != nullptr;
     frames_result result;
     result.objects = scene.objects();
-    std::optional<player> searcher;
+    std::optional<stage_runner> searcher;
     result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(method.made), scene); });
     progress shown("frames searched", scene.frames());
     tally totals(meshes);
-    play(scene, *searcher, [&](const played_frame& frame) {
+    run_frames(scene, *searcher, [&](const searched_frame& frame) {
         result.ms.push_back(whole_nanoseconds(frame.ms()));
         const std::string where = fmt::format("{}, frame {}", method.name, frame.number);
         if (meshes) {

@@ -138,7 +138,7 @@ struct query_result {
 };
 
 /// @param stored whether pairs that share a vertex are stored
-query_result result_of(player& p, const mesh_query& query, const aabb::mesh& m, bool stored) {
+query_result result_of(stage_runner& p, const mesh_query& query, const aabb::mesh& m, bool stored) {
     query_result result;
     if (query.self) {
         p.each_self_pair(0, [&](aabb::index_pair pair) {
@@ -162,7 +162,7 @@ query_result result_of(player& p, const mesh_query& query, const aabb::mesh& m, 
 class pair_record {
 public:
     /// @param rows may be null
-    pair_record(const mesh_query& query, const scene_play& scene, mesh_result& result, number_table* rows)
+    pair_record(const mesh_query& query, const scene_frames& scene, mesh_result& result, number_table* rows)
         : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
 
     /// @param stored whether the pairs include those that share a vertex
@@ -188,14 +188,14 @@ private:
         digest_.add(pose_, pairs);
         if (!rows_ && !method_.geometry && query_.ask != question::first) return;
         for (const aabb::index_pair pair : pairs) {
-            found_pair row{pair, {}};
+            intersecting_pair row{pair, {}};
             if (method_.geometry) row.common = (*method_.geometry)(pair);
             if (rows_) add_row(row);
             if (query_.ask == question::first) result_.first.back() = row;
         }
     }
 
-    void add_row(const found_pair& pair) {
+    void add_row(const intersecting_pair& pair) {
         const auto [a, b] = pair.triangles;
         const std::string cells = pair.common ? to_cells(*pair.common) : "";
         if (query_.neighbours)
@@ -207,7 +207,7 @@ private:
     }
 
     const mesh_query& query_;
-    const scene_play& scene_;
+    const scene_frames& scene_;
     mesh_result& result_;
     search_method& method_;
     number_table* rows_;
@@ -231,12 +231,12 @@ std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
 mesh_result search_meshes(const mesh_query& query, const search_choice& choice, std::vector<aabb::mesh> meshes,
                           const aabb::pose& of_a, given_poses of_b, number_table* rows) {
     const std::size_t poses = of_b.poses.size();
-    scene_play scene(std::make_unique<posed_meshes>(std::move(meshes), of_a, std::move(of_b.poses), query.repeats));
-    aabb::scene_outlook outlook = outlook_of(scene);
-    outlook.frames = 1;  // every query is timed on its own: nothing is reused between them
+    scene_frames scene(std::make_unique<posed_meshes>(std::move(meshes), of_a, std::move(of_b.poses), query.repeats));
+    aabb::scene_traits traits = traits_of(scene);
+    traits.frames = 1;  // every query is timed on its own: nothing is reused between them
     mesh_result result;
-    result.method = method_of(choice, outlook);
-    std::optional<player> searcher;
+    result.method = method_of(choice, traits);
+    std::optional<stage_runner> searcher;
     result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(result.method.made), scene); });
     for (const aabb::mesh& m : scene.meshes()->meshes) result.triangles.push_back(m.triangle_count());
     // Within one mesh, pairs that share a vertex may dominate: n triangles around one vertex have n²/2 of them. They

@@ -56,7 +56,7 @@ struct search_method {
 };
 /// Selects the strategies that are not named for the scene.
 /// @throws aabb::input_error on an unknown engine or an invalid composition.
-[[nodiscard]] search_method method_of(const search_choice& choice, const aabb::scene_outlook& outlook);
+[[nodiscard]] search_method method_of(const search_choice& choice, const aabb::scene_traits& traits);
 
 struct frames_result {
     std::size_t objects = 0;
@@ -74,7 +74,7 @@ struct frames_result {
 /// Searches every frame of a scene.
 /// @param rows receives frame and pair, or frame, objects and triangles, and is committed; may be null
 /// @throws defect if a result is found twice.
-[[nodiscard]] frames_result search_frames(scene_play& scene, search_method& method, number_table* rows);
+[[nodiscard]] frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows);
 
 /// A query of two meshes, or of one mesh with itself.
 struct mesh_query {
@@ -86,18 +86,18 @@ struct mesh_query {
     std::string between = {};  ///< "a.off against b.off", for messages
 };
 
-struct found_pair {
+struct intersecting_pair {
     aabb::index_pair triangles;
     std::optional<aabb::triangle_intersection> common;  ///< if the method constructs it
 };
 
 struct mesh_result {
-    search_method method;                          ///< the method that searched
-    std::vector<std::uint32_t> triangles;          ///< their number, by mesh
-    std::vector<std::uint64_t> counts;             ///< by pose; within one mesh, pairs that share no vertex
-    std::optional<std::uint64_t> neighbours;       ///< within one mesh: pairs that share a vertex
-    std::vector<std::optional<found_pair>> first;  ///< by pose, if the query asks for any one pair
-    std::optional<std::string> digest;             ///< of all reported pairs; empty if they are only counted
+    search_method method;                                 ///< the method that searched
+    std::vector<std::uint32_t> triangles;                 ///< their number, by mesh
+    std::vector<std::uint64_t> counts;                    ///< by pose; within one mesh, pairs that share no vertex
+    std::optional<std::uint64_t> neighbours;              ///< within one mesh: pairs that share a vertex
+    std::vector<std::optional<intersecting_pair>> first;  ///< by pose, if the query asks for any one pair
+    std::optional<std::string> digest;                    ///< of all reported pairs; empty if they are only counted
     double build_ms = 0;
     std::vector<double> query_ms;  ///< by pose, for each repeat
     std::vector<aabb::part_bytes> bytes;

@@ -22,7 +22,7 @@ std::string beside_winner(const racer& r) {
 
 /// Describes `auto`, unless it is first or second and therefore described already.
 std::string of_automatic(const race_result& race) {
-    const auto is_automatic = [](const racer& r) { return r.who.name.is_automatic(); };
+    const auto is_automatic = [](const racer& r) { return r.tested.name.is_automatic(); };
     if (const auto ended = std::ranges::find_if(race.finalists, is_automatic); ended != race.finalists.end())
         return ended - race.finalists.begin() < 2 ? "" : ended->name + " " + beside_winner(*ended) + ".";
     const auto dropped = std::ranges::find_if(race.dropped, is_automatic);
@@ -58,7 +58,7 @@ std::optional<crossing> crossing_of(const racer& other, const racer& winner) {
 }
 
 /// The options that select a candidate; none for `auto`, which is the default.
-std::string options_of(const contender_name& name) {
+std::string options_of(const candidate_name& name) {
     if (name.is_automatic()) return "";
     std::string text;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
@@ -106,11 +106,11 @@ std::vector<std::string> what_would_change_it(const race_result& race) {
 /// Caveats: what did not run for lack of time, or was not compared with the ground truth.
 std::vector<std::string> what_was_left(const race_result& race) {
     std::vector<std::string> sentences;
-    const auto not_played =
+    const auto not_run =
         std::ranges::count_if(race.dropped, [](const racer& r) { return r.broken_off && r.broken_off->seconds == 0; });
-    if (not_played > 0)
+    if (not_run > 0)
         sentences.push_back(fmt::format("There was no time for {}; increase --seconds.",
-                                        counted(static_cast<std::size_t>(not_played), "other")));
+                                        counted(static_cast<std::size_t>(not_run), "other")));
     if (race.is_validated()) return sentences;
     const racer& winner = race.finalists.front();
     sentences.push_back(
@@ -136,7 +136,7 @@ std::vector<std::string> advice_of(const race_result& race) {
     for (const std::string& part : what_would_change_it(race)) use += "; " + part;
     std::vector<std::string> sentences{use + "."};
     if (std::string sentence = of_automatic(race); !sentence.empty()) sentences.push_back(std::move(sentence));
-    if (std::string options = options_of(winner.who.name); !options.empty()) sentences.push_back(std::move(options));
+    if (std::string options = options_of(winner.tested.name); !options.empty()) sentences.push_back(std::move(options));
     for (const racer& r : race.wrong)
         sentences.push_back(fmt::format("{} is out of the race: it does not find the exact pairs.", r.name));
     for (std::string& sentence : what_was_left(race)) sentences.push_back(std::move(sentence));

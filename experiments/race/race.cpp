@@ -52,7 +52,7 @@ observation median_of(std::vector<observation> times) {
 class race {
 public:
     race(staged_scene& scene, std::vector<racer> candidates, const time_limits& limits)
-        : scene_(scene), limits_(limits), whole_(limits.to_play()), running_(std::move(candidates)) {
+        : scene_(scene), limits_(limits), whole_(limits.to_run()), running_(std::move(candidates)) {
         result_.objects = scene.scene().objects();
         result_.frames = scene.scene().frames();
         result_.of = result_.frames * running_.size();
@@ -61,17 +61,17 @@ public:
     race_result run() {
         std::size_t frames = std::min(result_.frames, first_frames);
         double margin = first_margin;
-        play_first_round(frames, margin);
+        run_first_round(frames, margin);
         while (frames < result_.frames && running_.size() > most_finalists && left() > whole_ / 2) {
             frames = std::min(result_.frames, 2 * frames);
             margin = std::max(last_margin, std::sqrt(margin));
-            if (!play_round(frames, margin)) break;
+            if (!run_round(frames, margin)) break;
         }
         result_.final_frames = running_.front().last->frames;
         for (; running_.size() > most_finalists || (running_.size() > fewest_finalists && !final_fits(result_.frames));
              running_.pop_back())
             result_.dropped.push_back(std::move(running_.back()));
-        play_final();
+        run_final();
         compare_with_cgal();
         rank(running_);
         std::ranges::reverse(result_.dropped);
@@ -82,7 +82,7 @@ public:
     }
 
 private:
-    [[nodiscard]] double left() const { return limits_.to_play(); }
+    [[nodiscard]] double left() const { return limits_.to_run(); }
 
     /// The time limit of a run, given the seconds `least` of the fastest so far; the very first run gets more.
     [[nodiscard]] double longest(double least, double margin) const {
@@ -92,8 +92,8 @@ private:
 
     /// Runs a candidate on the first frames and records the outcome.
     /// @returns whether it finished
-    bool plays(racer& r, std::size_t frames, double seconds, double time_left) {
-        attempt outcome = scene_.play(r.who, frames, seconds, time_left);
+    bool runs(racer& r, std::size_t frames, double seconds, double time_left) {
+        attempt outcome = scene_.run(r.tested, frames, seconds, time_left);
         if (outcome.end != ending::done) {
             r.frames = std::max(r.frames, outcome.seen.frames);
             r.broken_off = std::move(outcome);
@@ -108,13 +108,13 @@ private:
     /// Runs all candidates on the first frames, with early stopping relative to the fastest so far. If the first round
     /// has too many frames, it continues with the number that the first successful candidate finished.
     /// @returns whether any candidate finished
-    bool play_all(std::size_t& frames, double margin, bool is_first_round) {
+    bool run_all(std::size_t& frames, double margin, bool is_first_round) {
         progress shown("racing over " + counted(frames, "frame"), running_.size());
         const double kept = is_first_round ? (1 - share_of_first_round) * whole_ : 0;
         double least = std::numeric_limits<double>::infinity();
         std::size_t done = 0;
         for (racer& r : running_) {
-            bool ends = plays(r, frames, longest(least, margin), left() - kept);
+            bool ends = runs(r, frames, longest(least, margin), left() - kept);
             if (!ends && is_first_round && !std::isfinite(least) && r.broken_off->end == ending::stopped &&
                 r.frames > 0) {
                 frames = r.frames;
@@ -129,21 +129,21 @@ private:
         return std::isfinite(least);
     }
 
-    void play_first_round(std::size_t& frames, double margin) {
-        if (!play_all(frames, margin, true)) {
+    void run_first_round(std::size_t& frames, double margin) {
+        if (!run_all(frames, margin, true)) {
             // There are no results to validate, so the first candidate gets that time too, for a single frame.
             frames = 1;
             racer& first = running_.front();
             first.broken_off.reset();
-            if (!plays(first, frames, limits_.to_end(), limits_.to_end())) refuse_all();
+            if (!runs(first, frames, limits_.to_end(), limits_.to_end())) reject_all();
         }
         finish_round(frames, margin);
     }
 
     /// Reports that no candidate finished any frame.
-    [[noreturn]] void refuse_all() const {
+    [[noreturn]] void reject_all() const {
         for (const racer& r : running_)
-            if (r.broken_off->end == ending::refused) throw aabb::input_error(r.broken_off->reason);
+            if (r.broken_off->end == ending::rejected) throw aabb::input_error(r.broken_off->reason);
         const racer& first = running_.front();
         throw aabb::input_error(fmt::format("no candidate finishes frame 0 of this scene; {}: {}{}", first.name,
                                             text_of(*first.broken_off),
@@ -152,12 +152,12 @@ private:
 
     /// Discards the round if time is over before all candidates have run, or if none finishes.
     /// @returns whether the round counts
-    bool play_round(std::size_t frames, double margin) {
+    bool run_round(std::size_t frames, double margin) {
         const std::vector<racer> before = running_;
-        const bool any_ends = play_all(frames, margin, false);
+        const bool any_ends = run_all(frames, margin, false);
         const bool is_cut =
             std::ranges::any_of(running_, [](const racer& r) { return r.broken_off && r.broken_off->is_out_of_time; });
-        if (!is_cut) require_any_unrefused();
+        if (!is_cut) require_any_accepted();
         if (is_cut || !any_ends) {
             running_ = before;
             return false;
@@ -168,7 +168,7 @@ private:
 
     void finish_round(std::size_t frames, double margin) {
         set_behind();
-        play_again(frames, margin);
+        run_again(frames, margin);
         judge(margin);
     }
 
@@ -182,11 +182,11 @@ private:
     }
 
     /// Repeats the runs of candidates that are slightly behind, since the first run may have been disturbed.
-    void play_again(std::size_t frames, double margin) {
+    void run_again(std::size_t frames, double margin) {
         constexpr double far_behind = 2;
         for (racer& r : running_) {
             if (r.broken_off || r.behind <= margin || r.behind > far_behind * margin || left() < whole_ / 2) continue;
-            const attempt second = scene_.play(r.who, frames, longest(r.seconds, margin), left());
+            const attempt second = scene_.run(r.tested, frames, longest(r.seconds, margin), left());
             if (second.end == ending::done && second.seen.whole_ms() < r.last->whole_ms()) r.last = second.seen;
         }
         set_behind();
@@ -230,15 +230,15 @@ private:
 
     /// Repeats interleaved runs of the finalists on as many frames, and as often, as time allows. Finalists that fail
     /// or far exceed their estimate are dropped. Without any finished repeat, the last round counts as one.
-    void play_final() {
+    void run_final() {
         std::size_t frames = result_.frames;
         while (frames > result_.final_frames && !final_fits(frames))
             frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);
         progress shown("racing to the end", most_repeats);
         const std::vector<racer> before = running_;
         bool is_cut = false;  // time is over within a repeat, which is discarded
-        const auto play = [&](racer& r, std::size_t) {
-            attempt outcome = scene_.play(r.who, frames, longest(seconds_of(r, frames), last_margin), left());
+        const auto run = [&](racer& r, std::size_t) {
+            attempt outcome = scene_.run(r.tested, frames, longest(seconds_of(r, frames), last_margin), left());
             if (outcome.is_out_of_time) {
                 is_cut = true;
             } else if (outcome.end == ending::done) {
@@ -252,13 +252,13 @@ private:
             if (is_cut)
                 for (racer& r : running_) r.times.resize(std::min(repeat, r.times.size()));
             else
-                require_any_unrefused();
+                require_any_accepted();
             keep([](const racer& r) { return !r.broken_off; });
             shown.at(repeat + 1);
         };
         const round_limits limits{
             .end = most_repeats, .left = [&] { return left(); }, .expected = seconds_of_repeat(frames)};
-        run_rounds(running_, limits, play, drop);
+        run_rounds(running_, limits, run, drop);
         if (!running_.empty() && !running_.front().times.empty()) {
             result_.final_frames = frames;
             return;
@@ -277,17 +277,17 @@ private:
     }
 
     /// Rejects the scene if all candidates reject it: its input is invalid.
-    void require_any_unrefused() const {
+    void require_any_accepted() const {
         if (std::ranges::all_of(running_,
-                                [](const racer& r) { return r.broken_off && r.broken_off->end == ending::refused; }))
+                                [](const racer& r) { return r.broken_off && r.broken_off->end == ending::rejected; }))
             throw aabb::input_error(running_.front().broken_off->reason);
     }
 
     /// Removes finalists whose results differ from those of CGAL, on the first frames if CGAL does not finish in time.
     void compare_with_cgal() {
         const auto cgal = std::ranges::find(aabb::engines(), "cgal", &aabb::engine_info::name);
-        const attempt exact = scene_.play(*contender_of(*cgal, scene_.scene().meshes() != nullptr),
-                                          result_.final_frames, limits_.to_end());
+        const attempt exact = scene_.run(*candidate_of(*cgal, scene_.scene().meshes() != nullptr), result_.final_frames,
+                                         limits_.to_end());
         result_.validated = exact.seen.frames;
         if (result_.validated == 0) return;
         const auto agrees = [&](const racer& r) {
@@ -323,26 +323,25 @@ void rank(std::vector<racer>& finalists) {
                      [](const racer& a, const racer& b) { return a.log_ratio->value < b.log_ratio->value; });
 }
 
-std::vector<racer> starters(const scene_play& scene) {
+std::vector<racer> starters(const scene_frames& scene) {
     const bool meshes = scene.meshes() != nullptr;
     std::vector<racer> candidates;
-    const auto add = [&](contender candidate, std::string name) {
+    const auto add = [&](candidate tested, std::string name) {
         racer& r = candidates.emplace_back();
-        r.who = std::move(candidate);
+        r.tested = std::move(tested);
         r.name = std::move(name);
     };
-    const auto automatic = contender_of(select_composition({}, outlook_of(scene)), meshes).name;
-    add(contender_of(aabb::named_strategies(), scene), "auto (= " + text_of(automatic) + ")");
+    const auto automatic = candidate_of(select_composition({}, traits_of(scene)), meshes).name;
+    add(candidate_of(aabb::named_strategies(), scene), "auto (= " + text_of(automatic) + ")");
     // An inexact engine cannot be recommended.
     for (const aabb::engine_info& engine : aabb::engines())
         if (engine.exact && (meshes ? engine.collides_meshes : engine.searches_boxes))
-            if (const auto candidate = contender_of(engine, meshes)) add(*candidate, text_of(candidate->name));
+            if (const auto tested = candidate_of(engine, meshes)) add(*tested, text_of(tested->name));
     const auto stage = meshes ? aabb::stage::local_detection : aabb::stage::global_search;
     for (const aabb::composition& c : aabb::every_composition(stage)) {
         if (!is_exact(c, stage) || (!meshes && !needs_meshes(c).empty())) continue;
         // `auto` already is this composition.
-        if (contender candidate = contender_of(c, meshes); candidate.name != automatic)
-            add(candidate, text_of(candidate.name));
+        if (candidate tested = candidate_of(c, meshes); tested.name != automatic) add(tested, text_of(tested.name));
     }
     std::shuffle(candidates.begin() + 1, candidates.end(), std::mt19937_64(1));
     return candidates;

@@ -13,7 +13,7 @@ export namespace aabblab {
 inline constexpr std::size_t fewest_repeats = 5;
 
 struct racer {
-    contender who;
+    candidate tested;
     std::string name;
     std::vector<observation> times;     ///< of a finalist: the final, by repeat
     std::optional<observation> last;    ///< the last round that it finished; of a finalist, the median
@@ -48,7 +48,7 @@ struct race_result {
 
 /// The candidates for a scene: first `auto`, then the exact engines and every other composition of the relevant stage,
 /// in a reproducible random order, since there may be no time for all.
-[[nodiscard]] std::vector<racer> starters(const scene_play& scene);
+[[nodiscard]] std::vector<racer> starters(const scene_frames& scene);
 
 /// @throws aabb::input_error if the scene cannot be run, or no candidate finishes its first frame in time.
 [[nodiscard]] race_result run_race(staged_scene& scene, std::vector<racer> candidates, const time_limits& limits);

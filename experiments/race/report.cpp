@@ -85,9 +85,10 @@ std::string page_of(const std::string& scene, const race_result& race, const std
 
 /// The measures of the scene as HTML, or a note that there was no time for them.
 std::string measures_page(staged_scene& scene, double seconds) {
-    const work_apart measured =
-        scene.apart([](scene_play& play, const telling& tell) { tell(to_html(told(measure_scene(play)))); }, seconds);
-    return measured.end == ending::done ? measured.told
+    const child_result measured = scene.in_child(
+        [](scene_frames& run, const output_sender& send) { send(to_html(measures_table(measure_scene(run)))); },
+        seconds);
+    return measured.end == ending::done ? measured.measures_table
                                         : "<p>There was no time to measure what the scene is like.</p>\n";
 }
 

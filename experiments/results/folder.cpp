@@ -56,7 +56,7 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
     const std::filesystem::path table = folder_ / "results.csv";
     const std::filesystem::path manifest = folder_ / "manifest.json";
     if (existing == existing_results::replace && std::filesystem::exists(table) && std::filesystem::exists(manifest)) {
-        replaced_ = refusal_to_resume(manifest, experiment_);
+        replaced_ = rejection_to_resume(manifest, experiment_);
         // Renamed, not deleted: results may have taken hours. The table comes last, because its presence triggers this.
         if (!replaced_.empty())
             for (const char* name : {"differences.csv", "results.csv"})
@@ -66,7 +66,7 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
     if (std::filesystem::exists(table)) {
         rows_ = read_rows(table);
         for (const row& r : rows_) keys_.insert(r.key());
-        if (!rows_.empty() && existing == existing_results::refuse)
+        if (!rows_.empty() && existing == existing_results::reject)
             throw aabb::input_error("results are already in " + folder_.string() +
                                     "; --resume continues them, --out DIR puts new ones elsewhere");
         drop_torn_row(table);
@@ -113,7 +113,7 @@ void results_folder::drop_where(const std::function<bool(const row&)>& dropped) 
     open_table();
 }
 
-void results_folder::drop(const scene_choice& scene, const contender_name& name) {
+void results_folder::drop(const scene_choice& scene, const candidate_name& name) {
     drop_where([&](const row& r) { return r.scene == scene && r.name == name; });
 }
 
@@ -126,7 +126,7 @@ void results_folder::set_digest(const scene_choice& scene, const std::string& di
     write_manifest();
 }
 
-void results_folder::set_differences(const scene_choice& scene, std::span<const contender_name> of,
+void results_folder::set_differences(const scene_choice& scene, std::span<const candidate_name> of,
                                      std::span<const difference> differences) {
     std::erase_if(differences_,
                   [&](const difference& d) { return d.scene == scene && std::ranges::find(of, d.name) != of.end(); });
@@ -139,7 +139,7 @@ void results_folder::seal() {
     if (const std::filesystem::path table = folder_ / "differences.csv"; std::filesystem::exists(table))
         seals.differences = seal_of(table);
     for (const row& r : rows_)
-        if (std::ranges::find(seals.contenders, r.name) == seals.contenders.end()) seals.contenders.push_back(r.name);
+        if (std::ranges::find(seals.candidates, r.name) == seals.candidates.end()) seals.candidates.push_back(r.name);
     write_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_, seals));
 }
 

@@ -50,7 +50,7 @@ json costs() {
     return {{"source", aabb::machine_costs() == aabb::cost_model{} ? "shipped" : "calibrated"}, {"ns", std::move(ns)}};
 }
 
-json json_of(const contender_name& name) {
+json json_of(const candidate_name& name) {
     json parts = json::object();
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (!name[kind].empty()) parts[std::string(name_of(kind))] = name[kind];
@@ -58,8 +58,8 @@ json json_of(const contender_name& name) {
     return parts;
 }
 
-contender_name contender_of(const json_value& parts) {
-    contender_name name;
+candidate_name candidate_of(const json_value& parts) {
+    candidate_name name;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         name[kind] = parts.text(std::string(name_of(kind))).value_or("");
     name.engine = parts.text("engine").value_or("");
@@ -88,7 +88,7 @@ std::string checksum_of(json manifest) {
 results_seal seal_in(const json_value& seal) {
     results_seal checksums{table_of(seal.needed("results.csv")), std::nullopt, {}};
     if (const auto table = seal.member("differences.csv")) checksums.differences = table_of(*table);
-    for (const json_value& c : seal.objects("contenders")) checksums.contenders.push_back(contender_of(c));
+    for (const json_value& c : seal.objects("contenders")) checksums.candidates.push_back(candidate_of(c));
     return checksums;
 }
 
@@ -174,7 +174,7 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
         json& checksums = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
         if (seal->differences) checksums["differences.csv"] = json_of(*seal->differences);
         checksums["contenders"] = json::array();
-        for (const contender_name& name : seal->contenders) checksums["contenders"].push_back(json_of(name));
+        for (const candidate_name& name : seal->candidates) checksums["contenders"].push_back(json_of(name));
         checksums["manifest"] = checksum_of(manifest);
     }
     return text_of(manifest, 2) + "\n";
@@ -192,7 +192,7 @@ sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
     return result;
 }
 
-std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
+std::string rejection_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
     const read_in previous = read_json(manifest);
     const std::string where = "the results in " + manifest.parent_path().string();
     if (previous.content.needed("config").text("hash") != e.hash)
@@ -214,8 +214,8 @@ std::string refusal_to_resume(const std::filesystem::path& manifest, const exper
 }
 
 std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::path& file, const experiment_record& e) {
-    if (const std::string refusal = refusal_to_resume(file, e); !refusal.empty())
-        throw aabb::input_error(refusal + "; --out DIR puts new ones elsewhere");
+    if (const std::string rejection = rejection_to_resume(file, e); !rejection.empty())
+        throw aabb::input_error(rejection + "; --out DIR puts new ones elsewhere");
     const read_in previous = read_json(file);
     scene_digests digests;
     for (auto& [scene, digest] : scenes_in(previous))

@@ -11,7 +11,7 @@ export namespace aabblab {
 
 /// The name of a composition or an engine in the columns of every table: the choice of each kind, in the syntax of the
 /// command line, or the engine. Parts that do not apply are empty.
-struct contender_name {
+struct candidate_name {
     aabb::by_kind<std::string> choices;
     std::string engine;
 
@@ -23,7 +23,7 @@ struct contender_name {
 
     [[nodiscard]] std::string& operator[](aabb::strategy_kind kind) { return choices[kind]; }
     [[nodiscard]] const std::string& operator[](aabb::strategy_kind kind) const { return choices[kind]; }
-    friend auto operator<=>(const contender_name&, const contender_name&) = default;
+    friend auto operator<=>(const candidate_name&, const candidate_name&) = default;
 };
 
 /// The parts of a stage that have a column of bytes; other parts of an engine count as `engine`. `triangles` and
@@ -38,7 +38,7 @@ struct row {
     scene_choice scene;
     std::uint64_t objects = 0;
     std::uint64_t frames = 0;
-    contender_name name;
+    candidate_name name;
     std::uint64_t repeat = 0;
     std::uint64_t process = 0;               ///< the process that timed it, from 0
     std::optional<std::uint64_t> triangles;  ///< of the scene's meshes, each counted once; empty in scenes of boxes
@@ -58,10 +58,10 @@ struct row {
     /// Sums over the frames after frame 0, or of frame 0 if it is the only one.
     std::array<std::optional<std::uint64_t>, aabb::work_names.size()> counts;
     std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes;
-    std::optional<std::uint64_t> missing;   ///< false negatives: pairs or contacts of the ground truth
-    std::optional<std::uint64_t> invented;  ///< false positives
-    std::optional<double> box_inflation;    ///< surface area of a tree's boxes over that of tight boxes, less 1
-    std::string status;                     ///< "exact" or "inexact"
+    std::optional<std::uint64_t> false_negatives;  ///< false negatives: pairs or contacts of the ground truth
+    std::optional<std::uint64_t> false_positives;  ///< false positives
+    std::optional<double> box_inflation;           ///< surface area of a tree's boxes over that of tight boxes, less 1
+    std::string status;                            ///< "exact" or "inexact"
 
     /// Equal keys identify the same measurement.
     [[nodiscard]] std::string key() const;
@@ -85,7 +85,7 @@ struct row {
 /// A line of differences.csv: the number of false negatives or false positives of one class and candidate in a scene.
 struct difference {
     scene_choice scene;
-    contender_name name;
+    candidate_name name;
     std::string what;  ///< "missing" or "invented"
     std::string kind;  ///< a class of aabb::difference_class_names, or "boxes" for pairs of boxes
     std::uint64_t count = 0;
@@ -107,7 +107,7 @@ private:
 
 /// The treatment of existing results: `replace` resumes them if config, build and machine are the same, and otherwise
 /// renames them to results.csv.old.
-enum class existing_results { refuse, resume, replace };
+enum class existing_results { reject, resume, replace };
 
 struct experiment_record {
     std::string name;
@@ -143,12 +143,12 @@ public:
     /// Appends a row and flushes the file.
     void add(const row& finished);
     /// Deletes the rows of a candidate, or of a repeat, in a scene.
-    void drop(const scene_choice& scene, const contender_name& name);
+    void drop(const scene_choice& scene, const candidate_name& name);
     void drop(const scene_choice& scene, std::uint64_t repeat);
     /// Records the digest of the ground truth of a scene in the manifest.
     void set_digest(const scene_choice& scene, const std::string& digest);
     /// Replaces the differences of these candidates in this scene.
-    void set_differences(const scene_choice& scene, std::span<const contender_name> of,
+    void set_differences(const scene_choice& scene, std::span<const candidate_name> of,
                          std::span<const difference> differences);
     /// Seals a finished experiment: adds checksums to the manifest, by which missing or altered rows are detected
     /// later. Opening the results again removes the seal.
@@ -214,7 +214,7 @@ struct table_seal {
 struct results_seal {
     table_seal results;
     std::optional<table_seal> differences;
-    std::vector<contender_name> contenders;  ///< in the order in which they were run
+    std::vector<candidate_name> candidates;  ///< in the order in which they were run
 };
 
 [[nodiscard]] std::string manifest_text(const experiment_record& e, const std::string& date,
@@ -229,7 +229,7 @@ struct sealed_manifest {
 [[nodiscard]] sealed_manifest read_sealed_manifest(const std::filesystem::path& file);
 
 /// The reason why results cannot be resumed, such as another config, build or machine; empty if they can.
-[[nodiscard]] std::string refusal_to_resume(const std::filesystem::path& manifest, const experiment_record& e);
+[[nodiscard]] std::string rejection_to_resume(const std::filesystem::path& manifest, const experiment_record& e);
 /// The date and the digests of results that are resumed.
 /// @throws aabb::input_error if they cannot be resumed.
 [[nodiscard]] std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::path& file,

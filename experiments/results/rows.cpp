@@ -54,8 +54,8 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
     field("digest", r.digest);
     for (std::size_t i = 0; i < r.counts.size(); ++i) field(std::string(aabb::work_names[i]), r.counts[i]);
     for (std::size_t i = 0; i < r.bytes.size(); ++i) field("bytes_" + std::string(byte_columns[i]), r.bytes[i]);
-    field("missing", r.missing);
-    field("invented", r.invented);
+    field("missing", r.false_negatives);
+    field("invented", r.false_positives);
     field("box_inflation", r.box_inflation);
     field("status", r.status);
 };

@@ -33,9 +33,9 @@ void require_known(const known_scenes& known, const row& r, const std::string& p
 }
 
 /// Restores the order of the run: by scene, repeat and candidate.
-void sort_as_run(std::vector<row>& rows, const known_scenes& scenes, const std::vector<contender_name>& contenders) {
-    std::map<contender_name, std::size_t> turns;
-    for (const contender_name& name : contenders) turns.emplace(name, turns.size());
+void sort_as_run(std::vector<row>& rows, const known_scenes& scenes, const std::vector<candidate_name>& candidates) {
+    std::map<candidate_name, std::size_t> turns;
+    for (const candidate_name& name : candidates) turns.emplace(name, turns.size());
     std::vector<std::tuple<std::size_t, std::uint64_t, std::size_t, std::size_t>> order;
     for (std::size_t i = 0; i < rows.size(); ++i)
         order.emplace_back(scenes.at(rows[i].scene).first, rows[i].repeat, turns[rows[i].name], i);
@@ -74,7 +74,7 @@ std::vector<row> verified_rows(const std::filesystem::path& folder) {
     if (!manifest.seal) return rows;
     require_seal(table, manifest.seal->results);
     if (manifest.seal->differences) require_seal(folder / "differences.csv", *manifest.seal->differences);
-    sort_as_run(rows, scenes, manifest.seal->contenders);
+    sort_as_run(rows, scenes, manifest.seal->candidates);
     return rows;
 }
 

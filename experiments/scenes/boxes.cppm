@@ -96,8 +96,8 @@ public:
     [[nodiscard]] std::size_t frames() const final { return std::size_t{size_.frames} + 1; }
 
     bool next(std::vector<aabb::box>& boxes) final {
-        if (played_ == frames()) return false;
-        if (played_++ > 0) advance();
+        if (frames_run_ == frames()) return false;
+        if (frames_run_++ > 0) advance();
         boxes.resize(objects());
         place(boxes);
         return true;
@@ -117,13 +117,13 @@ protected:
     virtual void advance() {}
     virtual void place(std::span<aabb::box> boxes) = 0;
     /// The index of the current frame, in `advance` and in `place`.
-    [[nodiscard]] std::size_t frame() const { return played_ - 1; }
+    [[nodiscard]] std::size_t frame() const { return frames_run_ - 1; }
 
     random_source random_;
 
 private:
     scene_size size_;
-    std::size_t played_ = 0;
+    std::size_t frames_run_ = 0;
 };
 
 /// Boxes that drift with points: by default, unit cubes with their lowest corner there.

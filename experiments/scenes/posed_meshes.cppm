@@ -81,10 +81,10 @@ public:
     [[nodiscard]] std::size_t frames() const final { return frames_; }
 
     bool next(std::vector<aabb::pose>& poses) final {
-        if (played_ == frames_) return false;
-        if (played_ > 0) advance();
-        place(played_, poses);
-        ++played_;
+        if (frames_run_ == frames_) return false;
+        if (frames_run_ > 0) advance();
+        place(frames_run_, poses);
+        ++frames_run_;
         return true;
     }
 
@@ -100,11 +100,11 @@ protected:
     virtual void advance() = 0;
     /// @param frame its number, from 0
     virtual void place(std::size_t frame, std::vector<aabb::pose>& poses) = 0;
-    [[nodiscard]] std::size_t played() const { return played_; }
+    [[nodiscard]] std::size_t frames_run() const { return frames_run_; }
 
 private:
     std::size_t frames_;
-    std::size_t played_ = 0;
+    std::size_t frames_run_ = 0;
 };
 
 }  // namespace aabblab

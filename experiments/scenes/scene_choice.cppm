@@ -10,7 +10,7 @@ struct scene_info {
     std::string name;  ///< "brownian", "lattice"; "mesh_pair", "mesh_swarm"
     std::string summary;
     bool has_meshes;
-    bool plays_file;  ///< whether it reads its parameter `file`; it then has no seed
+    bool reads_file;  ///< whether it reads its parameter `file`; it then has no seed
     std::vector<aabb::parameter_info> parameters;
 };
 

@@ -11,7 +11,7 @@ namespace aabblab {
 
 struct method {
     std::string label;
-    contender who;
+    candidate tested;
 };
 
 /// The default composition with one strategy replaced, as on the command line: "triangle moller:epsilon=none".
@@ -21,7 +21,7 @@ struct method {
     const std::string_view name = changes.substr(0, space);
     const auto kind = std::ranges::find(aabb::strategy_kinds, name, &aabb::name_of);
     c[*kind] = aabb::parse_strategy(changes.substr(space + 1));
-    return {std::string(changes.substr(space + 1)), contender_of(c, true)};
+    return {std::string(changes.substr(space + 1)), candidate_of(c, true)};
 }
 
 /// Every triangle test of the registry with each of its settings, and each engine that collides meshes.
@@ -36,8 +36,8 @@ struct method {
     for (const aabb::engine_info& engine : aabb::engines())
         // brute_force uses the same triangle predicate as cgal, but is slower.
         if (engine.collides_meshes && engine.name != "brute_force")
-            if (std::optional<contender> candidate = contender_of(engine, true))
-                methods.push_back({engine.name, *std::move(candidate)});
+            if (std::optional<candidate> tested = candidate_of(engine, true))
+                methods.push_back({engine.name, *std::move(tested)});
     return methods;
 }
 

@@ -14,7 +14,7 @@ namespace aabblab {
 }
 
 /// Runs one part of a study. If an integrator fails, it adds a row that does not hold.
-void unless_it_gives_up(stiff_result& result, std::string_view integrator, const std::function<void()>& part) {
+void record_failure_of(stiff_result& result, std::string_view integrator, const std::function<void()>& part) {
     try {
         part();
     } catch (const aabb::input_error& error) {
@@ -22,7 +22,7 @@ void unless_it_gives_up(stiff_result& result, std::string_view integrator, const
     }
 }
 
-[[nodiscard]] stiff_row told(std::string subject, std::string quantity, double measured) {
+[[nodiscard]] stiff_row reported(std::string subject, std::string quantity, double measured) {
     return {std::move(subject), std::move(quantity), measured, ""};
 }
 

@@ -35,11 +35,11 @@ class simulation {
 public:
     /// @param world must outlive this
     /// @param tolerance of an adaptive integrator
-    simulation(const stepped_world& world, const contender& candidate, const integrator_info& stepping,
+    simulation(const stepped_world& world, const candidate& tested, const integrator_info& stepping,
                double tolerance = 0)
         : poses_(new posed_bodies(world)),
-          play_(std::unique_ptr<aabb::mesh_scene>(poses_)),
-          player_(candidate, play_, aabb::instrumentation::none),
+          frames_(std::unique_ptr<aabb::mesh_scene>(poses_)),
+          runner_(tested, frames_, aabb::instrumentation::none),
           dynamics_(world),
           integrator_(stepping.make(tolerance)),
           state_(world.start()),
@@ -58,7 +58,7 @@ public:
 
     /// The sorted contacts at the current positions; detects them only if the integrator did not evaluate these last.
     [[nodiscard]] std::span<const aabb::contact> contacts() {
-        return looked_at_ == state_.position ? std::span<const aabb::contact>(player_.sorted_contacts())
+        return looked_at_ == state_.position ? std::span<const aabb::contact>(runner_.sorted_contacts())
                                              : find(state_.position);
     }
     /// Kinetic, potential and spring energy, J; without the energy of a shared volume.
@@ -71,19 +71,19 @@ private:
     std::span<const aabb::contact> find(std::span<const double> position) {
         poses_->look_at(position);
         looked_at_.assign(position.begin(), position.end());
-        play_.next();
+        frames_.next();
         detection_ms_ += milliseconds_of([&] {
-            player_.update();
-            player_.search();
-            player_.detect();
+            runner_.update();
+            runner_.search();
+            runner_.detect();
         });
         ++detections_;
-        return player_.sorted_contacts();
+        return runner_.sorted_contacts();
     }
 
-    posed_bodies* poses_;  // owned by play_
-    scene_play play_;
-    player player_;
+    posed_bodies* poses_;  // owned by frames_
+    scene_frames frames_;
+    stage_runner runner_;
     dynamics dynamics_;
     std::unique_ptr<integrator> integrator_;
     acceleration_of acceleration_;

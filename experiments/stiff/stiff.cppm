@@ -8,8 +8,8 @@ import aabblab.trials;
 
 export namespace aabblab {
 
-/// `told` is for values that are reported without an expectation.
-enum class stiff_verdict : std::uint8_t { told, holds, fails };
+/// `reported` is for values that are reported without an expectation.
+enum class stiff_verdict : std::uint8_t { reported, holds, fails };
 inline constexpr std::array<std::string_view, 3> stiff_verdict_words = {"", "holds", "FAILS"};
 
 /// A measurement and its expectation.
@@ -18,7 +18,7 @@ struct stiff_row {
     std::string quantity;  ///< with its unit: "contact time (s)"
     double measured = 0;
     std::string rule;  ///< the expectation in words; may be empty
-    stiff_verdict verdict = stiff_verdict::told;
+    stiff_verdict verdict = stiff_verdict::reported;
 
     [[nodiscard]] bool holds() const { return verdict != stiff_verdict::fails; }
 };
@@ -43,7 +43,7 @@ struct stiff_result {
 
 struct stiff_setting {
     bool quick = false;
-    contender who;  ///< finds the contacts, unless a study compares methods
+    candidate tested;  ///< finds the contacts, unless a study compares methods
     /// Receives the completed share of a study, from 0 to 1.
     std::function<void(double)> progress = [](double) {};
 };
@@ -52,7 +52,7 @@ struct stiff_study {
     std::string_view name;
     std::string_view about;      ///< the simulated case and what it tests
     std::string_view reference;  ///< the source of the expectation
-    stiff_result (*play)(const stiff_setting& setting);
+    stiff_result (*run)(const stiff_setting& setting);
     std::vector<figure> figures{};  ///< the figures of its points, still empty
     /// Marks values of the rows in the figures.
     void (*mark)(std::span<figure> figures, std::span<const stiff_row> rows) = nullptr;
@@ -71,8 +71,8 @@ void write_result(const std::filesystem::path& folder, const stiff_study& study,
 [[nodiscard]] std::optional<stiff_result> read_result(const std::filesystem::path& folder, const stiff_study& study);
 
 /// The default composition.
-[[nodiscard]] contender usual_contender() {
-    return contender_of(aabb::composition(), true);
+[[nodiscard]] candidate default_candidate() {
+    return candidate_of(aabb::composition(), true);
 }
 
 }  // namespace aabblab

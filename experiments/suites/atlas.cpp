@@ -25,7 +25,7 @@ std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool
         note(fmt::format("part {} of {} of the atlas: {}, {} scenes", &e - experiments.data() + 1, experiments.size(),
                          e.name, e.scenes.size()));
         std::vector<std::string> wrong =
-            play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing);
+            run_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing);
         std::ranges::move(wrong, std::back_inserter(failures));
     }
     return failures;

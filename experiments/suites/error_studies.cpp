@@ -75,7 +75,7 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
     for (const char* file : {"errors.csv", "intersections.csv"}) std::filesystem::remove(folder / file);
     write_file(folder / "config.toml", study.text);
     if (study.whole) {
-        failures = play_experiment(*study.whole, folder, existing_results::replace, "the same command", shown);
+        failures = run_experiment(*study.whole, folder, existing_results::replace, "the same command", shown);
         if (shown != printed::nothing) {
             const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
             for (const std::string& text : metric_statements(study, scenes)) print(text + "\n\n");

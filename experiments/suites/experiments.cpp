@@ -86,7 +86,7 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
 
 /// Prints one table per baseline, because scenes of boxes and of meshes have different ones.
 void print_overall(std::span<const scene_summary> scenes) {
-    std::map<contender_name, std::vector<scene_summary>> alike;
+    std::map<candidate_name, std::vector<scene_summary>> alike;
     for (const scene_summary& scene : scenes) alike[scene.lines[0].name].push_back(scene);
     for (const auto& [base, group] : alike)
         if (const table overall = overall_table_of(group); group.size() > 1 && !overall.rows.empty())
@@ -117,7 +117,7 @@ void run_scenes(
     if (e.records(metric_group::time) && !takes_several_threads(e)) pinned.emplace();
     for (std::size_t i = 0; i < e.scenes.size(); ++i) {
         const scene_choice& scene = e.scenes[i];
-        std::ranges::for_each(run_scene(e, scene, contenders_for(e, scene), results, process), report);
+        std::ranges::for_each(run_scene(e, scene, candidates_for(e, scene), results, process), report);
         finished(i);
     }
 }
@@ -147,7 +147,7 @@ experiment open_experiment(const std::string& config, bool quick) {
 std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& called) {
     std::vector<std::string> sentences;
     for (const aabb::engine_info& engine : aabb::engines())
-        if (std::ranges::find(e.engines, engine.name) != e.engines.end() && !contender_of(engine, has_meshes(scene)))
+        if (std::ranges::find(e.engines, engine.name) != e.engines.end() && !candidate_of(engine, has_meshes(scene)))
             sentences.push_back(engine.name + " has no part in " + called + ": it searches no boxes");
     for (const external_engine& engine : e.externals)
         if (has_meshes(scene))
@@ -155,8 +155,8 @@ std::vector<std::string> idle_engines(const experiment& e, const scene_choice& s
     return sentences;
 }
 
-std::vector<std::string> play_experiment(const experiment& e, const std::filesystem::path& folder,
-                                         existing_results existing, const std::string& resume_with, printed shown) {
+std::vector<std::string> run_experiment(const experiment& e, const std::filesystem::path& folder,
+                                        existing_results existing, const std::string& resume_with, printed shown) {
     if (e.records(metric_group::time)) require_fine_clock();
     const interruption handler(resume_with);
     const folder_lock lock(folder);
@@ -194,7 +194,7 @@ std::vector<std::string> play_experiment(const experiment& e, const std::filesys
     return failures;
 }
 
-bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
+bool run_process(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
     results_folder results(folder, record_of(e), existing_results::resume);
     bool right = true;
     run_scenes(e, results, process, [&](const std::string& failure) {

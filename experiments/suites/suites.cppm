@@ -28,13 +28,13 @@ enum class printed { tables, tables_and_counts, nothing };
 /// error. At the end it writes summary.csv next to the results. When interrupted (Ctrl-C), it prints that `resume_with`
 /// continues it.
 /// @returns a sentence for each composition with wrong results
-[[nodiscard]] std::vector<std::string> play_experiment(const experiment& e, const std::filesystem::path& folder,
-                                                       existing_results existing, const std::string& resume_with,
-                                                       printed shown);
+[[nodiscard]] std::vector<std::string> run_experiment(const experiment& e, const std::filesystem::path& folder,
+                                                      existing_results existing, const std::string& resume_with,
+                                                      printed shown);
 
 /// Runs the share of one of these processes, appends to existing results, and prints a line per failure.
 /// @returns true if there were no failures
-[[nodiscard]] bool play_share(const experiment& e, const std::filesystem::path& folder, std::size_t process);
+[[nodiscard]] bool run_process(const experiment& e, const std::filesystem::path& folder, std::size_t process);
 
 /// The study of triangle tests, the default of `errors`.
 [[nodiscard]] std::string usual_study();
@@ -68,10 +68,10 @@ struct suite_report {
 };
 
 /// Runs a suite, stores its results in a folder, and prints them if `shown`.
-[[nodiscard]] suite_report play_extreme_suite(const std::filesystem::path& folder, const std::string& cases, bool quick,
-                                              bool shown);
-[[nodiscard]] suite_report play_stiff_suite(const std::filesystem::path& folder,
-                                            const std::vector<std::string>& studies, bool quick, bool shown);
+[[nodiscard]] suite_report run_extreme_suite(const std::filesystem::path& folder, const std::string& cases, bool quick,
+                                             bool shown);
+[[nodiscard]] suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vector<std::string>& studies,
+                                           bool quick, bool shown);
 /// Rebuilds the report from the rows in a folder, or from a stored report of earlier versions; empty if there is none.
 /// @throws aabb::input_error if the files have another format.
 [[nodiscard]] std::optional<suite_report> kept_report(const std::filesystem::path& folder);

@@ -129,16 +129,16 @@ std::string usual_cases() {
     return AABBLAB_CASES;
 }
 
-suite_report play_extreme_suite(const std::filesystem::path& folder, const std::string& cases, bool quick, bool shown) {
+suite_report run_extreme_suite(const std::filesystem::path& folder, const std::string& cases, bool quick, bool shown) {
     const auto size = quick ? aabb::extreme_size::quick : aabb::extreme_size::full;
     const std::vector<aabb::triangle_case> hard = read_triangle_cases(cases);
     std::filesystem::create_directories(folder);  // fail early, before the long run
     const extreme_list list = all_extreme_scenes(size);
     for (const std::string& sentence : list.notes) note(sentence);
-    std::vector<extreme_row> rows = play_scenes(list.scenes, size);
+    std::vector<extreme_row> rows = run_extreme_scenes(list.scenes, size);
     // Write the scenes first, so that a crash in the cases does not lose them.
     write_file(folder / "extreme.csv", csv_of(rows));
-    for (extreme_row& row : play_cases(hard)) rows.push_back(std::move(row));
+    for (extreme_row& row : run_triangle_cases(hard)) rows.push_back(std::move(row));
     suite_report report = report_of(rows);
     write_file(folder / "extreme.csv", csv_of(rows));
     if (shown) {
@@ -146,14 +146,14 @@ suite_report play_extreme_suite(const std::filesystem::path& folder, const std::
             print(t.caption + "\n\n" + to_text(t.content, output_width()) + "\n");
         for (const std::string& sentence : report.paragraphs) print(sentence + "\n");
         print("\nRefused:\n");
-        for (const std::string& sentence : refusals_in(rows)) print("  " + sentence + "\n");
+        for (const std::string& sentence : rejections_in(rows)) print("  " + sentence + "\n");
     }
     for (const std::string& sentence : report.failures) note(sentence);
     return report;
 }
 
-suite_report play_stiff_suite(const std::filesystem::path& folder, const std::vector<std::string>& studies, bool quick,
-                              bool shown) {
+suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vector<std::string>& studies, bool quick,
+                             bool shown) {
     const std::vector<stiff_study> chosen = chosen_studies(studies);
     std::filesystem::create_directories(folder);
     for (const std::string_view name : left_out_integrators())
@@ -165,7 +165,7 @@ suite_report play_stiff_suite(const std::filesystem::path& folder, const std::ve
         {
             progress done("playing " + std::string(study.name), 1000);
             result = study.play(
-                {quick, usual_contender(), [&](double share) { done.at(static_cast<std::size_t>(1000 * share)); }});
+                {quick, default_candidate(), [&](double share) { done.at(static_cast<std::size_t>(1000 * share)); }});
         }
         add_study(report, study, result);
         if (shown) {

@@ -5,7 +5,7 @@ namespace aabblab {
 namespace {
 
 /// Replaces the measured times, which are those of reading the results of the external engine.
-void take_told(std::span<const told_times> times, observation& result) {
+void take_reported(std::span<const reported_times> times, observation& result) {
     result.build = {};
     result.first = result.rest = {};
     for (std::size_t frame = 0; frame < times.size(); ++frame) {
@@ -36,7 +36,7 @@ elapsed mean_time(const Query& query, bool cold) {
 }
 
 /// Times the query, detects all contacts, and compares the result of the query with them.
-elapsed ask(player& p, const asking& how, std::string& wrong) {
+elapsed ask(stage_runner& p, const asking& how, std::string& wrong) {
     if (how.cold) fill_caches();
     if (how.ask == question::pairs) return detect_in(p);
     std::optional<aabb::contact> first;
@@ -55,20 +55,20 @@ elapsed ask(player& p, const asking& how, std::string& wrong) {
 
 }  // namespace
 
-observation observe(scene_play& scene, const contender& candidate, const protocol& how) {
+observation observe(scene_frames& scene, const candidate& tested, const protocol& how) {
     observation result;
-    std::optional<player> p;
-    result.build = elapsed_in([&] { p.emplace(candidate, scene, how.counted); });
+    std::optional<stage_runner> p;
+    result.build = elapsed_in([&] { p.emplace(tested, scene, how.counted); });
     tally totals(scene.meshes() != nullptr);
-    const auto take = [&](const played_frame& frame) {
+    const auto take = [&](const searched_frame& frame) {
         totals.add(frame.pairs, frame.contacts);
         (result.frames++ == 0 ? result.first : result.rest) += frame.took;
         if (!how.each) return;
         result.digest = totals.digest();
         how.each(result);
     };
-    play(scene, *p, take, how.frames, [&](player& asked) { return ask(asked, how.asked, result.wrong); });
-    if (candidate.told) take_told(*candidate.told, result);
+    play(scene, *p, take, how.frames, [&](stage_runner& asked) { return ask(asked, how.asked, result.wrong); });
+    if (tested.reported) take_reported(*tested.reported, result);
     result.digest = totals.digest();
     result.bytes = p->held_bytes();
     result.work = p->counters();
@@ -76,9 +76,9 @@ observation observe(scene_play& scene, const contender& candidate, const protoco
     return result;
 }
 
-observation observe(const scene_choice& choice, const contender& candidate, const protocol& how) {
-    scene_play scene(choice);
-    return observe(scene, candidate, how);
+observation observe(const scene_choice& choice, const candidate& tested, const protocol& how) {
+    scene_frames scene(choice);
+    return observe(scene, tested, how);
 }
 
 }  // namespace aabblab

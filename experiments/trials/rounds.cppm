@@ -41,7 +41,7 @@ std::size_t run_rounds(std::vector<Candidate>& candidates, const round_limits& l
     for (; round < limits.end && !candidates.empty(); ++round) {
         const double remaining = limits.left ? limits.left() : std::numeric_limits<double>::infinity();
         if (round >= limits.fewest && remaining <= previous) break;
-        run_round(candidates, round, [&](Candidate& candidate) { run(candidate, round); });
+        run_round(candidates, round, [&](Candidate& tested) { run(tested, round); });
         if (limits.left) previous = remaining - limits.left();
         after(round);
     }
@@ -76,7 +76,7 @@ public:
 
     void scene_is_read() { reading_ = elapsed_(); }
     /// The remaining seconds; not positive once the time is over.
-    [[nodiscard]] double to_play() const { return std::max(usable * seconds_, reading_ + usable) - elapsed_(); }
+    [[nodiscard]] double to_run() const { return std::max(usable * seconds_, reading_ + usable) - elapsed_(); }
     [[nodiscard]] double to_end() const { return std::max(2 * usable * seconds_, reading_ + 2 * usable) - elapsed_(); }
 
 private:

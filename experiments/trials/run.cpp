@@ -11,8 +11,8 @@ namespace aabblab {
 namespace {
 
 /// A candidate with the row that all its repeats share.
-struct timed_contender {
-    const contender* candidate;
+struct timed_candidate {
+    const candidate* tested;
     row result;
 };
 
@@ -23,7 +23,7 @@ row row_of(const experiment& e, const validated_row& v) {
     if (!e.records(metric_group::counts)) r.counts = {};
     if (!e.records(metric_group::bytes)) r.bytes = {};
     if (!e.records(metric_group::error)) {
-        r.missing = r.invented = std::nullopt;
+        r.false_negatives = r.false_positives = std::nullopt;
         r.box_inflation = std::nullopt;
     }
     return r;
@@ -43,8 +43,8 @@ std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
 }
 
 /// The candidates that early stopping does not repeat, since they took too long in the first repeat of the share.
-std::set<contender_name> given_up(const experiment& e, const round_limits& share, std::span<const row> rows) {
-    std::set<contender_name> names;
+std::set<candidate_name> given_up(const experiment& e, const round_limits& share, std::span<const row> rows) {
+    std::set<candidate_name> names;
     if (!e.patience) return names;
     const row_value& whole_ms = measured("whole_ms");
     double least = std::numeric_limits<double>::infinity();
@@ -58,42 +58,42 @@ std::set<contender_name> given_up(const experiment& e, const round_limits& share
 
 /// Drops an interrupted repeat, which can only be the last, so that it runs again: ratios are formed within a repeat.
 void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, const round_limits& share,
-                             std::size_t contenders, results_folder& results) {
+                             std::size_t candidates, results_folder& results) {
     if (results.rows().empty()) return;
     const row last = results.rows().back();
     if (last.scene != scene || last.repeat < share.begin || last.repeat >= share.end) return;
     const std::vector<row> rows = rows_of(scene, results.rows());
-    if (last.repeat > share.begin) contenders -= given_up(e, share, rows).size();
+    if (last.repeat > share.begin) candidates -= given_up(e, share, rows).size();
     const auto finished = std::ranges::count(rows, last.repeat, &row::repeat);
-    if (static_cast<std::size_t>(finished) < contenders) results.drop(scene, last.repeat);
+    if (static_cast<std::size_t>(finished) < candidates) results.drop(scene, last.repeat);
 }
 
-std::vector<contender> unfinished(const experiment& e, std::span<const contender> contenders, const round_limits& share,
+std::vector<candidate> unfinished(const experiment& e, std::span<const candidate> candidates, const round_limits& share,
                                   std::span<const row> rows) {
-    const std::set<contender_name> stopped = given_up(e, share, rows);
-    std::vector<contender> remaining;
-    for (const contender& candidate : contenders) {
-        if (stopped.contains(candidate.name)) continue;
+    const std::set<candidate_name> stopped = given_up(e, share, rows);
+    std::vector<candidate> remaining;
+    for (const candidate& tested : candidates) {
+        if (stopped.contains(tested.name)) continue;
         const auto finished = std::ranges::count_if(rows, [&](const row& r) {
-            return r.name == candidate.name && r.repeat >= share.begin && r.repeat < share.end;
+            return r.name == tested.name && r.repeat >= share.begin && r.repeat < share.end;
         });
-        if (static_cast<std::size_t>(finished) < share.end - share.begin) remaining.push_back(candidate);
+        if (static_cast<std::size_t>(finished) < share.end - share.begin) remaining.push_back(tested);
     }
     return remaining;
 }
 
 /// Whether a timed run may legitimately find other contacts than the validated one: during validation a reactive scene
 /// follows the ground truth; during a timed run it follows the results of an inexact candidate.
-bool may_diverge(const scene_choice& scene, const contender& candidate) {
-    return !(candidate.exact && candidate.exact_boxes) && has_meshes(scene) && make_mesh_scene(scene)->reacts();
+bool may_diverge(const scene_choice& scene, const candidate& tested) {
+    return !(tested.exact && tested.exact_boxes) && has_meshes(scene) && make_mesh_scene(scene)->reacts();
 }
 
 /// Times one repeat. The digest is compared again, since code without counters is a separate template instantiation.
 /// @returns a description of what is wrong; empty if the results agree
-std::string time_into(const scene_choice& scene, const asking& how, timed_contender& timed) {
+std::string time_into(const scene_choice& scene, const asking& how, timed_candidate& timed) {
     row& r = timed.result;
-    const observation times = observe(scene, *timed.candidate, {.asked = how});
-    const bool is_external = timed.candidate->told != nullptr;
+    const observation times = observe(scene, *timed.tested, {.asked = how});
+    const bool is_external = timed.tested->reported != nullptr;
     const auto take = [is_external](double wall, double cpu, std::optional<double>& wall_ms,
                                     std::optional<double>& cpu_ms) {
         wall_ms = wall;
@@ -105,7 +105,7 @@ std::string time_into(const scene_choice& scene, const asking& how, timed_conten
     take(times.rest.search.wall_ms, times.rest.search.cpu_ms, r.search_ms, r.search_cpu_ms);
     take(times.rest.detect.wall_ms, times.rest.detect.cpu_ms, r.detect_ms, r.detect_cpu_ms);
     std::string wrong = times.wrong;
-    if (wrong.empty() && times.digest != r.digest && !may_diverge(scene, *timed.candidate))
+    if (wrong.empty() && times.digest != r.digest && !may_diverge(scene, *timed.tested))
         wrong = "timed, its digest is " + times.digest + ", validated it was " + r.digest;
     if (wrong.empty()) return {};
     return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): " + wrong;
@@ -113,23 +113,23 @@ std::string time_into(const scene_choice& scene, const asking& how, timed_conten
 
 /// The candidates that are ready to be timed, and the failures of the others.
 struct admission {
-    std::vector<timed_contender> timed;
+    std::vector<timed_candidate> timed;
     std::vector<std::string> failures;
 };
 
-admission validated(const experiment& e, const scene_choice& scene, std::span<const contender> contenders,
+admission validated(const experiment& e, const scene_choice& scene, std::span<const candidate> candidates,
                     results_folder& results) {
     admission admitted;
-    const scene_validation validation = validate_scene(scene, contenders);
+    const scene_validation validation = validate_scene(scene, candidates);
     results.set_digest(scene, validation.digest);
-    std::vector<contender_name> names;
+    std::vector<candidate_name> names;
     std::vector<difference> differences;
-    for (std::size_t i = 0; i < contenders.size(); ++i) {
-        const validated_row& v = validation.contenders[i];
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const validated_row& v = validation.candidates[i];
         names.push_back(v.name);
         differences.insert(differences.end(), v.differences.begin(), v.differences.end());
         if (v.failure.empty())
-            admitted.timed.push_back({&contenders[i], row_of(e, v)});
+            admitted.timed.push_back({&candidates[i], row_of(e, v)});
         else
             admitted.failures.push_back(v.failure);
     }
@@ -138,11 +138,11 @@ admission validated(const experiment& e, const scene_choice& scene, std::span<co
 }
 
 /// Reuses the validation of the first process.
-admission known(std::span<const contender> contenders, std::span<const row> rows) {
+admission known(std::span<const candidate> candidates, std::span<const row> rows) {
     admission admitted;
-    for (const contender& candidate : contenders) {
-        const auto before = std::ranges::find(rows, candidate.name, &row::name);
-        if (before != rows.end()) admitted.timed.push_back({&candidate, *before});
+    for (const candidate& tested : candidates) {
+        const auto before = std::ranges::find(rows, tested.name, &row::name);
+        if (before != rows.end()) admitted.timed.push_back({&tested, *before});
     }
     return admitted;
 }
@@ -150,8 +150,8 @@ admission known(std::span<const contender> contenders, std::span<const row> rows
 /// Shuffles all candidates but the baseline, reproducibly for each scene. In the order of the config, a candidate often
 /// follows a similar one, whose code is still cached, and a few repeats are too few for every candidate to follow every
 /// other one.
-std::vector<contender> shuffled(std::span<const contender> contenders, const scene_choice& scene) {
-    std::vector<contender> order(contenders.begin(), contenders.end());
+std::vector<candidate> shuffled(std::span<const candidate> candidates, const scene_choice& scene) {
+    std::vector<candidate> order(candidates.begin(), candidates.end());
     const std::string text = scene.kind + parameters_text(scene);
     std::seed_seq seed(text.begin(), text.end());
     if (!order.empty()) std::ranges::shuffle(std::span(order).subspan(1), std::mt19937_64(seed));
@@ -165,19 +165,19 @@ experiment_record record_of(const experiment& e) {
 }
 
 std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
-                                   std::span<const contender> contenders, results_folder& results,
+                                   std::span<const candidate> candidates, results_folder& results,
                                    std::size_t process) {
     const round_limits share = repeats_of(e, process);
-    drop_interrupted_repeat(e, scene, share, contenders.size(), results);
+    drop_interrupted_repeat(e, scene, share, candidates.size(), results);
     const std::vector<row> rows = rows_of(scene, results.rows());
-    const std::vector<contender> remaining = unfinished(e, shuffled(contenders, scene), share, rows);
+    const std::vector<candidate> remaining = unfinished(e, shuffled(candidates, scene), share, rows);
     if (remaining.empty()) return {};
     auto [timed, failures] = process == 0 ? validated(e, scene, remaining, results) : known(remaining, rows);
     progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
     const std::size_t in_round = timed.size();
     std::size_t done = 0;
-    std::set<contender_name> stopped;  // not repeated any more
-    const auto play = [&](timed_contender& turn, std::size_t repeat) {
+    std::set<candidate_name> stopped;  // not repeated any more
+    const auto run = [&](timed_candidate& turn, std::size_t repeat) {
         shown.at(done++);
         turn.result.repeat = repeat;
         turn.result.process = process;
@@ -198,10 +198,10 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
     };
     const auto give_up = [&](std::size_t repeat) {
         stopped.merge(given_up(e, share, rows_of(scene, results.rows())));
-        std::erase_if(timed, [&](const timed_contender& t) { return stopped.contains(t.result.name); });
+        std::erase_if(timed, [&](const timed_candidate& t) { return stopped.contains(t.result.name); });
         done = (repeat + 1 - share.begin) * in_round;
     };
-    run_rounds(timed, share, play, give_up);
+    run_rounds(timed, share, run, give_up);
     return failures;
 }
 

@@ -19,9 +19,9 @@ namespace {
 using clock = std::chrono::steady_clock;
 
 /// Exit statuses of the child process.
-enum : int { is_done = 0, has_failed = 1, is_refused = 2, has_no_memory = 3 };
+enum : int { is_done = 0, has_failed = 1, is_rejected = 2, has_no_memory = 3 };
 /// Precedes the message of an input_error.
-constexpr char refusal_mark = 0;
+constexpr char rejection_mark = 0;
 
 void write_all(int to, std::string_view text) {
     while (!text.empty()) {
@@ -41,15 +41,15 @@ void offer_to_be_killed() {
     close(file);
 }
 
-[[noreturn]] void tell_all(int to, const std::function<void(const telling&)>& work) {
+[[noreturn]] void send_all(int to, const std::function<void(const output_sender&)>& work) {
     offer_to_be_killed();
     int status = has_failed;
     try {
         work([to](std::string_view text) { write_all(to, text); });
         status = is_done;
     } catch (const aabb::input_error& error) {
-        write_all(to, std::string(1, refusal_mark) + error.what());
-        status = is_refused;
+        write_all(to, std::string(1, rejection_mark) + error.what());
+        status = is_rejected;
     } catch (const std::bad_alloc&) {
         status = has_no_memory;
     } catch (const std::length_error&) {
@@ -87,7 +87,7 @@ ending ending_of(int status) {
     if (WIFSIGNALED(status)) return WTERMSIG(status) == SIGKILL ? ending::out_of_memory : ending::failed;
     switch (WEXITSTATUS(status)) {
         case is_done: return ending::done;
-        case is_refused: return ending::refused;
+        case is_rejected: return ending::rejected;
         case has_no_memory: return ending::out_of_memory;
         default: return ending::failed;
     }
@@ -110,10 +110,10 @@ std::string line_of(const observation& seen, double seconds) {
 }
 
 /// Parses the output of the child; an incomplete last line is ignored.
-attempt attempt_from(const work_apart& work) {
+attempt attempt_from(const child_result& work) {
     attempt result{.end = work.end, .seen = {}, .reason = work.reason, .seconds = work.seconds};
     observation& seen = result.seen;
-    std::istringstream lines(work.told.substr(0, work.told.rfind('\n') + 1));
+    std::istringstream lines(work.reported.substr(0, work.reported.rfind('\n') + 1));
     for (std::string line; std::getline(lines, line);) {
         std::istringstream text(line.substr(1));
         if (line[0] == frame_line) {
@@ -129,21 +129,21 @@ attempt attempt_from(const work_apart& work) {
     return result;
 }
 
-void tell_play(scene_play& scene, const contender& candidate, std::size_t frames, const telling& tell) {
+void send_run(scene_frames& scene, const candidate& tested, std::size_t frames, const output_sender& send) {
     const auto begin = std::chrono::steady_clock::now();
     const auto each = [&](const observation& so_far) {
-        tell(line_of(so_far, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
+        send(line_of(so_far, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
     };
-    const observation seen = observe(scene, candidate, {.frames = frames, .each = each});
+    const observation seen = observe(scene, tested, {.frames = frames, .each = each});
     std::string last = fmt::format("{} {}", last_line, seen.bytes);
     for (const aabb::omission& absent : seen.left_out) last += fmt::format(" {}", static_cast<int>(absent.what));
-    tell(last + "\n");
+    send(last + "\n");
 }
 
 }  // namespace
 
-work_apart done_apart(const std::function<void(const telling&)>& work, double seconds) {
-    work_apart result;
+child_result run_in_child(const std::function<void(const output_sender&)>& work, double seconds) {
+    child_result result;
     if (!(seconds > 0)) return result;
     result.end = ending::failed;
     std::array<int, 2> ends{};
@@ -157,10 +157,10 @@ work_apart done_apart(const std::function<void(const telling&)>& work, double se
         // The child must not outlive its parent, even if that is killed.
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         close(ends[0]);
-        tell_all(ends[1], work);
+        send_all(ends[1], work);
     }
     close(ends[1]);
-    const bool is_in_time = child > 0 && read_until(ends[0], end, result.told);
+    const bool is_in_time = child > 0 && read_until(ends[0], end, result.reported);
     close(ends[0]);
     if (child < 0) return result;
     if (!is_in_time) kill(child, SIGKILL);
@@ -168,28 +168,29 @@ work_apart done_apart(const std::function<void(const telling&)>& work, double se
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
     result.end = is_in_time ? ending_of(status) : ending::stopped;
     result.seconds = std::chrono::duration<double>(clock::now() - begin).count();
-    if (const std::size_t at = result.told.find(refusal_mark); at != std::string::npos) {
-        result.reason = result.told.substr(at + 1);
-        result.told.resize(at);
+    if (const std::size_t at = result.reported.find(rejection_mark); at != std::string::npos) {
+        result.reason = result.reported.substr(at + 1);
+        result.reported.resize(at);
     }
     return result;
 }
 
-work_apart staged_scene::apart(const std::function<void(scene_play&, const telling&)>& work, double seconds) {
-    return done_apart(
-        [&](const telling& tell) {
-            if (scene_.meshes()) return work(scene_, tell);
+child_result staged_scene::in_child(const std::function<void(scene_frames&, const output_sender&)>& work,
+                                    double seconds) {
+    return run_in_child(
+        [&](const output_sender& send) {
+            if (scene_.meshes()) return work(scene_, send);
             // Children share the offset of an open file: each would read on where the previous one stopped.
-            scene_play own(choice_);
-            work(own, tell);
+            scene_frames own(choice_);
+            work(own, send);
         },
         seconds);
 }
 
-attempt staged_scene::play(const contender& candidate, std::size_t frames, double seconds, double left) {
-    attempt result =
-        attempt_from(apart([&](scene_play& scene, const telling& tell) { tell_play(scene, candidate, frames, tell); },
-                           std::min(seconds, left)));
+attempt staged_scene::run(const candidate& tested, std::size_t frames, double seconds, double left) {
+    attempt result = attempt_from(
+        in_child([&](scene_frames& scene, const output_sender& send) { send_run(scene, tested, frames, send); },
+                 std::min(seconds, left)));
     result.is_out_of_time = result.end == ending::stopped && left <= seconds;
     return result;
 }
@@ -201,7 +202,7 @@ std::string text_of(const attempt& run) {
         case ending::done: return "played to its end";
         case ending::stopped: return run.seconds > 0 ? "stopped " + after : "not played: no time was left";
         case ending::out_of_memory: return "out of memory " + after;
-        case ending::refused: return "refused " + after + ": " + run.reason;
+        case ending::rejected: return "refused " + after + ": " + run.reason;
         case ending::failed: break;
     }
     return "failed " + after;

@@ -19,7 +19,7 @@ export namespace aabblab {
 // Scenes and candidates.
 
 /// The times that an external engine reports for one frame.
-struct told_times {
+struct reported_times {
     double update_ms = 0;
     double search_ms = 0;
 };
@@ -31,12 +31,12 @@ public:
 };
 
 /// A composition or a reference engine, with factories that create fresh stages for every run.
-struct contender {
-    contender_name name;
+struct candidate {
+    candidate_name name;
     std::function<std::unique_ptr<aabb::global_stage>(aabb::instrumentation)> make_global;
     std::function<std::unique_ptr<aabb::local_stage>(aabb::instrumentation)> make_local;  ///< empty for boxes
     /// The times that an external engine reports, by frame, once `make_global` has run it; null if it is timed here.
-    std::shared_ptr<const std::vector<told_times>> told;
+    std::shared_ptr<const std::vector<reported_times>> reported;
     /// False where the broad phase sees parts of objects, whose pairs cannot be compared with pairs of whole objects.
     bool whole_boxes = true;
     bool exact_boxes = true;  ///< any false negative or positive among box pairs is a failure, not a measurement
@@ -44,13 +44,13 @@ struct contender {
 };
 
 /// Iterates over the frames of a scene of boxes or of meshes.
-class scene_play {
+class scene_frames {
 public:
     /// @throws aabb::input_error if the scene cannot be created.
-    explicit scene_play(const scene_choice& choice);
-    explicit scene_play(std::unique_ptr<aabb::box_scene> scene) : box_scene_(std::move(scene)) {}
+    explicit scene_frames(const scene_choice& choice);
+    explicit scene_frames(std::unique_ptr<aabb::box_scene> scene) : box_scene_(std::move(scene)) {}
     /// @param file the source of its poses, for messages; empty if they are generated
-    explicit scene_play(std::unique_ptr<aabb::mesh_scene> scene, std::string file = {})
+    explicit scene_frames(std::unique_ptr<aabb::mesh_scene> scene, std::string file = {})
         : meshes_(std::move(scene)), file_(std::move(file)) {}
 
     [[nodiscard]] std::size_t objects() const { return meshes_ ? meshes_->mesh_of.size() : box_scene_->objects(); }
@@ -67,7 +67,7 @@ public:
             work();
         } catch (const aabb::input_error& error) {
             if (file_.empty()) throw;
-            throw aabb::input_error(file_ + ": frame " + std::to_string(played_ - 1) + ": " + error.what());
+            throw aabb::input_error(file_ + ": frame " + std::to_string(frames_run_ - 1) + ": " + error.what());
         }
     }
     /// Null for a scene of boxes.
@@ -83,8 +83,8 @@ private:
 
     std::unique_ptr<aabb::box_scene> box_scene_;
     std::unique_ptr<aabb::mesh_scene> meshes_;
-    std::string file_;        // the source of the poses
-    std::size_t played_ = 0;  // frames so far
+    std::string file_;            // the source of the poses
+    std::size_t frames_run_ = 0;  // frames so far
     std::vector<aabb::box> boxes_;
     std::vector<aabb::pose> poses_;
     std::vector<std::uint8_t> present_;  // by object
@@ -99,10 +99,10 @@ struct stages {
 };
 
 /// A candidate on a scene: its stages, with their trees built. The scene must outlive it.
-class player {
+class stage_runner {
 public:
-    player(const contender& candidate, const scene_play& scene, aabb::instrumentation counted);
-    player(stages run_stages, const scene_play& scene);
+    stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted);
+    stage_runner(stages run_stages, const scene_frames& scene);
 
     /// The phases of a frame, which are timed separately.
     /// @throws aabb::input_error with file and frame if poses from a file are rejected.
@@ -145,7 +145,7 @@ public:
     [[nodiscard]] std::optional<double> box_inflation() const;
 
 private:
-    const scene_play& scene_;
+    const scene_frames& scene_;
     stages stages_;
     std::optional<aabb::pipeline> pipeline_;  // of meshes
     std::vector<aabb::index_pair> pairs_;
@@ -169,7 +169,7 @@ struct phases {
 };
 
 /// The times and results of one frame.
-struct played_frame {
+struct searched_frame {
     std::uint32_t number;
     phases took;
     std::span<const aabb::index_pair> pairs;  ///< sorted pairs of boxes; duplicates are kept
@@ -179,12 +179,12 @@ struct played_frame {
 };
 
 /// Detects the contacts of a frame and returns the time of the query that the experiment asks, which may be another.
-using detecting = std::function<elapsed(player&)>;
-[[nodiscard]] elapsed detect_in(player& p);
+using detecting = std::function<elapsed(stage_runner&)>;
+[[nodiscard]] elapsed detect_in(stage_runner& p);
 
 /// Runs the remaining frames of a scene, at most `most` of them. `each` receives every frame before the scene reacts to
 /// the results.
-void play(scene_play& scene, player& p, const std::function<void(const played_frame&)>& each,
+void play(scene_frames& scene, stage_runner& p, const std::function<void(const searched_frame&)>& each,
           std::size_t most = std::numeric_limits<std::size_t>::max(), const detecting& detect = detect_in);
 
 /// Accumulates the number and the digest of results, frame by frame.
@@ -253,8 +253,8 @@ struct protocol {
 
 /// Runs a scene from its first frame; the scene reacts to the results. The times of an external engine are those that
 /// it reports itself, which are wall times only.
-[[nodiscard]] observation observe(scene_play& scene, const contender& candidate, const protocol& how = {});
-[[nodiscard]] observation observe(const scene_choice& scene, const contender& candidate, const protocol& how = {});
+[[nodiscard]] observation observe(scene_frames& scene, const candidate& tested, const protocol& how = {});
+[[nodiscard]] observation observe(const scene_choice& scene, const candidate& tested, const protocol& how = {});
 
 // Runs in child processes, since they may exceed their time or memory.
 
@@ -263,24 +263,24 @@ enum class ending : std::uint8_t {
     done,
     stopped,        ///< at its time limit
     out_of_memory,  ///< or killed from outside, as the kernel does if memory runs out
-    refused,        ///< with an aabb::input_error
+    rejected,       ///< with an aabb::input_error
     failed
 };
 
-struct work_apart {
+struct child_result {
     ending end = ending::stopped;
-    std::string told;    ///< the output up to that end
-    std::string reason;  ///< the message of the input_error
-    double seconds = 0;  ///< of wall time
+    std::string reported;  ///< the output up to that end
+    std::string reason;    ///< the message of the input_error
+    double seconds = 0;    ///< of wall time
 };
 
 /// Sends output of the work to the parent at once, so that it survives work that does not finish.
-using telling = std::function<void(std::string_view)>;
+using output_sender = std::function<void(std::string_view)>;
 
 /// Does the work in a forked child process, which is killed at its time limit. If memory runs out, the kernel kills the
 /// child first.
 /// @param seconds the limit; nothing is started unless it is positive
-[[nodiscard]] work_apart done_apart(const std::function<void(const telling&)>& work, double seconds);
+[[nodiscard]] child_result run_in_child(const std::function<void(const output_sender&)>& work, double seconds);
 
 /// A run in a child process.
 struct attempt {
@@ -302,17 +302,18 @@ public:
     explicit staged_scene(const scene_choice& choice) : choice_(choice), scene_(choice) {}
 
     [[nodiscard]] const scene_choice& choice() const { return choice_; }
-    [[nodiscard]] const scene_play& scene() const { return scene_; }
+    [[nodiscard]] const scene_frames& scene() const { return scene_; }
     /// Runs the first frames, for at most `seconds`.
     /// @param left seconds that remain for all runs together
-    [[nodiscard]] attempt play(const contender& candidate, std::size_t frames, double seconds,
+    [[nodiscard]] attempt play(const candidate& tested, std::size_t frames, double seconds,
                                double left = std::numeric_limits<double>::infinity());
     /// Does other work on the scene, from its first frame.
-    [[nodiscard]] work_apart apart(const std::function<void(scene_play&, const telling&)>& work, double seconds);
+    [[nodiscard]] child_result in_child(const std::function<void(scene_frames&, const output_sender&)>& work,
+                                        double seconds);
 
 private:
     scene_choice choice_;
-    scene_play scene_;
+    scene_frames scene_;
 };
 
 // Interleaved runs.
@@ -328,11 +329,11 @@ struct turns {
 
 /// Runs all candidates on the first frames in interleaved rounds, until time is over. A candidate that is hopelessly
 /// slower than the first, the baseline, stops after one round. If the baseline finishes no frame, no other runs.
-[[nodiscard]] turns play_in_turn(staged_scene& scene, std::span<const contender> contenders, std::size_t frames,
-                                 std::size_t rounds, const time_limits& limits);
+[[nodiscard]] turns run_interleaved(staged_scene& scene, std::span<const candidate> candidates, std::size_t frames,
+                                    std::size_t rounds, const time_limits& limits);
 
 /// The indices of the candidates whose pairs differ from those of the first.
-[[nodiscard]] std::vector<std::size_t> who_disagrees(std::span<const std::vector<observation>> times);
+[[nodiscard]] std::vector<std::size_t> disagreeing(std::span<const std::vector<observation>> times);
 
 /// Times per frame, by round.
 [[nodiscard]] std::vector<double> frame_ms_of(std::span<const observation> times);
@@ -340,20 +341,20 @@ struct turns {
 // Candidates of an experiment, and whole scenes.
 
 /// "insertion + none + one_axis + canonical + exact", "cgal".
-[[nodiscard]] std::string text_of(const contender_name& name);
+[[nodiscard]] std::string text_of(const candidate_name& name);
 
-[[nodiscard]] contender contender_of(const aabb::composition& c, bool meshes);
+[[nodiscard]] candidate candidate_of(const aabb::composition& c, bool meshes);
 /// Keeps the named strategies and selects the others for the scene.
-[[nodiscard]] contender contender_of(const aabb::named_strategies& named, const scene_play& scene);
+[[nodiscard]] candidate candidate_of(const aabb::named_strategies& named, const scene_frames& scene);
 /// What `auto` may know of a scene before its first frame.
-[[nodiscard]] aabb::scene_outlook outlook_of(const scene_play& scene);
+[[nodiscard]] aabb::scene_traits traits_of(const scene_frames& scene);
 /// Combines an engine that implements one stage with the default composition of the other; empty if the engine cannot
 /// run the scene.
-[[nodiscard]] std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes);
+[[nodiscard]] std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes);
 
 /// The candidates of a scene: the compositions of the experiment, then its engines, then, for boxes, its external
 /// engines.
-[[nodiscard]] std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene);
+[[nodiscard]] std::vector<candidate> candidates_for(const experiment& e, const scene_choice& scene);
 
 /// The untimed result of a candidate compared with the ground truth: a row with everything that a run may record.
 struct validated_row : row {
@@ -366,16 +367,16 @@ struct scene_validation {
     std::uint64_t frames = 0;
     std::string exact_by;  ///< the source of the ground truth
     std::string digest;    ///< of the ground truth
-    std::vector<validated_row> contenders;
+    std::vector<validated_row> candidates;
 };
 
 /// Runs all candidates in lockstep with the ground truth, compares the result sets frame by frame, and counts their
 /// work. The scene reacts to the ground truth.
-[[nodiscard]] scene_validation validate_scene(const scene_choice& scene, std::span<const contender> contenders);
+[[nodiscard]] scene_validation validate_scene(const scene_choice& scene, std::span<const candidate> candidates);
 /// Validates a scene that exists already and is at its first frame.
 /// @param choice its description, for messages
-[[nodiscard]] scene_validation validate_scene(const scene_choice& choice, scene_play& scene,
-                                              std::span<const contender> contenders);
+[[nodiscard]] scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
+                                              std::span<const candidate> candidates);
 
 /// The part of the experiment that is stored with its results.
 [[nodiscard]] experiment_record record_of(const experiment& e);
@@ -386,7 +387,7 @@ struct scene_validation {
 /// @param process from 0; each takes an equal share of the repeats, in order
 /// @returns a sentence for each candidate that is wrong; it gets no row.
 [[nodiscard]] std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
-                                                 std::span<const contender> contenders, results_folder& results,
+                                                 std::span<const candidate> candidates, results_folder& results,
                                                  std::size_t process = 0);
 
 }  // namespace aabblab

@@ -17,38 +17,38 @@ bool is_hopeless(const observation& time, const observation& baseline) {
 }
 
 /// Runs the baseline, on fewer frames if there is no time for all of them.
-attempt first_play(staged_scene& scene, const contender& candidate, std::size_t frames, const time_limits& limits) {
-    attempt first = scene.play(candidate, frames, greatest_share * limits.to_play());
+attempt first_run(staged_scene& scene, const candidate& tested, std::size_t frames, const time_limits& limits) {
+    attempt first = scene.run(tested, frames, greatest_share * limits.to_run());
     if (first.end != ending::stopped || first.seen.frames == 0) return first;
     // Bytes and omissions are reported only by a run that finishes.
-    return scene.play(candidate, first.seen.frames, 2 * greatest_share * limits.to_play());
+    return scene.run(tested, first.seen.frames, 2 * greatest_share * limits.to_run());
 }
 
 }  // namespace
 
-turns play_in_turn(staged_scene& scene, std::span<const contender> contenders, std::size_t frames, std::size_t rounds,
-                   const time_limits& limits) {
-    progress shown("plays", rounds * contenders.size());
-    turns result{frames, 0, std::vector<std::vector<observation>>(contenders.size()),
-                 std::vector<std::optional<attempt>>(contenders.size()), std::vector<bool>(contenders.size())};
-    const double before_first = limits.to_play();
-    attempt of_first = first_play(scene, contenders[0], frames, limits);
-    const double first = before_first - limits.to_play();
+turns run_interleaved(staged_scene& scene, std::span<const candidate> candidates, std::size_t frames,
+                      std::size_t rounds, const time_limits& limits) {
+    progress shown("plays", rounds * candidates.size());
+    turns result{frames, 0, std::vector<std::vector<observation>>(candidates.size()),
+                 std::vector<std::optional<attempt>>(candidates.size()), std::vector<bool>(candidates.size())};
+    const double before_first = limits.to_run();
+    attempt of_first = first_run(scene, candidates[0], frames, limits);
+    const double first = before_first - limits.to_run();
     if (of_first.end != ending::done) {
         result.broken_off[0] = std::move(of_first);
         return result;
     }
     result.frames = of_first.seen.frames;
     result.times[0].push_back(std::move(of_first.seen));
-    std::vector<std::size_t> running(contenders.size());
+    std::vector<std::size_t> running(candidates.size());
     std::iota(running.begin(), running.end(), std::size_t{0});
     std::size_t done = 0;
-    const auto play = [&](std::size_t index, std::size_t round) {
+    const auto run = [&](std::size_t index, std::size_t round) {
         shown.at(done++);
         if (index == 0 && round == 0) return;
-        const double left = limits.to_play();
+        const double left = limits.to_run();
         const stopping_rule rule{.grace = hopeless_ms / 1000, .share = greatest_share * left, .margin = 2};
-        attempt tried = scene.play(contenders[index], result.frames, rule.longest(first), left);
+        attempt tried = scene.run(candidates[index], result.frames, rule.longest(first), left);
         if (tried.end == ending::stopped && !tried.is_out_of_time && rule.longest(first) >= rule.hopeless_after(first))
             result.hopeless[index] = true;
         if (tried.end == ending::done)
@@ -62,13 +62,13 @@ turns play_in_turn(staged_scene& scene, std::span<const contender> contenders, s
                 result.hopeless[index] = true;
         std::erase_if(running,
                       [&](std::size_t index) { return result.hopeless[index] || result.times[index].size() <= round; });
-        done = (round + 1) * contenders.size();
+        done = (round + 1) * candidates.size();
     };
-    result.rounds = run_rounds(running, {.end = rounds, .left = [&] { return limits.to_play(); }}, play, give_up);
+    result.rounds = run_rounds(running, {.end = rounds, .left = [&] { return limits.to_run(); }}, run, give_up);
     return result;
 }
 
-std::vector<std::size_t> who_disagrees(std::span<const std::vector<observation>> times) {
+std::vector<std::size_t> disagreeing(std::span<const std::vector<observation>> times) {
     std::vector<std::size_t> disagreeing;
     for (std::size_t i = 1; i < times.size(); ++i)
         if (!times[i].empty() && times[i].front().digest != times[0].front().digest) disagreeing.push_back(i);

@@ -18,40 +18,40 @@ std::string text_of(const aabb::contact& c) {
 /// Describes the first difference; empty if there is none.
 template <class T>
 std::string first_of(const aabb::set_difference<T>& d) {
-    if (d.missing.empty() && d.invented.empty()) return {};
-    if (d.invented.empty() || (!d.missing.empty() && d.missing[0] < d.invented[0]))
-        return text_of(d.missing[0]) + " is missing";
-    return text_of(d.invented[0]) +
+    if (d.false_negatives.empty() && d.false_positives.empty()) return {};
+    if (d.false_positives.empty() || (!d.false_negatives.empty() && d.false_negatives[0] < d.false_positives[0]))
+        return text_of(d.false_negatives[0]) + " is missing";
+    return text_of(d.false_positives[0]) +
            (d.repeated ? " is reported more than once" : " is reported, but is not in the exact answer");
 }
 
 /// Compares one candidate with the ground truth.
-class validated_player {
+class validated_runner {
 public:
-    validated_player(const contender& candidate, const scene_choice& choice, const scene_play& scene)
-        : candidate_(candidate),
+    validated_runner(const candidate& tested, const scene_choice& choice, const scene_frames& scene)
+        : candidate_(tested),
           choice_(choice),
           scene_(scene),
-          player_(candidate, scene, aabb::instrumentation::counters),
+          runner_(tested, scene, aabb::instrumentation::counters),
           tally_(scene.meshes() != nullptr) {}
 
-    void play(std::size_t frame, const aabb::exact_answer& exact) {
-        player_.update();
-        player_.search();
-        player_.detect();
-        if (frame == 0) first_frame_ = player_.counters();
-        tally_.add(player_.sorted_pairs(), player_.sorted_contacts());
+    void play(std::size_t frame, const aabb::ground_truth& exact) {
+        runner_.update();
+        runner_.search();
+        runner_.detect();
+        if (frame == 0) first_frame_ = runner_.counters();
+        tally_.add(runner_.sorted_pairs(), runner_.sorted_contacts());
         if (candidate_.whole_boxes) {
-            const aabb::set_difference boxes(exact.pairs(), player_.sorted_pairs());
+            const aabb::set_difference boxes(exact.pairs(), runner_.sorted_pairs());
             if (candidate_.exact_boxes) note(frame, first_of(boxes));
-            boxes_missing_ += boxes.missing.size();
-            boxes_invented_ += boxes.invented.size();
+            box_false_negatives_ += boxes.false_negatives.size();
+            box_false_positives_ += boxes.false_positives.size();
         }
         if (!scene_.meshes()) return;
-        const aabb::set_difference contacts(exact.contacts(), player_.sorted_contacts());
+        const aabb::set_difference contacts(exact.contacts(), runner_.sorted_contacts());
         if (candidate_.exact) note(frame, first_of(contacts));
-        contacts_missing_ += contacts.missing.size();
-        contacts_invented_ += contacts.invented.size();
+        contact_false_negatives_ += contacts.false_negatives.size();
+        contact_false_positives_ += contacts.false_positives.size();
         classify(contacts);
     }
 
@@ -65,26 +65,26 @@ public:
         v.candidates = tally_.candidates();
         v.contacts = tally_.contacts();
         v.digest = tally_.digest();
-        v.missing = scene_.meshes() ? contacts_missing_ : boxes_missing_;
-        v.invented = scene_.meshes() ? contacts_invented_ : boxes_invented_;
-        add_differences(v.differences, "missing", boxes_missing_, classes_.missing);
-        add_differences(v.differences, "invented", boxes_invented_, classes_.invented);
+        v.false_negatives = scene_.meshes() ? contact_false_negatives_ : box_false_negatives_;
+        v.false_positives = scene_.meshes() ? contact_false_positives_ : box_false_positives_;
+        add_differences(v.differences, "missing", box_false_negatives_, classes_.false_negatives);
+        add_differences(v.differences, "invented", box_false_positives_, classes_.false_positives);
         v.status = v.differences.empty() ? "exact" : "inexact";
         if (scene_.meshes()) {
             v.triangles = 0;
             for (const aabb::mesh& m : scene_.meshes()->meshes) *v.triangles += m.triangles.size();
-            v.box_inflation = player_.box_inflation();
+            v.box_inflation = runner_.box_inflation();
         }
         take_counts(v);
         // The memory of an external engine is unknown.
-        if (!candidate_.told) take_bytes(v);
+        if (!candidate_.reported) take_bytes(v);
         return v;
     }
 
 private:
     /// Leaves the counts empty if they are all 0, since engines have no counters.
     void take_counts(row& r) const {
-        aabb::work_counters work = player_.counters();
+        aabb::work_counters work = runner_.counters();
         if (scene_.frames() > 1)
             for (std::size_t i = 0; i < work.counts.size(); ++i) work.counts[i] -= first_frame_.counts[i];
         if (std::ranges::any_of(work.counts, [](std::uint64_t n) { return n > 0; }))
@@ -93,7 +93,7 @@ private:
 
     void take_bytes(row& r) const {
         r.bytes.fill(0);
-        for (const auto& parts : {player_.global_bytes(), player_.local_bytes()})
+        for (const auto& parts : {runner_.global_bytes(), runner_.local_bytes()})
             for (const aabb::part_bytes& part : parts) {
                 auto column = std::ranges::find(byte_columns, part.part);
                 if (column == byte_columns.end()) --column;
@@ -110,21 +110,21 @@ private:
     /// Classifies the differences of each pair of objects.
     void classify(const aabb::set_difference<aabb::contact>& contacts) {
         struct triangle_pairs {
-            std::vector<aabb::index_pair> missing, invented;
+            std::vector<aabb::index_pair> false_negatives, false_positives;
         };
         std::map<aabb::index_pair, triangle_pairs> by_objects;
-        for (const aabb::contact& c : contacts.missing)
-            by_objects[{c.a, c.b}].missing.push_back({c.triangle_a, c.triangle_b});
-        for (const aabb::contact& c : contacts.invented) {
-            std::vector<aabb::index_pair>& invented = by_objects[{c.a, c.b}].invented;
+        for (const aabb::contact& c : contacts.false_negatives)
+            by_objects[{c.a, c.b}].false_negatives.push_back({c.triangle_a, c.triangle_b});
+        for (const aabb::contact& c : contacts.false_positives) {
+            std::vector<aabb::index_pair>& false_positives = by_objects[{c.a, c.b}].false_positives;
             const aabb::index_pair pair{c.triangle_a, c.triangle_b};
-            if (invented.empty() || invented.back() != pair) invented.push_back(pair);
+            if (false_positives.empty() || false_positives.back() != pair) false_positives.push_back(pair);
         }
         const aabb::mesh_scene& meshes = *scene_.meshes();
         for (const auto& [objects, lists] : by_objects)
             classes_ += aabb::compare_triangle_pairs(
-                lists.missing, lists.invented, meshes.meshes[meshes.mesh_of[objects.a]], scene_.poses()[objects.a],
-                meshes.meshes[meshes.mesh_of[objects.b]], scene_.poses()[objects.b]);
+                lists.false_negatives, lists.false_positives, meshes.meshes[meshes.mesh_of[objects.a]],
+                scene_.poses()[objects.a], meshes.meshes[meshes.mesh_of[objects.b]], scene_.poses()[objects.b]);
     }
 
     void add_differences(std::vector<difference>& differences, std::string_view what, std::uint64_t boxes,
@@ -137,45 +137,46 @@ private:
         for (std::size_t i = 0; i < classes.size(); ++i) add(aabb::difference_class_names[i], classes[i]);
     }
 
-    const contender& candidate_;
+    const candidate& candidate_;
     const scene_choice& choice_;
-    const scene_play& scene_;
-    player player_;
+    const scene_frames& scene_;
+    stage_runner runner_;
     tally tally_;
     std::string failure_;
     aabb::work_counters first_frame_;
-    std::uint64_t boxes_missing_ = 0;
-    std::uint64_t boxes_invented_ = 0;
-    std::uint64_t contacts_missing_ = 0;
-    std::uint64_t contacts_invented_ = 0;
+    std::uint64_t box_false_negatives_ = 0;
+    std::uint64_t box_false_positives_ = 0;
+    std::uint64_t contact_false_negatives_ = 0;
+    std::uint64_t contact_false_positives_ = 0;
     aabb::differences classes_;
 };
 
 }  // namespace
 
-scene_validation validate_scene(const scene_choice& choice, std::span<const contender> contenders) {
-    scene_play scene(choice);
-    return validate_scene(choice, scene, contenders);
+scene_validation validate_scene(const scene_choice& choice, std::span<const candidate> candidates) {
+    scene_frames scene(choice);
+    return validate_scene(choice, scene, candidates);
 }
 
-scene_validation validate_scene(const scene_choice& choice, scene_play& scene, std::span<const contender> contenders) {
-    aabb::exact_answer exact(scene.objects(), scene.meshes());
+scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
+                                std::span<const candidate> candidates) {
+    aabb::ground_truth exact(scene.objects(), scene.meshes());
     tally exact_tally(scene.meshes() != nullptr);
-    std::deque<validated_player> players;
-    std::vector<validated_row> results(contenders.size());
+    std::deque<validated_runner> runners;
+    std::vector<validated_row> results(candidates.size());
     std::vector<std::size_t> places;  // indices of the players among the candidates
-    for (std::size_t i = 0; i < contenders.size(); ++i) {
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
         try {
-            players.emplace_back(contenders[i], choice, scene);
+            runners.emplace_back(candidates[i], choice, scene);
             places.push_back(i);
         } catch (const engine_timeout& error) {
-            results[i].name = contenders[i].name;
+            results[i].name = candidates[i].name;
             results[i].failure = error.what();
         }
     }
     std::optional<aabb::posed_boxes> world;
     if (scene.meshes()) world.emplace(*scene.meshes());
-    progress shown("validating " + choice.kind, scene.frames() * (contenders.size() + 1));
+    progress shown("validating " + choice.kind, scene.frames() * (candidates.size() + 1));
     std::size_t done = 0;
     for (std::size_t frame = 0; scene.next(); ++frame) {
         if (world) scene.in_frame([&] { world->update(scene.poses()); });
@@ -185,13 +186,13 @@ scene_validation validate_scene(const scene_choice& choice, scene_play& scene, s
             exact.play({scene.boxes(), {}, scene.arrivals(), scene.departures()});
         exact_tally.add(exact.pairs(), exact.contacts());
         shown.at(++done);
-        for (validated_player& p : players) {
+        for (validated_runner& p : runners) {
             p.play(frame, exact);
             shown.at(++done);
         }
         scene.tell(exact.pairs(), exact.contacts());
     }
-    for (std::size_t i = 0; i < players.size(); ++i) results[places[i]] = players[i].result();
+    for (std::size_t i = 0; i < runners.size(); ++i) results[places[i]] = runners[i].result();
     return {scene.objects(), scene.frames(), exact.name(), exact_tally.digest(), std::move(results)};
 }
 

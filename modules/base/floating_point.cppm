@@ -20,7 +20,7 @@ inline const volatile double near_one = 1 + 0x1p-30;
 inline const volatile double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// @throws input_error with the fault of the arithmetic
-[[noreturn]] void refuse_arithmetic(bool keeps_denormals, bool rounds_to_nearest, bool knows_nan) {
+[[noreturn]] void reject_arithmetic(bool keeps_denormals, bool rounds_to_nearest, bool knows_nan) {
     if (!keeps_denormals)
         throw input_error(
             "answers cannot be exact here: this thread flushes denormal numbers to zero, as a library linked with "
@@ -54,7 +54,7 @@ export namespace aabb {
     const double nan = detail::not_a_number;
     const bool knows_nan = nan != nan;
     if (!keeps_denormals || !rounds_to_nearest || !knows_nan || fuses) [[unlikely]]
-        detail::refuse_arithmetic(keeps_denormals, rounds_to_nearest, knows_nan);
+        detail::reject_arithmetic(keeps_denormals, rounds_to_nearest, knows_nan);
 }
 
 }  // namespace aabb

@@ -62,8 +62,8 @@ inline void take_note_of_swap(const interval_end& passed, const interval_end& mo
 class kept_pairs {
 public:
     template <class... All>
-    static constexpr std::string_view refuses() {
-        return refusal_of_coherent_sweep<All...>();
+    static constexpr std::string_view rejects() {
+        return rejection_of_coherent_sweep<All...>();
     }
 
     void search(std::vector<index_pair>& pairs) const {

@@ -14,7 +14,7 @@ public:
             state_.push_back(state::absent);
         else if (id > state_.size())
             state_.resize(std::size_t{id} + 1, state::absent);
-        if (contains(id)) refuse(id, " is inserted twice");
+        if (contains(id)) reject(id, " is inserted twice");
         // An object that is removed and inserted again between two frames counts as known.
         const bool comes = state_[id] == state::absent;
         arrivals_ += comes;
@@ -24,7 +24,7 @@ public:
 
     /// @throws input_error if the object is not present
     void remove(std::uint32_t id) {
-        if (!contains(id)) refuse(id, " is removed but was never inserted");
+        if (!contains(id)) reject(id, " is removed but was never inserted");
         --size_;
         if (state_[id] == state::coming) {
             --arrivals_;
@@ -76,7 +76,7 @@ private:
     enum class state : std::uint8_t { absent, coming, known, leaving };
 
     // Out of line, so that the functions called per object stay small enough to inline.
-    [[noreturn]] static void refuse(std::uint32_t id, const char* why) {
+    [[noreturn]] static void reject(std::uint32_t id, const char* why) {
         throw input_error("object " + std::to_string(id) + why);
     }
 

@@ -120,7 +120,7 @@ concept CoherentSweep =
 
 /// Why a coherent sweep rejects these strategies; empty if it accepts them.
 template <class... All>
-constexpr std::string_view refusal_of_coherent_sweep() {
+constexpr std::string_view rejection_of_coherent_sweep() {
     if (((CuttingPartition<All> || SearchingPartition<All>) || ...))
         return "a sweep that keeps its pairs between frames cannot follow a partition that makes other subsets in each "
                "frame; it goes with none only";

@@ -73,13 +73,13 @@ private:
                 ++copies;
             });
             // Checked while counting, since visiting all copies could take hours.
-            if (copies > most_copies(any.size())) refuse(partition, boxes, any);
+            if (copies > most_copies(any.size())) reject(partition, boxes, any);
         }
         for (std::size_t s = 0; s < subsets; ++s) starts_[s + 1] += starts_[s];
     }
 
     template <class Partition>
-    [[noreturn]] static void refuse(const Partition& partition, std::span<const box> boxes,
+    [[noreturn]] static void reject(const Partition& partition, std::span<const box> boxes,
                                     std::span<const projection> any) {
         std::uint64_t copies = 0;
         for (const projection& p : any) copies += partition.copies(p.id, boxes[p.id]);

@@ -3,7 +3,7 @@ export module aabb.local_detection;
 export import :depth_first_walk;
 export import :model;
 export import :policies;
-export import :tree_survey;
+export import :tree_validation;
 
 export import aabb.counters;
 export import aabb.geometry;

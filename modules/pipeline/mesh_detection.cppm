@@ -40,8 +40,8 @@ public:
         detection_.each_self_pair(models_[model], take);
     }
     void refit(std::uint32_t model) { models_[model].refit(refitted_); }
-    [[nodiscard]] tree_survey survey(std::uint32_t model) const {
-        return survey_of(models_[model].tree(), models_[model].triangles());
+    [[nodiscard]] tree_validation validate_tree(std::uint32_t model) const {
+        return validation_of(models_[model].tree(), models_[model].triangles());
     }
     [[nodiscard]] const Counters& counters() const noexcept { return detection_.counters(); }
 
@@ -95,8 +95,8 @@ public:
         detection_.each_self_pair(model, take);
     }
     void refit(std::uint32_t model) override { detection_.refit(model); }
-    [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t model) const override {
-        return detection_.survey(model);
+    [[nodiscard]] std::optional<tree_validation> validate_tree(std::uint32_t model) const override {
+        return detection_.validate_tree(model);
     }
     [[nodiscard]] work_counters counters() const override { return work_of(detection_.counters()); }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return detection_.bytes(); }

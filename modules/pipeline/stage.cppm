@@ -15,7 +15,7 @@ struct part_bytes {
 };
 
 /// A decision that a stage made for the current scene.
-enum class plan_kind : std::uint8_t { columns, groups_of_columns, neighbour_list, frame_at_rest };
+enum class plan_kind : std::uint8_t { columns, groups_of_columns, neighbour_list, static_frame };
 struct stage_plan {
     plan_kind what;
     statement told;  ///< the decision in words, with its numbers
@@ -93,7 +93,7 @@ public:
     virtual void refit(std::uint32_t model) = 0;
 
     /// Validates the model's whole tree against the mesh; nullopt for an engine that does not expose its tree.
-    [[nodiscard]] virtual std::optional<tree_survey> survey(std::uint32_t model) const = 0;
+    [[nodiscard]] virtual std::optional<tree_validation> validate_tree(std::uint32_t model) const = 0;
 
     [[nodiscard]] virtual work_counters counters() const = 0;
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;

@@ -23,7 +23,7 @@ public:
         if constexpr (DoubleTrianglePolicy<Triangle>)
             return triangle_.intersects(s, t);
         else
-            refuse_doubles();
+            reject_doubles();
     }
     [[nodiscard]] bool takes_double() const override { return DoubleTrianglePolicy<Triangle>; }
 
@@ -34,7 +34,7 @@ public:
         if constexpr (DoubleTrianglePolicy<Triangle>)
             answer(pairs, answers);
         else
-            refuse_doubles();
+            reject_doubles();
     }
 
     [[nodiscard]] triangle_intersection intersection(const triangle3d& s, const triangle3d& t) const override {
@@ -56,7 +56,7 @@ private:
             answers[i] = static_cast<std::uint8_t>(triangle_.intersects(pairs[i].a, pairs[i].b));
     }
 
-    [[noreturn]] static void refuse_doubles() {
+    [[noreturn]] static void reject_doubles() {
         throw input_error(std::string(Triangle::name) + " tests triangles of floats only");
     }
 

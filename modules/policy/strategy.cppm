@@ -66,9 +66,9 @@ struct type_list {};
 namespace aabb::detail {
 
 template <class Policy, class... Others>
-constexpr std::string_view refusal_by() {
-    if constexpr (requires { Policy::template refuses<Others...>(); })
-        return Policy::template refuses<Others...>();
+constexpr std::string_view rejection_by() {
+    if constexpr (requires { Policy::template rejects<Others...>(); })
+        return Policy::template rejects<Others...>();
     else
         return {};
 }
@@ -78,11 +78,11 @@ constexpr std::string_view refusal_by() {
 export namespace aabb {
 
 /// Why a combination of policies is rejected, in the words of the rejecting policy; empty if it is accepted. A policy
-/// rejects by a member `template <class... All> static constexpr std::string_view refuses()`.
+/// rejects by a member `template <class... All> static constexpr std::string_view rejects()`.
 template <class... Policies>
-[[nodiscard]] constexpr std::string_view refusal() {
+[[nodiscard]] constexpr std::string_view rejection() {
     std::string_view reason;
-    ((reason = reason.empty() ? detail::refusal_by<Policies, Policies...>() : reason), ...);
+    ((reason = reason.empty() ? detail::rejection_by<Policies, Policies...>() : reason), ...);
     return reason;
 }
 
@@ -95,8 +95,8 @@ struct sentence {
 /// The reason of a rejection as such an argument.
 template <class... Policies>
 [[nodiscard]] constexpr auto sentence_of() {
-    sentence<refusal<Policies...>().size()> copy;
-    std::ranges::copy(refusal<Policies...>(), copy.text);
+    sentence<rejection<Policies...>().size()> copy;
+    std::ranges::copy(rejection<Policies...>(), copy.text);
     return copy;
 }
 

@@ -50,7 +50,7 @@ struct strategy_choice {
 
 /// The properties of a scene that are known before a run. The motion of boxes is left to strategies that observe it:
 /// `neighbour_list`, and the plans of `columns`.
-struct scene_outlook {
+struct scene_traits {
     std::size_t frames = 1;
     std::size_t triangles = 0;    ///< total number in all meshes; 0 for scenes of boxes
     std::size_t queries = 1;      ///< expected number of narrow-phase queries of two meshes
@@ -80,7 +80,7 @@ struct scene_outlook {
 };
 
 /// Whether a strategy serves a scene better than the default of its kind, and with which settings. A strategy that
-/// `auto` may choose has a member `static scene_fit fit(const scene_outlook&)`.
+/// `auto` may choose has a member `static scene_fit fit(const scene_traits&)`.
 struct scene_fit {
     bool serves = false;
     std::vector<setting> settings{};

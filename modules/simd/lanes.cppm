@@ -94,7 +94,7 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
 /// Compress-store: stores the lanes whose bit is set contiguously. May overwrite the rest of a whole vector behind
 /// them.
 /// @returns the number of stored lanes
-[[gnu::always_inline]] inline std::size_t store_where(std::uint32_t* to, words v, std::uint32_t set) noexcept {
+[[gnu::always_inline]] inline std::size_t compress_store(std::uint32_t* to, words v, std::uint32_t set) noexcept {
     const auto stored = static_cast<std::size_t>(std::popcount(set));
 #if defined(__AVX512F__)
     if constexpr (width == 16) return detail::store_of_sixteen(to, &v, set), stored;

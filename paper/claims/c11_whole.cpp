@@ -13,7 +13,7 @@ const std::vector<method> methods{{"traditional in both stages", traditional.wit
 
 /// The broad phase's share of the traditional method's time, in percent.
 std::optional<double> global_share(const condition& c) {
-    return median_of(c, methods[0].who, measured("global_share"));
+    return median_of(c, methods[0].tested, measured("global_share"));
 }
 
 table half_steps(const std::vector<condition>& conditions) {
@@ -45,7 +45,7 @@ draft c11_claim(const measurements& m) {
     const std::vector<condition>& conditions = m.of("c11");
     for (const condition& c : conditions) {
         const std::string density = value_of(c.of(), "density");
-        c11.add(told(endpoint_of(c, methods[3].who, methods[0].who, "frame_cpu_ms"),
+        c11.add(told(endpoint_of(c, methods[3].tested, methods[0].tested, "frame_cpu_ms"),
                      density == "0.3"    ? "where detailed models touch"
                      : density == "0.05" ? "with many small models"
                                          : "with simple models far apart",

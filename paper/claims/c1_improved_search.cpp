@@ -61,8 +61,8 @@ draft c1_claim(const measurements& m) {
         if (!is_brownian(c)) c1.add(over_traditional(c, subject_of(c)));
     for (const condition* c : having(conditions, drifting))
         c1.beside = {
-            told(endpoint_of(*c, methods[1].who, traditional, "frame_cpu_ms"), "with the cut alone at 10,000 boxes"),
-            told(endpoint_of(*c, methods[2].who, traditional, "frame_cpu_ms"), "with Shell sort alone")};
+            told(endpoint_of(*c, methods[1].tested, traditional, "frame_cpu_ms"), "with the cut alone at 10,000 boxes"),
+            told(endpoint_of(*c, methods[2].tested, traditional, "frame_cpu_ms"), "with Shell sort alone")};
     c1.claim.tables.push_back(
         {"figure1", "Time a frame as a ratio to the traditional method, with 95 % intervals.", half_steps(conditions)});
     figure& f = c1.claim.figures.emplace_back(log_log(

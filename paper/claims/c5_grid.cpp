@@ -84,8 +84,8 @@ table times(const std::vector<condition>& conditions) {
     for (const std::string& size : cell_sizes) t.columns.push_back({"cells of " + size});
     t.columns.push_back({"grid, auto"});
     for (std::size_t i = 0; i < conditions.size(); ++i) {
-        const auto add = [&](const selection& who) {
-            t.rows[i].push_back(digits_cell(median_of(conditions[i], who, measured("frame_cpu_ms"))));
+        const auto add = [&](const selection& tested) {
+            t.rows[i].push_back(digits_cell(median_of(conditions[i], tested, measured("frame_cpu_ms"))));
         };
         add(cut);
         for (const std::string& size : cell_sizes) add(grid(size));
@@ -111,13 +111,13 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
     };
     const row_value bytes = all_bytes();
     for (const auto& [label, size] : {std::pair{"cells of 2", "2"}, {"cells chosen anew", "auto"}}) {
-        const selection who = grid(size);
+        const selection tested = grid(size);
         const std::string in_the_smallest = std::string("with ") + label + " in the smallest world against the largest";
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large",
-            in_the_smallest + ", both over the cut", small.log_ratios(who, cut, measured("frame_cpu_ms")),
-            large.log_ratios(who, cut, measured("frame_cpu_ms")), quantity::time, expectation::less);
+            in_the_smallest + ", both over the cut", small.log_ratios(tested, cut, measured("frame_cpu_ms")),
+            large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::time, expectation::less);
         add(std::string("bytes of a grid, ") + label + ", small world over large", in_the_smallest,
-            small.logs(who, bytes), large.logs(who, bytes), quantity::bytes, expectation::less);
+            small.logs(tested, bytes), large.logs(tested, bytes), quantity::bytes, expectation::less);
     }
     add("bytes of axial_cut, large world over small", "with the cut in the largest world against the smallest",
         large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
@@ -156,11 +156,11 @@ figure world_figure(const std::string& name, const std::string& what, const std:
                            "one cell size, one that chooses it anew, and the axial cut; medians and quartiles.",
                        "side of the world (edges)", axis);
     const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
-    for (const auto& [label, who] : methods) {
+    for (const auto& [label, tested] : methods) {
         series s{label};
         for (const condition& c : worlds) {
             const double side = std::cbrt(number_of(c.of(), "objects") / number_of(c.of(), "density"));
-            if (const auto point = c.point(side, who, of)) s.points.push_back(*point);
+            if (const auto point = c.point(side, tested, of)) s.points.push_back(*point);
         }
         f.lines.push_back(s);
     }

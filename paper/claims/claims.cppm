@@ -205,7 +205,7 @@ struct claim_source {
                             quantity compared = quantity::time);
 
 /// The median over all repeats; empty if it was not measured.
-[[nodiscard]] std::optional<double> median_of(const condition& c, const selection& who, const row_value& of);
+[[nodiscard]] std::optional<double> median_of(const condition& c, const selection& tested, const row_value& of);
 /// Inversions per element of the sorted list.
 [[nodiscard]] std::optional<double> inversions_of(const condition& c);
 
@@ -216,7 +216,7 @@ struct claim_source {
 /// A composition and its label in figures and tables.
 struct method {
     std::string label;
-    selection who;
+    selection tested;
 };
 /// Adds columns to a table with one row per condition: each method's time per frame over that of the first method.
 void add_ratios(table& t, const std::vector<condition>& conditions, std::span<const method> methods);
@@ -230,7 +230,7 @@ void add_ratios(table& t, const std::vector<condition>& conditions, std::span<co
 [[nodiscard]] series level_of(const std::string& label, double x = 1);
 /// A series of medians over the conditions of an experiment, in the order of x.
 [[nodiscard]] series series_of(const std::string& label, std::span<const condition* const> conditions,
-                               const std::string& x, const selection& who, const row_value& of);
+                               const std::string& x, const selection& tested, const row_value& of);
 /// One series per method.
 [[nodiscard]] std::vector<series> series_of(std::span<const method> methods,
                                             std::span<const condition* const> conditions, const std::string& x,

@@ -51,8 +51,8 @@ endpoint& draft::add(endpoint e) {
     return endpoints.emplace_back(std::move(e));
 }
 
-std::optional<double> median_of(const condition& c, const selection& who, const row_value& of) {
-    const std::optional<quartiles> spread = c.spread(who, of);
+std::optional<double> median_of(const condition& c, const selection& tested, const row_value& of) {
+    const std::optional<quartiles> spread = c.spread(tested, of);
     return spread ? std::optional(spread->median) : std::nullopt;
 }
 
@@ -72,7 +72,8 @@ void add_ratios(table& t, const std::vector<condition>& conditions, std::span<co
     for (const method& m : methods.subspan(1)) {
         t.columns.push_back({m.label});
         for (std::size_t i = 0; i < conditions.size(); ++i)
-            t.rows[i].push_back(ratio_cell(endpoint_of(conditions[i], m.who, methods.front().who, "frame_cpu_ms")));
+            t.rows[i].push_back(
+                ratio_cell(endpoint_of(conditions[i], m.tested, methods.front().tested, "frame_cpu_ms")));
     }
 }
 
@@ -91,11 +92,11 @@ series level_of(const std::string& label, double x) {
 }
 
 series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
-                 const selection& who, const row_value& of) {
+                 const selection& tested, const row_value& of) {
     series s{label};
     for (const condition* c : conditions) {
         const double place = x == "triangles" ? c->triangles() : number_of(c->of(), x);
-        if (const auto point = c->point(place, who, of)) s.points.push_back(*point);
+        if (const auto point = c->point(place, tested, of)) s.points.push_back(*point);
     }
     std::ranges::sort(s.points, {}, &figure_point::x);
     return s;
@@ -104,7 +105,7 @@ series series_of(const std::string& label, std::span<const condition* const> con
 std::vector<series> series_of(std::span<const method> methods, std::span<const condition* const> conditions,
                               const std::string& x, const row_value& of) {
     std::vector<series> lines;
-    for (const method& m : methods) lines.push_back(series_of(m.label, conditions, x, m.who, of));
+    for (const method& m : methods) lines.push_back(series_of(m.label, conditions, x, m.tested, of));
     return lines;
 }
 

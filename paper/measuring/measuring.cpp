@@ -79,9 +79,9 @@ std::vector<std::string> run_suites(const std::filesystem::path& folder, bool qu
     // The file of an earlier version would have priority over the rows.
     for (const char* suite : {"extreme", "stiff"}) std::filesystem::remove(folder / suite / "report.json");
     note("the extreme scenes");
-    std::vector<std::string> failures = play_extreme_suite(folder / "extreme", usual_cases(), quick, false).failures;
+    std::vector<std::string> failures = run_extreme_suite(folder / "extreme", usual_cases(), quick, false).failures;
     note("the stiff scenes");
-    std::ranges::move(play_stiff_suite(folder / "stiff", {}, quick, false).failures, std::back_inserter(failures));
+    std::ranges::move(run_stiff_suite(folder / "stiff", {}, quick, false).failures, std::back_inserter(failures));
     return failures;
 }
 
@@ -183,7 +183,7 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     std::filesystem::remove(file_of_failures(folder));
     for (const experiment& e : experiments) {
         note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, count, e.name));
-        add(play_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
+        add(run_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
     }
     note(fmt::format("experiment {} of {}: c6, the elementary tests", experiments.size() + 1, count));
     add(time_tests(folder / "c6", quick));

@@ -18,7 +18,7 @@ struct sah_build : top_down_build<sah_split, axis_rule::least_area> {
     static constexpr std::string_view summary = "by the surface-area heuristic, in 16 bins on each axis";
 
     /// Queries visit a twelfth fewer nodes than in trees by `median`.
-    [[nodiscard]] static scene_fit fit(const scene_outlook& scene) {
+    [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         if (scene.triangles == 0) return {.because = {{"no meshes: nothing is built"}}};
         const std::size_t repaid =
             scene.queries_that_repay(machine_costs().sah_triangle - machine_costs().median_triangle, 1.0 / 12);

@@ -155,10 +155,10 @@ private:
                 simd::upper_products(plan_.whole(c[3 + u], u) | plan_.whole(c[3 + v], v) << 16, across);
             simd::store_lower_halves(&keys_[p.begin + i], (first & 0xffffU) + (first >> 16) * plan_.across[0]);
             const std::uint32_t wide = simd::bits(first != last) & present;
-            simd::store_where(&wide_first_[p.wide_end], first, wide);
-            simd::store_where(&wide_last_[p.wide_end], last, wide);
-            p.wide_end +=
-                simd::store_where(&wide_[p.wide_end], simd::places() + static_cast<std::uint32_t>(p.begin + i), wide);
+            simd::compress_store(&wide_first_[p.wide_end], first, wide);
+            simd::compress_store(&wide_last_[p.wide_end], last, wide);
+            p.wide_end += simd::compress_store(&wide_[p.wide_end],
+                                               simd::places() + static_cast<std::uint32_t>(p.begin + i), wide);
         });
         p.result = simd::bits(invalid) == 0 ? fill_result::whole : fill_result::invalid;
         if (p.result == fill_result::invalid) return;

@@ -96,8 +96,8 @@ private:
             simd::store_rows_of_four(&places_[begin + i].lower,
                                      {lower, upper, bucket + (plan.whole(c[3 + Axis], Axis) >> (16 - bits)),
                                       bucket + (plan.whole(c[Axis], Axis) >> (16 - bits))});
-            wide += simd::store_where(&wide_[wide], simd::places() + static_cast<std::uint32_t>(begin + i),
-                                      simd::bits(first != last) & present);
+            wide += simd::compress_store(&wide_[wide], simd::places() + static_cast<std::uint32_t>(begin + i),
+                                         simd::bits(first != last) & present);
         });
         wide_boxes_ = wide;
         return simd::bits(invalid) == 0;

@@ -9,24 +9,24 @@ export namespace aabb {
 /// Sleep detection: keeps the pairs of a frame for as long as nothing moves. A frame is kept only if a sample of its
 /// boxes has not moved since the previous frame, so moving scenes only compare the sample. If the sample is
 /// at rest but other boxes move, exponential back-off keeps ever fewer frames, down to one in 64.
-class frame_at_rest {
+class static_frame {
 public:
     /// @returns whether no box has moved since the kept frame, so that `pairs` is still the result
     [[nodiscard]] bool lasts(std::span<const box> boxes, const membership& objects) {
         const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;
         if (!boxes_.empty()) {
             if (same_objects && are_same(boxes, boxes_)) {
-                pause_ = 0;
+                backoff_ = 0;
                 return true;
             }
             boxes_.clear();
             pairs_.clear();
-            pause_ = std::min(2 * pause_ + 1, 63U);
+            backoff_ = std::min(2 * backoff_ + 1, 63U);
             waited_ = 0;
         }
         size_ = boxes.size();
         const auto sample = sample_of(boxes);
-        is_to_be_kept_ = same_objects && are_same(sample, sample_) && ++waited_ > pause_;
+        is_to_be_kept_ = same_objects && are_same(sample, sample_) && ++waited_ > backoff_;
         sample_ = sample;
         return false;
     }
@@ -56,14 +56,14 @@ private:
     std::size_t size_ = 0;
     std::array<box, sample_size> sample_{};
     bool is_to_be_kept_ = false;
-    unsigned pause_ = 0;  // back-off: number of frames that are not kept although the sample is at rest
+    unsigned backoff_ = 0;  // back-off: number of frames that are not kept although the sample is at rest
     unsigned waited_ = 0;
     std::vector<box> boxes_;  // boxes of all objects, including absent ones; empty if no frame is kept
     std::vector<index_pair> pairs_;
 };
 
 /// Brute-force search for few boxes: testing all pairs by vectors is faster than sorting or cutting.
-class few_boxes {
+class brute_force_batch {
 public:
     /// @param group boxes in ascending order of ids
     /// @returns whether all boxes are valid; otherwise `search` must not be called.
@@ -166,7 +166,7 @@ public:
     /// @throws input_error as `global_search::update`.
     void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
         boxes_ = boxes;
-        rests_ = at_rest_.lasts(boxes, objects);
+        rests_ = static_frame_.lasts(boxes, objects);
         if (rests_) return;
         if (boxes.size() > column_entry::index_bits) throw input_error("columns take at most 536,870,911 objects");
         select(boxes, objects);
@@ -174,7 +174,7 @@ public:
         is_few_ = n <= partition_.few();
         if (is_few_) {
             planned_ = 0;
-            if (!few_.fill(present_)) require_valid(boxes);
+            if (!batch_.fill(present_)) require_valid(boxes);
             return;
         }
         const box bounds = bounds_of_sample();
@@ -190,18 +190,18 @@ public:
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         for (worker& w : workers_) w.own.times().clear();
         if (rests_) {
-            pairs.insert(pairs.end(), at_rest_.pairs().begin(), at_rest_.pairs().end());
+            pairs.insert(pairs.end(), static_frame_.pairs().begin(), static_frame_.pairs().end());
             return;
         }
         const std::size_t before = pairs.size();
         if (is_few_)
-            few_.search(pairs, counters);
+            batch_.search(pairs, counters);
         else if (groups_.size() == 0)
             workers_.front().own.sweep(partition_, present_, everywhere, cut_.columns, pairs);
         else
             search_groups(pairs);
         add_up(counters);
-        at_rest_.keep(boxes_, std::span(pairs).subspan(before));
+        static_frame_.keep(boxes_, std::span(pairs).subspan(before));
     }
 
     /// The plan of the last frame that was cut: the grid of groups if there are groups, else the columns.
@@ -235,7 +235,7 @@ public:
         return sum_of([](const worker& w) { return w.own.sort_bytes(); });
     }
     [[nodiscard]] std::size_t partition_bytes() const noexcept {
-        return bytes_of(partition_, groups_, cut_, present_boxes_, present_ids_, few_, at_rest_) +
+        return bytes_of(partition_, groups_, cut_, present_boxes_, present_ids_, batch_, static_frame_) +
                sum_of([](const worker& w) { return w.own.column_bytes(); });
     }
     [[nodiscard]] std::size_t sweep_bytes() const noexcept {
@@ -391,12 +391,12 @@ private:
     worker_threads threads_;
     std::vector<worker> workers_;  // one per thread
     std::span<const box> boxes_;   // boxes of the current frame
-    frame_at_rest at_rest_;
+    static_frame static_frame_;
     bool rests_ = false;
     column_group present_{};
     std::vector<box> present_boxes_;  // used only if some objects are absent
     std::vector<std::uint32_t> present_ids_;
-    few_boxes few_;
+    brute_force_batch batch_;
     bool is_few_ = false;
     kept_cut cut_;
     column_groups groups_;

@@ -41,7 +41,7 @@ public:
     static constexpr std::array contrasts{std::string_view("few=0")};
 
     template <class... All>
-    static constexpr std::string_view refuses() {
+    static constexpr std::string_view rejects() {
         if (((SweepPolicy<All> && !ColumnSweep<All>) || ...))
             return "columns hands over boxes in whole vectors, bucket by bucket; it goes with simd only";
         return {};

@@ -58,7 +58,7 @@ public:
         return sum_[0] > 0 ? 1 + by * (sum_[1] + by * (sum_[2] + by * sum_[3])) / sum_[0] : 1;
     }
     /// The share of the overlapping pairs that overlap by more than two margins.
-    [[nodiscard]] double sure(double margin) const {
+    [[nodiscard]] double certain(double margin) const {
         return 8 * margin < longest_margin_ ? std::max(at(-margin), 0.0) : 0;
     }
     /// Four mean extents; beyond that the model is not reliable.
@@ -77,7 +77,7 @@ struct list_horizon {
 };
 
 /// The estimates from which the next Verlet list is planned.
-struct list_outlook {
+struct list_estimate {
     displacement_law law{};
     std::size_t boxes = 0;
     std::size_t pairs = 0;  ///< number of overlapping pairs
@@ -87,7 +87,7 @@ struct list_outlook {
 
     /// Estimates the growth again, from a new sample.
     /// @param drawn as in `drawn_id`
-    void look_anew(std::span<const box> boxes_by_id, const membership& objects, std::uint32_t& drawn) {
+    void resample(std::span<const box> boxes_by_id, const membership& objects, std::uint32_t& drawn) {
         std::array<box, 16> sample;
         growth = growth_of_pairs(drawn_boxes(boxes_by_id, objects, drawn, sample));
     }
@@ -140,8 +140,8 @@ inline constexpr double worth_a_list = 0.9;
 }
 
 /// Whether serving a frame from a list of this length costs less than searching it.
-[[nodiscard]] inline bool pays(std::size_t boxes, std::size_t pairs, std::size_t listed,
-                               const cost_model& cost = machine_costs()) {
+[[nodiscard]] inline bool is_list_worth_it(std::size_t boxes, std::size_t pairs, std::size_t listed,
+                                           const cost_model& cost = machine_costs()) {
     const auto n = static_cast<double>(boxes);
     return cost_of_service(n, static_cast<double>(listed), cost) <
            worth_a_list * cost_of_search(n, static_cast<double>(pairs), cost);
@@ -152,8 +152,8 @@ inline constexpr double worth_a_list = 0.9;
 /// @param pairs number of overlapping pairs
 /// @param tested number of listed pairs that each frame tests
 /// @param frames number of frames that the list still serves
-[[nodiscard]] inline bool pays_to_shorten(std::size_t boxes, std::size_t pairs, std::size_t tested, std::size_t frames,
-                                          const cost_model& cost = machine_costs()) {
+[[nodiscard]] inline bool is_shortening_worth_it(std::size_t boxes, std::size_t pairs, std::size_t tested,
+                                                 std::size_t frames, const cost_model& cost = machine_costs()) {
     const auto n = static_cast<double>(boxes);
     const double once = static_cast<double>(tested) * cost.test_pair;
     // Each pair is tested twice: whether it stays listed, and whether it is sure.
@@ -164,35 +164,36 @@ inline constexpr double worth_a_list = 0.9;
 
 /// Whether it is worth its cost to find the sure pairs of a list, which later frames then do not test. Finding them
 /// takes as long as two tests of each pair.
-[[nodiscard]] inline bool pays_to_tell_sure(const list_outlook& outlook, std::size_t listed, double margin) {
-    const double sure = static_cast<double>(outlook.pairs) * outlook.growth.sure(margin);
-    const double frames_left = outlook.law.until(margin) - static_cast<double>(outlook.law.age());
-    return sure * frames_left > 2 * static_cast<double>(listed);
+[[nodiscard]] inline bool is_marking_certain_worth_it(const list_estimate& estimate, std::size_t listed,
+                                                      double margin) {
+    const double certain = static_cast<double>(estimate.pairs) * estimate.growth.certain(margin);
+    const double frames_left = estimate.law.until(margin) - static_cast<double>(estimate.law.age());
+    return certain * frames_left > 2 * static_cast<double>(listed);
 }
 
 /// The plan with the least cost per frame; among those within 1% of it the longest, since the displacement may be
 /// underestimated.
-[[nodiscard]] inline list_plan plan_list(const list_outlook& outlook, double worth = worth_a_list,
+[[nodiscard]] inline list_plan plan_list(const list_estimate& estimate, double worth = worth_a_list,
                                          const cost_model& cost = machine_costs()) {
     constexpr double as_little = 1.01;
     constexpr std::size_t longest = 1024;
-    const auto n = static_cast<double>(outlook.boxes);
+    const auto n = static_cast<double>(estimate.boxes);
     list_plan best;
-    const std::size_t frames_left = outlook.horizon.frames_left;
-    if (outlook.law.age() == 0 || frames_left < 2) return best;
-    const double search = cost_of_search(n, outlook.listed(0), cost);
-    const double exponent = outlook.law.exponent();
+    const std::size_t frames_left = estimate.horizon.frames_left;
+    if (estimate.law.age() == 0 || frames_left < 2) return best;
+    const double search = cost_of_search(n, estimate.listed(0), cost);
+    const double exponent = estimate.law.exponent();
     // Numbers of served frames after the one that makes the list: 1, 2, 3, 4, 6, 8, 12, …, up to all remaining frames.
     for (std::size_t after = 1, next = 2; after < longest;
          after = std::exchange(next, next + std::bit_floor(next) / 2)) {
         after = std::min(after, frames_left - 1);
-        const double margin = outlook.law.after(after, exponent);
-        if (!(margin <= outlook.growth.longest_margin())) break;
-        const double listed = outlook.listed(margin);
+        const double margin = estimate.law.after(after, exponent);
+        if (!(margin <= estimate.growth.longest_margin())) break;
+        const double listed = estimate.listed(margin);
         const double served = cost_of_service(n, listed, cost) / search;
         if (served >= std::min(best.cost, worth)) break;
         const double making = cost_of_making(n, listed, cost) / static_cast<double>(after + 1) +
-                              cost_of_new_memory(n, listed, outlook.horizon, cost);
+                              cost_of_new_memory(n, listed, estimate.horizon, cost);
         const double per_frame = served + making / search;
         if (per_frame <= as_little * best.cost) best = {after + 1, margin, std::min(per_frame, best.cost)};
         if (after == frames_left - 1) break;

@@ -1,6 +1,6 @@
 module aabb.prepare.neighbour_list;
 
-import aabb.prepare.list_pause;
+import aabb.prepare.list_backoff;
 import aabb.prepare.pair_list;
 import aabb.prepare.mean_extent;
 import aabb.prepare.relative_motion;
@@ -76,7 +76,7 @@ public:
         if (leaves_any && state_ >= state::resting)
             list_.erase_if([&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
         note_arrivals(comes_any);
-        if (has_few_boxes()) {
+        if (is_below_list_threshold()) {
             state_ = state::nothing;
             search_->update(boxes);
         } else {
@@ -111,7 +111,7 @@ public:
                 append_whole(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, is_within())); });
                 break;
         }
-        outlook_.pairs = pairs.size() - before;
+        estimate_.pairs = pairs.size() - before;
         // In the frame that makes a list the share also covers the list's first tests, which take far less time.
         share_of_update_ = searches ? search_->share_of_update() : 0;
     }
@@ -137,14 +137,15 @@ public:
                                    {"a list of {pairs} pairs, of boxes grown by {margin} on every side",
                                     {{{"pairs", static_cast<double>(list_.size())}, {"margin", margin_}}}}});
         else if (state_ == state::resting)
-            stage_plans.push_back({plan_kind::frame_at_rest, {"the pairs of a frame since which nothing has moved"}});
+            stage_plans.push_back({plan_kind::static_frame, {"the pairs of a frame since which nothing has moved"}});
         return stage_plans;
     }
 
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
         if (state_ <= state::watching)
-            absent.push_back({absence::neighbour_list, has_few_boxes() ? "so few boxes are searched as soon as watched"
+            absent.push_back({absence::neighbour_list, is_below_list_threshold()
+                                                           ? "so few boxes are searched as soon as watched"
                                                        : expected_ < fewest_frames_of_first_list
                                                            ? "none has been seen to repay its making in so few frames"
                                                            : "boxes move too far, or come too often, for one to pay"});
@@ -159,7 +160,7 @@ private:
     };
 
     [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
-    [[nodiscard]] bool has_few_boxes() const noexcept { return adapts() && objects_.size() < fewest_boxes; }
+    [[nodiscard]] bool is_below_list_threshold() const noexcept { return adapts() && objects_.size() < fewest_boxes; }
     /// Whether the pairs marked as sure are guaranteed to overlap in this frame.
     [[nodiscard]] bool is_within() const noexcept { return moved_.both_ways <= margin_; }
 
@@ -170,8 +171,9 @@ private:
         const std::size_t until_arrival = std::max(between_arrivals_, since_arrival_);
         const std::size_t until_end =
             frames_ >= expected_ ? std::numeric_limits<std::size_t>::max() : expected_ - frames_;
-        outlook_.boxes = objects_.size();
-        outlook_.horizon = {.frames_left = std::min(until_arrival, until_end), .in_new_memory = grown_.capacity() == 0};
+        estimate_.boxes = objects_.size();
+        estimate_.horizon = {.frames_left = std::min(until_arrival, until_end),
+                             .in_new_memory = grown_.capacity() == 0};
     }
 
     [[nodiscard]] sight look(std::span<const box> boxes, bool comes_any) {
@@ -188,11 +190,11 @@ private:
         const bool is_due = config_.every > 0 && age_ >= config_.every;
         if (config_.every > 0 && config_.margin) return is_due ? sight::changed : sight::as_before;
         const relative_motion before = std::exchange(moved_, motion_between(kept_, boxes, objects_));
-        outlook_.law.observe(age_, moved_.margin);
+        estimate_.law.observe(age_, moved_.margin);
         if (config_.every > 0) return is_due ? sight::changed : sight::as_before;
         if (state_ != state::listing || moved_.margin > margin_) return sight::changed;
         if (!adapts()) return sight::as_before;
-        if (age_ == made_at_ + 1 && !pays(objects_.size(), outlook_.pairs, list_.size())) {
+        if (age_ == made_at_ + 1 && !is_list_worth_it(objects_.size(), estimate_.pairs, list_.size())) {
             planned_ = 0;  // the list ends because of its length, not because boxes moved too far
             return sight::changed;
         }
@@ -201,32 +203,32 @@ private:
     }
 
     [[nodiscard]] sight look_at_few(std::span<const box> boxes) {
-        if (!pause_.lasts()) return sight::changed;
-        if (pause_.pass(boxes, objects_, outlook_, drawn_)) {
-            outlook_.correction = 1;  // learned from lists that are too old to predict the next one
+        if (!backoff_.lasts()) return sight::changed;
+        if (backoff_.pass(boxes, objects_, estimate_, drawn_)) {
+            estimate_.correction = 1;  // learned from lists that are too old to predict the next one
             release(kept_);
             release(grown_);
             list_.release();
         }
-        return pause_.lasts() ? sight::as_before : sight::changed;
+        return backoff_.lasts() ? sight::as_before : sight::changed;
     }
 
     /// Whether even half of the estimated list would not be worth its cost. A sampled count guards against scenes in
     /// which the model underestimates, up to every box listed with every other.
     [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin) {
         constexpr std::size_t by_chance = 8;  // fewer sampled pairs may lie within the margin by chance
-        const rough_reach estimate = rough_reach_of(boxes, objects_, drawn_, margin);
-        const auto overlapping = std::max(outlook_.pairs, static_cast<std::size_t>(estimate.overlapping));
+        const pair_estimate estimate = estimate_pairs(boxes, objects_, drawn_, margin);
+        const auto overlapping = std::max(estimate_.pairs, static_cast<std::size_t>(estimate.overlapping));
         return estimate.counted >= by_chance &&
-               !pays(objects_.size(), overlapping, static_cast<std::size_t>(estimate.in_reach / 2));
+               !is_list_worth_it(objects_.size(), overlapping, static_cast<std::size_t>(estimate.within_margin / 2));
     }
 
     /// The first list is made before any motion has been observed.
     [[nodiscard]] std::optional<next_list> first_list(std::span<const box> boxes) {
-        outlook_.pairs = 0;
-        outlook_.look_anew(boxes, objects_, drawn_);
-        if (outlook_.horizon.frames_left < fewest_frames_of_first_list) {
-            pause_.begin_with_look();
+        estimate_.pairs = 0;
+        estimate_.resample(boxes, objects_, drawn_);
+        if (estimate_.horizon.frames_left < fewest_frames_of_first_list) {
+            backoff_.start_with_sample();
             static_cast<void>(look_at_few(boxes));
             return std::nullopt;
         }
@@ -240,7 +242,7 @@ private:
         const bool is_list = state_ == state::listing;
         const bool has_failed = has_ended && is_list && 2 * (age_ - made_at_) < planned_;
         // Without this success, the next back-off would be longer than the last one.
-        if (is_list ? !has_failed : has_rested_) pause_.shorten();
+        if (is_list ? !has_failed : has_rested_) backoff_.shorten();
         if (has_failed) return std::nullopt;
         if (has_ended && is_list && made_at_ == 0 && planned_ <= age_ && age_ < 2 * planned_ &&
             repeated_ < longest_repetition && !is_far_too_long(boxes, margin_)) {
@@ -248,15 +250,15 @@ private:
             return next_list{planned_, margin_};
         }
         repeated_ = 0;
-        outlook_.look_anew(boxes, objects_, drawn_);
-        if (is_list) outlook_.learn(margin_, list_.size());
-        const list_plan best = plan_list(outlook_);
+        estimate_.resample(boxes, objects_, drawn_);
+        if (is_list) estimate_.learn(margin_, list_.size());
+        const list_plan best = plan_list(estimate_);
         next_list next{best.frames, best.margin};
         // Below the exponent of a random walk, boxes oscillate. Their displacement is known relative to the kept boxes,
         // but not relative to those of this frame, which may be at an extreme of the oscillation.
         constexpr double random_walk = 0.5;
-        if (best.frames > 1 && has_ended && outlook_.law.exponent() < random_walk)
-            next = {best.frames, outlook_.law.after(age_ + best.frames - 1), true};
+        if (best.frames > 1 && has_ended && estimate_.law.exponent() < random_walk)
+            next = {best.frames, estimate_.law.after(age_ + best.frames - 1), true};
         if (best.frames < 2 || is_far_too_long(boxes, next.margin)) return std::nullopt;
         return next;
     }
@@ -264,10 +266,10 @@ private:
     void plan(std::span<const box> boxes, bool has_ended) {
         std::optional<next_list> next;
         if (config_.margin) {
-            outlook_.look_anew(boxes, objects_, drawn_);
+            estimate_.resample(boxes, objects_, drawn_);
             next = {0, typical_extents(*config_.margin, boxes, objects_)};
         } else if (config_.every > 0) {
-            const displacement_law& law = outlook_.law;
+            const displacement_law& law = estimate_.law;
             next = {0, law.age() == 0 || config_.every == 1 ? 0 : law.after(config_.every - 1)};
         } else if (state_ == state::nothing) {
             next = first_list(boxes);
@@ -278,7 +280,7 @@ private:
         if (state_ != state::nothing && has_ended && age_ < longest_watch) {
             state_ = state::watching;
         } else {
-            if (state_ != state::nothing) pause_.begin(objects_.size());
+            if (state_ != state::nothing) backoff_.begin(objects_.size());
             state_ = state::searching;
         }
         search_->update(boxes);
@@ -292,7 +294,7 @@ private:
             kept_.assign(boxes.begin(), boxes.end());
             age_ = 0;
             moved_ = {};
-            outlook_.law.begin();
+            estimate_.law.begin();
         }
         made_at_ = age_;
         planned_ = next.frames;
@@ -311,9 +313,9 @@ private:
     /// Serves a frame from a complete list. After two frames its remaining lifetime can be estimated.
     void serve(std::span<const box> boxes) {
         require_valid(boxes);
-        if (adapts()) shorten_if_it_pays();
-        if (config_.every == 0 && age_ == made_at_ + 2 && pays_to_tell_sure(outlook_, list_.size(), margin_))
-            list_.tell_sure(kept_, margin_);
+        if (adapts()) shorten_if_worth_it();
+        if (config_.every == 0 && age_ == made_at_ + 2 && is_marking_certain_worth_it(estimate_, list_.size(), margin_))
+            list_.mark_certain(kept_, margin_);
     }
 
     /// Reduces the list to the overlapping pairs, which are the result of every frame until a box moves.
@@ -329,29 +331,29 @@ private:
         age_ = 0;
         made_at_ = 0;
         has_rested_ = true;
-        outlook_.law.forget();
+        estimate_.law.forget();
         state_ = state::resting;
     }
 
     /// Reduces the list to a smaller margin without a search if boxes move much less than the current one allows, so
     /// that many listed pairs are tested in vain. The smaller list is planned for four times the current age. The check
     /// runs at power-of-two ages only.
-    void shorten_if_it_pays() {
+    void shorten_if_worth_it() {
         constexpr std::size_t first_look = 8;
         constexpr std::size_t times_as_long = 4;
         // A smaller margin would hardly shorten the list, and rounding errors could end it.
         constexpr double shortest = 1.0 / 16;
         if (age_ < first_look || !std::has_single_bit(age_)) return;
         const std::size_t frames = times_as_long * age_;
-        if (!pays_to_shorten(objects_.size(), outlook_.pairs, list_.tested(), frames - age_)) return;
-        const double margin = std::max(outlook_.law.after(frames), shortest * margin_when_made_);
+        if (!is_shortening_worth_it(objects_.size(), estimate_.pairs, list_.tested(), frames - age_)) return;
+        const double margin = std::max(estimate_.law.after(frames), shortest * margin_when_made_);
         if (!(margin < margin_ / 2)) return;
         margin_ = margin;
         planned_ = 0;
         grow(kept_, margin_, grown_);
         count_tests(list_.tested());
         list_.keep_meeting(grown_);
-        list_.tell_sure(kept_, margin_);
+        list_.mark_certain(kept_, margin_);
     }
 
     void count_tests(std::size_t tests) noexcept {
@@ -391,8 +393,8 @@ private:
     bool has_rested_ = false;      // boxes have been at rest for at least one frame
     std::size_t planned_ = 0;      // number of frames that the list is planned to serve; 0 if unplanned
     unsigned repeated_ = 0;        // number of lists made since by the same plan
-    list_outlook outlook_;
-    list_pause pause_;
+    list_estimate estimate_;
+    list_backoff backoff_;
     std::uint32_t drawn_ = 0;  // see `drawn_id`
     std::size_t frames_ = 0;   // number of earlier frames
     std::size_t expected_ = std::numeric_limits<std::size_t>::max();

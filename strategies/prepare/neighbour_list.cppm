@@ -14,7 +14,7 @@ export namespace aabb {
 /// Without a configured margin, each list gets the cheapest one (`list_plan`), estimated from the displacement under
 /// the last list (`displacement_law`), or the largest of those that cost about as little. The first list has no such
 /// estimate and uses a tenth of the typical extent. If no list is worth its cost, or boxes moved much farther than
-/// estimated, frames are searched directly and a sample of boxes is watched in some of them (`list_pause`). If few
+/// estimated, frames are searched directly and a sample of boxes is watched in some of them (`list_backoff`). If few
 /// frames are expected (`global_stage::expect`), the first list waits until such a sample shows that the remaining
 /// frames repay it. If boxes move much less than estimated, the list is reduced to a smaller margin once that is worth
 /// its cost. Searches are assumed to cost what `columns` costs; with a slower search, lists are given up too early.
@@ -43,8 +43,8 @@ struct neighbour_list_prepare {
                           "frames from one search to the next, inexact above 1; 0: when boxes have moved too far"}};
 
     static constexpr std::array contrasts{std::string_view("margin=0.1")};
-    [[nodiscard]] static scene_fit fit(const scene_outlook& scene) {
-        constexpr std::size_t fewest = scene_outlook::fewest_frames_to_keep;
+    [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
+        constexpr std::size_t fewest = scene_traits::fewest_frames_to_keep;
         if (scene.frames < fewest)
             return {.because = {{"fewer than {frames} frames: a list of neighbours would not repay its making",
                                  {{{"frames", fewest}}}}}};

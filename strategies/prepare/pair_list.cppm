@@ -47,7 +47,7 @@ inline std::size_t store_meeting(std::span<const box> boxes, std::span<const ind
             both_words |= (meet(boxes[list[i + k].a], boxes[list[i + k].b]) ? 3U : 0U) << 2 * k;
         simd::words block;
         std::memcpy(&block, &list[i], sizeof block);
-        end += simd::store_where(&to[end].a, block, both_words) / 2;
+        end += simd::compress_store(&to[end].a, block, both_words) / 2;
     }
     for (const index_pair pair : list.subspan(i)) {
         to[end] = pair;
@@ -85,7 +85,7 @@ public:
 
     /// Finds the sure pairs.
     /// @param kept the boxes from which the list was made
-    void tell_sure(std::span<const box> kept, double margin) {
+    void mark_certain(std::span<const box> kept, double margin) {
         const float depth = depth_beyond(margin);
         if (std::isinf(depth)) return;
         constexpr std::size_t at_a_time = simd::width / 2;
@@ -103,16 +103,16 @@ public:
                 both_words |= (overlap_by(depth, kept[open_[i + k].a], kept[open_[i + k].b]) ? 3U : 0U) << 2 * k;
             simd::words block;
             std::memcpy(&block, &open_[i], sizeof block);
-            end += simd::store_where(&sure_[end].a, block, both_words) / 2;
-            still_open += simd::store_where(&open_[still_open].a, block, ~both_words & all_words) / 2;
+            end += simd::compress_store(&sure_[end].a, block, both_words) / 2;
+            still_open += simd::compress_store(&open_[still_open].a, block, ~both_words & all_words) / 2;
         }
         for (; i < count; ++i) {
             const index_pair pair = open_[i];
-            const bool sure = overlap_by(depth, kept[pair.a], kept[pair.b]);
+            const bool certain = overlap_by(depth, kept[pair.a], kept[pair.b]);
             sure_[end] = pair;
-            end += static_cast<std::size_t>(sure);
+            end += static_cast<std::size_t>(certain);
             open_[still_open] = pair;
-            still_open += static_cast<std::size_t>(!sure);
+            still_open += static_cast<std::size_t>(!certain);
         }
         sure_.resize(end);
         open_.resize(still_open);

@@ -32,14 +32,14 @@ export namespace aabb {
 }
 
 /// Estimated numbers of pairs, from testing eight sampled boxes against one in 32 of all boxes.
-struct rough_reach {
+struct pair_estimate {
     double overlapping = 0;
-    double in_reach = 0;      ///< pairs that overlap when both boxes are grown by the margin
-    std::size_t counted = 0;  ///< number of such pairs in the sample
+    double within_margin = 0;  ///< pairs that overlap when both boxes are grown by the margin
+    std::size_t counted = 0;   ///< number of such pairs in the sample
 };
 /// @param drawn as in `drawn_id`
-[[nodiscard]] inline rough_reach rough_reach_of(std::span<const box> boxes, const membership& objects,
-                                                std::uint32_t& drawn, double margin) {
+[[nodiscard]] inline pair_estimate estimate_pairs(std::span<const box> boxes, const membership& objects,
+                                                  std::uint32_t& drawn, double margin) {
     std::array<box, 8> buffer;
     const std::span<const box> sample = drawn_boxes(boxes, objects, drawn, buffer);
     std::array<box, 8> grown;
@@ -47,7 +47,7 @@ struct rough_reach {
     grow(sample, 2 * margin, grown);
     const std::size_t others = std::max<std::size_t>(8, boxes.size() / 32);
     std::size_t overlapping = 0;
-    rough_reach estimate;
+    pair_estimate estimate;
     for (std::size_t k = 0; k < others && !boxes.empty(); ++k) {
         const box& b = boxes[drawn_id(drawn, boxes.size())];
         for (std::size_t i = 0; i < sample.size(); ++i) {
@@ -60,12 +60,12 @@ struct rough_reach {
     const double scale =
         sample.empty() ? 0 : n / static_cast<double>(sample.size()) * n / static_cast<double>(others) / 2;
     estimate.overlapping = static_cast<double>(overlapping) * scale;
-    estimate.in_reach = static_cast<double>(estimate.counted) * scale;
+    estimate.within_margin = static_cast<double>(estimate.counted) * scale;
     return estimate;
 }
 
 /// A sample of boxes whose motion is a lower bound on that of the scene.
-class glimpse {
+class motion_sample {
 public:
     /// The number of frames for which a sample is watched.
     static constexpr unsigned longest = 8;

@@ -18,8 +18,8 @@ template <Strategy S>
     if constexpr (requires { S::contrasts; })
         for (const std::string_view settings : S::contrasts)
             contrasts.push_back(parse_strategy(std::string(S::name) + ":" + std::string(settings)));
-    scene_fit (*fit)(const scene_outlook&) = nullptr;
-    if constexpr (requires(const scene_outlook& scene) { S::fit(scene); }) fit = &S::fit;
+    scene_fit (*fit)(const scene_traits&) = nullptr;
+    if constexpr (requires(const scene_traits& scene) { S::fit(scene); }) fit = &S::fit;
     return {std::string(S::name),
             std::string(S::summary),
             strategy_is_exact<S>,
@@ -37,7 +37,7 @@ template <Strategy S>
 template <class Make>
 struct row {
     std::vector<std::string_view> names;
-    std::string_view refusal;
+    std::string_view rejection;
     Make make;
 };
 
@@ -97,7 +97,7 @@ template <class Rows, template <class... Parts> class Stage, class... Lists>
 [[nodiscard]] Rows rows_of(Lists... lists) {
     Rows rows;
     const auto add = [&]<class... Parts>() {
-        constexpr std::string_view reason = refusal<Parts...>();
+        constexpr std::string_view reason = rejection<Parts...>();
         rows.push_back({{Parts::name...}, reason, nullptr});
         if constexpr (reason.empty()) rows.back().make = &Stage<Parts...>::make;
     };

@@ -60,7 +60,7 @@ const auto& row_for(const Rows& rows, const composition& c, stage of) {
 template <class Rows>
 const auto& accepted_row_for(const Rows& rows, const composition& c, stage of) {
     const auto& row = row_for(rows, c, of);
-    if (!row.make) throw input_error(to_text(c, of) + ": " + std::string(row.refusal));
+    if (!row.make) throw input_error(to_text(c, of) + ": " + std::string(row.rejection));
     return row;
 }
 
@@ -151,13 +151,13 @@ composition::composition(const named_strategies& named) {
             choices_[kind] = named[kind].value_or(strategy_choice{std::string(info_of(kind).*usual), {}});
     };
     for (const stage of : {stage::global_search, stage::local_detection}) {
-        complete(of, &strategy_kind_info::beside);
+        complete(of, &strategy_kind_info::default_with);
         const bool any =
             std::ranges::any_of(kinds_of(of, false), [&](strategy_kind kind) { return named[kind].has_value(); });
-        if (any && refusal_of(*this, of).empty()) continue;
+        if (any && rejection_of(*this, of).empty()) continue;
         const composition plain = *this;
         complete(of, &strategy_kind_info::fallback);
-        if (any && !refusal_of(*this, of).empty()) *this = plain;
+        if (any && !rejection_of(*this, of).empty()) *this = plain;
     }
 }
 
@@ -176,8 +176,9 @@ std::string to_text(const composition& c, stage of) {
     return text_in_line(choices);
 }
 
-std::string_view refusal_of(const composition& c, stage of) {
-    return of == stage::global_search ? row_for(global_rows(), c, of).refusal : row_for(local_rows(), c, of).refusal;
+std::string_view rejection_of(const composition& c, stage of) {
+    return of == stage::global_search ? row_for(global_rows(), c, of).rejection
+                                      : row_for(local_rows(), c, of).rejection;
 }
 
 bool is_exact(const composition& c, stage of) {

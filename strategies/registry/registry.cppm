@@ -19,10 +19,10 @@ struct strategy_info {
     std::string summary;
     bool exact;  ///< false if it approximates with any parameters: its results are compared, but not rejected
     std::vector<parameter_info> parameters;
-    std::vector<absence> leaves_out;         ///< features that a stage with this strategy lacks
-    std::string needs_meshes;                ///< a sentence why it rejects scenes of boxes; empty if it takes them
-    std::vector<strategy_choice> contrasts;  ///< settings that switch features on or off, for comparison
-    scene_fit (*fit)(const scene_outlook& scene);          ///< whether `auto` should choose it; null if it never does
+    std::vector<absence> leaves_out;              ///< features that a stage with this strategy lacks
+    std::string needs_meshes;                     ///< a sentence why it rejects scenes of boxes; empty if it takes them
+    std::vector<strategy_choice> contrasts;       ///< settings that switch features on or off, for comparison
+    scene_fit (*fit)(const scene_traits& scene);  ///< whether `auto` should choose it; null if it never does
     void (*check)(const strategy_choice& choice);          ///< throws input_error on unknown or invalid settings
     bool (*is_exact_with)(const strategy_choice& choice);  ///< whether it is exact with these settings
 };
@@ -45,7 +45,7 @@ public:
     /// The default strategy of every kind.
     composition() : composition(named_strategies()) {}
     /// The named strategies. Other kinds use their `fallback` if no kind compiled together with them is named;
-    /// otherwise their `beside`, or their `fallback` if the stage is accepted only with that.
+    /// otherwise their `default_with`, or their `fallback` if the stage is accepted only with that.
     /// @throws input_error on an unknown name or parameter in a stage with a named strategy
     explicit composition(const named_strategies& named);
 
@@ -66,7 +66,7 @@ private:
 [[nodiscard]] std::string to_text(const composition& c, stage of);
 
 /// Why the stage is rejected, in the words of the rejecting policy; empty if it is accepted.
-[[nodiscard]] std::string_view refusal_of(const composition& c, stage of);
+[[nodiscard]] std::string_view rejection_of(const composition& c, stage of);
 
 /// Whether every strategy of the stage is exact with its configured parameters.
 [[nodiscard]] bool is_exact(const composition& c, stage of);

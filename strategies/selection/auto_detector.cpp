@@ -46,7 +46,7 @@ struct auto_detector::mesh_part {
 };
 
 auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t frames)
-    : auto_detector(named_for_boxes(named), scene_outlook{.frames = frames}) {
+    : auto_detector(named_for_boxes(named), scene_traits{.frames = frames}) {
     if (const std::string sentence = needs_meshes(composed_of(selected_)); !sentence.empty())
         throw input_error(sentence);
     std::erase_if(selected_,
@@ -55,12 +55,12 @@ auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t 
 
 auto_detector::auto_detector(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of,
                              const std::vector<std::string>& named, std::size_t frames)
-    : auto_detector(named_in(named), outlook_of(meshes, mesh_of.size(), frames)) {
+    : auto_detector(named_in(named), traits_of(meshes, mesh_of.size(), frames)) {
     meshes_ = std::make_unique<mesh_part>(std::move(meshes), std::move(mesh_of), *global_,
                                           compose_local_detection(composed_of(selected_), instrumentation::none));
 }
 
-auto_detector::auto_detector(const named_strategies& named, const scene_outlook& scene)
+auto_detector::auto_detector(const named_strategies& named, const scene_traits& scene)
     : selected_(select_strategies(named, scene)),
       global_(compose_global_search(composed_of(selected_), instrumentation::none)) {
     global_->expect(scene.frames);

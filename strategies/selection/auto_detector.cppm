@@ -57,7 +57,7 @@ public:
 private:
     struct mesh_part;
 
-    auto_detector(const named_strategies& named, const scene_outlook& scene);
+    auto_detector(const named_strategies& named, const scene_traits& scene);
     [[nodiscard]] pipeline& searched(std::span<const pose> poses);
 
     std::vector<selected_strategy> selected_;

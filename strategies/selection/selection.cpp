@@ -11,7 +11,7 @@ struct fitting {
 };
 
 /// Considers all strategies of a kind that is compiled alone; otherwise only the one in the composition.
-fitting fitting_of(strategy_kind kind, const composition& completed, const scene_outlook& scene) {
+fitting fitting_of(strategy_kind kind, const composition& completed, const scene_traits& scene) {
     fitting last;
     for (const strategy_info& info : strategies(kind)) {
         if (!info.fit || (!info_of(kind).apart && info.name != completed[kind].name)) continue;
@@ -32,12 +32,12 @@ composition completed(const named_strategies& named) {
     composition fastest;
     if (const std::optional<strategy_choice>& sort = named[strategy_kind::sort];
         sort && sort->name != fastest[strategy_kind::sort].name)
-        fastest[strategy_kind::partition] = {std::string(info_of(strategy_kind::partition).beside), {}};
+        fastest[strategy_kind::partition] = {std::string(info_of(strategy_kind::partition).default_with), {}};
     for (const stage of : {stage::global_search, stage::local_detection}) {
         const auto take = [&](const composition& others) {
             for (const strategy_kind kind : kinds_of(of))
                 if (named[kind] || !info_of(kind).apart) whole[kind] = named[kind].value_or(others[kind]);
-            return refusal_of(whole, of).empty();
+            return rejection_of(whole, of).empty();
         };
         if (take(fastest) || take(usual) || std::ranges::any_of(every_composition(of), take)) continue;
         // The named strategies are rejected in any combination.
@@ -54,10 +54,10 @@ std::string usual_rule(strategy_kind kind, const strategy_choice& choice) {
 
 }  // namespace
 
-scene_outlook outlook_of(std::span<const mesh> meshes, std::size_t objects, std::size_t frames) {
-    scene_outlook scene{.frames = frames,
-                        .queries = frames * std::max<std::size_t>(objects / 2, 1),
-                        .meshes = std::max<std::size_t>(meshes.size(), 1)};
+scene_traits traits_of(std::span<const mesh> meshes, std::size_t objects, std::size_t frames) {
+    scene_traits scene{.frames = frames,
+                       .queries = frames * std::max<std::size_t>(objects / 2, 1),
+                       .meshes = std::max<std::size_t>(meshes.size(), 1)};
     for (const mesh& m : meshes) scene.triangles += m.triangle_count();
     return scene;
 }
@@ -71,34 +71,34 @@ composition complete_composition(const named_strategies& named) {
     return any ? completed(named) : composition();
 }
 
-void select_for_scene(composition& completed, const named_strategies& named, const scene_outlook& scene) {
-    scene_outlook outlook = scene;
+void select_for_scene(composition& completed, const named_strategies& named, const scene_traits& scene) {
+    scene_traits traits = scene;
     for (const strategy_kind kind : strategy_kinds) {
         if (named[kind] || !depends_on_scene(kind)) continue;
         strategy_choice& choice = completed[kind];
         choice.settings.clear();
         if (info_of(kind).apart) choice.name = info_of(kind).fallback;
-        outlook.exact_triangles = scene.triangles == 0 || is_exact(completed, stage::local_detection);
-        fitting best = fitting_of(kind, completed, outlook);
+        traits.exact_triangles = scene.triangles == 0 || is_exact(completed, stage::local_detection);
+        fitting best = fitting_of(kind, completed, traits);
         if (!best.fit.serves) continue;
         choice = {std::move(best.name), std::move(best.fit.settings)};
     }
 }
 
-composition select_composition(const named_strategies& named, const scene_outlook& scene) {
+composition select_composition(const named_strategies& named, const scene_traits& scene) {
     composition whole = complete_composition(named);
     select_for_scene(whole, named, scene);
     return whole;
 }
 
-std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_outlook& scene) {
+std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_traits& scene) {
     const composition whole = select_composition(named, scene);
-    scene_outlook outlook = scene;
-    outlook.exact_triangles = is_exact(whole, stage::local_detection);
+    scene_traits traits = scene;
+    traits.exact_triangles = is_exact(whole, stage::local_detection);
     std::vector<selected_strategy> selected;
     for (const strategy_kind kind : strategy_kinds) {
         std::string rule;
-        for (const statement& reason : fitting_of(kind, whole, outlook).fit.because)
+        for (const statement& reason : fitting_of(kind, whole, traits).fit.because)
             rule += (rule.empty() ? "" : "; ") + to_text(reason);
         if (rule.empty()) rule = usual_rule(kind, whole[kind]);
         selected.push_back({kind, whole[kind], named[kind] ? "as it is named" : rule});

@@ -107,8 +107,8 @@ private:
                      std::uint32_t vector) noexcept {
         const simd::words overlapped = simd::load_halves(met.data()) & lanes;
         const std::uint32_t any = simd::bits(overlapped != 0U) & present;
-        simd::store_where(&candidates_[candidate_count_], entries, any);
-        candidate_count_ += simd::store_where(&met_[candidate_count_], overlapped | vector << width, any);
+        simd::compress_store(&candidates_[candidate_count_], entries, any);
+        candidate_count_ += simd::compress_store(&met_[candidate_count_], overlapped | vector << width, any);
     }
 
     /// Tests the active entries against the vector, and updates the active entries.
@@ -119,8 +119,8 @@ private:
         std::size_t stay = 0;
         const auto take = [&](simd::words entries, simd::words ends, std::uint32_t present) {
             const std::uint32_t beyond = simd::bits(ends > next) & present;
-            simd::store_where(&active_ends_[stay], ends, beyond);
-            stay += simd::store_where(&active_[stay], entries, beyond);
+            simd::compress_store(&active_ends_[stay], ends, beyond);
+            stay += simd::compress_store(&active_[stay], entries, beyond);
         };
         met_lanes met{};
         for (std::size_t q = 0; q < active; q += width) {

@@ -11,7 +11,7 @@ export namespace aabb {
 /// take 1.14 bytes per triangle. Each triangle index takes as many bits as the largest one needs, or none if the
 /// triangles keep the order of the mesh (`file_order`). Each leaf has a list of its vertices, which takes more memory
 /// than the rest and saves a tenth of the query time, or a third for large meshes. Nodes are walked in batches
-/// (`batched_walk`), or with `front=kept` not at all while the front of an earlier query is valid (`leaf_front`). As a
+/// (`batched_walk`), or with `front=kept` not at all while the front of an earlier query is valid (`bvtt_front`). As a
 /// binary tree, node (height, index) has the triangles at places index * 2^height to (index + 1) * 2^height - 1; nodes
 /// below leaves have the leaf's box. A build chooses axes, not the number of triangles per side (`balanced_order`).
 /// When to use: for the fastest queries.
@@ -53,7 +53,7 @@ public:
     /// triangles, whose vertices exceed the L2 cache, by less for fewer triangles, and hardly if these fit into it.
     /// Fronts are kept over several frames, unless a frame has more pairs of objects than fronts: these would evict
     /// each other.
-    [[nodiscard]] static scene_fit fit(const scene_outlook& scene) {
+    [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         constexpr double most_fetched_of_two = 200'000;
         constexpr std::size_t least_of_front = least_leaves_of_front * balanced_order::leaf_triangles;
         scene_fit fit;
@@ -67,7 +67,7 @@ public:
                  {{{"queries", static_cast<double>(scene.queries)}, {"repaid", static_cast<double>(repaid)}}}});
         }
         if (scene.triangles_of_two() >= double{least_of_front} && scene.exact_triangles &&
-            scene.frames >= scene_outlook::fewest_frames_to_keep && scene.queries <= scene.frames * most_fronts) {
+            scene.frames >= scene_traits::fewest_frames_to_keep && scene.queries <= scene.frames * most_fronts) {
             fit.settings.push_back({"front", "kept"});
             fit.because.push_back({"frames follow each other: pairs of leaves are kept while meshes move little"});
         }

@@ -45,7 +45,7 @@ struct code_grid {
 };
 
 /// Up to eight boxes in one byte per plane. Empty places have codes 255, which overlap nothing.
-struct box_codes {
+struct quantized_aabbs {
     static constexpr std::uint8_t no_box = 255;
 
     using row = std::array<std::uint8_t, eight_boxes::most>;

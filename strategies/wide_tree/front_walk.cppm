@@ -45,13 +45,13 @@ private:
         const model_pair of{{a.number(), b.number()}, {a.state(), b.state()}};
         const box_motion at = to_a.to_boxes();
         const double size = std::sqrt(std::min(area_of_leaf(a), area_of_leaf(b)));
-        const double near = leaf_front::most_step * size;
+        const double near = bvtt_front::most_step * size;
         // If rounding alone moves B further than that, a front is not worth its cost.
         if (!(2 * most_rounding(at) <= near)) return walk_.between(test, a, b, to_a, goal, emit);
 
         if (!fronts_) fronts_ = std::make_unique<front_keeper>();
-        leaf_front& front = fronts_->find(of, at, b.bounds(), near);
-        const leaf_front::outlook outlook = front.note(of, at, b.bounds(), size);
+        bvtt_front& front = fronts_->find(of, at, b.bounds(), near);
+        const bvtt_front::outlook outlook = front.note(of, at, b.bounds(), size);
         const auto is_kept = [&] {
             return outlook.margin && front.make(of, at, *outlook.margin, [&](std::vector<kept_pair>& pairs) {
                 return walk_.near(a, b, to_a, *outlook.margin, leaves_of(a) + leaves_of(b), pairs);
@@ -83,7 +83,7 @@ private:
 
     template <class Emit>
     void serve(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-               const leaf_front& front, walk_goal goal, const Emit& emit) {
+               const bvtt_front& front, walk_goal goal, const Emit& emit) {
         if (front.pairs().empty()) return;
         if (!leaves_) leaves_ = std::make_unique<kept_leaves<Tree>>();
         walk_.among(test, a, b, to_a, front.pairs(), *leaves_, goal, emit);

@@ -1,7 +1,7 @@
 export module aabb.wide_tree.leaf_reader;
 
 import aabb.std;
-export import aabb.wide_tree.leaf_front;
+export import aabb.wide_tree.bvtt_front;
 export import aabb.wide_tree.triangle_block;
 
 export namespace aabb {
@@ -34,8 +34,8 @@ public:
         // single branch; otherwise the compiler makes two.
         if (__builtin_unpredictable(static_cast<int>(is_missing) & static_cast<int>(claims_[at] == claim_)))
             return false;
-        missing_[missing_count_] = number;
-        missing_count_ += is_missing;
+        missing_[false_negative_count_] = number;
+        false_negative_count_ += is_missing;
         keys_[at] = key;
         claims_[at] = claim_;
         return true;
@@ -43,7 +43,7 @@ public:
 
     /// The claimed leaves that are not cached; the caller must read them before the next claim, or call `begin`.
     [[nodiscard]] inline std::span<const std::uint32_t> take_missing() noexcept {
-        return std::span(missing_).first(std::exchange(missing_count_, 0));
+        return std::span(missing_).first(std::exchange(false_negative_count_, 0));
     }
 
     [[nodiscard]] inline Leaf& operator[](std::uint32_t number) noexcept { return leaves_[place(number)]; }
@@ -63,7 +63,7 @@ private:
     std::array<std::uint64_t, most_places> claims_{};
     std::uint64_t claim_ = 1;
     std::array<std::uint32_t, most_claims + 1> missing_{};
-    std::size_t missing_count_ = 0;
+    std::size_t false_negative_count_ = 0;
     std::vector<Leaf> leaves_;
 };
 

@@ -24,7 +24,7 @@ struct nearest_places {
 #pragma clang fp contract(fast)
     std::array<simd::eight_floats, 3> of_node;
     std::array<eight_boxes::row, 3> of_boxes;
-    const auto floats_of = [](const box_codes::row& codes) {
+    const auto floats_of = [](const quantized_aabbs::row& codes) {
         return __builtin_convertvector(simd::load_eight<simd::eight_bytes>(codes.data()), simd::eight_floats);
     };
     for (std::size_t k = 0; k < 3; ++k) {

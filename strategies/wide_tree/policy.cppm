@@ -10,7 +10,7 @@ export namespace aabb {
 /// 8 n + i of level l - 1. On level 0 it is leaf 8 n + i, which has no node of its own and holds the triangles at
 /// places 8 (8 n + i) to 8 (8 n + i) + 7, as far as they exist. The highest level has one node. All nodes are in one
 /// array, level 0 first. A leaf's vertices come from the tree's vertex lists, if it has any. A tree that keeps fronts
-/// keeps pairs of leaves from query to query (`leaf_front`).
+/// keeps pairs of leaves from query to query (`bvtt_front`).
 template <class T>
 concept WideTreePolicy =
     TreePolicy<T> && requires(const T built, std::size_t level, std::uint32_t index, vertex_list& list) {

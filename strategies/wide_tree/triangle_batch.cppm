@@ -54,7 +54,7 @@ public:
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
                 if (test.intersects(triangle(a_, done + lane), triangle(b_, done + lane))) hits |= 1U << lane;
             }
-            hit_count += simd::store_where(&hits_[hit_count], simd::load(&origin_[done]), hits);
+            hit_count += simd::compress_store(&hits_[hit_count], simd::load(&origin_[done]), hits);
         }
         for (std::size_t i = 0; i < hit_count; ++i) {
             const std::uint32_t origin = hits_[i];

@@ -14,7 +14,7 @@ struct wide_node {
     static constexpr std::size_t most_children = eight_boxes::most;
     static constexpr int last_code = 255;
 
-    box_codes planes;
+    quantized_aabbs planes;
     std::array<std::int32_t, 3> origin;
     std::array<std::int8_t, 3> exponent;
     std::uint8_t children;
@@ -85,7 +85,7 @@ private:
         store_codes(planes.upper[axis], last_code - (__builtin_elementwise_ceil(most * steps) - first));
     }
 
-    static inline void store_codes(box_codes::row& to, simd::eight_doubles whole) noexcept {
+    static inline void store_codes(quantized_aabbs::row& to, simd::eight_doubles whole) noexcept {
         simd::store_eight(to.data(), simd::whole_bytes(__builtin_convertvector(whole, simd::eight_floats)));
     }
 

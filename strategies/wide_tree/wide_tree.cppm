@@ -6,7 +6,7 @@ export import aabb.wide_tree.front_walk;
 export import aabb.wide_tree.policy;
 
 import aabb.std;
-import aabb.wide_tree.leaf_front;
+import aabb.wide_tree.bvtt_front;
 
 export namespace aabb {
 

@@ -56,7 +56,7 @@ public:
     }
 
     [[nodiscard]] bool failed() const { return failed_; }
-    [[nodiscard]] bool refused() const { return refused_; }
+    [[nodiscard]] bool rejected() const { return refused_; }
     void forget_refusal() { refused_ = false; }
 
 private:
@@ -118,7 +118,7 @@ std::string fault_of(global_stage& stage, const std::vector<frame>& frames, exha
                 if (sorted_behind_mark(pairs) != now.pairs) return "wrong pairs";
                 continue;
             }
-            if (run.refused()) return "refuses a frame that it has taken";
+            if (run.rejected()) return "refuses a frame that it has taken";
             if (pairs != std::vector{mark}) return "pairs of a search that failed";
             if (!run.attempt([&] { stage.search(pairs); })) return "no search after one that failed";
             if (sorted_behind_mark(pairs) != now.pairs) return "wrong pairs after a search that failed";
@@ -156,7 +156,7 @@ void require_exact_or_refusing(Life life, bool frees_all, bool each = true) {
         REQUIRE(fault == "");
         if (run.failed()) continue;
         REQUIRE(k > 3);
-        REQUIRE_FALSE(run.refused());
+        REQUIRE_FALSE(run.rejected());
         return;
     }
 }
@@ -213,7 +213,7 @@ std::optional<answers> ask(local_stage& stage, exhausted_run& run, std::string& 
         const auto query = [&] { self ? stage.self_pairs(0, pairs) : stage.all_pairs(0, {}, 0, moved, pairs); };
         if (!run.attempt(query)) {
             if (pairs != std::vector{mark}) fault = "pairs of a query that failed";
-            if (run.refused() || !run.attempt(query)) return std::nullopt;
+            if (run.rejected() || !run.attempt(query)) return std::nullopt;
         }
         pairs = sorted_behind_mark(pairs);
     }
@@ -293,7 +293,7 @@ TEST_CASE("an engine for meshes that runs out of memory is exact afterwards, or 
 }
 
 TEST_CASE("a model is not asked before it fits its mesh again") {
-    const auto refuses = [](local_stage& stage) {
+    const auto rejects = [](local_stage& stage) {
         mesh m = sheet(0.1F);
         stage.add_model(m);
         m.vertices = sheet(3).vertices;
@@ -305,7 +305,7 @@ TEST_CASE("a model is not asked before it fits its mesh again") {
         CHECK(ask(stage).any);
     };
     for (const aabb::composition& composition : local_compositions())
-        refuses(*local_of(composition, instrumentation::none));
+        rejects(*local_of(composition, instrumentation::none));
     for (const engine_info& engine : engines())
-        if (engine.collides_meshes) refuses(*make_mesh_engine(engine.name));
+        if (engine.collides_meshes) rejects(*make_mesh_engine(engine.name));
 }

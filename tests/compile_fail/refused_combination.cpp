@@ -2,4 +2,4 @@
 
 import aabb.sort.std;
 
-aabb::global_search<aabb::std_sort, fake_whole_partition, picky_sweep> refused;
+aabb::global_search<aabb::std_sort, fake_whole_partition, picky_sweep> rejected;

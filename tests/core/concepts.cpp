@@ -19,7 +19,7 @@ static_assert(!SortPolicy<fake_sweep> && !SweepPolicy<fake_sort> && !TreePolicy<
               !TrianglePolicy<fake_tree>);
 
 // What refuses another sort takes its own.
-static_assert(refusal<fake_sort, fake_whole_partition, picky_sweep>().empty());
+static_assert(rejection<fake_sort, fake_whole_partition, picky_sweep>().empty());
 
 // Without a partition there is nothing in a global search that a partition would need.
 static_assert(sizeof(global_search<fake_sort, fake_whole_partition, fake_sweep>) + 5 * sizeof(std::vector<int>) <=

@@ -55,12 +55,12 @@ TEST_CASE("a transform of floats is a pose to within their rounding") {
 }
 
 TEST_CASE("a transform that is not rigid is refused") {
-    const auto refuses = [](const Eigen::Affine3d& transform, const char* sentence) {
+    const auto rejects = [](const Eigen::Affine3d& transform, const char* sentence) {
         REQUIRE_THROWS_MATCHES(to_pose(transform), input_error, MessageMatches(ContainsSubstring(sentence)));
     };
-    refuses(Eigen::Affine3d(Eigen::Scaling(2.0)), "not orthonormal");
-    refuses(Eigen::Affine3d(Eigen::Scaling(1.0, 1.0, -1.0)), "a reflection");
-    refuses(Eigen::Affine3d(Eigen::Translation3d(0, NAN, 0)), "a translation that is not finite");
+    rejects(Eigen::Affine3d(Eigen::Scaling(2.0)), "not orthonormal");
+    rejects(Eigen::Affine3d(Eigen::Scaling(1.0, 1.0, -1.0)), "a reflection");
+    rejects(Eigen::Affine3d(Eigen::Translation3d(0, NAN, 0)), "a translation that is not finite");
 }
 
 TEST_CASE("Eigen maps points, triangles and boxes of ours, in place") {

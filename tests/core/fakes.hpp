@@ -86,7 +86,7 @@ struct fake_sweep {
 /// Refuses every sort but fake_sort.
 struct picky_sweep : fake_sweep {
     template <class Sort, class...>
-    static constexpr std::string_view refuses() {
+    static constexpr std::string_view rejects() {
         return std::string_view(Sort::name) == fake_sort::name ? "" : "picky works with the fake sort only";
     }
 };

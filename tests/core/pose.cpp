@@ -185,14 +185,14 @@ TEST_CASE("a mesh beyond the range of float in the other's frame is refused") {
 }
 
 TEST_CASE("what is not a rigid motion is refused") {
-    const auto refused = [](pose p, const char* why) {
+    const auto rejected = [](pose p, const char* why) {
         CHECK_THROWS_MATCHES(require_rigid(p), input_error, MessageMatches(ContainsSubstring(why)));
     };
     CHECK_NOTHROW(require_rigid({}));
     CHECK_NOTHROW(require_rigid({{1, 4e-7, 0, -4e-7, 1, 0, 0, 0, 1}, {1e9, 0, 0}}));
-    refused({{1.001, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, "not orthonormal");
-    refused({{1, 0, 0, 0, 1, 0, 0, 0, -1}, {0, 0, 0}}, "reflection");
-    refused({{0, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0}}, "not orthonormal");
-    refused({{std::nan(""), 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, "not finite");
-    refused({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, std::numeric_limits<double>::infinity(), 0}}, "not finite");
+    rejected({{1.001, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, "not orthonormal");
+    rejected({{1, 0, 0, 0, 1, 0, 0, 0, -1}, {0, 0, 0}}, "reflection");
+    rejected({{0, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0}}, "not orthonormal");
+    rejected({{std::nan(""), 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, "not finite");
+    rejected({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, std::numeric_limits<double>::infinity(), 0}}, "not finite");
 }

@@ -19,7 +19,7 @@ TEST_CASE("a set of lanes is stored one after the other") {
     for (std::uint32_t set = 0; set <= simd::every_lane; set += n == 16 ? 37 : 1) {
         std::array<std::uint32_t, 2 * n> to{};
         const simd::words v = numbers(3, 5);
-        REQUIRE(simd::store_where(to.data(), v, set) == static_cast<std::size_t>(std::popcount(set)));
+        REQUIRE(simd::compress_store(to.data(), v, set) == static_cast<std::size_t>(std::popcount(set)));
         std::size_t next = 0;
         for (std::size_t i = 0; i < n; ++i)
             if (set >> i & 1U) REQUIRE(to[next++] == v[i]);

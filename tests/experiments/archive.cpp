@@ -45,7 +45,7 @@ std::filesystem::path packed(const temporary_folder& folder, const std::vector<e
     return file;
 }
 
-void is_refused(const std::filesystem::path& file, const std::string& sentence, aabblab::archive_limits limits = {}) {
+void is_rejected(const std::filesystem::path& file, const std::string& sentence, aabblab::archive_limits limits = {}) {
     CHECK_THROWS_MATCHES(unpacked_archive(file, "results", limits), aabb::input_error,
                          MessageMatches(ContainsSubstring(sentence)));
 }
@@ -87,16 +87,16 @@ TEST_CASE("An archive that leads out of its folder, or has more than files, is r
     for (const char* name :
          {"/etc/passwd", "results/../../out", "../results/x", "other/x", "x", "results/./x", "results/../results/x"}) {
         CAPTURE(name);
-        is_refused(packed(folder, {{name, "content"}}), "is not an archive of results: it has the entry '");
+        is_rejected(packed(folder, {{name, "content"}}), "is not an archive of results: it has the entry '");
     }
-    is_refused(packed(folder, {{"results/link", "", AE_IFLNK, "/etc"}, {"results/link/passwd", "content"}}),
-               "has an entry that is neither a file nor a folder: 'link'");
-    is_refused(packed(folder, {{"results/a", "content"}, {"results/b", "", AE_IFREG, "results/a"}}),
-               "has an entry that is neither a file nor a folder: 'b'");
-    is_refused(packed(folder, {{"results/pipe", "", AE_IFIFO}}), "neither a file nor a folder: 'pipe'");
-    is_refused(packed(folder, {{"results/a", "1"}, {"results/a", "2"}}), "has the file 'a' twice");
-    is_refused(packed(folder, {{"results/a", "1"}, {"results/a/b", "2"}}), "cannot be unpacked");
-    is_refused(packed(folder, {{"results/", "", AE_IFDIR}}), "is empty");
+    is_rejected(packed(folder, {{"results/link", "", AE_IFLNK, "/etc"}, {"results/link/passwd", "content"}}),
+                "has an entry that is neither a file nor a folder: 'link'");
+    is_rejected(packed(folder, {{"results/a", "content"}, {"results/b", "", AE_IFREG, "results/a"}}),
+                "has an entry that is neither a file nor a folder: 'b'");
+    is_rejected(packed(folder, {{"results/pipe", "", AE_IFIFO}}), "neither a file nor a folder: 'pipe'");
+    is_rejected(packed(folder, {{"results/a", "1"}, {"results/a", "2"}}), "has the file 'a' twice");
+    is_rejected(packed(folder, {{"results/a", "1"}, {"results/a/b", "2"}}), "cannot be unpacked");
+    is_rejected(packed(folder, {{"results/", "", AE_IFDIR}}), "is empty");
     // Folders of their own are what other programs pack.
     const unpacked_archive fine(
         packed(folder, {{"results/", "", AE_IFDIR}, {"results/a/", "", AE_IFDIR}, {"results/a/b", "content"}}),
@@ -109,13 +109,13 @@ TEST_CASE("An archive that unpacks to more than any results is refused before it
     const aabblab::archive_limits limits{.files = 3, .bytes = std::uint64_t{1} << 20U};
     const auto bomb = packed(folder, {{"results/a", std::string(std::size_t{64} << 20U, '0')}});
     REQUIRE(std::filesystem::file_size(bomb) < 100'000);
-    is_refused(bomb, "unpacks to more than 1 MiB, which no results have", limits);
-    is_refused(packed(folder, {{"results/a"}, {"results/b"}, {"results/c"}, {"results/d"}}),
-               "has more than 3 files, which no results have", limits);
+    is_rejected(bomb, "unpacks to more than 1 MiB, which no results have", limits);
+    is_rejected(packed(folder, {{"results/a"}, {"results/b"}, {"results/c"}, {"results/d"}}),
+                "has more than 3 files, which no results have", limits);
     // Also where the same folder comes again and again, as one of 40 million does.
     const entry one_folder{"results/a/", "", AE_IFDIR};
-    is_refused(packed(folder, {one_folder, one_folder, one_folder, one_folder}),
-               "has more than 3 folders, which no results have", limits);
+    is_rejected(packed(folder, {one_folder, one_folder, one_folder, one_folder}),
+                "has more than 3 folders, which no results have", limits);
 }
 
 TEST_CASE("An archive that is cut off, damaged or of another kind is refused") {
@@ -124,12 +124,12 @@ TEST_CASE("An archive that is cut off, damaged or of another kind is refused") {
     for (const double share : {0.3, 0.9, 0.999}) {
         CAPTURE(share);
         const auto bytes = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
-        is_refused(folder.write("cut.tar.xz", whole.substr(0, bytes)), "cut.tar.xz is damaged or cut off: ");
+        is_rejected(folder.write("cut.tar.xz", whole.substr(0, bytes)), "cut.tar.xz is damaged or cut off: ");
     }
     std::string damaged = whole;
     damaged[whole.size() / 2] = static_cast<char>(~damaged[whole.size() / 2]);
-    is_refused(folder.write("damaged.tar.xz", damaged), "damaged.tar.xz is damaged or cut off: ");
+    is_rejected(folder.write("damaged.tar.xz", damaged), "damaged.tar.xz is damaged or cut off: ");
     for (const std::string& foreign : {std::string(), std::string("PK\3\4 a zip"), noise(1000), whole.substr(0, 10)})
-        is_refused(folder.write("foreign", foreign), "is not an archive of results, which is tar compressed by xz");
-    is_refused(folder / "none", "none cannot be read");
+        is_rejected(folder.write("foreign", foreign), "is not an archive of results, which is tar compressed by xz");
+    is_rejected(folder / "none", "none cannot be read");
 }

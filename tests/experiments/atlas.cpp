@@ -22,10 +22,10 @@ atlas_scene cloud(const std::string& displacement, std::vector<atlas_line> lines
     return {{"cloud", {{"objects", "1000"}, {"displacement", displacement}}, {}, 1}, unseen, {}, std::move(lines)};
 }
 
-std::string cell(const aabblab::table& t, const std::string& who, const std::string& column) {
+std::string cell(const aabblab::table& t, const std::string& tested, const std::string& column) {
     const auto k = std::ranges::find(t.columns, column, &aabblab::column::name) - t.columns.begin();
     for (const auto& cells : t.rows)
-        if (cells[1] == who) return cells[static_cast<std::size_t>(k)];
+        if (cells[1] == tested) return cells[static_cast<std::size_t>(k)];
     return "none";
 }
 
@@ -45,9 +45,9 @@ std::vector<atlas_scene> two_scenes() {
 TEST_CASE("The atlas counts who wins, and what it costs to use one everywhere") {
     const std::vector<atlas_scene> atlas = two_scenes();
     const aabblab::table winners = winners_table(atlas);
-    for (const char* who : {"a", "b"}) {
-        CHECK(cell(winners, who, "fastest in") == "1");
-        CHECK(cell(winners, who, "shown in") == "1");
+    for (const char* tested : {"a", "b"}) {
+        CHECK(cell(winners, tested, "fastest in") == "1");
+        CHECK(cell(winners, tested, "shown in") == "1");
     }
     // auto is as fast as the fastest of the second scene, but is no composition that could be the fastest.
     CHECK(cell(winners, "auto", "fastest in") == "0");
@@ -171,19 +171,19 @@ TEST_CASE("A single ratio of single repeats is as sure as the repeats of others 
 }
 
 TEST_CASE("Whoever a statement speaks of plays in the map") {
-    std::set<std::string> players;
+    std::set<std::string> runners;
     const auto e = aabblab::read_experiment(AABBLAB_CONFIGS "/atlas/atlas.toml", aabblab::experiment_size::full);
-    for (const std::string& engine : e.engines) players.insert(engine);
+    for (const std::string& engine : e.engines) runners.insert(engine);
     for (const aabb::composition& c : e.compositions) {
         std::string label;
         for (const aabb::strategy_kind kind : aabb::strategy_kinds)
             if (info_of(kind).stage == aabb::stage::global_search && to_text(c[kind]) != "none")
                 label += (label.empty() ? "" : " + ") + to_text(c[kind]);
-        players.insert(label);
+        runners.insert(label);
     }
     for (const std::string& label : aabblab::labels_in_statements()) {
         INFO(label);
-        CHECK(players.contains(label));
+        CHECK(runners.contains(label));
     }
 }
 

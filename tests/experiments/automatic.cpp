@@ -17,7 +17,7 @@ aabblab::experiment parsed(const std::string& compose) {
         experiment_size::full);
 }
 
-std::string refusal_of(const std::string& compose) {
+std::string rejection_of(const std::string& compose) {
     return refusal_in<aabb::input_error>([&] { return parsed(compose); });
 }
 
@@ -30,37 +30,39 @@ bool is_near(double a, double b) {
 TEST_CASE("A config leaves all to auto, or what it does not name") {
     const aabblab::experiment whole = parsed("compose = \"auto\"");
     CHECK(whole.compositions.empty());
-    REQUIRE(aabblab::contenders_for(whole, whole.scenes[0]).size() == 1);
-    const aabblab::contender who = aabblab::contenders_for(whole, whole.scenes[0])[0];
-    CHECK(aabblab::text_of(who.name) == "auto");
-    CHECK(who.exact);
+    REQUIRE(aabblab::candidates_for(whole, whole.scenes[0]).size() == 1);
+    const aabblab::candidate tested = aabblab::candidates_for(whole, whole.scenes[0])[0];
+    CHECK(aabblab::text_of(tested.name) == "auto");
+    CHECK(tested.exact);
     const aabblab::experiment some = parsed("[[compose]]\nauto = true\nsort = [\"radix\", \"std\"]\n[[compose]]\n");
-    const auto all = aabblab::contenders_for(some, some.scenes[0]);
+    const auto all = aabblab::candidates_for(some, some.scenes[0]);
     REQUIRE(all.size() == 3);
     CHECK(aabblab::text_of(all[0].name) == "bucket + columns + simd");
     CHECK(aabblab::text_of(all[1].name) == "auto + radix");
     CHECK(aabblab::text_of(all[2].name) == "auto + std");
     const aabblab::experiment without = parsed("[[compose]]\nauto = true\nprepare = \"none\"\n");
-    CHECK(aabblab::text_of(aabblab::contenders_for(without, without.scenes[0])[0].name) == "auto + prepare none");
+    CHECK(aabblab::text_of(aabblab::candidates_for(without, without.scenes[0])[0].name) == "auto + prepare none");
     CHECK(hash_of(whole) != hash_of(some));
     CHECK(hash_of(whole) != hash_of(parsed("compose = \"auto\"\nengines = [\"cgal\"]")));
     CHECK(parsed("[[compose]]\nauto = false").automatic.empty());
 }
 
 TEST_CASE("What is wrong with auto in a config is said with its line") {
-    CHECK(refusal_of("compose = \"best\"") == "a.toml:2: compose must be a table or \"auto\", not \"best\"");
+    CHECK(rejection_of("compose = \"best\"") == "a.toml:2: compose must be a table or \"auto\", not \"best\"");
     CHECK(
-        refusal_of("compose = \"auto\"\n[[compose]]\nsort = \"std\"") ==
+        rejection_of("compose = \"auto\"\n[[compose]]\nsort = \"std\"") ==
         "a.toml:3: compose is a name already, so it cannot be a table too; write [[compose]] with auto = true in place "
         "of compose = \"auto\"");
-    CHECK(refusal_of("[[compose]]\nprepare = \"auto\"") ==
+    CHECK(rejection_of("[[compose]]\nprepare = \"auto\"") ==
           "a.toml:3: auto is no prepare: leave prepare out, and write auto = true beside what is named");
-    CHECK(refusal_of("[[compose]]\nauto = 1") == "a.toml:3: auto is a number; expected true or false");
-    CHECK(refusal_of("[[compose]]\nauto = true\n[[compose]]\nauto = true") == "a.toml:4: this auto is listed twice");
-    CHECK(refusal_of("[[compose]]\nauto = true\nsort = \"shell\"\nsweep = \"incremental\"").starts_with("a.toml:2: "));
-    CHECK(refusal_of("[[compose]]\nauto = true\nprepare = \"split_mesh\"").starts_with("a.toml:4: pile: "));
-    CHECK(holds(refusal_of("[[external]]\nname = \"auto\"\ncommand = \"true\""), "there is an engine 'auto' already"));
-    CHECK(refusal_of("[[compose]]\nautos = true").starts_with("a.toml:3: unknown key of [compose] 'autos'"));
+    CHECK(rejection_of("[[compose]]\nauto = 1") == "a.toml:3: auto is a number; expected true or false");
+    CHECK(rejection_of("[[compose]]\nauto = true\n[[compose]]\nauto = true") == "a.toml:4: this auto is listed twice");
+    CHECK(
+        rejection_of("[[compose]]\nauto = true\nsort = \"shell\"\nsweep = \"incremental\"").starts_with("a.toml:2: "));
+    CHECK(rejection_of("[[compose]]\nauto = true\nprepare = \"split_mesh\"").starts_with("a.toml:4: pile: "));
+    CHECK(
+        holds(rejection_of("[[external]]\nname = \"auto\"\ncommand = \"true\""), "there is an engine 'auto' already"));
+    CHECK(rejection_of("[[compose]]\nautos = true").starts_with("a.toml:3: unknown key of [compose] 'autos'"));
 }
 
 TEST_CASE("auto finds the exact pairs in a run, and is one line of every table") {
@@ -104,7 +106,7 @@ TEST_CASE("Measures are told with their digits grouped, and what cannot be told 
     m.objects = 1200;
     m.triangles = 12'345;
     std::string text;
-    for (const auto& row : aabblab::told(m).rows) text += row[0] + " " + row[1] + "\n";
+    for (const auto& row : aabblab::reported(m).rows) text += row[0] + " " + row[1] + "\n";
     for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, longest edge"})
         CHECK(holds(text, line));
 }
@@ -115,7 +117,7 @@ TEST_CASE("A flat axis is one on which those overlap that are there") {
     aabblab::scene_measures flat = m;
     flat.boxes.overlaps[2] = static_cast<double>(flat.present - 1);
     const auto tells_flat_axis = [](const aabblab::scene_measures& of) {
-        return std::ranges::any_of(aabblab::told(of).rows, [](const auto& row) { return row[0] == "flat axis"; });
+        return std::ranges::any_of(aabblab::reported(of).rows, [](const auto& row) { return row[0] == "flat axis"; });
     };
     CHECK(tells_flat_axis(flat));
     CHECK_FALSE(tells_flat_axis(m));
@@ -143,19 +145,19 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     const temporary_folder folder;
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "200", "--frames", "80", "--out", file});
-    const program_result told = run_well({"explain", file});
+    const program_result reported = run_well({"explain", file});
     for (const char* part :
          {"objects       200\n", "frames        81, of which the first 4 are measured\n",
           "at rest       0 % of the objects\n", "counters of all work  ", "prepare    neighbour_list  frames follow",
           "    planned from what was seen\n", "one column, cut nowhere", " pairs, of boxes grown by ", "as selected",
           "split_large", "axial_cut", "build, tree, triangle have no part in this scene"})
-        CHECK(holds(told.out, part));
-    CHECK_FALSE(holds(told.out, "canonical"));
+        CHECK(holds(reported.out, part));
+    CHECK_FALSE(holds(reported.out, "canonical"));
     // columns take no other sweep.
     for (const char* part : {"\nsweep: nothing else can be composed with the rest.\n", "\nratio: ms/frame over",
                              "\nms/frame: update, search", "\nbuild ms: the stages are made"})
-        CHECK(holds(told.out, part));
-    check_narrow(told.out);
+        CHECK(holds(reported.out, part));
+    check_narrow(reported.out);
     CHECK(holds(run_program({"explain", file, file}).err, "a recording is a scene of its own"));
 }
 
@@ -164,11 +166,11 @@ TEST_CASE("explain says what all that is left out saves, with whom it is had, or
     const std::string file = folder / "p.aabbs";
     const auto table_of = [&](const char* scene, const char* objects) {
         run_well({"scene", scene, "--n", objects, "--frames", "6", "--out", file});
-        std::string told = run_program({"explain", file}).out;
-        std::string in_one_line = told;
+        std::string reported = run_program({"explain", file}).out;
+        std::string in_one_line = reported;
         std::ranges::replace(in_one_line, '\n', ' ');
         CHECK(holds(in_one_line, "5 rounds of 7 frames "));
-        return told.substr(told.find("\nleft out  "));
+        return reported.substr(reported.find("\nleft out  "));
     };
     const auto line_of = [](const std::string& table, const std::string& what) {
         const std::size_t at = table.find("\n" + what + " ");
@@ -215,10 +217,10 @@ TEST_CASE("explain says what it did not get to in its time") {
     // Each with each other.
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "brownian", "--n", "4000", "--frames", "4", "--density", "1e6", "--out", file});
-    const program_result told = run_well({"explain", file, "--seconds", "0.01"});
+    const program_result reported = run_well({"explain", file, "--seconds", "0.01"});
     for (const char* part : {"objects   4,000\n", "all else  stopped after ",
                              "prepare    neighbour_list  frames follow", "stopped after "})
-        CHECK(holds(told.out, part));
+        CHECK(holds(reported.out, part));
     CHECK(holds(run_program({"explain", file, "--seconds", "0"}).err, "is how long to play: a number above 0"));
 }
 
@@ -237,10 +239,10 @@ TEST_CASE("explain has no heading of what is left out where that is nothing") {
     const std::string config = folder.write("a.toml",
                                             "name = \"a\"\nengines = [\"cgal\"]\n[[scene]]\nkind = \"mesh_pair\"\n"
                                             "meshes = [\"icosphere:triangles=80\"]\nframes = 2\n");
-    const program_result told = run_well({"explain", config});
-    CHECK(holds(told.out, "\n  cgal\n"));
-    CHECK(holds(told.out, "left out\n      no "));
-    CHECK_FALSE(holds(told.out, "left out\n\n"));
+    const program_result reported = run_well({"explain", config});
+    CHECK(holds(reported.out, "\n  cgal\n"));
+    CHECK(holds(reported.out, "left out\n      no "));
+    CHECK_FALSE(holds(reported.out, "left out\n\n"));
 }
 
 TEST_CASE("pairs and collide say what they selected") {

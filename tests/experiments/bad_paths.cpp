@@ -143,9 +143,9 @@ TEST_CASE("A named pipe that nobody writes into ends what would wait for it") {
         CHECK(run_program(command).err.ends_with("pipe.toml: is a named pipe with no writer\n"));
     }
     for (const char* command : {"reproduce", "atlas"}) {
-        const program_result refused = run_program({command, "--judge", pipe, "--out", all.folder() / "judged"});
-        CHECK(refused.status == 2);
-        CHECK(refused.err.ends_with("pipe.toml is not a regular file\n"));
+        const program_result rejected = run_program({command, "--judge", pipe, "--out", all.folder() / "judged"});
+        CHECK(rejected.status == 2);
+        CHECK(rejected.err.ends_with("pipe.toml is not a regular file\n"));
     }
     // Costs are read at the start of every command: nothing is waited for.
     const std::filesystem::path costs = all.folder() / "aabblab/costs.toml";

@@ -141,7 +141,7 @@ TEST_CASE("boxes move by the displacement, in either unit") {
 
 TEST_CASE("overlapping pairs grow with the number of boxes, not with its square") {
     for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
-        if (info.has_meshes || info.plays_file) continue;
+        if (info.has_meshes || info.reads_file) continue;
         CAPTURE(info.name);
         const double few = neighbours_in(play(info.name, {{"objects", "1000"}, {"frames", "0"}})[0]);
         const double many = neighbours_in(play(info.name, {{"objects", "8000"}, {"frames", "0"}})[0]);
@@ -383,7 +383,7 @@ TEST_CASE("population comes and goes as told, and the absent overlap nothing") {
 
 TEST_CASE("who is absent is said by population alone") {
     for (const aabblab::scene_info& info : aabblab::scene_kinds())
-        if (!info.has_meshes && !info.plays_file)
+        if (!info.has_meshes && !info.reads_file)
             REQUIRE(play(info.name, {{"frames", "1"}})[1].present.empty() == (info.name != "population"));
 }
 

@@ -50,7 +50,7 @@ std::string text_here() {
     return text_of(aabblab::costs_here(odd_costs()));
 }
 
-std::string refusal_of(const std::string& text) {
+std::string rejection_of(const std::string& text) {
     return refusal_in<aabb::input_error>([&] { return aabblab::parse_costs(text, "costs.toml"); });
 }
 
@@ -141,22 +141,23 @@ TEST_CASE("A file of costs reads back as it was written") {
 
 TEST_CASE("What is wrong in a file of costs is said with its line") {
     const std::string good = text_here();
-    CHECK(refusal_of(good) == "accepted");
-    CHECK(refusal_of(replaced(good, "cut_test", "cut_tets")) ==
+    CHECK(rejection_of(good) == "accepted");
+    CHECK(rejection_of(replaced(good, "cut_test", "cut_tets")) ==
           "costs.toml:17: unknown key of [costs] 'cut_tets'; did you mean 'cut_test'?");
-    CHECK(refusal_of(replaced(good, "\ncut_test", "\n# cut_test")) ==
+    CHECK(rejection_of(replaced(good, "\ncut_test", "\n# cut_test")) ==
           "costs.toml:8: [costs] has no cut_test; aabblab calibrate writes all");
     for (const char* value : {"-1", "0", "inf", "nan", "true"})
-        CHECK(refusal_of(replaced(good, "search_box = ", "search_box = " + std::string(value) + " # ")) ==
+        CHECK(rejection_of(replaced(good, "search_box = ", "search_box = " + std::string(value) + " # ")) ==
               "costs.toml:9: search_box must be a number above 0, not " + std::string(value));
-    CHECK(refusal_of(replaced(good, "search_box = ", "search_box = [] # ")) ==
+    CHECK(rejection_of(replaced(good, "search_box = ", "search_box = [] # ")) ==
           "costs.toml:9: search_box must be a number above 0");
-    CHECK(refusal_of(replaced(good, "\nprocessor", "\nprocessors")) ==
+    CHECK(rejection_of(replaced(good, "\nprocessor", "\nprocessors")) ==
           "costs.toml:1: there is no processor; aabblab calibrate writes it");
-    CHECK(refusal_of(replaced(good, "\n[costs]", "\nmore=1\n[costs]")).starts_with("costs.toml:8: unknown key 'more'"));
-    CHECK(refusal_of(good + "[").starts_with("costs.toml:"));
+    CHECK(
+        rejection_of(replaced(good, "\n[costs]", "\nmore=1\n[costs]")).starts_with("costs.toml:8: unknown key 'more'"));
+    CHECK(rejection_of(good + "[").starts_with("costs.toml:"));
     // Of another version nothing but that is known.
-    CHECK(refusal_of("version = \"0.0.1\"\nprocessor = \"p\"\ninstructions = \"i\"\n[costs]\na = 1\n") == "accepted");
+    CHECK(rejection_of("version = \"0.0.1\"\nprocessor = \"p\"\ninstructions = \"i\"\n[costs]\na = 1\n") == "accepted");
 }
 
 TEST_CASE("The program plans by the costs that are kept, and says so") {

@@ -226,16 +226,16 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
                                          "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
     const std::string file =
         folder.write("poses.txt", "# of b\n" + poses[0] + "\n\n" + poses[1] + " # far away\r\n" + poses[2]);
-    const auto who = GENERATE(std::vector<std::string>{}, std::vector<std::string>{"--tree", "canonical"},
-                              std::vector<std::string>{"--engine", "cgal"});
+    const auto tested = GENERATE(std::vector<std::string>{}, std::vector<std::string>{"--tree", "canonical"},
+                                 std::vector<std::string>{"--engine", "cgal"});
     const auto all = [&](const std::vector<std::string>& options) {
-        return json_of(joined(joined({"collide", a, b, "--json", "--poses", file}, who), options));
+        return json_of(joined(joined({"collide", a, b, "--json", "--poses", file}, tested), options));
     };
     std::string rows = "pose,a,b\n";
     std::vector<std::size_t> counts;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const std::string out = folder / "one.csv";
-        const auto one = json_of(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, who));
+        const auto one = json_of(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, tested));
         counts.push_back(one["pairs"]);
         for (const std::string& line : lines_of(bytes_of_file(out)))
             if (line != "a,b") rows += std::to_string(i) + "," + line + "\n";
@@ -259,13 +259,13 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
     CHECK(first["pairs"] == std::vector{1, 0, 1});
     REQUIRE(first["first"].size() == 3);
     CHECK(first["first"][1].is_null());
-    const std::string told = run_program(joined({"collide", a, b, "--poses", file, "--first"}, who)).out;
-    CHECK_FALSE(holds(told, "\npose 1: "));
+    const std::string reported = run_program(joined({"collide", a, b, "--poses", file, "--first"}, tested)).out;
+    CHECK_FALSE(holds(reported, "\npose 1: "));
     for (const std::size_t pose : {0, 2}) {
         const std::string s = first["first"][pose][0].dump();
         const std::string t = first["first"][pose][1].dump();
         CHECK(holds("\n" + rows, "\n" + std::to_string(pose) + "," + s + "," + t + "\n"));
-        CHECK(holds(told, "\npose " + std::to_string(pose) + ": triangles " + s + " and " + t + " intersect\n"));
+        CHECK(holds(reported, "\npose " + std::to_string(pose) + ": triangles " + s + " and " + t + " intersect\n"));
     }
 }
 

@@ -77,7 +77,7 @@ std::string write_results(const std::filesystem::path& folder, const std::vector
             "\"\nseed = [1, 2, 3]\n[[scene]]\nkind = \"brownian\"\nobjects = 10\nframes = 3\n[compose]\nsort = "
             "\"std\"\n",
         "test.toml", aabblab::experiment_size::full);
-    aabblab::results_folder results(folder, record_of(e), aabblab::existing_results::refuse);
+    aabblab::results_folder results(folder, record_of(e), aabblab::existing_results::reject);
     for (const row& r : rows) results.add(r);
     return folder.string();
 }
@@ -314,7 +314,7 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
                                                        R"("scenes": })";
     write_results(folder / "twice/x", rows_of({}));
     write_results(folder / "twice/y", rows_of({}));
-    const refusals refused = {
+    const refusals rejected = {
         {{good}, "B is required"},
         {{good, folder / "nowhere"}, "nowhere is not there; expected a folder of results"},
         {{folder / "good/results.csv", good}, "results.csv is not a folder"},
@@ -328,5 +328,5 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
         {{folder / "twice", good}, "both hold results of the experiment test"},
         {{good, good, "--tiems"}, "did you mean '--times'?"},
     };
-    check_refused({"compare"}, refused);
+    check_refused({"compare"}, rejected);
 }

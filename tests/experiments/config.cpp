@@ -44,7 +44,7 @@ TEST_CASE("Strategies that a config does not name are played where it says so, b
     REQUIRE(std::set(sorts.begin(), sorts.end()).size() == aabb::strategies(aabb::strategy_kind::sort).size());
     REQUIRE(std::ranges::count(sorts, "insertion + none + incremental") == 1);
     REQUIRE(std::ranges::count(sorts, "shell + none + one_axis") == 0);
-    REQUIRE(refusal_of(compose + "sort = [\"std\", { others_but = [\"shall\"] }]\n") ==
+    REQUIRE(rejection_of(compose + "sort = [\"std\", { others_but = [\"shall\"] }]\n") ==
             "test.toml:6: unknown sort 'shall'; did you mean 'shell'?");
 }
 
@@ -54,14 +54,14 @@ TEST_CASE("Scenes that a config does not name are played where it says so, but n
     };
     std::set<std::string> expected;
     for (const aabblab::scene_info& info : aabblab::scene_kinds())
-        if (!info.has_meshes && !info.plays_file && info.name != "pile") expected.insert(info.name);
+        if (!info.has_meshes && !info.reads_file && info.name != "pile") expected.insert(info.name);
     std::vector<std::string> played;
     for (const auto& scene : parsed(config_with("[\"still\", { others_but = [\"pile\"] }]")).scenes)
         played.push_back(scene.kind);
     CHECK(played.front() == "still");
     CHECK(std::set(played.begin(), played.end()) == expected);
     CHECK(played.size() == expected.size());
-    CHECK(refusal_of(config_with("[{ others_but = [\"pill\"] }]")).starts_with("test.toml:4: unknown scene 'pill'"));
+    CHECK(rejection_of(config_with("[{ others_but = [\"pill\"] }]")).starts_with("test.toml:4: unknown scene 'pill'"));
 }
 
 TEST_CASE("Every list multiplies") {
@@ -109,12 +109,12 @@ sweep = "incremental"
 
 TEST_CASE("What divides meshes is refused beside a scene of boxes, and plays in scenes of meshes") {
     const std::string splits = "[compose]\nprepare = [\"none\", \"split_mesh\"]\n";
-    REQUIRE(refusal_of(minimal + splits)
+    REQUIRE(rejection_of(minimal + splits)
                 .ends_with("split_mesh divides meshes, and there are only boxes here; split_large divides boxes"));
     // With the line that asks for it.
-    REQUIRE(holds(refusal_of(minimal + splits), ":6: brownian: split_mesh divides"));
+    REQUIRE(holds(rejection_of(minimal + splits), ":6: brownian: split_mesh divides"));
     REQUIRE(
-        holds(refusal_of(minimal + "[[compose]]\nsort = \"std\"\n[[compose]]\nprepare = { name = \"split_mesh\" }\n"),
+        holds(rejection_of(minimal + "[[compose]]\nsort = \"std\"\n[[compose]]\nprepare = { name = \"split_mesh\" }\n"),
               ":8: brownian: split_mesh divides"));
     const experiment e = parsed("name = \"x\"\n[[scene]]\nkind = \"mesh_swarm\"\nmeshes = [\"icosphere\"]\n" + splits);
     REQUIRE(e.compositions.size() == 2);
@@ -129,11 +129,11 @@ TEST_CASE("A metric that is named is recorded and shown; a group is recorded") {
 
 TEST_CASE("What was a key or a parameter once is refused with the new spelling") {
     REQUIRE(
-        refusal_of(compose + "split_large = 4\n")
+        rejection_of(compose + "split_large = 4\n")
             .ends_with("'split_large' is a strategy, not a kind of them; write prepare = \"split_large\", or { name = "
                        "\"split_large\", … } with its parameters"));
     REQUIRE(
-        refusal_of(compose + "tree = { name = \"leafless\", build = \"sah\" }\n")
+        rejection_of(compose + "tree = { name = \"leafless\", build = \"sah\" }\n")
             .ends_with(
                 "leafless has no parameter build, which is a kind of its own: write build = \"sah\" or --build sah"));
 }
@@ -188,10 +188,11 @@ TEST_CASE("What is asked of meshes, and with which caches, is read, checked and 
     REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\nask = \"pairs\"\ncaches = \"warm\"\n")) == plain);
     REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\nask = \"count\"\n")) != plain);
     REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\ncaches = \"cold\"\n")) != plain);
-    REQUIRE(refusal_of(meshes + "[measure]\nask = \"frist\"\n")
+    REQUIRE(rejection_of(meshes + "[measure]\nask = \"frist\"\n")
                 .ends_with(":7: unknown ask 'frist'; did you mean 'first'?"));
     for (const std::string line : {"caches = \"cold\"", "ask = \"first\""})
-        REQUIRE(refusal_of(measure + line + "\n").ends_with(line + " is for scenes of meshes, and brownian has none"));
+        REQUIRE(
+            rejection_of(measure + line + "\n").ends_with(line + " is for scenes of meshes, and brownian has none"));
 }
 
 TEST_CASE("A mesh file that changes makes another hash") {
@@ -213,8 +214,8 @@ TEST_CASE("Meshes that are not there are replaced by what the config names, and 
     REQUIRE(e.scenes[0].meshes == std::vector<std::string>{"icosphere:triangles=20", "torus_knot:triangles=96"});
     REQUIRE(e.notes.size() == 1);
     REQUIRE(e.notes[0].starts_with("no_such.off is not there"));
-    REQUIRE(refusal_of(scene).find("test.toml:2: ") == 0);
-    REQUIRE(holds(refusal_of(scene), "no_such.off"));
+    REQUIRE(rejection_of(scene).find("test.toml:2: ") == 0);
+    REQUIRE(holds(rejection_of(scene), "no_such.off"));
 }
 
 TEST_CASE("What is wrong in a config is said in one sentence with its line") {
@@ -268,7 +269,7 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
         {measure + "metrics = [\"xyzzyq\"]\n", ":6: ", "unknown metric 'xyzzyq'; see aabblab list metrics"},
         {measure + "metric = []\n", ":6: ", "did you mean 'metrics'?"},
     }));
-    const std::string sentence = refusal_of(text);
+    const std::string sentence = rejection_of(text);
     INFO(text << "\n" << sentence);
     REQUIRE(sentence.starts_with("test.toml" + place));
     REQUIRE(holds(sentence, said));

@@ -27,7 +27,7 @@ std::string prepares(std::size_t sizes) {
 
 TEST_CASE("What the TOML library asserts is malformed TOML, with its line") {
     const std::string value = GENERATE("[}", "[,", "[=", "[#", "[[}", "[1,}", "{a=}", "{=", "[{]", "[\n\n}");
-    const std::string sentence = refusal_of(head + "a = " + value);
+    const std::string sentence = rejection_of(head + "a = " + value);
     INFO(value << "\n" << sentence);
     const auto line = 2 + std::count(value.begin(), value.end(), '\n');
     REQUIRE(sentence.starts_with("test.toml:" + std::to_string(line) + ":"));
@@ -39,10 +39,11 @@ TEST_CASE("Keys and values that go deep are refused before the library follows t
     const std::string key = repeated("a", parts, GENERATE(".", " . ", ".\"b\\\"\".", ".'='."));
     const std::string before = GENERATE("", "text = \"a#b\"\n", "text = '''a\n\"'''\n", "# '\n");
     const std::string line = before.starts_with("text = ''") ? ":4" : before.empty() ? ":2" : ":3";
-    CHECK(refusal_of(head + before + key + " = 1\n") == "test.toml" + line + ": a key has more than 16 parts");
-    CHECK(refusal_of(head + before + "[" + key + "]\n") == "test.toml" + line + ": a key has more than 16 parts");
-    CHECK(refusal_of(head + before + "a={" + key + " = 1}\n") == "test.toml" + line + ": a key has more than 16 parts");
-    CHECK(holds(refusal_of(head + "a = " + std::string(parts, '[')), "maximum nested value depth"));
+    CHECK(rejection_of(head + before + key + " = 1\n") == "test.toml" + line + ": a key has more than 16 parts");
+    CHECK(rejection_of(head + before + "[" + key + "]\n") == "test.toml" + line + ": a key has more than 16 parts");
+    CHECK(rejection_of(head + before + "a={" + key + " = 1}\n") ==
+          "test.toml" + line + ": a key has more than 16 parts");
+    CHECK(holds(rejection_of(head + "a = " + std::string(parts, '[')), "maximum nested value depth"));
 }
 
 TEST_CASE("A string that ends in quotes of its own hides no key behind it") {
@@ -51,28 +52,28 @@ TEST_CASE("A string that ends in quotes of its own hides no key behind it") {
         for (std::size_t own = 0; own < 3; ++own) {
             const std::string text = repeated(quote, 3) + "x" + repeated(quote, 3 + own);
             INFO(text);
-            CHECK(refusal_of(head + "a = {b = " + text + ", " + key + " = 1}\n") ==
+            CHECK(rejection_of(head + "a = {b = " + text + ", " + key + " = 1}\n") ==
                   "test.toml:2: a key has more than 16 parts");
             // Short enough to be read: the string ends where TOML says.
-            CHECK(holds(refusal_of(head + "a = {b = " + text + ", c.c = 1}\n"), "unknown key 'a'"));
+            CHECK(holds(rejection_of(head + "a = {b = " + text + ", c.c = 1}\n"), "unknown key 'a'"));
         }
 }
 
 TEST_CASE("Dots that join no parts of a key do not count") {
     const std::string many = repeated("a", 100, ".");
     const std::string sizes = "displacement = [" + repeated("0.5", 30, ", ") + "]\n";
-    CHECK(refusal_of(head + "# " + many + "\n" + scene) == "accepted");
-    CHECK(holds(refusal_of(head + scene + sizes), "displacement lists '0.5' twice"));
-    CHECK(holds(refusal_of(head + "engines = \"" + many + "\"\n" + scene), "unknown engine"));
-    CHECK(holds(refusal_of(head + "engines = '" + many + "'\n" + scene), "unknown engine"));
-    CHECK(holds(refusal_of(head + "engines = \"\"\"\n" + many + "\"\"\"\n" + scene), "unknown engine"));
+    CHECK(rejection_of(head + "# " + many + "\n" + scene) == "accepted");
+    CHECK(holds(rejection_of(head + scene + sizes), "displacement lists '0.5' twice"));
+    CHECK(holds(rejection_of(head + "engines = \"" + many + "\"\n" + scene), "unknown engine"));
+    CHECK(holds(rejection_of(head + "engines = '" + many + "'\n" + scene), "unknown engine"));
+    CHECK(holds(rejection_of(head + "engines = \"\"\"\n" + many + "\"\"\"\n" + scene), "unknown engine"));
 }
 
 TEST_CASE("A config is no longer than its limit") {
     const std::string text = head + scene;
     const std::string longest = text + std::string(262'144 - text.size(), '#');
-    CHECK(refusal_of(longest) == "accepted");
-    CHECK(refusal_of(longest + "#") == "test.toml is longer than 262144 bytes, the most that a config may have");
+    CHECK(rejection_of(longest) == "accepted");
+    CHECK(rejection_of(longest + "#") == "test.toml is longer than 262144 bytes, the most that a config may have");
     const temporary_folder folder;
     REQUIRE_NOTHROW(aabblab::read_experiment(folder.write("a.toml", longest), experiment_size::full));
     REQUIRE_THROWS_AS(aabblab::read_experiment("/dev/zero", experiment_size::full), aabb::input_error);
@@ -85,27 +86,27 @@ TEST_CASE("Lists that multiply are counted before anything is made of them") {
         list.pop_back();
         return "{ name = \"axial_cut\", axes = [1, 2, 3], limit = [\"on\", \"off\"], " + list + " }";
     };
-    CHECK(refusal_of(head + scene + "[compose]\npartition = " + cuts(20'000) + "\n") ==
+    CHECK(rejection_of(head + scene + "[compose]\npartition = " + cuts(20'000) + "\n") ==
           "test.toml:6: " + most + "choices of partition, the most that a config may have");
     // Each list is short enough; together they are not.
     const std::string splits = prepares(100);
-    CHECK(refusal_of(head + scene + "[compose]\npartition = " + cuts(200) + "\n" + splits) ==
+    CHECK(rejection_of(head + scene + "[compose]\npartition = " + cuts(200) + "\n" + splits) ==
           "test.toml:5: " + most + "compositions, the most that a config may have");
     // Nor are several tables.
     const std::string half = "[[compose]]\npartition = " + cuts(100) + "\n" + splits;
     const std::string first = half + "sort = \"insertion\"\n";
-    CHECK(refusal_of(head + scene + first + half + "sort = \"std\"\n").starts_with("test.toml:9: " + most));
-    CHECK(refusal_of(head + "[[scene]]\nkind = [\"brownian\", \"still\"]\n" + list_of("seed", 400) +
-                     list_of("objects", 400)) == "test.toml:2: " + most + "scenes, the most that a config may have");
+    CHECK(rejection_of(head + scene + first + half + "sort = \"std\"\n").starts_with("test.toml:9: " + most));
+    CHECK(rejection_of(head + "[[scene]]\nkind = [\"brownian\", \"still\"]\n" + list_of("seed", 400) +
+                       list_of("objects", 400)) == "test.toml:2: " + most + "scenes, the most that a config may have");
 }
 
 TEST_CASE("Names are checked before lists are multiplied, and every scene's before the first is made") {
-    CHECK(refusal_of(head + scene + "[compose]\n" + prepares(20'000) +
-                     "partition = \"none\"\ntree = [\"canonical\", \"leafles\"]\ntriangle = \"exact\"\n") ==
+    CHECK(rejection_of(head + scene + "[compose]\n" + prepares(20'000) +
+                       "partition = \"none\"\ntree = [\"canonical\", \"leafles\"]\ntriangle = \"exact\"\n") ==
           "test.toml:8: unknown tree 'leafles'; did you mean 'leafless'?");
-    CHECK(refusal_of(head + scene + "[compose]\nsort = { name = [\"std\", \"shel\"], a = [1, 2] }\n") ==
+    CHECK(rejection_of(head + scene + "[compose]\nsort = { name = [\"std\", \"shel\"], a = [1, 2] }\n") ==
           "test.toml:6: unknown sort 'shel'; did you mean 'shell'?");
     // A scene of so many objects does not fit into memory.
-    CHECK(refusal_of(head + "[[scene]]\nkind = [\"brownian\", \"stil\"]\nobjects = 4000000000\n") ==
+    CHECK(rejection_of(head + "[[scene]]\nkind = [\"brownian\", \"stil\"]\nobjects = 4000000000\n") ==
           "test.toml:3: unknown scene 'stil'; did you mean 'still'?");
 }

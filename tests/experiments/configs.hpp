@@ -7,7 +7,7 @@ import aabblab.results;
 import aabblab.scenes;
 
 /// The sentence with which the config of an experiment is refused; "accepted" where it is not.
-[[nodiscard]] inline std::string refusal_of(const std::string& text, const std::string& file = "test.toml") {
+[[nodiscard]] inline std::string rejection_of(const std::string& text, const std::string& file = "test.toml") {
     return refusal_in<aabb::input_error>(
         [&] { return aabblab::parse_experiment(text, file, aabblab::experiment_size::full); });
 }

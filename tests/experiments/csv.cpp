@@ -9,7 +9,7 @@ namespace {
 
 using table = std::vector<std::vector<std::string>>;
 
-std::string refusal_of(const std::string& text) {
+std::string rejection_of(const std::string& text) {
     return refusal_in<aabb::input_error>([&] { return read_csv(text, "t.csv"); });
 }
 
@@ -21,8 +21,8 @@ TEST_CASE("CSV is read and written as RFC 4180 says") {
     CHECK(fields_of("a,b\r\nc,\"d\r\ne\"\r\n") == table{{"a", "b"}, {"c", "d\r\ne"}});
     CHECK(fields_of("\"a\",\"\"\n,\n\n") == table{{"a", ""}, {"", ""}, {""}});
     CHECK(read_csv("\"a\nb\",c\nd\n", "t.csv").records[1].line == 3);
-    CHECK(refusal_of("a\nb,c\"d\n") == "t.csv:2: a quote stands in a field that does not begin with one");
-    CHECK(refusal_of("a,\"b\n\"c\n") == "t.csv:2: expected a comma or the end of the line after a closing quote");
+    CHECK(rejection_of("a\nb,c\"d\n") == "t.csv:2: a quote stands in a field that does not begin with one");
+    CHECK(rejection_of("a,\"b\n\"c\n") == "t.csv:2: expected a comma or the end of the line after a closing quote");
 }
 
 TEST_CASE("Whatever is written as CSV is read back, and a record that is cut off anywhere is left out") {

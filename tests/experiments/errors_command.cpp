@@ -13,7 +13,7 @@ using aabblab::experiment_size;
 namespace {
 
 /// Of a config with a name, and this behind it.
-std::string refusal_of(const std::string& text) {
+std::string rejection_of(const std::string& text) {
     return refusal_in<aabb::input_error>(
         [&] { return aabblab::parse_error_study("name = \"e\"\n" + text, "e.toml", experiment_size::full); });
 }
@@ -160,39 +160,41 @@ TEST_CASE("what a test that constructs gets wrong is counted, and rare hits are 
 }
 
 TEST_CASE("a config of errors that is wrong is refused with its line and the nearest name") {
-    CHECK(refusal_of(some_pairs + one_curve) == "accepted");
-    CHECK(refusal_of(some_pairs) == "e.toml:1: this config has no curve; expected at least one [[curve]], or [[hits]]");
-    CHECK(refusal_of(one_curve) ==
+    CHECK(rejection_of(some_pairs + one_curve) == "accepted");
+    CHECK(rejection_of(some_pairs) ==
+          "e.toml:1: this config has no curve; expected at least one [[curve]], or [[hits]]");
+    CHECK(rejection_of(one_curve) ==
           "e.toml:1: this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
-    CHECK(refusal_of("[[pairs]]\nclass = \"randon\"\n" + one_curve) ==
+    CHECK(rejection_of("[[pairs]]\nclass = \"randon\"\n" + one_curve) ==
           "e.toml:3: unknown class of pairs 'randon'; did you mean 'random'?");
-    CHECK(refusal_of("[[pairs]]\nprecision = \"flaot\"\n" + one_curve) ==
+    CHECK(rejection_of("[[pairs]]\nprecision = \"flaot\"\n" + one_curve) ==
           "e.toml:3: unknown precision 'flaot'; did you mean 'float'?");
-    CHECK(refusal_of(some_pairs + "[[curve]]\ntriangle = \"exat\"\n") ==
+    CHECK(rejection_of(some_pairs + "[[curve]]\ntriangle = \"exat\"\n") ==
           "e.toml:5: unknown triangle 'exat'; did you mean 'exact'?");
-    CHECK(refusal_of(some_pairs + "[[curve]]\ntriangle = { name = \"moller\", epsilon = \"non\" }\n")
+    CHECK(rejection_of(some_pairs + "[[curve]]\ntriangle = { name = \"moller\", epsilon = \"non\" }\n")
               .starts_with("e.toml:5: moller: epsilon must be one of absolute, none, scaled"));
-    CHECK(refusal_of(some_pairs + some_pairs + one_curve) == "e.toml:5: these pairs are listed twice: random in float");
-    CHECK(refusal_of("[[scene]]\nkind = \"brownian\"\n" + one_curve) ==
+    CHECK(rejection_of(some_pairs + some_pairs + one_curve) ==
+          "e.toml:5: these pairs are listed twice: random in float");
+    CHECK(rejection_of("[[scene]]\nkind = \"brownian\"\n" + one_curve) ==
           "e.toml:3: brownian is a scene of boxes, which has no triangles");
-    CHECK(refusal_of("[[pairs]]\nprecision = \"double\"\n[[curve]]\ntriangle = \"moller\"\n") ==
+    CHECK(rejection_of("[[pairs]]\nprecision = \"double\"\n[[curve]]\ntriangle = \"moller\"\n") ==
           "e.toml:2: no curve takes triangles of doubles");
-    CHECK(refusal_of(some_pairs + one_curve + one_curve) == "e.toml:6: two curves have the label 'exact'");
-    CHECK(refusal_of(some_pairs + one_curve + "[[curve]]\nlabel = \"x\"\ntriangle = \"exact\"\n") ==
+    CHECK(rejection_of(some_pairs + one_curve + one_curve) == "e.toml:6: two curves have the label 'exact'");
+    CHECK(rejection_of(some_pairs + one_curve + "[[curve]]\nlabel = \"x\"\ntriangle = \"exact\"\n") ==
           "e.toml:6: 'exact' is a point of two curves");
-    CHECK(refusal_of("quick = 5\n" + some_pairs + one_curve).starts_with("e.toml:2: quick is a number"));
-    CHECK(refusal_of("[[pairs]]\ncount = 0\n" + one_curve) ==
+    CHECK(rejection_of("quick = 5\n" + some_pairs + one_curve).starts_with("e.toml:2: quick is a number"));
+    CHECK(rejection_of("[[pairs]]\ncount = 0\n" + one_curve) ==
           "e.toml:3: count must be a whole number, at least 1, not 0");
     const std::string some_hits = "[[hits]]\nclass = \"random\"\n";
-    CHECK(refusal_of(some_hits) == "accepted");
-    CHECK(refusal_of(some_hits + some_pairs + one_curve) == "accepted");
-    CHECK(refusal_of(some_hits + one_curve) ==
+    CHECK(rejection_of(some_hits) == "accepted");
+    CHECK(rejection_of(some_hits + some_pairs + one_curve) == "accepted");
+    CHECK(rejection_of(some_hits + one_curve) ==
           "e.toml:1: this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
-    CHECK(refusal_of(some_hits + some_pairs) == "e.toml:4: [[pairs]] is for curves, and this config has none");
-    CHECK(refusal_of(some_hits + some_hits) == "e.toml:5: these hits are listed twice: random in float");
-    CHECK(refusal_of("[[hits]]\nclas = \"random\"\n").starts_with("e.toml:3: unknown key of [[hits]] 'clas'"));
-    CHECK(refusal_of("[[hits]]\ncount = 0\n") == "e.toml:3: count must be a whole number, at least 1, not 0");
-    CHECK(refusal_of("[hits]\ncount = 5\n") == "e.toml:2: hits must stand in double brackets: [[hits]]");
+    CHECK(rejection_of(some_hits + some_pairs) == "e.toml:4: [[pairs]] is for curves, and this config has none");
+    CHECK(rejection_of(some_hits + some_hits) == "e.toml:5: these hits are listed twice: random in float");
+    CHECK(rejection_of("[[hits]]\nclas = \"random\"\n").starts_with("e.toml:3: unknown key of [[hits]] 'clas'"));
+    CHECK(rejection_of("[[hits]]\ncount = 0\n") == "e.toml:3: count must be a whole number, at least 1, not 0");
+    CHECK(rejection_of("[hits]\ncount = 5\n") == "e.toml:2: hits must stand in double brackets: [[hits]]");
     run_refused({"errors", "nowhere.toml"});
 }
 
@@ -211,7 +213,7 @@ TEST_CASE("errors plays compositions whole and draws the metrics that the config
     std::map<std::string, std::set<std::string>> answers;
     for (const aabblab::row& r : aabblab::read_rows(folder / "out/results.csv"))
         answers[r.name[aabb::strategy_kind::prepare]].insert(r.status + (*r.missing > 0 ? " misses" : "") +
-                                                             (*r.invented > 0 ? " invents" : ""));
+                                                             (*r.false_positives > 0 ? " invents" : ""));
     const std::set<std::string> exact{"exact"};
     const std::set<std::string> stale{"inexact misses"};
     CHECK(answers == std::map<std::string, std::set<std::string>>{{"neighbour_list:margin=0.1", exact},
@@ -228,29 +230,29 @@ TEST_CASE("errors plays compositions whole and draws the metrics that the config
 TEST_CASE("a config of errors keeps triangle tests and compositions apart") {
     const std::string lists = "[[curve]]\nlabel = \"lists\"\nprepare = \"neighbour_list\"\n";
     const std::string scene = "[[scene]]\nkind = \"brownian\"\nobjects = 20\nframes = 3\n";
-    CHECK(refusal_of(scene + lists) == "accepted");
-    CHECK(refusal_of(lists + scene + one_curve) ==
+    CHECK(rejection_of(scene + lists) == "accepted");
+    CHECK(rejection_of(lists + scene + one_curve) ==
           "e.toml:9: 'exact' and 'lists' do not go together: triangle tests alone are held against pairs of triangles, "
           "other compositions play scenes; put them into two configs");
-    CHECK(refusal_of(lists + some_pairs) ==
+    CHECK(rejection_of(lists + some_pairs) ==
           "e.toml:5: [[pairs]] is for curves of triangle tests alone; these play each [[scene]] whole");
-    CHECK(refusal_of(some_pairs + one_curve + "[[plot]]\nx = \"frame_ms\"\n") ==
+    CHECK(rejection_of(some_pairs + one_curve + "[[plot]]\nx = \"frame_ms\"\n") ==
           "e.toml:6: [[plot]] is for compositions; triangle tests alone are plotted over their time");
-    CHECK(refusal_of(scene + lists + "[[plot]]\nx = \"frame_ms\"\ny = \"wrong\"\n")
+    CHECK(rejection_of(scene + lists + "[[plot]]\nx = \"frame_ms\"\ny = \"wrong\"\n")
               .starts_with("e.toml:11: unknown metric 'wrong'"));
-    CHECK(refusal_of(scene + lists + "[[plot]]\nx = \"frame_ms\"\n") ==
+    CHECK(rejection_of(scene + lists + "[[plot]]\nx = \"frame_ms\"\n") ==
           "e.toml:9: this plot has no y; expected the name of a metric");
-    CHECK(refusal_of("seed = [1, 2]\n" + scene + lists) == "accepted");
-    CHECK(refusal_of(scene + "[compose]\n") == "e.toml:6: [compose] is of a config of run; ./aabblab run plays it");
+    CHECK(rejection_of("seed = [1, 2]\n" + scene + lists) == "accepted");
+    CHECK(rejection_of(scene + "[compose]\n") == "e.toml:6: [compose] is of a config of run; ./aabblab run plays it");
     CHECK(refusal_in<aabb::input_error>([&] {
               return aabblab::parse_experiment("name = \"e\"\n" + scene + lists, "e.toml", experiment_size::full);
           }) == "e.toml:6: [[curve]] is of a config of errors; ./aabblab errors runs it");
-    CHECK(refusal_of(some_pairs + one_curve + "[measure]\nrepeats = 2\n")
+    CHECK(rejection_of(some_pairs + one_curve + "[measure]\nrepeats = 2\n")
               .starts_with("e.toml:6: [measure] is for compositions"));
-    CHECK(refusal_of(scene + lists + "[measure]\nprocesses = 2\n") == "e.toml:10: errors has no processes; run has");
-    CHECK(refusal_of(scene + lists + "[[curve]]\nprepare = \"neighbour_lists\"\n") ==
+    CHECK(rejection_of(scene + lists + "[measure]\nprocesses = 2\n") == "e.toml:10: errors has no processes; run has");
+    CHECK(rejection_of(scene + lists + "[[curve]]\nprepare = \"neighbour_lists\"\n") ==
           "e.toml:10: unknown prepare 'neighbour_lists'; did you mean 'neighbour_list'?");
-    CHECK(refusal_of(scene + lists + "[[curve]]\nlabel = \"x\"\n")
+    CHECK(rejection_of(scene + lists + "[[curve]]\nlabel = \"x\"\n")
               .starts_with("e.toml:9: this curve has no method; expected triangle = "));
 }
 
@@ -288,15 +290,16 @@ TEST_CASE("an errors.csv is read as it was written, and refused with its line wh
         "e.toml", experiment_size::full);
     const std::string text = csv_of(measure_errors(study));
     CHECK(csv_of(aabblab::read_error_rows(folder.write("errors.csv", text))) == text);
-    const auto refused = [&](const std::string& changed) {
+    const auto rejected = [&](const std::string& changed) {
         const std::string file = folder.write("changed.csv", changed);
         return refusal_in<aabb::input_error>([&] { return aabblab::read_error_rows(file); }).substr(file.size());
     };
-    CHECK(refused("pairs\n") ==
+    CHECK(rejected("pairs\n") ==
           ":1: these are not the columns of this version; column 2 is missing; expected 'precision'");
     const std::string head = text.substr(0, text.find('\n') + 1);
-    CHECK(refused(head + "random,flat,c,exact,1,1,0,0,1,1,1\n") == ":2: precision must be float or double, not 'flat'");
-    CHECK(refused(head + "random,float,c,exact,1,1,0,0,1,1\n") == ":2: the column ns_high is missing");
+    CHECK(rejected(head + "random,flat,c,exact,1,1,0,0,1,1,1\n") ==
+          ":2: precision must be float or double, not 'flat'");
+    CHECK(rejected(head + "random,float,c,exact,1,1,0,0,1,1\n") == ":2: the column ns_high is missing");
 }
 
 TEST_CASE("every config of errors reads") {

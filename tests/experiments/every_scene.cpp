@@ -6,23 +6,23 @@ import aabblab.trials;
 import aabblab.scenes;
 
 TEST_CASE("every composition is exact on every scene of boxes") {
-    std::vector<aabblab::contender> contenders;
-    for (const aabb::composition& c : global_compositions()) contenders.push_back(aabblab::contender_of(c, false));
+    std::vector<aabblab::candidate> candidates;
+    for (const aabb::composition& c : global_compositions()) candidates.push_back(aabblab::candidate_of(c, false));
     for (const aabb::engine_info& engine : aabb::engines())
-        if (const auto contender = aabblab::contender_of(engine, false)) contenders.push_back(*contender);
-    REQUIRE(contenders.size() > 500);
+        if (const auto candidate = aabblab::candidate_of(engine, false)) candidates.push_back(*candidate);
+    REQUIRE(candidates.size() > 500);
     for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
-        if (info.has_meshes || info.plays_file) continue;
+        if (info.has_meshes || info.reads_file) continue;
         aabblab::scene_choice scene{info.name, {{"objects", "100"}, {"frames", "4"}}, {}, 3};
         // Grown by a margin, long and large ones reach into millions of the cells of a fine grid.
         if (info.name == "needles") scene.settings.push_back({"length", "4"});
         if (info.name == "mixed_sizes") scene.settings.push_back({"ratio", "20"});
         // All at once would take more memory than some machines have.
-        for (std::size_t at = 0; at < contenders.size(); at += 250) {
-            const auto some = std::span(contenders).subspan(at, std::min<std::size_t>(250, contenders.size() - at));
+        for (std::size_t at = 0; at < candidates.size(); at += 250) {
+            const auto some = std::span(candidates).subspan(at, std::min<std::size_t>(250, candidates.size() - at));
             const aabblab::scene_validation all = aabblab::validate_scene(scene, some);
-            REQUIRE(all.contenders.size() == some.size());
-            for (const aabblab::validated_row& v : all.contenders) {
+            REQUIRE(all.candidates.size() == some.size());
+            for (const aabblab::validated_row& v : all.candidates) {
                 INFO(info.name << ": " << v.failure);
                 REQUIRE(v.failure.empty());
                 REQUIRE(v.digest == all.digest);
@@ -32,33 +32,33 @@ TEST_CASE("every composition is exact on every scene of boxes") {
 }
 
 TEST_CASE("every exact local composition is exact on every scene of meshes, and others on none worse than they say") {
-    std::vector<aabblab::contender> contenders;
-    for (const aabb::composition& c : local_compositions()) contenders.push_back(aabblab::contender_of(c, true));
+    std::vector<aabblab::candidate> candidates;
+    for (const aabb::composition& c : local_compositions()) candidates.push_back(aabblab::candidate_of(c, true));
     for (const aabb::engine_info& engine : aabb::engines())
-        if (const auto contender = aabblab::contender_of(engine, true)) contenders.push_back(*contender);
+        if (const auto candidate = aabblab::candidate_of(engine, true)) candidates.push_back(*candidate);
     // Global search decides nothing here, but what is done before it may: parts of meshes are models of their own.
     for (const aabb::strategy_choice& prepare : all_choices(aabb::strategy_kind::prepare)) {
         aabb::composition c;
         c[aabb::strategy_kind::prepare] = prepare;
-        if (c != aabb::composition()) contenders.push_back(aabblab::contender_of(c, true));
+        if (c != aabb::composition()) candidates.push_back(aabblab::candidate_of(c, true));
         c[aabb::strategy_kind::prepare].settings = {{"size", "0.3"}};
-        if (prepare.name == "split_mesh") contenders.push_back(aabblab::contender_of(c, true));
+        if (prepare.name == "split_mesh") candidates.push_back(aabblab::candidate_of(c, true));
     }
-    REQUIRE(contenders.size() > 100);
+    REQUIRE(candidates.size() > 100);
     for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
-        if (!info.has_meshes || info.plays_file) continue;
+        if (!info.has_meshes || info.reads_file) continue;
         aabblab::scene_choice scene{
             info.name, {{"frames", "3"}}, {"icosphere:triangles=180", "torus_knot:triangles=300"}, 3};
         if (info.name == "mesh_swarm") scene.settings.push_back({"objects", "6"});
         if (info.name == "dropped") scene.settings.insert(scene.settings.end(), {{"balls", "4"}, {"height", "0"}});
-        const aabblab::scene_validation all = aabblab::validate_scene(scene, contenders);
-        REQUIRE(all.contenders.size() == contenders.size());
-        REQUIRE(all.contenders[0].contacts.value() > 100);
-        for (std::size_t i = 0; i < contenders.size(); ++i) {
-            const aabblab::validated_row& v = all.contenders[i];
+        const aabblab::scene_validation all = aabblab::validate_scene(scene, candidates);
+        REQUIRE(all.candidates.size() == candidates.size());
+        REQUIRE(all.candidates[0].contacts.value() > 100);
+        for (std::size_t i = 0; i < candidates.size(); ++i) {
+            const aabblab::validated_row& v = all.candidates[i];
             INFO(info.name << ": " << v.failure);
             REQUIRE(v.failure.empty());
-            if (contenders[i].exact) REQUIRE(v.digest == all.digest);
+            if (candidates[i].exact) REQUIRE(v.digest == all.digest);
             REQUIRE(v.triangles == 180 + 300);
             REQUIRE(v.box_inflation.has_value() == !v.name[aabb::strategy_kind::tree].empty());
             if (v.name[aabb::strategy_kind::tree].starts_with("compressed_literal")) REQUIRE(*v.box_inflation > 0);
@@ -67,7 +67,7 @@ TEST_CASE("every exact local composition is exact on every scene of meshes, and 
 }
 
 TEST_CASE("objects of a scene that come and go come and go in the search") {
-    aabblab::scene_play scene({"population", {{"objects", "200"}, {"frames", "5"}}, {}, 1});
+    aabblab::scene_frames scene({"population", {{"objects", "200"}, {"frames", "5"}}, {}, 1});
     std::vector<bool> present(200);
     std::size_t changes = 0;
     for (bool first = true; scene.next(); first = false) {

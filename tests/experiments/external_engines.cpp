@@ -96,7 +96,7 @@ TEST_CASE("What an external engine gets wrong is a failure, and counted where it
     REQUIRE(counted.status == 0);
     for (const aabblab::row& r : aabblab::verified_rows(folder / "out")) {
         CHECK((r.status == "exact") == r.name.engine.empty());
-        CHECK((r.missing.value() + r.invented.value() > 0) == !r.name.engine.empty());
+        CHECK((r.false_negatives.value() + r.false_positives.value() > 0) == !r.name.engine.empty());
     }
 }
 
@@ -234,9 +234,9 @@ TEST_CASE("An external engine that cannot be started gets one sentence and statu
     const temporary_folder folder;
     folder.write("mine", good);  // which nobody may execute
     const auto config = folder.write("joined.toml", config_of("brownian", ""));
-    const program_result refused = run_refused({"run", config, "--out", folder / "out"});
-    REQUIRE(refused.err.starts_with("aabblab: " + config.string() + ":4: brownian ("));
-    REQUIRE(holds(refused.err, "mine cannot be started: Permission denied\n"));
+    const program_result rejected = run_refused({"run", config, "--out", folder / "out"});
+    REQUIRE(rejected.err.starts_with("aabblab: " + config.string() + ":4: brownian ("));
+    REQUIRE(holds(rejected.err, "mine cannot be started: Permission denied\n"));
     const auto bare = folder.write("bare.toml",
                                    "name = \"joined\"\n[[external]]\nname = \"mine\"\ncommand = \"no_such_program\"\n"
                                    "[[scene]]\nkind = \"brownian\"\nobjects = 5\n");
@@ -280,7 +280,7 @@ TEST_CASE("External engines in a config are checked, and are part of its hash") 
         {"[[external]]\nname = \"a\"\ncommand = [\"ls\", \"-l\"]\n", "accepted"},
     }));
     CAPTURE(external);
-    REQUIRE(holds(refusal_of(with(external)), says));
+    REQUIRE(holds(rejection_of(with(external)), says));
     const auto hash = [&](const std::string& text) {
         return aabblab::hash_of(aabblab::parse_experiment(with(text), "x.toml", aabblab::experiment_size::full));
     };

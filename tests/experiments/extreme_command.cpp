@@ -20,12 +20,12 @@ TEST_CASE("Scenes that are not answered as they must be stand in the table, and 
         return scene.name != "two_objects" && scene.name != "many_against_one" && scene.name != "beyond_float";
     });
     REQUIRE(scenes.size() == 3);
-    const auto rows_of = [&] { return aabblab::play_scenes(scenes, aabb::extreme_size::quick); };
+    const auto rows_of = [&] { return aabblab::run_extreme_scenes(scenes, aabb::extreme_size::quick); };
     CHECK(aabblab::failures_in(rows_of()).empty());
     for (aabb::extreme_scene& scene : scenes) {
-        if (scene.name == "two_objects") scene.refusal = "box 7 is inverted";
+        if (scene.name == "two_objects") scene.rejection = "box 7 is inverted";
         if (scene.name == "many_against_one") scene.most_bytes = 1000;
-        scene.answered_in_double = false;
+        scene.accepted_in_double = false;
     }
     const std::vector<aabblab::extreme_row> rows = rows_of();
     const std::vector<std::vector<std::string>> boxes = aabblab::scene_table(rows, aabblab::row_group::boxes).rows;
@@ -84,15 +84,15 @@ TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, 
     const auto rows = csv_rows(out / "extreme.csv");
     REQUIRE(rows.size() >= 1000);
     std::set<std::string> wrong;
-    std::size_t refused = 0;
+    std::size_t rejected = 0;
     for (const auto& row : rows) {
         if (row.at("as_expected") == "no") wrong.insert(row.at("scene"));
         if (row.at("answer") != "refused") continue;
-        ++refused;
+        ++rejected;
         CHECK_FALSE(row.at("reason").empty());
     }
     CHECK(wrong == std::set<std::string>{"lie"});
-    CHECK(refused > 100);
+    CHECK(rejected > 100);
 }
 
 TEST_CASE("What stands before or behind validate extreme and has no part in it is refused") {

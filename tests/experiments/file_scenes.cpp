@@ -124,8 +124,9 @@ TEST_CASE("Seeds of a config do not multiply what has none, and one of its own i
     CHECK_FALSE(e.scenes[0].seed);
     CHECK(aabblab::parameters_text(e.scenes[0]) == "file=" + file);
     const std::string said = " recording plays a file as it is and has no seed";
-    CHECK(refusal_of(recording_config("file = " + in_toml(file) + "\nseed = 1\n")) == "test.toml:6:" + said);
-    CHECK(refusal_of(recording_config("file = " + in_toml(file) + "\nquick={ seed = 1 }\n")) == "test.toml:6:" + said);
+    CHECK(rejection_of(recording_config("file = " + in_toml(file) + "\nseed = 1\n")) == "test.toml:6:" + said);
+    CHECK(rejection_of(recording_config("file = " + in_toml(file) + "\nquick={ seed = 1 }\n")) ==
+          "test.toml:6:" + said);
     CHECK_THROWS_AS(aabblab::make_box_scene({"recording", {{"file", file}}, {}, 1}), aabb::input_error);
     CHECK_NOTHROW(aabblab::make_box_scene({"recording", {{"file", file}}, {}, std::nullopt}));
     CHECK_THROWS_AS(aabblab::make_box_scene({"still", {}, {}, std::nullopt}), aabb::input_error);
@@ -135,23 +136,24 @@ TEST_CASE("A file that is not there or malformed is refused with the line of the
     const temporary_folder folder;
     const std::string file = folder / "a.aabbs";
     record(file, "1");
-    CHECK(refusal_of(recording_config("")) == "test.toml:3: recording: file must be given, the path of a file");
-    CHECK(refusal_of(recording_config("file = \"\"\n")).starts_with("test.toml:3: recording: file must be the path"));
-    CHECK(refusal_of(recording_config("file = \"nowhere.aabbs\"\n"), "some/test.toml") ==
+    CHECK(rejection_of(recording_config("")) == "test.toml:3: recording: file must be given, the path of a file");
+    CHECK(rejection_of(recording_config("file = \"\"\n")).starts_with("test.toml:3: recording: file must be the path"));
+    CHECK(rejection_of(recording_config("file = \"nowhere.aabbs\"\n"), "some/test.toml") ==
           "some/test.toml:5: nowhere.aabbs: no such file, here or in some");
-    CHECK(refusal_of(recording_config("file = \"/nowhere.aabbs\"\n")) == "test.toml:5: /nowhere.aabbs: no such file");
-    CHECK(refusal_of(recording_at(folder.path())).ends_with(": is a folder, not a file"));
-    CHECK(holds(refusal_of(recording_config("flie = \"a\"\n")), "did you mean 'file'?"));
+    CHECK(rejection_of(recording_config("file = \"/nowhere.aabbs\"\n")) == "test.toml:5: /nowhere.aabbs: no such file");
+    CHECK(rejection_of(recording_at(folder.path())).ends_with(": is a folder, not a file"));
+    CHECK(holds(rejection_of(recording_config("flie = \"a\"\n")), "did you mean 'file'?"));
     std::string bytes = bytes_of_file(file);
     bytes.replace(bytes.size() - 32, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN, in the last box
     const std::string bad = folder.write("bad.aabbs", bytes);
-    CHECK(refusal_of(recording_at(bad)) ==
+    CHECK(rejection_of(recording_at(bad)) ==
           "test.toml:5: " + bad + ": frame 3: box 59 has a coordinate that is not finite");
-    CHECK(refusal_of(recording_config("file = [\n" + in_toml(file) + ",\n" + in_toml(bad) + "]\n"))
+    CHECK(rejection_of(recording_config("file = [\n" + in_toml(file) + ",\n" + in_toml(bad) + "]\n"))
               .starts_with("test.toml:7: " + bad + ": frame 3: "));
     const auto motion = [&](const std::string& poses, const std::string& meshes) {
         const std::string motion_file = folder.write("m.txt", poses);
-        return refusal_of("name = \"c\"\n[[scene]]\nkind = \"motion\"\nfile = " + in_toml(motion_file) + "\n" + meshes);
+        return rejection_of("name = \"c\"\n[[scene]]\nkind = \"motion\"\nfile = " + in_toml(motion_file) + "\n" +
+                            meshes);
     };
     const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
     CHECK(motion(still, "") == "test.toml:2: motion needs at least one mesh");
@@ -192,9 +194,9 @@ TEST_CASE("A mesh in the folder of the config comes before one of the data folde
     CHECK(rows[0].triangles == 1);
     run_well({"run", near, "--out", folder / "out", "--resume"});
     CHECK(aabblab::read_rows(folder / "out/results.csv").size() == 1);
-    CHECK(
-        holds(refusal_of("name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = \"absent.off\"\n", "some/test.toml"),
-              "(a mesh is a file, here, in some or in "));
+    CHECK(holds(
+        rejection_of("name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = \"absent.off\"\n", "some/test.toml"),
+        "(a mesh is a file, here, in some or in "));
 }
 
 TEST_CASE("scene draws a recording, and makes one of a motion") {

@@ -37,36 +37,36 @@ TEST_CASE("A member of JSON comes by its type, and empty where it is not there")
 
 TEST_CASE("A member of JSON that is of another type, or missing, gets one sentence with the way to it") {
     const json_value all = read(R"({"a":[{"b":1},2,-3],"n":{"t":[1,"x"],"b":true,"f":0.5},"z":null})");
-    const auto refused = [&](const std::function<void()>& ask, const std::string& sentence) {
+    const auto rejected = [&](const std::function<void()>& ask, const std::string& sentence) {
         CHECK_REFUSED(ask(), "a.json: " + sentence);
     };
-    refused([&] { (void)all.text("a"); }, "a must be a string");
-    refused([&] { (void)all.number("a"); }, "a must be a number");
-    refused([&] { (void)all.index("z"); }, "z must be a whole number");
-    refused([&] { (void)all.flag("z"); }, "z must be true or false");
-    refused([&] { (void)all.needed("n").index("f"); }, "n.f must be a whole number");
-    refused([&] { (void)all.needed("n").needed("b").list(); }, "n.b must be a list");
-    refused([&] { (void)all.needed("n").texts("t"); }, "n.t[0] must be a string");
-    refused([&] { (void)all.needed("n").indices("t"); }, "n.t must be a list of whole numbers");
-    refused([&] { (void)all.needed("n").numbers<2>("t", {}); }, "n.t must be a list of 2 numbers");
-    refused([&] { (void)all.objects("a"); }, "a[1] must be an object");
-    refused([&] { (void)all.needed("a").list()[2].index(); }, "a[2] must be a whole number");
-    refused([&] { (void)all.needed("a").list()[0].needed("c"); }, "a[0].c is missing");
-    refused([&] { (void)all.needed("z").has("x"); }, "z must be an object");
-    refused([&] { (void)all.needed("x"); }, "x is missing");
-    refused([&] { (void)read("[1]").text("a"); }, "the file must be an object");
+    rejected([&] { (void)all.text("a"); }, "a must be a string");
+    rejected([&] { (void)all.number("a"); }, "a must be a number");
+    rejected([&] { (void)all.index("z"); }, "z must be a whole number");
+    rejected([&] { (void)all.flag("z"); }, "z must be true or false");
+    rejected([&] { (void)all.needed("n").index("f"); }, "n.f must be a whole number");
+    rejected([&] { (void)all.needed("n").needed("b").list(); }, "n.b must be a list");
+    rejected([&] { (void)all.needed("n").texts("t"); }, "n.t[0] must be a string");
+    rejected([&] { (void)all.needed("n").indices("t"); }, "n.t must be a list of whole numbers");
+    rejected([&] { (void)all.needed("n").numbers<2>("t", {}); }, "n.t must be a list of 2 numbers");
+    rejected([&] { (void)all.objects("a"); }, "a[1] must be an object");
+    rejected([&] { (void)all.needed("a").list()[2].index(); }, "a[2] must be a whole number");
+    rejected([&] { (void)all.needed("a").list()[0].needed("c"); }, "a[0].c is missing");
+    rejected([&] { (void)all.needed("z").has("x"); }, "z must be an object");
+    rejected([&] { (void)all.needed("x"); }, "x is missing");
+    rejected([&] { (void)read("[1]").text("a"); }, "the file must be an object");
 }
 
 TEST_CASE("What is no JSON is refused where it goes wrong, however deeply it is nested") {
     const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
-    const std::vector<std::pair<std::string, std::string>> refused{
+    const std::vector<std::pair<std::string, std::string>> rejected{
         {"{\n\"a\":\n1,}", "a.json:3: is not a list of things: its JSON is malformed"},
         {"", "a.json:1: is not a list of things: its JSON is malformed"},
         {"{\"a\":\"\xff\"}", "a.json:1: is not a list of things: its JSON is malformed"},
         {"{\"a\":1e999}", "a.json: is not a list of things: a number in it does not fit a double"},
         {deep, "a.json: is not a list of things: its JSON is nested more than 64 deep"},
     };
-    for (const auto& [text, sentence] : refused) {
+    for (const auto& [text, sentence] : rejected) {
         CAPTURE(text.substr(0, 20));
         CHECK_REFUSED(read(text), sentence);
     }

@@ -145,16 +145,17 @@ TEST_CASE("scene refuses pictures that it cannot write and leaves no file behind
     const std::string file = folder / "scene.aabbs";
     const std::string same = folder / "sub" / ".." / "scene.aabbs";
     const std::string nowhere = folder / "missing" / "scene.svg";
-    const auto refused = [&](const std::vector<std::string>& outputs, const std::string& said) {
+    const auto rejected = [&](const std::vector<std::string>& outputs, const std::string& said) {
         check_refused({"scene", "brownian"}, {{outputs, said}});
         REQUIRE(folder.files() == 1);
     };
-    refused({}, "expected --out, --motion or --picture");
-    refused({"--out", file, "--picture", file}, "--out and --picture are the same file");
-    refused({"--out", file, "--picture", same}, "--out and --picture are the same file");
-    refused({"--out", file, "--picture", nowhere}, "scene.svg: cannot be written");
-    refused({"--picture", folder / "sub"}, "it is a folder");
-    refused({"--out", folder / "x.csv"}, "--out takes a name that ends in .aabbs, not '" + (folder / "x.csv").string() +
-                                             "': it writes a recording; aabblab pairs writes the pairs of one as CSV");
-    refused({"--picture", folder / "x.png"}, "--picture takes a name that ends in .svg");
+    rejected({}, "expected --out, --motion or --picture");
+    rejected({"--out", file, "--picture", file}, "--out and --picture are the same file");
+    rejected({"--out", file, "--picture", same}, "--out and --picture are the same file");
+    rejected({"--out", file, "--picture", nowhere}, "scene.svg: cannot be written");
+    rejected({"--picture", folder / "sub"}, "it is a folder");
+    rejected({"--out", folder / "x.csv"}, "--out takes a name that ends in .aabbs, not '" +
+                                              (folder / "x.csv").string() +
+                                              "': it writes a recording; aabblab pairs writes the pairs of one as CSV");
+    rejected({"--picture", folder / "x.png"}, "--picture takes a name that ends in .svg");
 }

@@ -37,7 +37,7 @@ aabblab::loaded_mesh cut(const polygon& vertices, const numbers& face) {
 aabblab::loaded_mesh cut(const polygon& vertices) {
     return cut(vertices, counted(vertices.size()));
 }
-std::string refusal_of(const polygon& vertices) {
+std::string rejection_of(const polygon& vertices) {
     return error_of("a.ply", ply(vertices, counted(vertices.size())));
 }
 const std::string crosses = "crosses itself";
@@ -178,15 +178,15 @@ TEST_CASE("polygons: one that crosses itself or has no normal is refused with it
                         "end_header\n" +
                             bow + "4 0 1 2 3\n"),
                EndsWith("/a.ply:14: the boundary of a face of 4 corners " + crosses));
-    CHECK_THAT(refusal_of({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}}),
+    CHECK_THAT(rejection_of({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}}),
                EndsWith("/a.ply: face 0: the boundary of a face of 4 corners " + crosses));
 
-    CHECK_THAT(refusal_of({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}), EndsWith(no_normal));
+    CHECK_THAT(rejection_of({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}), EndsWith(no_normal));
     // All turns to the left: a pentagram; twice around a square; a loop that overlaps itself.
-    CHECK_THAT(refusal_of({{0, 3, 0}, {-2, -3, 0}, {3, 1, 0}, {-3, 1, 0}, {2, -3, 0}}), EndsWith(crosses));
-    CHECK_THAT(refusal_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
+    CHECK_THAT(rejection_of({{0, 3, 0}, {-2, -3, 0}, {3, 1, 0}, {-3, 1, 0}, {2, -3, 0}}), EndsWith(crosses));
+    CHECK_THAT(rejection_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
                EndsWith(crosses));
-    CHECK_THAT(refusal_of({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {1, 4, 0}, {1, -1, 0}, {2, -1, 0}, {2, 3, 0}, {0, 3, 0}}),
+    CHECK_THAT(rejection_of({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {1, 4, 0}, {1, -1, 0}, {2, -1, 0}, {2, 3, 0}, {0, 3, 0}}),
                EndsWith(crosses));
 }
 
@@ -282,11 +282,11 @@ TEST_CASE("polygons: what is not refused is filled") {
         if (*rc::gen::arbitrary<bool>())
             flat.insert(flat.end(), {{*rc::gen::inRange(0, size), *rc::gen::inRange(0, size)}, flat.back()});
         const polygon p = placed(flat);
-        const std::string refusal = refusal_of(p);
+        const std::string rejection = rejection_of(p);
         const std::int64_t area = twice_area(flat);
         // All at one place, or going there and back, it may be kept without area.
-        if (refusal == "accepted" && area != 0) require_fills(flat, cut(p).mesh.triangles);
-        RC_ASSERT(refusal.ends_with(no_normal) <= (area == 0));
+        if (rejection == "accepted" && area != 0) require_fills(flat, cut(p).mesh.triangles);
+        RC_ASSERT(rejection.ends_with(no_normal) <= (area == 0));
     }));
 }
 

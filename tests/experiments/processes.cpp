@@ -137,35 +137,35 @@ TEST_CASE("A quick run takes the seeds of quick, and no more processes than repe
 TEST_CASE("What the first process found wrong is not timed by the others") {
     const temporary_folder folder;
     const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
-    results_folder results(folder / "r", record_of(e), existing_results::refuse);
-    std::vector<aabblab::contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
-    REQUIRE(aabblab::run_scene(e, e.scenes[0], std::span(contenders).first(1), results, 0).empty());
-    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results, 1).empty());
+    results_folder results(folder / "r", record_of(e), existing_results::reject);
+    std::vector<aabblab::candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], std::span(candidates).first(1), results, 0).empty());
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], candidates, results, 1).empty());
     REQUIRE(results.rows().size() == 4);
-    for (const row& r : results.rows()) CHECK(r.name == contenders[0].name);
+    for (const row& r : results.rows()) CHECK(r.name == candidates[0].name);
 }
 
 TEST_CASE("A repeat of a later process that finds other pairs is named, and its composition loses its rows") {
     const temporary_folder folder;
     const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
-    results_folder results(folder / "r", record_of(e), existing_results::refuse);
-    std::vector<aabblab::contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
-    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results, 0).empty());
+    results_folder results(folder / "r", record_of(e), existing_results::reject);
+    std::vector<aabblab::candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], candidates, results, 0).empty());
     // The name of the first, and nothing of what it finds.
-    contenders[0].make_global = [make = contenders[0].make_global](aabb::instrumentation counted) {
+    candidates[0].make_global = [make = candidates[0].make_global](aabb::instrumentation counted) {
         return std::make_unique<altered_search>(make(counted), [] {}, [](auto& pairs) { pairs.clear(); });
     };
-    const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results, 1);
+    const auto failures = aabblab::run_scene(e, e.scenes[0], candidates, results, 1);
     REQUIRE(failures.size() == 1);
     CHECK(failures[0].starts_with("std + none + one_axis is wrong on brownian"));
-    for (const row& r : results.rows()) CHECK(r.name == contenders[1].name);
+    for (const row& r : results.rows()) CHECK(r.name == candidates[1].name);
 }
 
 TEST_CASE("More processes than repeats are refused, as is a seed of quick that is none") {
     const std::string scene = "[[scene]]\nkind = \"still\"\nobjects = 5\nframes = 1\n";
-    CHECK(refusal_of("name = \"a\"\n" + scene + "[measure]\nrepeats = 2\nprocesses = 3\n") ==
+    CHECK(rejection_of("name = \"a\"\n" + scene + "[measure]\nrepeats = 2\nprocesses = 3\n") ==
           "test.toml:8: processes must be at most repeats, which is 2");
-    CHECK(refusal_of("name = \"a\"\n" + scene + "[measure]\nprocesses = 0\n").starts_with("test.toml:7: processes "));
-    CHECK(holds(refusal_of("name = \"a\"\nquick = { seeds = 1 }\n" + scene), "did you mean 'seed'?"));
-    CHECK(refusal_of("name = \"a\"\nquick = 3\n" + scene).starts_with("test.toml:2: quick is a number"));
+    CHECK(rejection_of("name = \"a\"\n" + scene + "[measure]\nprocesses = 0\n").starts_with("test.toml:7: processes "));
+    CHECK(holds(rejection_of("name = \"a\"\nquick = { seeds = 1 }\n" + scene), "did you mean 'seed'?"));
+    CHECK(rejection_of("name = \"a\"\nquick = 3\n" + scene).starts_with("test.toml:2: quick is a number"));
 }

@@ -97,10 +97,10 @@ TEST_CASE("On a terminal, list and refusals are as wide as it is") {
     const std::string sorts = shown_on_terminal(60, program + " list sort");
     CHECK(widest_line(sorts) <= 60);
     CHECK(words_of(sorts) == words_of(run_program({"list", "sort"}).out));
-    const std::string refused = shown_on_terminal(60, program + " pairs s.aabbs --sweep unknown_at_all");
-    CHECK(widest_line(refused) <= 60);
-    CHECK(refused.starts_with("aabblab: unknown sweep 'unknown_at_all'; expected one of"));
-    CHECK(holds(refused, "\n         "));  // behind "aabblab: "
+    const std::string rejected = shown_on_terminal(60, program + " pairs s.aabbs --sweep unknown_at_all");
+    CHECK(widest_line(rejected) <= 60);
+    CHECK(rejected.starts_with("aabblab: unknown sweep 'unknown_at_all'; expected one of"));
+    CHECK(holds(rejected, "\n         "));  // behind "aabblab: "
 }
 
 TEST_CASE("list shows one kind alone, and the nearest for one that is none") {
@@ -154,9 +154,9 @@ TEST_CASE("An experiment whose tables nobody reads is finished all the same") {
 TEST_CASE("With standard output closed nothing is begun, and no file takes its place") {
     const temporary_folder folder;
     const std::string out = folder / "s.aabbs";
-    const program_result refused =
+    const program_result rejected =
         as_refused(run_program({"scene", "brownian", "--n", "20", "--frames", "1", "--out", out}, {}, closed_output));
-    CHECK(holds(refused.err, "standard output is closed"));
+    CHECK(holds(rejected.err, "standard output is closed"));
     CHECK(folder.files() == 0);
 }
 

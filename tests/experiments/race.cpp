@@ -25,8 +25,8 @@ constexpr auto tick = 5ms;
 racer delayed(
     const std::string& name, const std::function<void()>& before, const altered_search::change& after = [](auto&) {}) {
     racer r;
-    r.who.name.engine = r.name = name;
-    r.who.make_global = [=](aabb::instrumentation) {
+    r.tested.name.engine = r.name = name;
+    r.tested.make_global = [=](aabb::instrumentation) {
         return std::make_unique<altered_search>(aabb::compose_global_search({}, aabb::instrumentation::none), before,
                                                 after);
     };
@@ -50,9 +50,9 @@ racer losing(const std::string& name) {
 }
 
 /// Writes its name behind what is in the file, each time it is made.
-aabblab::contender noted(const aabblab::contender& who, const std::string& name, const std::string& file) {
-    aabblab::contender made = who;
-    made.make_global = [=, make = who.make_global](aabb::instrumentation counted) {
+aabblab::candidate noted(const aabblab::candidate& tested, const std::string& name, const std::string& file) {
+    aabblab::candidate made = tested;
+    made.make_global = [=, make = tested.make_global](aabb::instrumentation counted) {
         std::ofstream(file, std::ios::app) << name;
         return make(counted);
     };
@@ -70,7 +70,7 @@ aabblab::race_result race_of(const aabblab::scene_choice& choice, std::vector<ra
 }
 
 std::vector<racer> starters_of(const aabblab::scene_choice& choice) {
-    return aabblab::starters(aabblab::scene_play(choice));
+    return aabblab::starters(aabblab::scene_frames(choice));
 }
 
 bool holds(const std::vector<racer>& some, const std::string& name) {
@@ -151,11 +151,11 @@ TEST_CASE("Who was disturbed once is not dropped") {
     const std::string played = folder / "played";
     std::vector<racer> all{delayed("fast", sleeping(tick)), delayed("disturbed", sleeping(tick))};
     // Three times as slow in the play that finds no file.
-    all.back().who.make_global = [=, make = all.back().who.make_global,
-                                  slow = delayed("", sleeping(3 * tick))](aabb::instrumentation counted) {
+    all.back().tested.make_global = [=, make = all.back().tested.make_global,
+                                     slow = delayed("", sleeping(3 * tick))](aabb::instrumentation counted) {
         if (std::filesystem::exists(played)) return make(counted);
         std::ofstream(played) << "once";
-        return slow.who.make_global(counted);
+        return slow.tested.make_global(counted);
     };
     CHECK(holds(race_of(scene, all, 5).finalists, "disturbed"));
 }
@@ -179,10 +179,11 @@ TEST_CASE("Who finds other pairs than CGAL does not win a race") {
 }
 
 TEST_CASE("Who finds other pairs than the first of those who play in turn is known") {
-    const std::vector<aabblab::contender> all{delayed("a", [] {}).who, delayed("b", [] {}).who, losing("c").who};
+    const std::vector<aabblab::candidate> all{delayed("a", [] {}).tested, delayed("b", [] {}).tested,
+                                              losing("c").tested};
     aabblab::staged_scene staged(short_scene);
-    const aabblab::turns played = aabblab::play_in_turn(staged, all, 4, 2, aabblab::time_limits(20));
-    CHECK(aabblab::who_disagrees(played.times) == std::vector<std::size_t>{2});
+    const aabblab::turns played = aabblab::run_interleaved(staged, all, 4, 2, aabblab::time_limits(20));
+    CHECK(aabblab::disagreeing(played.times) == std::vector<std::size_t>{2});
 }
 
 TEST_CASE("As many finish a race as there is time for, but two") {
@@ -199,7 +200,7 @@ TEST_CASE("Each repeat of a race begins with another racer") {
     for (const char* name : {"a", "b"}) {
         // Long enough that both come to the end.
         racer& r = all.emplace_back(delayed(name, sleeping(5ms)));
-        r.who = noted(r.who, name, file);
+        r.tested = noted(r.tested, name, file);
     }
     REQUIRE(race_of(scene, all, 20).finalists.size() == 2);
     const std::string order = bytes_of_file(file);
@@ -211,17 +212,17 @@ TEST_CASE("Each repeat of a race begins with another racer") {
 TEST_CASE("What is done apart is told as far as it comes, and how it ends") {
     using aabblab::ending;
     const auto ends = [](const std::function<void()>& work, double seconds) {
-        const aabblab::work_apart done = aabblab::done_apart(
-            [&](const aabblab::telling& tell) {
+        const aabblab::child_result done = aabblab::run_in_child(
+            [&](const aabblab::output_sender& tell) {
                 tell("begun;");
                 work();
                 tell("ended");
             },
             seconds);
-        CHECK(done.told.starts_with("begun;"));
-        CHECK((done.end == ending::done) == (done.told == "begun;ended"));
+        CHECK(done.reported.starts_with("begun;"));
+        CHECK((done.end == ending::done) == (done.reported == "begun;ended"));
         CHECK(done.seconds > 0);
-        CHECK((done.end == ending::refused) == !done.reason.empty());
+        CHECK((done.end == ending::rejected) == !done.reason.empty());
         return done.end;
     };
     CHECK(ends([] {}, 60) == ending::done);
@@ -229,15 +230,15 @@ TEST_CASE("What is done apart is told as far as it comes, and how it ends") {
     CHECK(ends([] { throw std::bad_alloc(); }, 60) == ending::out_of_memory);
     CHECK(ends([] { throw std::length_error("no"); }, 60) == ending::out_of_memory);
     CHECK(ends([] { std::raise(SIGKILL); }, 60) == ending::out_of_memory);
-    CHECK(ends([] { throw aabb::input_error("it is wrong"); }, 60) == ending::refused);
+    CHECK(ends([] { throw aabb::input_error("it is wrong"); }, 60) == ending::rejected);
     CHECK(ends([] { throw std::runtime_error("no"); }, 60) == ending::failed);
     CHECK(ends([] { std::raise(SIGUSR1); }, 60) == ending::failed);
-    const aabblab::work_apart refused =
-        aabblab::done_apart([](const aabblab::telling&) { throw aabb::input_error("it is wrong"); }, 60);
-    CHECK(refused.reason == "it is wrong");
+    const aabblab::child_result rejected =
+        aabblab::run_in_child([](const aabblab::output_sender&) { throw aabb::input_error("it is wrong"); }, 60);
+    CHECK(rejected.reason == "it is wrong");
     const temporary_folder folder;
     const std::string file = folder / "begun";
-    const auto none = aabblab::done_apart([&](const aabblab::telling&) { std::ofstream(file) << "yes"; }, 0);
+    const auto none = aabblab::run_in_child([&](const aabblab::output_sender&) { std::ofstream(file) << "yes"; }, 0);
     CHECK(none.end == ending::stopped);
     CHECK(none.seconds == 0);
     CHECK_FALSE(std::filesystem::exists(file));
@@ -249,16 +250,16 @@ TEST_CASE("A race of S seconds ends within 2 S, or 2 seconds after the scene was
     const auto is_near = [](double a, double b) { return std::abs(a - b) < 1e-9; };
     now = 1;
     limits.scene_is_read();
-    CHECK(is_near(limits.to_play(), 9.5 - 1));
+    CHECK(is_near(limits.to_run(), 9.5 - 1));
     CHECK(is_near(limits.to_end(), 19 - 1));
     now = 30;
-    CHECK(limits.to_play() < 0);
+    CHECK(limits.to_run() < 0);
     CHECK(limits.to_end() < 0);
     now = 0;
     aabblab::time_limits of_much(1, [&] { return now; });
     now = 40;
     of_much.scene_is_read();
-    CHECK_BETWEEN(0.9, of_much.to_play(), 1);
+    CHECK_BETWEEN(0.9, of_much.to_run(), 1);
     CHECK(is_near(of_much.to_end(), 1.9));
 }
 
@@ -304,18 +305,17 @@ TEST_CASE("Who did not end is not recommended where anybody did, and all are nam
     REQUIRE(race.finalists.size() == 1);
     CHECK(race.finalists.front().name == "ends");
     REQUIRE(race.dropped.size() == 12);
-    const auto not_played = std::ranges::count_if(
+    const auto not_run = std::ranges::count_if(
         race.dropped, [](const racer& r) { return text_of(r.broken_off.value()) == "not played: no time was left"; });
-    CHECK_BETWEEN(0, not_played, 12);
-    CHECK(std::ranges::count(aabblab::advice_of(race), "There was no time for " + std::to_string(not_played) +
-                                                           " other" + (not_played > 1 ? "s" : "") +
-                                                           "; increase --seconds.") == 1);
+    CHECK_BETWEEN(0, not_run, 12);
+    CHECK(std::ranges::count(aabblab::advice_of(race), "There was no time for " + std::to_string(not_run) + " other" +
+                                                           (not_run > 1 ? "s" : "") + "; increase --seconds.") == 1);
 }
 
 TEST_CASE("A race that is refused a frame says why, as the command says it") {
     const std::string why = "frame 0: box 3 is inverted";
-    const auto refuse = [&] { throw aabb::input_error(why); };
-    CHECK_THROWS_WITH(race_of(scene, {delayed("one", refuse), delayed("other", refuse)}, 1), why);
+    const auto reject = [&] { throw aabb::input_error(why); };
+    CHECK_THROWS_WITH(race_of(scene, {delayed("one", reject), delayed("other", reject)}, 1), why);
 }
 
 TEST_CASE("recommend and explain report an invalid frame, whichever it is") {
@@ -329,10 +329,11 @@ TEST_CASE("recommend and explain report an invalid frame, whichever it is") {
         std::string wrong = bytes;
         wrong.replace(wrong.size() - (31 - frame) * 60 * 32 + 3 * 32, 4, nan);
         for (const char* command : {"recommend", "explain"}) {
-            const program_result refused = run_program({command, folder.write("wrong.aabbs", wrong), "--seconds", "4"});
-            CHECK(refused.status == 2);
-            CHECK(refused.err.ends_with("frame " + std::to_string(frame) +
-                                        ": box 3 has a coordinate that is not finite\n"));
+            const program_result rejected =
+                run_program({command, folder.write("wrong.aabbs", wrong), "--seconds", "4"});
+            CHECK(rejected.status == 2);
+            CHECK(rejected.err.ends_with("frame " + std::to_string(frame) +
+                                         ": box 3 has a coordinate that is not finite\n"));
         }
     }
 }
@@ -407,66 +408,66 @@ TEST_CASE("Of a few plays it is not said how sure a ratio is, and of CGAL how fa
 }
 
 TEST_CASE("The answer of a race can be named") {
-    const auto named = [](const aabblab::contender_name& name) {
+    const auto named = [](const aabblab::candidate_name& name) {
         racer winner = finished("winner", 10, 1);
-        winner.who.name = name;
+        winner.tested.name = name;
         return aabblab::advice_of(ended({winner})).back();
     };
-    aabblab::contender_name ours;
+    aabblab::candidate_name ours;
     ours[aabb::strategy_kind::prepare] = "none";
     ours[aabb::strategy_kind::partition] = "axial_cut:axes=3";
     CHECK(named(ours) == "To name it: --prepare none --partition axial_cut:axes=3");
-    aabblab::contender_name engine = ours;
+    aabblab::candidate_name engine = ours;
     engine.engine = "embree";
     CHECK(named(engine) == "To name it: --engine embree");
-    aabblab::contender_name automatic;
+    aabblab::candidate_name automatic;
     automatic.engine = "auto";
     CHECK(named(automatic).starts_with("Use winner"));
 }
 
 TEST_CASE("How auto did in a race is told as far as the repeats tell") {
     racer automatic = finished("auto (= x)", 10, 1.3, true);
-    automatic.who.name.engine = "auto";
+    automatic.tested.name.engine = "auto";
     const racer winner = finished("winner", 10, 1);
     const racer second = finished("second", 10, 1.01);
-    const auto told = [](const aabblab::race_result& race, const std::string& begin) {
+    const auto reported = [](const aabblab::race_result& race, const std::string& begin) {
         return std::ranges::any_of(aabblab::advice_of(race), [&](const auto& one) { return one.starts_with(begin); });
     };
-    CHECK(told(ended({winner, second, automatic}), "auto (= x) takes 1."));
+    CHECK(reported(ended({winner, second, automatic}), "auto (= x) takes 1."));
     racer noisy = finished("auto (= x)", {1, 3, 1, 3, 1, 3, 2.1});
-    noisy.who.name = automatic.who.name;
+    noisy.tested.name = automatic.tested.name;
     const racer even = finished("even", {2, 2, 2, 2, 2, 2, 2});
     const racer odd = finished("odd", {2.01, 2.01, 2.01, 2.01, 2.01, 2.01, 2.01});
-    CHECK(told(ended({even, odd, noisy}, 2), "auto (= x) is as fast, as far as 7 plays tell ("));
+    CHECK(reported(ended({even, odd, noisy}, 2), "auto (= x) is as fast, as far as 7 plays tell ("));
     aabblab::race_result without = ended({winner, second});
     automatic.last = automatic.times.front();
     automatic.last->frames = 8;
     automatic.behind = 1.5;
     without.dropped.push_back(automatic);
-    CHECK(told(without, "auto (= x) was dropped after 8 frames: 1.50 times as long as the fastest."));
+    CHECK(reported(without, "auto (= x) was dropped after 8 frames: 1.50 times as long as the fastest."));
     without.dropped.back().broken_off = aabblab::attempt{aabblab::ending::stopped, {}, "", 2.1};
-    CHECK(told(without, "auto (= x): stopped after 2.1 s."));
+    CHECK(reported(without, "auto (= x): stopped after 2.1 s."));
 }
 
 TEST_CASE("In rounds everybody plays once, begins in turn, and follows each other as often") {
-    for (std::size_t players = 1; players <= 12; ++players) {
-        INFO(players << " players");
-        std::vector<std::vector<int>> follows(players, std::vector<int>(players));
+    for (std::size_t runners = 1; runners <= 12; ++runners) {
+        INFO(runners << " players");
+        std::vector<std::vector<int>> follows(runners, std::vector<int>(runners));
         // An odd number needs twice as many rounds, of which half would be played backwards.
-        for (std::size_t round = 0; round < players; ++round) {
-            std::vector<bool> has_played(players);
-            for (std::size_t place = 0; place < players; ++place) {
-                const std::size_t one = aabblab::in_turn(place, round, players);
-                REQUIRE(one < players);
-                CHECK_FALSE(has_played[one]);
-                has_played[one] = true;
-                if (place > 0) ++follows[one][aabblab::in_turn(place - 1, round, players)];
+        for (std::size_t round = 0; round < runners; ++round) {
+            std::vector<bool> has_run(runners);
+            for (std::size_t place = 0; place < runners; ++place) {
+                const std::size_t one = aabblab::in_turn(place, round, runners);
+                REQUIRE(one < runners);
+                CHECK_FALSE(has_run[one]);
+                has_run[one] = true;
+                if (place > 0) ++follows[one][aabblab::in_turn(place - 1, round, runners)];
             }
-            CHECK(aabblab::in_turn(0, round, players) == round);
+            CHECK(aabblab::in_turn(0, round, runners) == round);
         }
-        for (std::size_t a = 0; a < players; ++a)
-            for (std::size_t b = 0; b < players; ++b)
-                if (a != b) CHECK((players % 2 == 0 ? follows[a][b] == 1 : follows[a][b] <= 2));
+        for (std::size_t a = 0; a < runners; ++a)
+            for (std::size_t b = 0; b < runners; ++b)
+                if (a != b) CHECK((runners % 2 == 0 ? follows[a][b] == 1 : follows[a][b] <= 2));
     }
 }
 
@@ -493,11 +494,11 @@ TEST_CASE("Who is compared with another may take far longer, or a share of the t
 TEST_CASE("Those who play in turn begin in turn, and who is hopeless plays once") {
     const temporary_folder folder;
     const std::string file = folder / "order";
-    std::vector<aabblab::contender> all;
+    std::vector<aabblab::candidate> all;
     for (const char* name : {"a", "b", "c"})
-        all.push_back(noted(delayed(name, sleeping(*name == 'c' ? 250ms : 0ms)).who, name, file));
+        all.push_back(noted(delayed(name, sleeping(*name == 'c' ? 250ms : 0ms)).tested, name, file));
     aabblab::staged_scene staged(scene);
-    const aabblab::turns played = aabblab::play_in_turn(staged, all, 4, 3, aabblab::time_limits(60));
+    const aabblab::turns played = aabblab::run_interleaved(staged, all, 4, 3, aabblab::time_limits(60));
     CHECK(bytes_of_file(file) == "abcbaab");
     REQUIRE(played.times.size() == 3);
     CHECK(played.times[0].size() == 3);
@@ -508,10 +509,10 @@ TEST_CASE("Those who play in turn begin in turn, and who is hopeless plays once"
 
 TEST_CASE("Those who play in turn have as many frames and rounds as there is time for") {
     const auto turns_of = [](const std::vector<racer>& racers, double seconds) {
-        std::vector<aabblab::contender> all;
-        for (const racer& r : racers) all.push_back(r.who);
+        std::vector<aabblab::candidate> all;
+        for (const racer& r : racers) all.push_back(r.tested);
         aabblab::staged_scene staged(scene);
-        return aabblab::play_in_turn(staged, all, 4, 3, aabblab::time_limits(seconds));
+        return aabblab::run_interleaved(staged, all, 4, 3, aabblab::time_limits(seconds));
     };
     const aabblab::turns some =
         turns_of({delayed("first", stuck_in(2)), delayed("stuck", stuck_in(1)), delayed("fast", stuck_in(4))}, 3);
@@ -577,16 +578,16 @@ TEST_CASE("recommend ranks, says what to use, and writes a page") {
     const std::string file = folder / "p.aabbs";
     const std::string page = folder / "p.html";
     run_well({"scene", "pile", "--n", "300", "--frames", "8", "--out", file});
-    const program_result told = run_well({"recommend", file, "--seconds", "1", "--report", page});
-    CHECK(holds(told.out, "\nUse "));
-    CHECK(holds(told.out, "300 objects, 9 frames\n"));
-    CHECK_FALSE(holds(told.out, "finds other pairs"));
+    const program_result reported = run_well({"recommend", file, "--seconds", "1", "--report", page});
+    CHECK(holds(reported.out, "\nUse "));
+    CHECK(holds(reported.out, "300 objects, 9 frames\n"));
+    CHECK_FALSE(holds(reported.out, "finds other pairs"));
     const std::string html = bytes_of_file(page);
     for (const char* part : {"<p>Use ", "overlapping pairs an object", "dropped", "all_axes", "<p>aabblab "})
         CHECK(holds(html, part));
     for (const char* part : {"\nratio: all ms over", "\nms/frame: update, search", "\nbuild ms: the stages are made"})
-        CHECK(holds(told.out, part));
-    check_narrow(told.out.substr(told.out.find("\nUse ") + 1));
+        CHECK(holds(reported.out, part));
+    check_narrow(reported.out.substr(reported.out.find("\nUse ") + 1));
     for (const char* seconds : {"0", "-1", "inf", "nan", "1e7", "x", ""}) {
         CHECK(holds(
             run_refused({"recommend", file, "--seconds", seconds}).err,
@@ -606,16 +607,16 @@ TEST_CASE("recommend writes its page over nothing that it reads, and says early 
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "30", "--frames", "2", "--out", file});
     const std::string recording = bytes_of_file(file);
-    const auto refused = [&](const std::vector<std::string>& what, const std::string& report) {
+    const auto rejected = [&](const std::vector<std::string>& what, const std::string& report) {
         CHECK(run_refused(joined(joined({"recommend"}, what), {"--report", report})).out.empty());
     };
-    refused({file}, file);
-    refused({mesh}, mesh);
-    refused({mesh + ":order=sah"}, mesh);
-    refused({file}, folder / "no" / "p.html");
+    rejected({file}, file);
+    rejected({mesh}, mesh);
+    rejected({mesh + ":order=sah"}, mesh);
+    rejected({file}, folder / "no" / "p.html");
     setenv("AABBLAB_DATA", folder.path().c_str(), 1);
-    refused({"t.off"}, mesh);
-    refused({"icosphere:triangles=80", "t.off"}, mesh);
+    rejected({"t.off"}, mesh);
+    rejected({"icosphere:triangles=80", "t.off"}, mesh);
     unsetenv("AABBLAB_DATA");
     CHECK(bytes_of_file(mesh) == tetrahedron);
     CHECK(bytes_of_file(file) == recording);

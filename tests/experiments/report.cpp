@@ -97,8 +97,8 @@ TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean
             rows.back().contacts = 5;
         }
     rows.back().status = "inexact";
-    rows.back().missing = 2;
-    rows.back().invented = 0;
+    rows.back().false_negatives = 2;
+    rows.back().false_positives = 0;
     const auto scenes = aabblab::summarise(rows);
     REQUIRE(scenes.size() == 1);
     CHECK(scenes[0].scene == whatever_seed(rows[0].scene));
@@ -119,11 +119,11 @@ TEST_CASE("One seed that is inexact makes a line inexact, with what all seeds mi
     row second = of_seed(repeat_of("std", 0, 1), 2);
     for (row* r : {&first, &second}) {
         r->status = "inexact";
-        r->missing = 2;
-        r->invented = 1;
+        r->false_negatives = 2;
+        r->false_positives = 1;
     }
     second.status = "exact";
-    second.missing = second.invented = 0;
+    second.false_negatives = second.false_positives = 0;
     for (const auto& rows : {std::vector<row>{first, second}, std::vector<row>{second, first}}) {
         const auto scene = aabblab::summarise(rows)[0];
         CHECK(scene.lines[0].status == "inexact");
@@ -166,8 +166,8 @@ TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those
          {std::pair("slow", 10.0), std::pair("wrong", 1.0), std::pair("untimed", 3.0), std::pair("fast", 2.0)})
         rows.push_back(repeat_of(sort, 0, ms));
     rows[1].status = "inexact";
-    rows[1].missing = 3;
-    rows[1].invented = 5;
+    rows[1].false_negatives = 3;
+    rows[1].false_positives = 5;
     rows[2].first_ms = rows[2].update_ms = rows[2].search_ms = rows[2].detect_ms = std::nullopt;
     const auto scene = aabblab::summarise(rows)[0];
     const auto t = aabblab::table_of(scene);
@@ -178,8 +178,8 @@ TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those
                 "exact answers before inexact ones, each by ratio, the least first; ratio to slow\n"));
     CHECK(holds(aabblab::heading_of(scene), "all lines: 1,234,567 pairs\n"));
     CHECK(holds(aabblab::heading_of(scene), "an answer -3 +5 misses 3 of the exact answer and invents 5\n"));
-    rows[1].missing = 12;
-    rows[1].invented = 0;
+    rows[1].false_negatives = 12;
+    rows[1].false_positives = 0;
     CHECK(holds(aabblab::heading_of(aabblab::summarise(rows)[0]),
                 "an answer -12 +0 misses 12 of the exact answer and invents 0\n"));
     CHECK(std::ranges::find(t.columns, "pairs", &aabblab::column::name) == t.columns.end());

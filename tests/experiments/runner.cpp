@@ -8,7 +8,7 @@ import aabb.registry;
 import aabblab.trials;
 import aabblab.tables;
 
-using aabblab::contender;
+using aabblab::candidate;
 using aabblab::existing_results;
 using aabblab::experiment;
 using aabblab::results_folder;
@@ -37,19 +37,19 @@ experiment meshes() {
 
 enum class fault { loses, repeats };
 
-contender altered_contender(const std::string& name, const std::function<void()>& before,
+candidate altered_contender(const std::string& name, const std::function<void()>& before,
                             const altered_search::change& after) {
-    contender who;
-    who.name[aabb::strategy_kind::sort] = name;
-    who.make_global = [=](aabb::instrumentation) {
+    candidate tested;
+    tested.name[aabb::strategy_kind::sort] = name;
+    tested.make_global = [=](aabb::instrumentation) {
         return std::make_unique<altered_search>(aabb::compose_global_search({}, aabb::instrumentation::none), before,
                                                 after);
     };
-    return who;
+    return tested;
 }
 
 /// Loses one pair of a frame, or finds one twice.
-contender wrong_contender(fault what) {
+candidate wrong_candidate(fault what) {
     return altered_contender(
         "wrong", [] {},
         [what, frame = 0](auto& pairs) mutable {
@@ -63,8 +63,8 @@ contender wrong_contender(fault what) {
 
 /// Plays the only scene into new results in that folder, and requires that nothing fails.
 std::vector<row> played(const experiment& e, const std::filesystem::path& folder) {
-    results_folder results(folder, record_of(e), existing_results::refuse);
-    REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
+    results_folder results(folder, record_of(e), existing_results::reject);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::candidates_for(e, e.scenes[0]), results).empty());
     const std::span<const row> rows = results.rows();
     return {rows.begin(), rows.end()};
 }
@@ -81,7 +81,7 @@ std::set<std::string> answers(std::span<const row> rows) {
 TEST_CASE("A scene of boxes is played by every global search and every engine that searches boxes") {
     const temporary_folder folder;
     const experiment e = boxes();
-    REQUIRE(aabblab::contenders_for(e, e.scenes[0]).size() == 3);
+    REQUIRE(aabblab::candidates_for(e, e.scenes[0]).size() == 3);
     played(e, folder / "r");
     const std::vector<row> rows = aabblab::read_rows(folder / "r/results.csv");
     REQUIRE(rows.size() == 6);
@@ -92,7 +92,7 @@ TEST_CASE("A scene of boxes is played by every global search and every engine th
         REQUIRE(r.frames == 4);
         REQUIRE_FALSE(r.contacts);
         REQUIRE(r.update_ms.has_value());
-        REQUIRE(r.missing.value_or(1) == 0);
+        REQUIRE(r.false_negatives.value_or(1) == 0);
         REQUIRE(r.counts[0].has_value() == r.name.engine.empty());
     }
 }
@@ -113,10 +113,10 @@ TEST_CASE("A composition that loses a pair or reports one twice is named, and ge
     for (const fault what : {fault::loses, fault::repeats}) {
         const temporary_folder folder;
         const experiment e = boxes();
-        results_folder results(folder / "r", record_of(e), existing_results::refuse);
-        std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
-        contenders.insert(contenders.begin() + 1, wrong_contender(what));
-        const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results);
+        results_folder results(folder / "r", record_of(e), existing_results::reject);
+        std::vector<candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
+        candidates.insert(candidates.begin() + 1, wrong_candidate(what));
+        const auto failures = aabblab::run_scene(e, e.scenes[0], candidates, results);
         REQUIRE(failures.size() == 1);
         INFO(failures[0]);
         CHECK(failures[0].starts_with("wrong is wrong on brownian (objects=200 frames=3 seed=1), frame 2: the pair "));
@@ -133,18 +133,18 @@ TEST_CASE("A composition that loses a pair or reports one twice is named, and ge
 
 TEST_CASE("Differences of an inexact triangle test are counted by class and fail nothing") {
     const experiment e = meshes();
-    const auto contenders = aabblab::contenders_for(e, e.scenes[0]);
-    const aabblab::scene_validation result = aabblab::validate_scene(e.scenes[0], contenders);
-    for (std::size_t i = 0; i < contenders.size(); ++i) {
-        const aabblab::validated_row& v = result.contenders[i];
+    const auto candidates = aabblab::candidates_for(e, e.scenes[0]);
+    const aabblab::scene_validation result = aabblab::validate_scene(e.scenes[0], candidates);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const aabblab::validated_row& v = result.candidates[i];
         INFO(aabblab::text_of(v.name));
-        REQUIRE(contenders[i].exact ==
+        REQUIRE(candidates[i].exact ==
                 (v.name[aabb::strategy_kind::triangle] == "exact" ? v.name.engine.empty() : v.name.engine == "cgal"));
         REQUIRE(v.failure.empty());
         std::uint64_t by_class = 0;
         for (const aabblab::difference& d : v.differences) by_class += d.count;
-        REQUIRE(by_class == *v.missing + *v.invented);
-        if (contenders[i].exact) REQUIRE((by_class == 0 && v.digest == result.digest));
+        REQUIRE(by_class == *v.false_negatives + *v.false_positives);
+        if (candidates[i].exact) REQUIRE((by_class == 0 && v.digest == result.digest));
     }
 }
 
@@ -152,11 +152,11 @@ TEST_CASE("Who takes longer than patience has is played once, and not when the r
     const temporary_folder folder;
     experiment e = boxes(4);
     e.patience = 10;
-    std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
+    std::vector<candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
     const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(50)); };
-    contenders.push_back(altered_contender("slow", wait, [](auto&) {}));
-    results_folder results(folder / "r", record_of(e), existing_results::refuse);
-    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
+    candidates.push_back(altered_contender("slow", wait, [](auto&) {}));
+    results_folder results(folder / "r", record_of(e), existing_results::reject);
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], candidates, results).empty());
     const auto rows_of = [&](const std::string& sort) {
         return std::ranges::count_if(results.rows(),
                                      [&](const row& r) { return r.name[aabb::strategy_kind::sort] == sort; });
@@ -166,7 +166,7 @@ TEST_CASE("Who takes longer than patience has is played once, and not when the r
     CHECK(holds(aabblab::heading_of(aabblab::summarise(results.rows())[0]), "repeated less often than others: slow"));
     const std::size_t all = results.rows().size();
     const std::string text = bytes_of_file(folder / "r/results.csv");
-    REQUIRE(aabblab::run_scene(e, e.scenes[0], contenders, results).empty());
+    REQUIRE(aabblab::run_scene(e, e.scenes[0], candidates, results).empty());
     CHECK(results.rows().size() == all);
     CHECK(bytes_of_file(folder / "r/results.csv") == text);
 }
@@ -174,21 +174,21 @@ TEST_CASE("Who takes longer than patience has is played once, and not when the r
 TEST_CASE("Each scene has an order of its own in which contenders are played after the first, the same each time") {
     experiment e = boxes(1);
     e.recorded.clear();
-    std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
-    contenders.resize(1);
+    std::vector<candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
+    candidates.resize(1);
     for (std::size_t i = 1; i < 8; ++i) {
-        contenders.push_back(contenders.front());
-        contenders.back().name[aabb::strategy_kind::sort] = std::to_string(i);
+        candidates.push_back(candidates.front());
+        candidates.back().name[aabb::strategy_kind::sort] = std::to_string(i);
     }
     const auto order_in = [&](std::uint64_t seed) {
         const temporary_folder folder;
         aabblab::scene_choice scene = e.scenes[0];
         scene.seed = seed;
-        results_folder results(folder / "r", record_of(e), existing_results::refuse);
-        REQUIRE(aabblab::run_scene(e, scene, contenders, results).empty());
+        results_folder results(folder / "r", record_of(e), existing_results::reject);
+        REQUIRE(aabblab::run_scene(e, scene, candidates, results).empty());
         std::string order;
         for (const row& r : results.rows()) order += r.name[aabb::strategy_kind::sort] + " ";
-        CHECK(order.starts_with(contenders.front().name[aabb::strategy_kind::sort] + " "));
+        CHECK(order.starts_with(candidates.front().name[aabb::strategy_kind::sort] + " "));
         return order;
     };
     const std::string first = order_in(1);
@@ -219,30 +219,30 @@ TEST_CASE("What was not to be measured is not measured") {
     const std::vector<row> rows = played(e, folder / "r");
     REQUIRE(rows.size() == 3);
     for (const row& r : rows) {
-        REQUIRE_FALSE((r.build_ms || r.first_ms || r.search_ms || r.counts[0] || r.bytes[0] || r.missing));
+        REQUIRE_FALSE((r.build_ms || r.first_ms || r.search_ms || r.counts[0] || r.bytes[0] || r.false_negatives));
         REQUIRE(r.status == "exact");
     }
 }
 
 TEST_CASE("A pair of boxes that is lost fails a contender whose triangle test is inexact, too") {
-    contender who = wrong_contender(fault::loses);
-    who.exact = false;
-    const aabblab::scene_validation result = aabblab::validate_scene(boxes().scenes[0], std::vector{who});
-    REQUIRE(result.contenders[0].failure.ends_with("is missing"));
+    candidate tested = wrong_candidate(fault::loses);
+    tested.exact = false;
+    const aabblab::scene_validation result = aabblab::validate_scene(boxes().scenes[0], std::vector{tested});
+    REQUIRE(result.candidates[0].failure.ends_with("is missing"));
 }
 
 TEST_CASE("A contender that goes wrong when it is timed keeps no row of its earlier repeats") {
     const temporary_folder folder;
     const experiment e = boxes(3);
-    std::vector<contender> contenders = aabblab::contenders_for(e, e.scenes[0]);
-    contender late = wrong_contender(fault::loses);
+    std::vector<candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
+    candidate late = wrong_candidate(fault::loses);
     // Right when validated and in its first repeat.
     late.make_global = [made = 0, wrong = late.make_global](aabb::instrumentation counted) mutable {
         return made++ < 2 ? aabb::compose_global_search({}, counted) : wrong(counted);
     };
-    contenders.push_back(late);
-    results_folder results(folder / "r", record_of(e), existing_results::refuse);
-    const auto failures = aabblab::run_scene(e, e.scenes[0], contenders, results);
+    candidates.push_back(late);
+    results_folder results(folder / "r", record_of(e), existing_results::reject);
+    const auto failures = aabblab::run_scene(e, e.scenes[0], candidates, results);
     REQUIRE(failures.size() == 1);
     REQUIRE(holds(failures[0], "timed, its digest is"));
     const std::vector<row> rows = aabblab::read_rows(folder / "r/results.csv");
@@ -256,7 +256,7 @@ TEST_CASE("Results of another config or build are set aside where that is asked 
     const auto play = [&](const experiment& e) {
         results_folder results(folder / "r", record_of(e), existing_results::replace);
         const std::size_t before = results.rows().size();
-        REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::contenders_for(e, e.scenes[0]), results).empty());
+        REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::candidates_for(e, e.scenes[0]), results).empty());
         return std::pair{before, results.replaced()};
     };
     const std::pair<std::size_t, std::string> nothing{0, ""};

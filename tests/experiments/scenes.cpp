@@ -16,7 +16,7 @@ bool has_parameter(const aabblab::scene_info& info, const std::string& name) {
 std::vector<aabblab::scene_info> generated_kinds() {
     std::vector<aabblab::scene_info> kinds;
     for (const aabblab::scene_info& info : aabblab::scene_kinds())
-        if (!info.plays_file) kinds.push_back(info);
+        if (!info.reads_file) kinds.push_back(info);
     return kinds;
 }
 

@@ -108,29 +108,29 @@ TEST_CASE("Rows that were altered, removed or added are refused, with the place 
     const finished_run run;
     const std::string table = run.table();
     const row first = aabblab::read_rows(run.out() / "results.csv").front();
-    const auto refused = [&](const std::string& text, const std::string& sentence) {
+    const auto rejected = [&](const std::string& text, const std::string& sentence) {
         run.write_table(text);
         check_refused_rows(run, sentence);
         run.write_table(table);
     };
     const std::string altered = "out/results.csv was altered after the run: its rows do not have the checksum";
-    refused(with_field(table, 3, ",exact", ",inexact"), altered);
-    refused(with_field(table, 3, first.digest, "0000000000000000"),
-            "out/results.csv:3: the row is exact, but its digest is '0000000000000000'; that of the scene is " +
-                first.digest);
-    refused(with_field(table, 3, "\"\"objects\"\":60", "\"\"objects\"\":61"),
-            "out/results.csv:3: manifest.json has no scene brownian with these parameters");
-    refused(with_field(table, 3, "sealed", "other"),
-            "out/results.csv:3: the row is of the experiment 'other', and manifest.json of 'sealed'");
-    refused(without_line(table, 4), "out/results.csv has 11 rows; when the run was finished it had 12");
-    refused(table.substr(0, table.size() - 1), "out/results.csv has 11 rows; when the run was finished it had 12");
+    rejected(with_field(table, 3, ",exact", ",inexact"), altered);
+    rejected(with_field(table, 3, first.digest, "0000000000000000"),
+             "out/results.csv:3: the row is exact, but its digest is '0000000000000000'; that of the scene is " +
+                 first.digest);
+    rejected(with_field(table, 3, "\"\"objects\"\":60", "\"\"objects\"\":61"),
+             "out/results.csv:3: manifest.json has no scene brownian with these parameters");
+    rejected(with_field(table, 3, "sealed", "other"),
+             "out/results.csv:3: the row is of the experiment 'other', and manifest.json of 'sealed'");
+    rejected(without_line(table, 4), "out/results.csv has 11 rows; when the run was finished it had 12");
+    rejected(table.substr(0, table.size() - 1), "out/results.csv has 11 rows; when the run was finished it had 12");
     CHECK(aabblab::verified_rows(run.out()).size() == 12);
 }
 
 TEST_CASE("A manifest that was altered is refused") {
     const finished_run run;
     const nlohmann::ordered_json manifest = run.manifest();
-    const auto refused = [&](const std::function<void(nlohmann::ordered_json&)>& alter, const std::string& sentence) {
+    const auto rejected = [&](const std::function<void(nlohmann::ordered_json&)>& alter, const std::string& sentence) {
         nlohmann::ordered_json altered = manifest;
         alter(altered);
         run.write_manifest(altered);
@@ -138,16 +138,16 @@ TEST_CASE("A manifest that was altered is refused") {
     };
     const std::string sentence =
         "manifest.json was altered after the run: what stands in it does not have the checksum that it states";
-    refused([](auto& m) { m["build"]["cpu"] = "a faster one"; }, sentence);
-    refused([](auto& m) { m["scenes"][0]["digest"] = "0000000000000000"; }, sentence);
-    refused([](auto& m) { m["config"]["text"] = "name = \"sealed\"\n"; }, sentence);
-    refused([](auto& m) { m["seal"]["results.csv"]["rows"] = 11; }, sentence);
-    refused([](auto& m) { m["seal"] = "none"; }, "manifest.json: seal must be an object");
-    refused([](auto& m) { m["seal"]["contenders"][0] = 1; }, "manifest.json: seal.contenders[0] must be an object");
-    refused([](auto& m) { m["seal"]["results.csv"]["rows"] = -1; },
-            "manifest.json: seal.results.csv.rows must be a whole number");
-    refused([](auto& m) { m["scenes"][0]["parameters"]["objects"] = true; },
-            "manifest.json: scenes[0] must have parameters, an object of settings");
+    rejected([](auto& m) { m["build"]["cpu"] = "a faster one"; }, sentence);
+    rejected([](auto& m) { m["scenes"][0]["digest"] = "0000000000000000"; }, sentence);
+    rejected([](auto& m) { m["config"]["text"] = "name = \"sealed\"\n"; }, sentence);
+    rejected([](auto& m) { m["seal"]["results.csv"]["rows"] = 11; }, sentence);
+    rejected([](auto& m) { m["seal"] = "none"; }, "manifest.json: seal must be an object");
+    rejected([](auto& m) { m["seal"]["contenders"][0] = 1; }, "manifest.json: seal.contenders[0] must be an object");
+    rejected([](auto& m) { m["seal"]["results.csv"]["rows"] = -1; },
+             "manifest.json: seal.results.csv.rows must be a whole number");
+    rejected([](auto& m) { m["scenes"][0]["parameters"]["objects"] = true; },
+             "manifest.json: scenes[0] must have parameters, an object of settings");
 }
 
 TEST_CASE("A manifest with a member of another type, or without one, is read or refused, sealed and unsealed") {
@@ -177,9 +177,9 @@ TEST_CASE("A manifest with a member of another type, or without one, is read or 
                 try {
                     (void)aabblab::read_manifest(run.out());
                     (void)aabblab::verified_rows(run.out());
-                } catch (const aabb::input_error& refused) {
+                } catch (const aabb::input_error& rejected) {
                     ++refusals;
-                    CHECK_THAT(refused.what(), ContainsSubstring("/out/"));
+                    CHECK_THAT(rejected.what(), ContainsSubstring("/out/"));
                 } catch (const std::exception& error) {
                     FAIL_CHECK(error.what());
                 }

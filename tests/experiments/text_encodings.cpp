@@ -147,15 +147,15 @@ TEST_CASE("Every text format is read however other systems write text, and its e
     for (const text_format& format : formats()) {
         const temporary_folder folder;
         const std::string read = format.read(folder.write(format.file, format.text));
-        const std::string refusal = error_of(format, folder.write(format.file, format.damaged()));
-        CHECK_THAT(refusal, ContainsSubstring(format.file + ":" + std::to_string(format.wrong_line) + ":"));
+        const std::string rejection = error_of(format, folder.write(format.file, format.damaged()));
+        CHECK_THAT(rejection, ContainsSubstring(format.file + ":" + std::to_string(format.wrong_line) + ":"));
         for (const auto& [how, bytes] : unambiguous_encodings(format.text)) {
             INFO(format.file << ", " << how);
             CHECK(error_of(format, folder.write(format.file, bytes)) == "read: " + read);
         }
         for (const auto& [how, bytes] : unambiguous_encodings(format.damaged())) {
             INFO(format.file << ", " << how);
-            CHECK(error_of(format, folder.write(format.file, bytes)) == refusal);
+            CHECK(error_of(format, folder.write(format.file, bytes)) == rejection);
         }
     }
 }
@@ -164,15 +164,15 @@ TEST_CASE("In every text format, what is no text or may mean two things is named
     for (const text_format& format : formats()) {
         INFO(format.file);
         const temporary_folder folder;
-        const auto refusal_of = [&](const std::string& bytes) {
+        const auto rejection_of = [&](const std::string& bytes) {
             return error_of(format, folder.write(format.file, bytes));
         };
         const std::string head = format.file + ": is ";
-        CHECK_THAT(refusal_of(widened(format.text, 0, 1)),
+        CHECK_THAT(rejection_of(widened(format.text, 0, 1)),
                    EndsWith(head + "text in UTF-16 without a byte order mark; expected UTF-8"));
-        CHECK_THAT(refusal_of(widened(format.text, 1, 0)),
+        CHECK_THAT(rejection_of(widened(format.text, 1, 0)),
                    EndsWith(head + "text in UTF-16 without a byte order mark; expected UTF-8"));
-        CHECK_THAT(refusal_of(std::string("\xff\xfe\0\0", 4) + widened(format.text, 0, 3)),
+        CHECK_THAT(rejection_of(std::string("\xff\xfe\0\0", 4) + widened(format.text, 0, 3)),
                    EndsWith(head + "text in UTF-32; expected UTF-8"));
         const std::size_t second = format.text.find('\n') + 1;
         // Text STL and text PLY are told from binary by what is in them.
@@ -180,19 +180,19 @@ TEST_CASE("In every text format, what is no text or may mean two things is named
         for (const auto& [mark, name] : {std::pair{'\0', "a NUL byte"}, {'\x1a', "Ctrl-Z"}}) {
             std::string bytes = format.text;
             bytes.insert(second, 1, mark);
-            const std::string refusal = refusal_of(bytes);
-            CHECK_FALSE(holds(refusal, "read: "));
+            const std::string rejection = rejection_of(bytes);
+            CHECK_FALSE(holds(rejection, "read: "));
             if (!is_of_two_kinds)
-                CHECK_THAT(refusal, EndsWith(head + "not text: " + name + " in line 2, with more behind it"));
+                CHECK_THAT(rejection, EndsWith(head + "not text: " + name + " in line 2, with more behind it"));
         }
         // A carriage return in place of one line feed. JSON has no lines.
         if (format.text == gltf) continue;
         std::string mixed = format.text;
         mixed[second - 1] = '\r';
-        CHECK_THAT(refusal_of(mixed), !ContainsSubstring("read: "));
+        CHECK_THAT(rejection_of(mixed), !ContainsSubstring("read: "));
         mixed = with_line_ends(format.text, "\r");
         mixed[second - 1] = '\n';
-        CHECK_THAT(refusal_of(mixed), !ContainsSubstring("read: "));
+        CHECK_THAT(rejection_of(mixed), !ContainsSubstring("read: "));
     }
     const temporary_folder folder;
     CHECK_THAT(

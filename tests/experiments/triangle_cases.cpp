@@ -15,7 +15,7 @@ std::string case_named(const std::string& name, const std::string& intersect) {
            intersect + "\n";
 }
 
-std::string refusal_of(const std::string& text) {
+std::string rejection_of(const std::string& text) {
     return refusal_in<aabb::input_error>([&] { return aabblab::parse_triangle_cases(text, "c.toml"); });
 }
 
@@ -50,27 +50,27 @@ TEST_CASE("A file of cases is read with every number as it stands") {
 }
 
 TEST_CASE("A bad file of cases gets one sentence with file and line") {
-    CHECK(refusal_of(case_named("one", "true") + case_named("two", "false")) == "accepted");
-    CHECK(refusal_of("") == "c.toml has no cases; expected [[case]]");
-    CHECK(refusal_of("[case]\n") == "c.toml:1: case must stand in double brackets: [[case]]");
-    CHECK(refusal_of("[[cases]]\n").starts_with("c.toml:1: unknown key 'cases'"));
-    CHECK(refusal_of("[[case]\n").starts_with("c.toml:1:"));
-    CHECK(refusal_of(with_line("about", "abuot = \"a\"")) ==
+    CHECK(rejection_of(case_named("one", "true") + case_named("two", "false")) == "accepted");
+    CHECK(rejection_of("") == "c.toml has no cases; expected [[case]]");
+    CHECK(rejection_of("[case]\n") == "c.toml:1: case must stand in double brackets: [[case]]");
+    CHECK(rejection_of("[[cases]]\n").starts_with("c.toml:1: unknown key 'cases'"));
+    CHECK(rejection_of("[[case]\n").starts_with("c.toml:1:"));
+    CHECK(rejection_of(with_line("about", "abuot = \"a\"")) ==
           "c.toml:4: unknown key of [[case]] 'abuot'; did you mean 'about'?");
-    CHECK(refusal_of(with_line("about", "")) == "c.toml:1: this case has no about");
-    CHECK(refusal_of(with_line("source", "source = 3")) == "c.toml:3: source is a number; expected a name");
-    CHECK(refusal_of(with_line("intersect", "intersect = 1")) ==
+    CHECK(rejection_of(with_line("about", "")) == "c.toml:1: this case has no about");
+    CHECK(rejection_of(with_line("source", "source = 3")) == "c.toml:3: source is a number; expected a name");
+    CHECK(rejection_of(with_line("intersect", "intersect = 1")) ==
           "c.toml:8: intersect is a number; expected true or false");
     const std::string corners = "first must be three corners of three coordinates each";
-    CHECK(refusal_of(with_line("first", "first = [[0, 0, 0], [1, 0, 0]]")) == "c.toml:6: " + corners);
-    CHECK(refusal_of(with_line("first", "first = [[0, 0, 0], [1, 0], [0, 1, 0]]")) == "c.toml:6: " + corners);
-    CHECK(refusal_of(with_line("first", "first = 3")) == "c.toml:6: " + corners);
-    CHECK(refusal_of(with_line("first", "first = [[0, 0, 0], [1, 0, '0'], [0, 1, 0]]")) ==
+    CHECK(rejection_of(with_line("first", "first = [[0, 0, 0], [1, 0, 0]]")) == "c.toml:6: " + corners);
+    CHECK(rejection_of(with_line("first", "first = [[0, 0, 0], [1, 0], [0, 1, 0]]")) == "c.toml:6: " + corners);
+    CHECK(rejection_of(with_line("first", "first = 3")) == "c.toml:6: " + corners);
+    CHECK(rejection_of(with_line("first", "first = [[0, 0, 0], [1, 0, '0'], [0, 1, 0]]")) ==
           "c.toml:6: a coordinate of first is a name; expected a number");
     for (const char* beyond : {"1e39", "inf", "-inf", "nan"})
-        CHECK(refusal_of(with_line("first", std::string("first = [[0, 0, 0], [1, 0, ") + beyond + "], [0, 1, 0]]"))
+        CHECK(rejection_of(with_line("first", std::string("first = [[0, 0, 0], [1, 0, ") + beyond + "], [0, 1, 0]]"))
                   .ends_with(", beyond the range of float"));
-    CHECK(refusal_of(case_named("one", "true") + case_named("one", "true")) ==
+    CHECK(rejection_of(case_named("one", "true") + case_named("one", "true")) ==
           "c.toml:9: two cases have the name 'one'");
 }
 
@@ -78,12 +78,12 @@ TEST_CASE("The project's own cases are answered rightly by all that must be exac
     const std::vector<aabb::triangle_case> cases = aabblab::read_triangle_cases(AABBLAB_CASES);
     REQUIRE(cases.size() >= 100);
     const temporary_folder folder;
-    const std::string text = csv_of(aabblab::play_cases(cases));
+    const std::string text = csv_of(aabblab::run_triangle_cases(cases));
     const std::vector<aabblab::extreme_row> rows = aabblab::read_extreme_rows(folder.write("extreme.csv", text));
     for (const std::string& failure : aabblab::failures_in(rows)) FAIL_CHECK(failure);
     std::set<std::string> exact_tests;
     for (const aabblab::extreme_row& row : rows)
-        if (row.role == aabblab::contender_role::triangle_test && row.must_be_exact)
+        if (row.role == aabblab::candidate_role::triangle_test && row.must_be_exact)
             exact_tests.insert(row.full_name());
     CHECK(exact_tests == std::set<std::string>{"epeck in double", "epeck in float", "epick in double", "epick in float",
                                                "exact in double", "exact in float", "interval_arithmetic in double",

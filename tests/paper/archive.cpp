@@ -94,7 +94,7 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
     const temporary_folder folder;
     const std::filesystem::path whole = folder / "whole";
     write_finished_run(whole);
-    const auto refused = [&](const std::string& said, const std::function<void(const std::filesystem::path&)>& alter) {
+    const auto rejected = [&](const std::string& said, const std::function<void(const std::filesystem::path&)>& alter) {
         const std::filesystem::path altered = folder / "altered";
         std::filesystem::remove_all(altered);
         std::filesystem::copy(whole, altered, std::filesystem::copy_options::recursive);
@@ -115,22 +115,22 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
         };
     };
     // What else may be altered in a table is in tests/experiments/seal.cpp.
-    refused("c3/results.csv was altered after the run: its rows do not have the checksum",
-            of_table([](auto& lines) { lines[6] = replaced(lines[6], "50.000000", "50.000001"); }));
-    refused("c3/manifest.json was altered after the run",
-            of_file("c3/manifest.json", worlds::exact_digest, "0000000000000000"));
-    refused("c6/process-1.json was altered after the run", of_file("c6/process-1.json", "0.6", "0.5"));
-    refused("stiff/plate.csv was altered after the run", of_file("stiff/plate.csv", "FAILS", "holds"));
-    refused("extreme/report.json was altered after the run", of_file("extreme/report.json", "lattice", "pile"));
-    refused("failures.txt is missing", [](const auto& results) { std::filesystem::remove(results / "failures.txt"); });
-    refused("c3/manifest.json is missing", [](const auto& results) { std::filesystem::remove_all(results / "c3"); });
-    refused("c3/results.csv is missing", [](const auto& run) { std::filesystem::remove(run / "c3/results.csv"); });
-    refused("errors/c10/results.csv is missing",
-            [](const auto& results) { std::filesystem::remove(results / "errors/c10/results.csv"); });
-    refused("c6/process-3.json was added after the run", [](const auto& results) {
+    rejected("c3/results.csv was altered after the run: its rows do not have the checksum",
+             of_table([](auto& lines) { lines[6] = replaced(lines[6], "50.000000", "50.000001"); }));
+    rejected("c3/manifest.json was altered after the run",
+             of_file("c3/manifest.json", worlds::exact_digest, "0000000000000000"));
+    rejected("c6/process-1.json was altered after the run", of_file("c6/process-1.json", "0.6", "0.5"));
+    rejected("stiff/plate.csv was altered after the run", of_file("stiff/plate.csv", "FAILS", "holds"));
+    rejected("extreme/report.json was altered after the run", of_file("extreme/report.json", "lattice", "pile"));
+    rejected("failures.txt is missing", [](const auto& results) { std::filesystem::remove(results / "failures.txt"); });
+    rejected("c3/manifest.json is missing", [](const auto& results) { std::filesystem::remove_all(results / "c3"); });
+    rejected("c3/results.csv is missing", [](const auto& run) { std::filesystem::remove(run / "c3/results.csv"); });
+    rejected("errors/c10/results.csv is missing",
+             [](const auto& results) { std::filesystem::remove(results / "errors/c10/results.csv"); });
+    rejected("c6/process-3.json was added after the run", [](const auto& results) {
         std::filesystem::copy(results / "c6/process-0.json", results / "c6/process-3.json");
     });
-    refused("SHA256SUMS:1: expected a checksum", of_file("SHA256SUMS", "  ", " "));
+    rejected("SHA256SUMS:1: expected a checksum", of_file("SHA256SUMS", "  ", " "));
     // What is left of the last.
     CHECK(holds(run_program({"atlas", "--judge", folder / "altered"}).err, "expected a checksum"));
     run_well({"compare", whole, whole});
@@ -152,26 +152,26 @@ TEST_CASE("What is no archive of a run is refused in one sentence") {
     const std::string results = folder / "results";
     worlds::write_tests(results, 1, 1);
     aabblab::seal_record(results);
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& sentence) {
+    const auto rejected = [&](const std::vector<std::string>& arguments, const std::string& sentence) {
         CHECK_THAT(run_refused(joined({"reproduce", "--out", folder / "out"}, arguments)).err,
                    Catch::Matchers::ContainsSubstring(sentence));
     };
-    refused({"--judge", results}, "there are no results of a reproduction in " + results);
-    refused({"--judge", folder / "none"}, "none is not there");
-    refused({"--judge", folder.write("page.html", "<!doctype html>")},
-            "page.html is not an archive of results, which is tar compressed by xz");
-    refused({results}, "only --judge takes results that are there");
-    refused({"--judge", results, results, "--archive", "x"}, "--archive takes the results of one run");
+    rejected({"--judge", results}, "there are no results of a reproduction in " + results);
+    rejected({"--judge", folder / "none"}, "none is not there");
+    rejected({"--judge", folder.write("page.html", "<!doctype html>")},
+             "page.html is not an archive of results, which is tar compressed by xz");
+    rejected({results}, "only --judge takes results that are there");
+    rejected({"--judge", results, results, "--archive", "x"}, "--archive takes the results of one run");
 
     write_finished_run(folder / "run");
     const std::string archive = folder / "run.tar.xz";
     run_well(judge({folder / "run"}, folder / "judged", {"--archive", archive}));
     const std::string bytes = bytes_of_file(archive);
-    refused({"--judge", folder.write("cut.tar.xz", bytes.substr(0, bytes.size() / 2))}, "is damaged or cut off");
+    rejected({"--judge", folder.write("cut.tar.xz", bytes.substr(0, bytes.size() / 2))}, "is damaged or cut off");
     // What is wrong inside is told by the archive's name.
     std::filesystem::remove(folder / "run/c6/process-0.json");
     aabblab::write_archive(folder / "altered.tar.xz", aabblab::record_top, folder / "run",
                            aabblab::archived_files(folder / "run"));
-    refused({"--judge", folder / "altered.tar.xz"}, "altered.tar.xz/c6/process-0.json is missing");
+    rejected({"--judge", folder / "altered.tar.xz"}, "altered.tar.xz/c6/process-0.json is missing");
     CHECK(std::filesystem::is_empty(folder / "out"));
 }

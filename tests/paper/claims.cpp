@@ -262,8 +262,8 @@ TEST_CASE("Every cell size and every number of segments of the configs is judged
     const aabblab::reproduction all = judged_worlds({0.6}, 0.01);
     for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick)) {
         if (e.name != "c4" && e.name != "c5") continue;
-        for (const aabblab::contender& who : aabblab::contenders_for(e, e.scenes.front())) {
-            const std::string& partition = who.name[aabb::strategy_kind::partition];
+        for (const aabblab::candidate& tested : aabblab::candidates_for(e, e.scenes.front())) {
+            const std::string& partition = tested.name[aabb::strategy_kind::partition];
             const std::vector<aabb::setting> settings = aabb::parse_strategy(partition).settings;
             const auto wanted =
                 std::ranges::find(settings, e.name == "c4" ? "segments" : "cell_size", &aabb::setting::name);
@@ -278,7 +278,7 @@ TEST_CASE("Every cell size and every number of segments of the configs is judged
 
 TEST_CASE("A grid of one cell is none") {
     const auto all = reproduction_where("c5", [](const worlds::played& p, aabblab::row& r) {
-        const bool is_one_cell = p.who[aabb::strategy_kind::partition].ends_with("cell_size=64");
+        const bool is_one_cell = p.tested[aabb::strategy_kind::partition].ends_with("cell_size=64");
         if (is_one_cell) worlds::count_in(r, "subsets") = 1;
         r.search_ms = r.update_ms = is_one_cell ? 0.01 : 1;
     });

@@ -20,7 +20,7 @@ namespace worlds {
 struct played {
     const aabblab::experiment& experiment;
     const aabblab::scene_choice& scene;
-    const aabblab::contender_name& who;
+    const aabblab::candidate_name& tested;
 
     [[nodiscard]] std::string value_of(const std::string& setting) const {
         for (const aabb::setting& s : scene.settings)
@@ -28,7 +28,7 @@ struct played {
         return "";
     }
     [[nodiscard]] bool has(const std::string& part) const {
-        return std::ranges::any_of(who.choices.all,
+        return std::ranges::any_of(tested.choices.all,
                                    [&](const std::string& text) { return text.find(part) != std::string::npos; });
     }
 };
@@ -43,23 +43,23 @@ inline void write_experiment(
     const std::filesystem::path& folder, const aabblab::experiment& e,
     const std::function<void(const played&, aabblab::row&)>& tell,
     const std::function<void(aabblab::row&)>& disturb = [](aabblab::row&) {}) {
-    aabblab::results_folder results(folder / e.name, record_of(e), aabblab::existing_results::refuse);
+    aabblab::results_folder results(folder / e.name, record_of(e), aabblab::existing_results::reject);
     const std::size_t repeats = e.records(aabblab::metric_group::time) ? e.repeats : 1;
     for (const aabblab::scene_choice& scene : e.scenes) {
         results.set_digest(scene, exact_digest);
-        for (const aabblab::contender& who : aabblab::contenders_for(e, scene))
+        for (const aabblab::candidate& tested : aabblab::candidates_for(e, scene))
             for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
                 aabblab::row r;
                 r.experiment = e.name;
                 r.scene = scene;
                 r.frames = 2;
-                r.name = who.name;
+                r.name = tested.name;
                 r.repeat = repeat;
                 r.process = repeat * e.processes / repeats;
                 r.status = "exact";
                 r.digest = exact_digest;
                 r.build_ms = r.first_ms = r.update_ms = r.search_ms = r.detect_ms = 1;
-                const played p{e, scene, who.name};
+                const played p{e, scene, tested.name};
                 r.objects = p.value_of("objects").empty() ? 2 : std::stoul(p.value_of("objects"));
                 if (has_meshes(scene)) r.triangles = 1000;
                 for (auto& count : r.counts) count = 1000 * r.objects;
@@ -117,14 +117,14 @@ inline double partition_time(const played& p, double ratio) {
     if (p.experiment.name == "c5_world") return p.value_of("density") == "0.1" ? 1 : cut ? ratio : 1 / ratio;
     if (cut) return std::max(1.0, ratio);
     const std::string best = p.scene.kind == "brownian" ? "cell_size=4" : "cell_size=64";
-    return ratio >= 1 || p.who[aabb::strategy_kind::partition].ends_with(best) ? 1 : 1 / ratio / ratio;
+    return ratio >= 1 || p.tested[aabb::strategy_kind::partition].ends_with(best) ? 1 : 1 / ratio / ratio;
 }
 
 /// With each doubling of the segments, and once more with those that are chosen automatically.
 inline double segments_time(const played& p, double ratio) {
-    const std::size_t at = p.who[aabb::strategy_kind::partition].rfind('=');
+    const std::size_t at = p.tested[aabb::strategy_kind::partition].rfind('=');
     if (at == std::string::npos) return 1;
-    const std::string wanted = p.who[aabb::strategy_kind::partition].substr(at + 1);
+    const std::string wanted = p.tested[aabb::strategy_kind::partition].substr(at + 1);
     double time = wanted == "auto" ? ratio : 1;
     for (const int segments : {4, 8, 16, 32, 64, 256})
         if (wanted == "auto" || std::stoi(wanted) >= segments) time *= ratio;
@@ -193,7 +193,7 @@ inline std::vector<experiment_row> experiment_rows() {
             // As many segments as were wanted: the limit is far.
             {"c4", segments_time,
              [](const played& p, double, aabblab::row& r) {
-                 const std::string& wanted = p.who[aabb::strategy_kind::partition];
+                 const std::string& wanted = p.tested[aabb::strategy_kind::partition];
                  if (const std::size_t at = wanted.rfind('='); at != std::string::npos)
                      count_in(r, "segments_got") = wanted.ends_with("auto") ? 8 : std::stoul(wanted.substr(at + 1));
              }},

@@ -32,12 +32,12 @@ TEST_CASE("dropped balls fall, meet and stay above the floor, whoever finds thei
     for (const char* const tree : {"canonical", "compressed", "quantized"}) {
         aabb::composition c;
         c[aabb::strategy_kind::tree] = {tree, {}};
-        aabblab::scene_play scene(few_balls);
-        aabblab::player player(aabblab::contender_of(c, true), scene, aabb::instrumentation::none);
+        aabblab::scene_frames scene(few_balls);
+        aabblab::stage_runner stage_runner(aabblab::candidate_of(c, true), scene, aabb::instrumentation::none);
         std::size_t on_floor = 0;
         std::size_t on_each_other = 0;
         std::vector<std::vector<aabb::pose>> poses;
-        aabblab::play(scene, player, [&](const aabblab::played_frame& frame) {
+        aabblab::play(scene, stage_runner, [&](const aabblab::searched_frame& frame) {
             poses.emplace_back(scene.poses().begin(), scene.poses().end());
             for (const aabb::contact& contact : frame.contacts) ++(contact.a == 0 ? on_floor : on_each_other);
             for (const aabb::pose& p : poses.back()) REQUIRE(p.translation[2] > -0.01);
@@ -69,11 +69,11 @@ repeats = 2
 }
 
 TEST_CASE("the scene dropped is what symplectic_euler makes of its world") {
-    aabblab::scene_play scene(few_balls);
+    aabblab::scene_frames scene(few_balls);
     const aabb::composition c;
-    aabblab::player player(aabblab::contender_of(c, true), scene, aabb::instrumentation::none);
+    aabblab::stage_runner stage_runner(aabblab::candidate_of(c, true), scene, aabb::instrumentation::none);
     std::vector<std::vector<aabb::pose>> played;
-    aabblab::play(scene, player, [&](const aabblab::played_frame&) {
+    aabblab::play(scene, stage_runner, [&](const aabblab::searched_frame&) {
         played.emplace_back(scene.poses().begin(), scene.poses().end());
     });
 
@@ -83,8 +83,8 @@ TEST_CASE("the scene dropped is what symplectic_euler makes of its world") {
     auto* const looked = new looked_at(world);
     aabblab::motion_state state = world.start();
     world.place(state.position, looked->now);
-    aabblab::scene_play looks{std::unique_ptr<aabb::mesh_scene>(looked)};
-    aabblab::player finder(aabblab::contender_of(c, true), looks, aabb::instrumentation::none);
+    aabblab::scene_frames looks{std::unique_ptr<aabb::mesh_scene>(looked)};
+    aabblab::stage_runner finder(aabblab::candidate_of(c, true), looks, aabb::instrumentation::none);
     aabblab::dynamics forces(world);
     const auto euler = aabblab::integrator_named("symplectic_euler")->make(0);
     const aabblab::acceleration_of acceleration = [&](const auto& position, const auto& velocity, auto& result) {

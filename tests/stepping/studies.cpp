@@ -17,9 +17,9 @@ const aabblab::stiff_study& study_named(std::string_view name) {
     return *study;
 }
 
-aabblab::stiff_result played(std::string_view name, const aabblab::contender& who) {
+aabblab::stiff_result played(std::string_view name, const aabblab::candidate& tested) {
     const aabblab::stiff_study& study = study_named(name);
-    aabblab::stiff_result result = study.play({.quick = true, .who = who});
+    aabblab::stiff_result result = study.play({.quick = true, .tested = tested});
     for (const aabblab::stiff_point& p : result.points)
         CHECK(std::ranges::count(study.figures, p.figure, &aabblab::figure::name) == 1);
     return result;
@@ -34,15 +34,15 @@ std::string wrong_in(const aabblab::stiff_result& result) {
 }
 
 /// The usual one, but each so many-th detection finds nothing.
-aabblab::contender forgetful(std::size_t every) {
-    aabblab::contender who = aabblab::usual_contender();
-    who.make_local = [every](aabb::instrumentation) -> std::unique_ptr<aabb::local_stage> {
+aabblab::candidate forgetful(std::size_t every) {
+    aabblab::candidate tested = aabblab::default_candidate();
+    tested.make_local = [every](aabb::instrumentation) -> std::unique_ptr<aabb::local_stage> {
         return std::make_unique<aabb::altered_meshes>(
             aabb::alterations{.all_pairs = [every, calls = std::size_t{0}](aabb::pair_list& pairs) mutable {
                 if (++calls % every == 0) pairs.clear();
             }});
     };
-    return who;
+    return tested;
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ TEST_CASE("every study of the stiff suite comes out as expected") {
     for (const std::string_view name : {"ball_bounces", "stability", "overdamped", "stack", "plate", "sliding"}) {
         // What is left of it takes short steps, and fewer rows.
         if (name == "overdamped" && !has_bdf) continue;
-        const aabblab::stiff_result result = played(name, aabblab::usual_contender());
+        const aabblab::stiff_result result = played(name, aabblab::default_candidate());
         INFO(name);
         REQUIRE(result.rows.size() > 5);
         REQUIRE(wrong_in(result) == "");
@@ -73,7 +73,7 @@ TEST_CASE("a contact that is dropped every thousandth step turns verdicts") {
 }
 
 TEST_CASE("who finds no contact lets bodies through") {
-    aabblab::contender blind = aabblab::usual_contender();
+    aabblab::candidate blind = aabblab::default_candidate();
     blind.make_local = [](aabb::instrumentation) -> std::unique_ptr<aabb::local_stage> {
         return std::make_unique<aabb::altered_meshes>(
             aabb::alterations{.all_pairs = [](aabb::pair_list& pairs) { pairs.clear(); },

@@ -466,6 +466,6 @@ TEST_CASE("whole numbers rise with what they stand for, and are the same one by 
 TEST_CASE("columns are for a sweep that takes them") {
     composition c = columns_with("");
     c[strategy_kind::sweep] = parse_strategy("one_axis");
-    CHECK(refusal_of(c, stage::global_search) ==
+    CHECK(rejection_of(c, stage::global_search) ==
           "columns hands over boxes in whole vectors, bucket by bucket; it goes with simd only");
 }

@@ -32,7 +32,7 @@ TEST_CASE("auto selects a strategy of each kind with a reason, exact and not ref
     REQUIRE(rc::check([] {
         const these_costs costs(*rc::gen::arbitrary<bool>() ? any_costs() : cost_model());
         // From scenes of which nothing is known to those of meshes that are asked often.
-        scene_outlook scene;
+        scene_traits scene;
         if (*rc::gen::arbitrary<bool>())
             scene = {*rc::gen::element<std::size_t>(0, 1, 2, 3, 4, 63, 64, 1000, 100'000),
                      *rc::gen::element<std::size_t>(0, 1, 20'417, 1'000'000),
@@ -42,7 +42,7 @@ TEST_CASE("auto selects a strategy of each kind with a reason, exact and not ref
         RC_ASSERT(std::ranges::none_of(all, [](const selected_strategy& one) { return one.rule.empty(); }));
         const composition c = composed_of(all);
         for (const enum stage of : {stage::global_search, stage::local_detection}) {
-            RC_ASSERT(refusal_of(c, of).empty());
+            RC_ASSERT(rejection_of(c, of).empty());
             RC_ASSERT(is_exact(c, of));
         }
         RC_ASSERT(needs_meshes(c).empty());
@@ -97,14 +97,14 @@ TEST_CASE("columns are fewer where they cost more, and more where tests do") {
 
 TEST_CASE("a list is planned where testing its pairs is cheap, and none where it is dear") {
     const std::vector<box> boxes = spread_boxes(16);
-    list_outlook seen{.boxes = 1000, .pairs = 1000, .growth = growth_of_pairs(boxes)};
+    list_estimate seen{.boxes = 1000, .pairs = 1000, .growth = growth_of_pairs(boxes)};
     seen.law.observe(1, 0.01);
     CHECK(plan_list(seen).frames > 1);
     cost_model dear;
     dear.test_pair *= 100;
     const these_costs costs(dear);
     CHECK(plan_list(seen).frames == 1);
-    CHECK_FALSE(pays(1000, 1000, 1000));
+    CHECK_FALSE(is_list_worth_it(1000, 1000, 1000));
 }
 
 TEST_CASE("auto builds by sah from fewer queries on where visiting nodes costs more") {

@@ -48,7 +48,7 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
                     c[strategy_kind::sort] = sort;
                     c[strategy_kind::partition] = partition;
                     c[strategy_kind::sweep] = sweep;
-                    if (refusal_of(c, stage::global_search).empty() && is_exact(c, stage::global_search) &&
+                    if (rejection_of(c, stage::global_search).empty() && is_exact(c, stage::global_search) &&
                         needs_meshes(c).empty())
                         compositions.push_back(c);
                 }
@@ -225,14 +225,14 @@ TEST_CASE("copies that no machine can hold are counted and refused, and the sear
         // Nothing of that size was made.
         CHECK(stage->bytes()[2].bytes < std::size_t{1} << 30);
     }
-    for (const auto& [partition, refused] :
+    for (const auto& [partition, rejected] :
          {std::pair{"uniform_grid:cell_size=0.1", 1e6F}, {"axial_cut:axes=3,segments=65535", 0.0F}}) {
         INFO(partition);
         const auto stage =
             search_of(composed({{strategy_kind::sort, "insertion"}, {strategy_kind::partition, partition}}), 1000);
         std::vector<box> points;
         for (int i = 0; i < 1000; ++i) {
-            const vec3f p{static_cast<float>(i) + (i == 0 ? refused : 0), static_cast<float>(i * 7 % 1000),
+            const vec3f p{static_cast<float>(i) + (i == 0 ? rejected : 0), static_cast<float>(i * 7 % 1000),
                           static_cast<float>(i * 11 % 1000)};
             points.push_back({p, p});
         }

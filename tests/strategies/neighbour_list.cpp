@@ -3,7 +3,7 @@
 
 #include "searches.hpp"
 
-import aabb.prepare.list_pause;
+import aabb.prepare.list_backoff;
 import aabb.prepare.relative_motion;
 
 using namespace aabb;
@@ -522,12 +522,12 @@ TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go, ar
                 if (what >= 5) advance(places, static_cast<float>(*rc::gen::inRange(-10, 11)));
                 if (besides == 4 && present[id]) {
                     constexpr float no_end = std::numeric_limits<float>::infinity();
-                    std::vector<box> refused = boxes;
-                    refused[id].max[0] =
+                    std::vector<box> rejected = boxes;
+                    rejected[id].max[0] =
                         *rc::gen::element(std::numeric_limits<float>::quiet_NaN(), no_end, -no_end, -1.0F);
                     for (global_stage* one : {stage.get(), exact.get()}) {
                         try {
-                            one->update(refused);
+                            one->update(rejected);
                             RC_FAIL("taken");
                         } catch (const input_error&) {
                         }
@@ -538,7 +538,7 @@ TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go, ar
                 kept +=
                     static_cast<std::size_t>(std::ranges::count(plans, plan_kind::neighbour_list, &stage_plan::what));
                 rested +=
-                    static_cast<std::size_t>(std::ranges::count(plans, plan_kind::frame_at_rest, &stage_plan::what));
+                    static_cast<std::size_t>(std::ranges::count(plans, plan_kind::static_frame, &stage_plan::what));
             }
         }
     }));
@@ -576,16 +576,16 @@ TEST_CASE("the fewer boxes fly, the longer nobody looks whether they still do") 
         insert_all(objects, n);
         objects.settle();
         std::vector<box> boxes(n);
-        list_outlook outlook;
-        outlook.boxes = n;
+        list_estimate traits;
+        traits.boxes = n;
         std::uint32_t drawn = 100;
-        list_pause pause;
+        list_backoff pause;
         pause.begin(n);
         const auto look_in_vain = [&] {
             for (int frames = 1;; ++frames) {
                 for (std::uint32_t id = 0; id < n; ++id)
                     boxes[id] = cube(boxes[id].min[0] + (id % 2 == 0 ? 50.0F : -50.0F));
-                if (pause.pass(boxes, objects, outlook, drawn)) return frames;
+                if (pause.pass(boxes, objects, traits, drawn)) return frames;
                 REQUIRE(pause.lasts());
             }
         };
@@ -610,10 +610,10 @@ TEST_CASE("a few boxes never say that all moved further than they did") {
             return boxes;
         };
         const std::vector<box> from = frame();
-        glimpse some;
+        motion_sample some;
         std::uint32_t drawn = *rc::gen::arbitrary<std::uint32_t>();
         some.keep(from, drawn);
-        for (unsigned age = 1; age <= glimpse::longest; ++age) {
+        for (unsigned age = 1; age <= motion_sample::longest; ++age) {
             const std::vector<box> to = frame();
             RC_ASSERT(some.least_motion(to, objects) <= motion_between(from, to, objects).margin);
         }
@@ -788,7 +788,7 @@ TEST_CASE("of lists that cost about as little the one with the longest margin is
     for (std::size_t i = 0; i < some.size(); ++i) some[i] = ::cube(static_cast<float>(i), 1);
     // By the number of pairs that overlap: as there are few or many of them, few or many come into reach.
     const auto planned = [&](std::size_t pairs) {
-        list_outlook seen{.boxes = 1000, .pairs = pairs, .growth = growth_of_pairs(some)};
+        list_estimate seen{.boxes = 1000, .pairs = pairs, .growth = growth_of_pairs(some)};
         for (std::size_t age = 1; age <= 4; ++age) seen.law.observe(age, 0.001 * static_cast<double>(age));
         return plan_list(seen);
     };
@@ -826,7 +826,7 @@ TEST_CASE("plans that failed are believed less") {
 TEST_CASE("lists of few boxes must promise more, since planning takes as long as of many") {
     const std::array<box, 16> some{cube(0), cube(3), cube(6), cube(9)};
     const auto frames_of = [&](std::size_t n) {
-        list_outlook seen{.boxes = n, .pairs = n / 10, .growth = growth_of_pairs(std::span(some).first(4))};
+        list_estimate seen{.boxes = n, .pairs = n / 10, .growth = growth_of_pairs(std::span(some).first(4))};
         seen.law.observe(1, 0.8);
         return plan_list(seen).frames;
     };
@@ -952,7 +952,7 @@ TEST_CASE("no list is planned for more frames than are left, and new memory is t
     std::array<box, 16> some;
     for (std::size_t i = 0; i < some.size(); ++i) some[i] = cube(3 * static_cast<float>(i));
     const auto planned = [&](const list_horizon& horizon) {
-        list_outlook seen{.boxes = 1000, .pairs = 100, .growth = growth_of_pairs(some), .horizon = horizon};
+        list_estimate seen{.boxes = 1000, .pairs = 100, .growth = growth_of_pairs(some), .horizon = horizon};
         seen.law.observe(1, 0.001);
         return plan_list(seen);
     };

@@ -93,9 +93,9 @@ quantized_tree with_bits(unsigned bits) {
 }
 
 double inflation_of(const model<quantized_tree>& m) {
-    const tree_survey survey = survey_of(m.tree(), m.triangles());
-    CHECK(survey.fault.empty());
-    return survey.area_inflation;
+    const tree_validation validate_tree = validation_of(m.tree(), m.triangles());
+    CHECK(validate_tree.fault.empty());
+    return validate_tree.area_inflation;
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST_CASE("what is not named is the best where nothing is, and goes with what is
     // Refused whatever goes with it: the sentence names what most have.
     CHECK(completed(strategy_kind::sweep, "incremental") == "std + none + incremental");
     for (const strategy_info& info : strategies(strategy_kind::sort))
-        CHECK(refusal_of(composed({{strategy_kind::sort, info.name.c_str()}}), stage::global_search).empty());
+        CHECK(rejection_of(composed({{strategy_kind::sort, info.name.c_str()}}), stage::global_search).empty());
     CHECK_REFUSED(composed({{strategy_kind::sort, "shall"}}), "unknown sort 'shall'; did you mean 'shell'?");
 }
 
@@ -68,13 +68,13 @@ TEST_CASE("every kind has a stage, and a usual strategy that exists and makes se
     for (const strategy_kind kind : strategy_kinds)
         CHECK_NOTHROW(require_known(kind, {std::string(info_of(kind).fallback), {}}));
     for (const stage of : {stage::global_search, stage::local_detection}) {
-        CHECK(refusal_of(composition{}, of).empty());
+        CHECK(rejection_of(composition{}, of).empty());
         // What stands apart is told where it is not the usual one.
         CHECK(to_text(composed({{strategy_kind::prepare, "split_large"}, {strategy_kind::build, "sah"}}), of) ==
               (of == stage::global_search ? "split_large + bucket + columns + simd" : "sah + implicit + exact"));
         CHECK(to_text(composition{}, of) ==
               (of == stage::global_search ? "bucket + columns + simd" : "implicit + exact"));
-        for (const composition& c : every_composition(of)) CHECK(refusal_of(c, of).empty());
+        for (const composition& c : every_composition(of)) CHECK(rejection_of(c, of).empty());
     }
     CHECK(every_composition(stage::local_detection).size() ==
           strategies(strategy_kind::tree).size() * strategies(strategy_kind::triangle).size() +

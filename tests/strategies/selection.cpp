@@ -8,7 +8,7 @@ using namespace aabb;
 
 namespace {
 
-std::string selected(strategy_kind kind, const named_strategies& named, const scene_outlook& scene) {
+std::string selected(strategy_kind kind, const named_strategies& named, const scene_traits& scene) {
     return to_text(select_composition(named, scene)[kind]);
 }
 
@@ -21,7 +21,7 @@ std::vector<composition> accepted_by_name(enum stage of) {
             for (const strategy_info& info : strategies(kind)) longer.emplace_back(c)[kind] = {info.name, {}};
         all = std::move(longer);
     }
-    std::erase_if(all, [&](const composition& c) { return !refusal_of(c, of).empty(); });
+    std::erase_if(all, [&](const composition& c) { return !rejection_of(c, of).empty(); });
     return all;
 }
 
@@ -37,7 +37,7 @@ TEST_CASE("auto keeps what is named, whatever it is, and completes it where it c
                 });
             });
         };
-        std::size_t refused = 0;
+        std::size_t rejected = 0;
         for (const strategy_kind first : kinds_of(of))
             for (const strategy_choice& one : all_choices(first))
                 for (const strategy_kind second : kinds_of(of))
@@ -48,10 +48,10 @@ TEST_CASE("auto keeps what is named, whatever it is, and completes it where it c
                         const composition c = select_composition(named, {});
                         INFO(to_text(one) << " with " << other.name << ": " << to_text(c, of));
                         for (const strategy_kind kind : {first, second}) REQUIRE(c[kind] == *named[kind]);
-                        REQUIRE(refusal_of(c, of).empty() == can_be_completed(named));
-                        refused += refusal_of(c, of).empty() ? 0 : 1;
+                        REQUIRE(rejection_of(c, of).empty() == can_be_completed(named));
+                        rejected += rejection_of(c, of).empty() ? 0 : 1;
                     }
-        CHECK((refused > 0) == (of == stage::global_search));
+        CHECK((rejected > 0) == (of == stage::global_search));
     }
     const auto beside = [](strategy_kind kind, const char* name) {
         named_strategies named;

@@ -201,16 +201,17 @@ TEST_CASE("incremental holds no list of an axis on which all boxes overlap, unti
 
 TEST_CASE("sweeps that keep their pairs are refused with what they cannot follow, and say why") {
     for (const char* sweep : {"incremental", "subdivided"}) {
-        const auto refusal = [&](const char* sort, const char* partition) {
-            return std::string(refusal_of(composed({{strategy_kind::sort, sort},
-                                                    {strategy_kind::partition, partition},
-                                                    {strategy_kind::sweep, sweep}}),
-                                          stage::global_search));
+        const auto rejection = [&](const char* sort, const char* partition) {
+            return std::string(rejection_of(composed({{strategy_kind::sort, sort},
+                                                      {strategy_kind::partition, partition},
+                                                      {strategy_kind::sweep, sweep}}),
+                                            stage::global_search));
         };
-        for (const char* sort : {"shell", "std"}) CHECK(refusal(sort, "none").ends_with("it goes with insertion only"));
+        for (const char* sort : {"shell", "std"})
+            CHECK(rejection(sort, "none").ends_with("it goes with insertion only"));
         for (const char* partition : {"axial_cut", "uniform_grid"})
-            CHECK(refusal("insertion", partition).ends_with("it goes with none only"));
-        CHECK(refusal("insertion", "none").empty());
+            CHECK(rejection("insertion", partition).ends_with("it goes with none only"));
+        CHECK(rejection("insertion", "none").empty());
     }
 }
 

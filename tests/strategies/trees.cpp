@@ -114,7 +114,7 @@ bool is_lossless(const strategy_choice& tree) {
 
 void check(const local_stage& stage, const composition& c, const mesh& m) {
     INFO(text_of_local(c) << ", " << m.triangle_count() << " triangles");
-    const std::optional<tree_survey> found = stage.survey(0);
+    const std::optional<tree_validation> found = stage.validate_tree(0);
     REQUIRE(found.has_value());
     CHECK(found->fault.empty());
     if (is_lossless(c[strategy_kind::tree])) CHECK(found->tight);
@@ -430,7 +430,9 @@ TEST_CASE("builds split where they say") {
     const auto split_by = [](const char* build) {
         return composed({{strategy_kind::build, build}, {strategy_kind::tree, "canonical"}});
     };
-    const auto depth = [&](const char* build, const mesh& m) { return stage_of(split_by(build), m)->survey(0)->depth; };
+    const auto depth = [&](const char* build, const mesh& m) {
+        return stage_of(split_by(build), m)->validate_tree(0)->depth;
+    };
     CHECK(depth("median", receding(61)) == 6);
     CHECK(depth("mean", receding(61)) > 15);
     CHECK(depth("midpoint", nested(61)) == 60);
@@ -463,7 +465,7 @@ TEST_CASE("layouts of few bits a plane inflate boxes, compressed_literal a littl
             m.vertices[v][k] += std::sin(static_cast<float>(v * 3 + static_cast<std::size_t>(k)));
     for (const composition& tree : all_trees()) {
         INFO(text_of_local(tree));
-        const double inflation = stage_of(tree, m)->survey(0)->area_inflation;
+        const double inflation = stage_of(tree, m)->validate_tree(0)->area_inflation;
         if (is_lossless(tree[strategy_kind::tree])) {
             CHECK(inflation == 0);
         } else {

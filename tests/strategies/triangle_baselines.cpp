@@ -38,17 +38,17 @@ void check_intervals() {
     const interval_arithmetic_triangle unsure({.fallback = fallback_choice::intersects});
     int wrong = 0;
     int missed = 0;
-    int invented = 0;
+    int false_positives = 0;
     for_all_pairs<Real>(400, [&](const triangle3<Real>& s, const triangle3<Real>& t) {
         const bool truth = exact_triangle::intersects(s, t);
         wrong += sure.intersects(s, t) != truth;
         const bool found = unsure.intersects(s, t);
         missed += truth && !found;
-        invented += found && !truth;
+        false_positives += found && !truth;
     });
     CHECK(wrong == 0);
     CHECK(missed == 0);
-    CHECK(invented > 0);
+    CHECK(false_positives > 0);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ public:
         if (made_.self_pairs) made_.self_pairs(pairs);
     }
     void refit(std::uint32_t model) override { whole_->refit(model); }
-    [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t) const override { return std::nullopt; }
+    [[nodiscard]] std::optional<tree_validation> validate_tree(std::uint32_t) const override { return std::nullopt; }
     [[nodiscard]] work_counters counters() const override { return {}; }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {}; }
     [[nodiscard]] std::vector<omission> left_out() const override { return {}; }

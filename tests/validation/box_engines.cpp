@@ -104,7 +104,7 @@ TEST_CASE("engines refuse bad boxes and bad ids") {
 }
 
 TEST_CASE("ODE's hashed grid refuses more objects than it can count pairs of") {
-    if (is_left_out("ode_hash")) SKIP(refusal_of_engine("ode_hash"));
+    if (is_left_out("ode_hash")) SKIP(rejection_of_engine("ode_hash"));
     constexpr std::uint32_t most = 131'071;
     const auto engine = make_box_engine("ode_hash");
     for (std::uint32_t id = 0; id <= most; ++id) engine->insert(id);

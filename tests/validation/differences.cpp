@@ -11,8 +11,8 @@ const std::vector<index_pair> one = {{0, 0}};
 const triangle3f floor_triangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 
 std::size_t total(const differences& all) {
-    return std::accumulate(all.missing.begin(), all.missing.end(), std::size_t{0}) +
-           std::accumulate(all.invented.begin(), all.invented.end(), std::size_t{0});
+    return std::accumulate(all.false_negatives.begin(), all.false_negatives.end(), std::size_t{0}) +
+           std::accumulate(all.false_positives.begin(), all.false_positives.end(), std::size_t{0});
 }
 
 /// Of an engine that contradicts the exact answer on two triangles: the one class its difference is counted in.
@@ -26,8 +26,8 @@ void require_class(difference_class expected, const triangle3f& s, const pose& p
     REQUIRE(total(all) == 1);
     for (std::size_t c = 0; c < difference_class_names.size(); ++c) {
         INFO("counted as " << difference_class_names[c]);
-        REQUIRE(all.missing[c] == (truth && c == static_cast<std::size_t>(expected)));
-        REQUIRE(all.invented[c] == (!truth && c == static_cast<std::size_t>(expected)));
+        REQUIRE(all.false_negatives[c] == (truth && c == static_cast<std::size_t>(expected)));
+        REQUIRE(all.false_positives[c] == (!truth && c == static_cast<std::size_t>(expected)));
     }
 }
 
@@ -55,8 +55,8 @@ TEST_CASE("every pair of one set alone is counted, wherever it stands") {
     const std::vector<index_pair> exact = {{0, 0}, {0, 2}, {1, 1}, {2, 2}};
     const std::vector<index_pair> found = {{0, 1}, {0, 2}, {2, 2}, {3, 1}, {3, 3}};
     differences all = compare_triangle_pairs(exact, found, m, {}, m, {});
-    REQUIRE(std::accumulate(all.missing.begin(), all.missing.end(), std::size_t{0}) == 2);
-    REQUIRE(std::accumulate(all.invented.begin(), all.invented.end(), std::size_t{0}) == 3);
+    REQUIRE(std::accumulate(all.false_negatives.begin(), all.false_negatives.end(), std::size_t{0}) == 2);
+    REQUIRE(std::accumulate(all.false_positives.begin(), all.false_positives.end(), std::size_t{0}) == 3);
     REQUIRE(total(all) == 5);
     all += all;
     REQUIRE(total(all) == 10);

@@ -25,7 +25,7 @@ TEST_CASE("the engines are listed with what they can do") {
         REQUIRE((info.searches_boxes || info.collides_meshes));
         if (info.searches_boxes) REQUIRE(make_box_engine(info.name) != nullptr);
         if (info.collides_meshes) REQUIRE(make_mesh_engine(info.name) != nullptr);
-        REQUIRE(refusal_of_engine(info.name).empty());
+        REQUIRE(rejection_of_engine(info.name).empty());
         REQUIRE(is_exact_engine(info.name) == info.exact);
     }
     REQUIRE(names == declared_names());
@@ -46,14 +46,14 @@ TEST_CASE("an engine is in the build or left out, and not both") {
 TEST_CASE("an engine that was left out is refused for that") {
     const std::vector<engine_info> built = {{"one", "", true, true, true}};
     const std::vector<left_out_engine> left_out = {{"two", "Two's library"}};
-    REQUIRE(refusal_of_engine("one", built, left_out).empty());
-    REQUIRE(refusal_of_engine("two", built, left_out) ==
+    REQUIRE(rejection_of_engine("one", built, left_out).empty());
+    REQUIRE(rejection_of_engine("two", built, left_out) ==
             "the engine 'two' is not in this build: Two's library was not found");
-    REQUIRE(refusal_of_engine("twwo", built, left_out) == "unknown engine 'twwo'; did you mean 'two'?");
+    REQUIRE(rejection_of_engine("twwo", built, left_out) == "unknown engine 'twwo'; did you mean 'two'?");
     for (const left_out_engine& engine : left_out_engines()) {
-        CHECK_REFUSED(make_box_engine(engine.name), refusal_of_engine(engine.name));
-        CHECK_REFUSED(make_mesh_engine(engine.name), refusal_of_engine(engine.name));
-        CHECK_REFUSED(is_exact_engine(engine.name), refusal_of_engine(engine.name));
+        CHECK_REFUSED(make_box_engine(engine.name), rejection_of_engine(engine.name));
+        CHECK_REFUSED(make_mesh_engine(engine.name), rejection_of_engine(engine.name));
+        CHECK_REFUSED(is_exact_engine(engine.name), rejection_of_engine(engine.name));
     }
 }
 

@@ -17,17 +17,17 @@ extreme_judge judge_of(const std::string& name) {
     return extreme_judge(*found);
 }
 
-judgement judged(const extreme_judge& judge, std::function<void(pair_list&)> change) {
+extreme_result judged(const extreme_judge& judge, std::function<void(pair_list&)> change) {
     return judge.judge([change = std::move(change)]() -> std::unique_ptr<global_stage> {
         return std::make_unique<altered_boxes>(change);
     });
 }
 
-judgement judged(const extreme_judge& judge, const alterations& made) {
+extreme_result judged(const extreme_judge& judge, const alterations& made) {
     return judge.judge([&made]() -> std::unique_ptr<local_stage> { return std::make_unique<altered_meshes>(made); });
 }
 
-void refuse() {
+void reject() {
     throw input_error("not today");
 }
 
@@ -35,14 +35,14 @@ void refuse() {
 
 TEST_CASE("the judge catches a global search that loses, invents, repeats, refuses or breaks off") {
     const extreme_judge judge = judge_of("two_objects");
-    const judgement exact = judged(judge, [](pair_list&) {});
-    CHECK(exact.said == verdict::exact);
+    const extreme_result exact = judged(judge, [](pair_list&) {});
+    CHECK(exact.outcome == verdict::exact);
     CHECK(exact.bytes == 42);
     CHECK(is_as_expected(judge.scene(), exact));
     const struct {
         std::function<void(pair_list&)> change;
-        verdict said;
-        std::uint64_t missing, invented;
+        verdict outcome;
+        std::uint64_t false_negatives, false_positives;
         std::string reason;
     } wrong[] = {
         {[](pair_list& pairs) { pairs.pop_back(); }, verdict::wrong, 3, 0, "frame 0: the pair 0 1 is missing"},
@@ -50,13 +50,13 @@ TEST_CASE("the judge catches a global search that loses, invents, repeats, refus
          "frame 0: the pair 0 7 is reported, but is not in the exact answer"},
         {[](pair_list& pairs) { pairs.push_back(pairs[0]); }, verdict::wrong, 0, 3,
          "frame 0: the pair 0 1 is reported more than once"},
-        {[](pair_list&) { refuse(); }, verdict::refused, 0, 0, "not today"},
+        {[](pair_list&) { reject(); }, verdict::rejected, 0, 0, "not today"},
         {[](pair_list&) { throw std::runtime_error("no more"); }, verdict::wrong, 0, 0, "breaks off: no more"}};
-    for (const auto& [change, said, missing, invented, reason] : wrong) {
-        const judgement made = judged(judge, change);
-        CHECK(made.said == said);
-        CHECK(made.missing == missing);
-        CHECK(made.invented == invented);
+    for (const auto& [change, outcome, false_negatives, false_positives, reason] : wrong) {
+        const extreme_result made = judged(judge, change);
+        CHECK(made.outcome == outcome);
+        CHECK(made.false_negatives == false_negatives);
+        CHECK(made.false_positives == false_positives);
         CHECK(made.reason == reason);
         CHECK_FALSE(is_as_expected(judge.scene(), made));
     }
@@ -67,50 +67,50 @@ TEST_CASE("the judge catches a global search that loses, invents, repeats, refus
 TEST_CASE("the judge hears of a pair that is lost in a later frame only") {
     const extreme_judge judge = judge_of("all_leave");
     int searches = 0;
-    const judgement made = judged(judge, [&](pair_list& pairs) {
+    const extreme_result made = judged(judge, [&](pair_list& pairs) {
         if (++searches == 6) pairs.pop_back();
     });
     CHECK(searches == 6);
-    CHECK(made.missing == 1);
+    CHECK(made.false_negatives == 1);
     CHECK(made.reason.starts_with("frame 5: the pair "));
 }
 
 TEST_CASE("the judge catches a local detection that is wrong in any query") {
     const extreme_judge judge = judge_of("touch_at_faces");
-    CHECK(judged(judge, alterations{}).said == verdict::exact);
-    const judgement lost = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.pop_back(); }});
-    CHECK(lost.missing == 2);
-    CHECK(lost.invented == 0);
+    CHECK(judged(judge, alterations{}).outcome == verdict::exact);
+    const extreme_result lost = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.pop_back(); }});
+    CHECK(lost.false_negatives == 2);
+    CHECK(lost.false_positives == 0);
     CHECK(lost.reason.starts_with("frame 0: the pair "));
     // What touches in a face is coplanar or touching, and nothing is lost in moving it.
     std::size_t classified = 0;
-    for (const std::size_t count : lost.classes.missing) classified += count;
+    for (const std::size_t count : lost.classes.false_negatives) classified += count;
     CHECK(classified == 2);
-    const judgement twice = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.push_back(pairs[0]); }});
-    CHECK(twice.invented == 2);
-    for (const judgement& made : {lost, twice}) CHECK_FALSE(is_as_expected(judge.scene(), made));
+    const extreme_result twice = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.push_back(pairs[0]); }});
+    CHECK(twice.false_positives == 2);
+    for (const extreme_result& made : {lost, twice}) CHECK_FALSE(is_as_expected(judge.scene(), made));
     const std::pair<alterations, std::string> others[] = {
         {{.first_pair = [](auto& first) { first.reset(); }}, "frame 0: first_pair finds none, but there is one"},
         {{.first_pair = [](auto& first) { first = {0, 4711}; }},
          "frame 0: first_pair finds 0 4711, which do not intersect"},
         {{.more_counted = 1}, "frame 0: count_pairs says "},
         {{.self_pairs = [](pair_list& pairs) { pairs.pop_back(); }}, "self_pairs: the pair "},
-        {{.all_pairs = [](pair_list&) { refuse(); }}, "not today"}};
+        {{.all_pairs = [](pair_list&) { reject(); }}, "not today"}};
     for (const auto& [change, reason] : others) {
-        const judgement made = judged(judge, change);
+        const extreme_result made = judged(judge, change);
         CHECK(made.reason.starts_with(reason));
-        CHECK((made.said == verdict::refused) == (reason == "not today"));
+        CHECK((made.outcome == verdict::rejected) == (reason == "not today"));
         CHECK_FALSE(is_as_expected(judge.scene(), made));
     }
 }
 
 TEST_CASE("whoever answers where all must refuse is wrong, and so is another reason") {
     extreme_scene scene = judge_of("two_objects").scene();
-    scene.refusal = "box 7";
+    scene.rejection = "box 7";
     const extreme_judge judge(scene);
     CHECK(judged(judge, [](pair_list&) {}).reason == "answers, though it must refuse");
-    const judgement other = judged(judge, [](pair_list&) { refuse(); });
-    CHECK(other.said == verdict::refused);
+    const extreme_result other = judged(judge, [](pair_list&) { reject(); });
+    CHECK(other.outcome == verdict::rejected);
     CHECK_FALSE(is_as_expected(scene, other));
     CHECK_FALSE(is_as_expected(scene, other, false));
     CHECK(is_as_expected(scene, judged(judge, [](pair_list&) { throw input_error("box 7 is odd"); })));
@@ -133,9 +133,9 @@ TEST_CASE("a stage that answers in other arithmetic is wrong, whichever query it
     if (can_flush_denormals()) names.push_back("flushed_boxes");
     for (const char* name : names) {
         const extreme_judge judge = judge_of(name);
-        const judgement made =
+        const extreme_result made =
             judge.judge([]() -> std::unique_ptr<global_stage> { return std::make_unique<careless>(); });
-        CHECK(made.said == verdict::wrong);
+        CHECK(made.outcome == verdict::wrong);
         CHECK(made.reason == "search answers, though it must refuse");
     }
 }
@@ -151,19 +151,19 @@ TEST_CASE("other arithmetic is that of a thread of its own") {
     CHECK(upward);
     CHECK(least * one != 0);
     CHECK(one + least == 1);
-    CHECK_THROWS_AS(in_arithmetic(arithmetic::ieee, refuse), input_error);
+    CHECK_THROWS_AS(in_arithmetic(arithmetic::ieee, reject), input_error);
 }
 
 TEST_CASE("more memory than a scene states is wrong") {
     extreme_scene scene;
     scene.most_bytes = 100;
-    judgement made;
+    extreme_result made;
     made.bytes = 100;
     require_stated_memory(scene, made);
-    CHECK(made.said == verdict::exact);
+    CHECK(made.outcome == verdict::exact);
     made.bytes = 101;
     require_stated_memory(scene, made);
-    CHECK(made.said == verdict::wrong);
+    CHECK(made.outcome == verdict::wrong);
     CHECK(made.reason == "holds 101 bytes, more than the 100 that are stated");
 }
 

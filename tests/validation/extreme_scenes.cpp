@@ -14,8 +14,8 @@ std::vector<extreme_judge> judges() {
     return all;
 }
 
-void require_expected(const extreme_scene& scene, const judgement& made, bool must_be_exact = true) {
-    INFO(scene.name << ": " << verdict_names[static_cast<std::size_t>(made.said)] << " " << made.reason);
+void require_expected(const extreme_scene& scene, const extreme_result& made, bool must_be_exact = true) {
+    INFO(scene.name << ": " << verdict_names[static_cast<std::size_t>(made.outcome)] << " " << made.reason);
     CHECK(is_as_expected(scene, made, must_be_exact));
 }
 
@@ -52,7 +52,7 @@ TEST_CASE("every local detection is exact on every extreme scene, or refuses wha
         }
         for (const aabb::composition& c : exact_local_compositions()) {
             INFO(text_of_local(c));
-            judgement made = judge.judge([&] { return local_of(c); });
+            extreme_result made = judge.judge([&] { return local_of(c); });
             require_stated_memory(judge.scene(), made);
             require_expected(judge.scene(), made);
         }

@@ -21,8 +21,8 @@ std::vector<index_pair> expected(const mesh_case& c) {
 std::string text(const differences& all) {
     std::string lines;
     for (std::size_t c = 0; c < difference_class_names.size(); ++c)
-        lines += std::string(difference_class_names[c]) + ": " + std::to_string(all.missing[c]) + " missing, " +
-                 std::to_string(all.invented[c]) + " invented\n";
+        lines += std::string(difference_class_names[c]) + ": " + std::to_string(all.false_negatives[c]) + " missing, " +
+                 std::to_string(all.false_positives[c]) + " invented\n";
     return lines;
 }
 
@@ -49,14 +49,14 @@ TEST_CASE("what FCL and libccd answer differently has a reason") {
             REQUIRE(std::ranges::adjacent_find(found) == found.end());
             const differences all = compare_triangle_pairs(expected(c), found, c.a, c.pose_a, c.b, c.pose_b);
             INFO(engine << ", " << c.name << "\n" << text(all));
-            CHECK(all.missing[other] == 0);
-            CHECK(all.invented[other] == 0);
+            CHECK(all.false_negatives[other] == 0);
+            CHECK(all.false_positives[other] == 0);
         }
     }
 }
 
 TEST_CASE("libccd's absolute tolerances, wrong on tiny meshes, are counted as other") {
-    if (is_left_out("libccd")) SKIP(refusal_of_engine("libccd"));
+    if (is_left_out("libccd")) SKIP(rejection_of_engine("libccd"));
     mesh_case c = mesh_cases().front();
     for (mesh* m : {&c.a, &c.b})
         for (vec3f& v : m->vertices)
@@ -64,11 +64,11 @@ TEST_CASE("libccd's absolute tolerances, wrong on tiny meshes, are counted as ot
     for (int k = 0; k < 3; ++k) c.pose_b.translation[k] *= 0x1p-20;
     const differences all = compare_triangle_pairs(expected(c), found_by("libccd", c), c.a, c.pose_a, c.b, c.pose_b);
     INFO(text(all));
-    REQUIRE(all.missing[other] + all.invented[other] > 0);
+    REQUIRE(all.false_negatives[other] + all.false_positives[other] > 0);
 }
 
 TEST_CASE("FCL, called with its own layout of classes, knows a plain answer") {
-    if (is_left_out("fcl")) SKIP(refusal_of_engine("fcl"));
+    if (is_left_out("fcl")) SKIP(rejection_of_engine("fcl"));
     const mesh_case c = mesh_cases().front();
     const std::vector<index_pair> truth = expected(c);
     REQUIRE(truth.size() > 50);

@@ -14,7 +14,7 @@ const std::vector<engine>& all_engines() {
 /// @throws input_error if there is no such engine.
 const engine& engine_named(std::string_view name) {
     const auto position = std::ranges::find(all_engines(), name, &engine::name);
-    if (position == all_engines().end()) throw input_error(refusal_of_engine(name));
+    if (position == all_engines().end()) throw input_error(rejection_of_engine(name));
     return *position;
 }
 
@@ -51,8 +51,8 @@ std::unique_ptr<triangle_test> make_library_test(const strategy_choice& choice) 
     throw input_error(unknown_name("triangle test", choice.name, names));
 }
 
-std::string refusal_of_engine(std::string_view name, std::span<const engine_info> built,
-                              std::span<const left_out_engine> left_out) {
+std::string rejection_of_engine(std::string_view name, std::span<const engine_info> built,
+                                std::span<const left_out_engine> left_out) {
     std::vector<std::string> names;
     for (const engine_info& e : built) {
         if (e.name == name) return {};

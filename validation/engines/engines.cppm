@@ -28,8 +28,8 @@ struct left_out_engine {
 
 /// The reason why there is no engine of this name: it was left out, or it is unknown, in which case the nearest name is
 /// suggested. Empty if there is one.
-[[nodiscard]] std::string refusal_of_engine(std::string_view name, std::span<const engine_info> built = engines(),
-                                            std::span<const left_out_engine> left_out = left_out_engines());
+[[nodiscard]] std::string rejection_of_engine(std::string_view name, std::span<const engine_info> built = engines(),
+                                              std::span<const left_out_engine> left_out = left_out_engines());
 
 /// Whether this engine is exact.
 /// @throws input_error if there is no such engine.

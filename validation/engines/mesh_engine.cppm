@@ -54,7 +54,7 @@ public:
                 if (pair.a < pair.b) pairs.push_back(pair);
         });
     }
-    [[nodiscard]] std::optional<tree_survey> survey(std::uint32_t) const final { return std::nullopt; }
+    [[nodiscard]] std::optional<tree_validation> validate_tree(std::uint32_t) const final { return std::nullopt; }
     [[nodiscard]] work_counters counters() const final { return {}; }
     [[nodiscard]] std::vector<omission> left_out() const final { return {}; }
 

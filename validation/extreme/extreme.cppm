@@ -30,9 +30,9 @@ struct extreme_scene {
     std::string summary;
     std::function<std::unique_ptr<box_scene>()> make_boxes = {};    ///< empty in a scene of meshes
     std::function<std::unique_ptr<mesh_scene>()> make_meshes = {};  ///< empty in a scene of boxes
-    std::string refusal = {};  ///< part of the message with which all must reject the scene; empty if valid
+    std::string rejection = {};  ///< part of the message with which all must reject the scene; empty if valid
     /// Engines that compute with the raw poses in double may report no pairs instead of rejecting the scene.
-    bool answered_in_double = false;
+    bool accepted_in_double = false;
     arithmetic computed_in = arithmetic::ieee;
     /// `all_pairs` runs all queries, `count_pairs` that and `first_pair`, `first_pair` only itself.
     extreme_query asked = extreme_query::all_pairs;
@@ -137,20 +137,20 @@ struct exact_meshes {
                                 const index_pair& pair);
 
 enum class verdict : std::uint8_t {
-    exact,    ///< all results of all queries equal the ground truth
-    refused,  ///< the scene was rejected with an input_error
+    exact,     ///< all results of all queries equal the ground truth
+    rejected,  ///< the scene was rejected with an input_error
     wrong,
 };
 inline constexpr std::array<std::string_view, 3> verdict_names = {"exact", "refused", "wrong"};
 
 /// The results of one stage in one scene, over all frames.
-struct judgement {
-    verdict said = verdict::exact;
-    std::string reason;          ///< the message of the input_error, or the first error
-    std::uint64_t missing = 0;   ///< false negatives
-    std::uint64_t invented = 0;  ///< false positives, including repeated pairs
-    differences classes;         ///< the same for triangles, by class; repeated pairs count once
-    std::size_t bytes = 0;       ///< of the stage after the last frame
+struct extreme_result {
+    verdict outcome = verdict::exact;
+    std::string reason;                 ///< the message of the input_error, or the first error
+    std::uint64_t false_negatives = 0;  ///< false negatives
+    std::uint64_t false_positives = 0;  ///< false positives, including repeated pairs
+    differences classes;                ///< the same for triangles, by class; repeated pairs count once
+    std::size_t bytes = 0;              ///< of the stage after the last frame
 };
 
 /// Compares stages with the ground truth of a scene, which it computes by definition: boxes by a double loop, triangles
@@ -163,8 +163,8 @@ public:
 
     /// Runs all frames of the scene of boxes or meshes; all pairs of meshes are candidates. For a non-IEEE mode, the
     /// stage is built in IEEE 754 arithmetic, then each query runs in that mode.
-    [[nodiscard]] judgement judge(const std::function<std::unique_ptr<global_stage>()>& make) const;
-    [[nodiscard]] judgement judge(const std::function<std::unique_ptr<local_stage>()>& make) const;
+    [[nodiscard]] extreme_result judge(const std::function<std::unique_ptr<global_stage>()>& make) const;
+    [[nodiscard]] extreme_result judge(const std::function<std::unique_ptr<local_stage>()>& make) const;
 
 private:
     extreme_scene scene_;
@@ -174,10 +174,10 @@ private:
 
 /// Whether the result is the expected one: the ground truth, or an input_error with the right message. Inexact stages
 /// must reject invalid scenes as well.
-[[nodiscard]] bool is_as_expected(const extreme_scene& scene, const judgement& result, bool must_be_exact = true);
+[[nodiscard]] bool is_as_expected(const extreme_scene& scene, const extreme_result& result, bool must_be_exact = true);
 
 /// Turns the result into a wrong one if it exceeds the scene's memory limit.
-void require_stated_memory(const extreme_scene& scene, judgement& result);
+void require_stated_memory(const extreme_scene& scene, extreme_result& result);
 
 /// A hard pair of triangles, and whether they intersect.
 struct triangle_case {

@@ -9,21 +9,21 @@ namespace {
 using pair_comparison = set_difference<index_pair>;
 
 /// Records the first error; later ones are ignored.
-void make_wrong(judgement& result, const std::string& reason) {
-    if (result.said == verdict::wrong) return;
-    result.said = verdict::wrong;
+void make_wrong(extreme_result& result, const std::string& reason) {
+    if (result.outcome == verdict::wrong) return;
+    result.outcome = verdict::wrong;
     result.reason = reason;
 }
 
 /// @param where "frame 2"
-void add(judgement& result, const pair_comparison& difference, const std::string& where) {
+void add(extreme_result& result, const pair_comparison& difference, const std::string& where) {
     const auto text_of = [](const index_pair& pair) { return std::to_string(pair.a) + " " + std::to_string(pair.b); };
-    result.missing += difference.missing.size();
-    result.invented += difference.invented.size();
-    if (!difference.missing.empty())
-        make_wrong(result, where + ": the pair " + text_of(difference.missing[0]) + " is missing");
-    if (!difference.invented.empty())
-        make_wrong(result, where + ": the pair " + text_of(difference.invented[0]) +
+    result.false_negatives += difference.false_negatives.size();
+    result.false_positives += difference.false_positives.size();
+    if (!difference.false_negatives.empty())
+        make_wrong(result, where + ": the pair " + text_of(difference.false_negatives[0]) + " is missing");
+    if (!difference.false_positives.empty())
+        make_wrong(result, where + ": the pair " + text_of(difference.false_positives[0]) +
                                (difference.repeated ? " is reported more than once"
                                                     : " is reported, but is not in the exact answer"));
 }
@@ -34,7 +34,7 @@ std::size_t bytes_in(const std::vector<part_bytes>& parts) {
     return total;
 }
 
-void run(const exact_boxes& exact, global_stage& stage, judgement& result) {
+void run(const exact_boxes& exact, global_stage& stage, extreme_result& result) {
     std::vector<index_pair> pairs;
     for (std::size_t frame = 0; frame < exact.size(); ++frame) {
         for (const std::uint32_t object : exact[frame].departures) stage.remove(object);
@@ -55,15 +55,15 @@ struct shown_frame {
 };
 
 void add_classes(const mesh_scene& scene, pair_comparison difference, index_pair objects, const pose& pose_a,
-                 const pose& pose_b, judgement& result) {
-    const auto repeated = std::ranges::unique(difference.invented);
-    difference.invented.erase(repeated.begin(), repeated.end());
-    result.classes +=
-        compare_triangle_pairs(difference.missing, difference.invented, scene.meshes[scene.mesh_of[objects.a]], pose_a,
-                               scene.meshes[scene.mesh_of[objects.b]], pose_b);
+                 const pose& pose_b, extreme_result& result) {
+    const auto repeated = std::ranges::unique(difference.false_positives);
+    difference.false_positives.erase(repeated.begin(), repeated.end());
+    result.classes += compare_triangle_pairs(difference.false_negatives, difference.false_positives,
+                                             scene.meshes[scene.mesh_of[objects.a]], pose_a,
+                                             scene.meshes[scene.mesh_of[objects.b]], pose_b);
 }
 
-void judge_all_pairs(const shown_frame& shown, pipeline& both, judgement& result) {
+void judge_all_pairs(const shown_frame& shown, pipeline& both, extreme_result& result) {
     both.search();
     both.detect();
     for (const exact_objects& objects : shown.exact.objects) {
@@ -80,7 +80,7 @@ void judge_all_pairs(const shown_frame& shown, pipeline& both, judgement& result
 
 /// Checks the queries that do not list all pairs.
 void judge_queries(const shown_frame& shown, extreme_query asked, const exact_objects& objects, local_stage& stage,
-                   judgement& result) {
+                   extreme_result& result) {
     const std::uint32_t a = shown.scene.mesh_of[objects.a];
     const std::uint32_t b = shown.scene.mesh_of[objects.b];
     const pose& pose_a = shown.exact.poses[objects.a];
@@ -100,7 +100,7 @@ void judge_queries(const shown_frame& shown, extreme_query asked, const exact_ob
                                std::to_string(first->b) + ", which do not intersect");
 }
 
-void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_stage& stage, judgement& result) {
+void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_stage& stage, extreme_result& result) {
     std::vector<index_pair> pairs;
     stage.self_pairs(0, pairs);
     std::ranges::sort(pairs);
@@ -109,20 +109,20 @@ void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_
     add_classes(scene, difference, {0, 0}, {}, {}, result);
 }
 
-void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& stage, judgement& result) {
+void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& stage, extreme_result& result) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();
     // Objects with overlapping boxes are candidates, so that a box that is too small causes false negatives. In invalid
     // scenes all pairs of objects are candidates.
     const std::unique_ptr<global_stage> boxes = make_box_engine("brute_force");
     std::optional<pipeline> both;
-    if (scene.refusal.empty())
+    if (scene.rejection.empty())
         both.emplace(*meshes, *boxes, stage);
     else
         both.emplace(*meshes, stage);
     std::vector<pose> poses;
     for (std::size_t frame = 0; meshes->next(poses); ++frame) {
         both->update(poses);
-        if (!scene.refusal.empty()) {
+        if (!scene.rejection.empty()) {
             // An error of two poses together is only found when the pair is tested.
             both->search();
             both->detect();
@@ -134,42 +134,42 @@ void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& sta
         for (const exact_objects& objects : shown.exact.objects)
             judge_queries(shown, scene.asked, objects, stage, result);
     }
-    if (scene.refusal.empty() && scene.asked == extreme_query::all_pairs && meshes->meshes.size() == 1)
+    if (scene.rejection.empty() && scene.asked == extreme_query::all_pairs && meshes->meshes.size() == 1)
         judge_self_pairs(*meshes, exact, stage, result);
 }
 
 /// Runs a query in the scene's arithmetic and compares the message with the expected one.
-void require_refusal(const extreme_scene& scene, const std::string& query, const std::function<void()>& work,
-                     judgement& result) {
+void require_rejection(const extreme_scene& scene, const std::string& query, const std::function<void()>& work,
+                       extreme_result& result) {
     try {
         in_arithmetic(scene.computed_in, work);
         make_wrong(result, query + " answers, though it must refuse");
     } catch (const input_error& error) {
-        const std::string said = error.what();
-        if (said.find(scene.refusal) == std::string::npos)
-            make_wrong(result, query + " refuses for another reason: " + said);
-        if (result.said == verdict::exact) {
-            result.said = verdict::refused;
-            result.reason = said;
+        const std::string outcome = error.what();
+        if (outcome.find(scene.rejection) == std::string::npos)
+            make_wrong(result, query + " refuses for another reason: " + outcome);
+        if (result.outcome == verdict::exact) {
+            result.outcome = verdict::rejected;
+            result.reason = outcome;
         }
     }
 }
 
 /// Checks that each query of an initialised stage is rejected.
-void refuse_each_query(const extreme_scene& scene, const std::function<std::unique_ptr<global_stage>()>& make,
-                       judgement& result) {
+void reject_each_query(const extreme_scene& scene, const std::function<std::unique_ptr<global_stage>()>& make,
+                       extreme_result& result) {
     std::vector<box> boxes;
     scene.make_boxes()->next(boxes);
     const std::unique_ptr<global_stage> stage = make();
     for (std::uint32_t object = 0; object < boxes.size(); ++object) stage->insert(object);
     stage->update(boxes);
     std::vector<index_pair> pairs;
-    require_refusal(scene, "search", [&] { stage->search(pairs); }, result);
-    require_refusal(scene, "update", [&] { stage->update(boxes); }, result);
+    require_rejection(scene, "search", [&] { stage->search(pairs); }, result);
+    require_rejection(scene, "update", [&] { stage->update(boxes); }, result);
 }
 
-void refuse_each_query(const extreme_scene& scene, const std::function<std::unique_ptr<local_stage>()>& make,
-                       judgement& result) {
+void reject_each_query(const extreme_scene& scene, const std::function<std::unique_ptr<local_stage>()>& make,
+                       extreme_result& result) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();
     std::vector<pose> poses;
     meshes->next(poses);
@@ -178,7 +178,7 @@ void refuse_each_query(const extreme_scene& scene, const std::function<std::uniq
     stage->add_model(m);
     std::vector<index_pair> pairs;
     const auto require = [&](const std::string& query, const std::function<void()>& work) {
-        require_refusal(scene, query, work, result);
+        require_rejection(scene, query, work, result);
     };
     require("all_pairs", [&] { stage->all_pairs(0, poses[0], 0, poses[1], pairs); });
     require("first_pair", [&] { static_cast<void>(stage->first_pair(0, poses[0], 0, poses[1])); });
@@ -190,15 +190,15 @@ void refuse_each_query(const extreme_scene& scene, const std::function<std::uniq
 
 /// Runs the work and turns exceptions into a result.
 template <class Work>
-judgement judged(const extreme_scene& scene, Work work) {
-    judgement result;
+extreme_result judged(const extreme_scene& scene, Work work) {
+    extreme_result result;
     try {
         work(result);
-        if (!scene.refusal.empty() && !scene.answered_in_double && result.said == verdict::exact)
+        if (!scene.rejection.empty() && !scene.accepted_in_double && result.outcome == verdict::exact)
             make_wrong(result, "answers, though it must refuse");
     } catch (const input_error& error) {
-        if (result.said == verdict::exact) {
-            result.said = verdict::refused;
+        if (result.outcome == verdict::exact) {
+            result.outcome = verdict::rejected;
             result.reason = error.what();
         }
     } catch (const std::exception& error) {
@@ -212,34 +212,34 @@ judgement judged(const extreme_scene& scene, Work work) {
 extreme_judge::extreme_judge(extreme_scene scene) : scene_(std::move(scene)) {
     // Invalid input has no ground truth; for boxes only the frames are used.
     if (scene_.make_boxes) boxes_ = exact_boxes_of(*scene_.make_boxes());
-    if (scene_.make_meshes && scene_.refusal.empty()) meshes_ = exact_meshes_of(*scene_.make_meshes(), scene_.asked);
+    if (scene_.make_meshes && scene_.rejection.empty()) meshes_ = exact_meshes_of(*scene_.make_meshes(), scene_.asked);
 }
 
-judgement extreme_judge::judge(const std::function<std::unique_ptr<global_stage>()>& make) const {
-    return judged(scene_, [&](judgement& result) {
-        if (scene_.computed_in != arithmetic::ieee) return refuse_each_query(scene_, make, result);
+extreme_result extreme_judge::judge(const std::function<std::unique_ptr<global_stage>()>& make) const {
+    return judged(scene_, [&](extreme_result& result) {
+        if (scene_.computed_in != arithmetic::ieee) return reject_each_query(scene_, make, result);
         const std::unique_ptr<global_stage> stage = make();
         run(boxes_, *stage, result);
         result.bytes = bytes_in(stage->bytes());
     });
 }
 
-judgement extreme_judge::judge(const std::function<std::unique_ptr<local_stage>()>& make) const {
-    return judged(scene_, [&](judgement& result) {
-        if (scene_.computed_in != arithmetic::ieee) return refuse_each_query(scene_, make, result);
+extreme_result extreme_judge::judge(const std::function<std::unique_ptr<local_stage>()>& make) const {
+    return judged(scene_, [&](extreme_result& result) {
+        if (scene_.computed_in != arithmetic::ieee) return reject_each_query(scene_, make, result);
         const std::unique_ptr<local_stage> stage = make();
         run(scene_, meshes_, *stage, result);
         result.bytes = bytes_in(stage->bytes());
     });
 }
 
-bool is_as_expected(const extreme_scene& scene, const judgement& result, bool must_be_exact) {
-    if (scene.refusal.empty()) return result.said == verdict::exact || !must_be_exact;
-    if (scene.answered_in_double && !must_be_exact && result.said == verdict::exact) return true;
-    return result.said == verdict::refused && result.reason.find(scene.refusal) != std::string::npos;
+bool is_as_expected(const extreme_scene& scene, const extreme_result& result, bool must_be_exact) {
+    if (scene.rejection.empty()) return result.outcome == verdict::exact || !must_be_exact;
+    if (scene.accepted_in_double && !must_be_exact && result.outcome == verdict::exact) return true;
+    return result.outcome == verdict::rejected && result.reason.find(scene.rejection) != std::string::npos;
 }
 
-void require_stated_memory(const extreme_scene& scene, judgement& result) {
+void require_stated_memory(const extreme_scene& scene, extreme_result& result) {
     if (scene.most_bytes > 0 && result.bytes > scene.most_bytes)
         make_wrong(result, "holds " + std::to_string(result.bytes) + " bytes, more than the " +
                                std::to_string(scene.most_bytes) + " that are stated");

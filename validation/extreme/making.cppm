@@ -44,9 +44,9 @@ template <class Meshes>
     return std::make_unique<known_poses>(std::move(meshes), std::move(frames));
 }
 
-/// Marks the scene as invalid: it must be rejected with a message that contains `refusal`.
-[[nodiscard]] inline extreme_scene refused(extreme_scene scene, std::string refusal) {
-    scene.refusal = std::move(refusal);
+/// Marks the scene as invalid: it must be rejected with a message that contains `rejection`.
+[[nodiscard]] inline extreme_scene rejected(extreme_scene scene, std::string rejection) {
+    scene.rejection = std::move(rejection);
     return scene;
 }
 

@@ -10,31 +10,31 @@ constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// A valid frame, then one in which box 7 is invalid.
-extreme_scene with_box(const char* name, const char* summary, const box& bad, const char* refusal) {
+extreme_scene with_box(const char* name, const char* summary, const box& bad, const char* rejection) {
     const auto make = [bad] {
         std::vector<box> boxes(20, {{0, 0, 0}, {1, 1, 1}});
         box_frames frames{boxes, boxes};
         frames[1][7] = bad;
         return frames;
     };
-    return refused(scene_of_boxes(name, summary, make), refusal);
+    return rejected(scene_of_boxes(name, summary, make), rejection);
 }
 
 /// A valid mesh, and an invalid one.
 template <class Spoil>
-extreme_scene with_mesh(const char* name, const char* summary, Spoil spoil, const char* refusal) {
+extreme_scene with_mesh(const char* name, const char* summary, Spoil spoil, const char* rejection) {
     const auto make = [spoil] {
         mesh bad = cube();
         spoil(bad);
         return posed(std::vector{cube(), bad}, {{{}, {}}});
     };
-    return refused(scene_of_meshes(name, summary, make), refusal);
+    return rejected(scene_of_meshes(name, summary, make), rejection);
 }
 
 /// @param refusal empty if the pose is valid
-extreme_scene with_pose(const char* name, const char* summary, const pose& second, const std::string& refusal = {}) {
+extreme_scene with_pose(const char* name, const char* summary, const pose& second, const std::string& rejection = {}) {
     const auto make = [second] { return posed(ball(4, 1), {{{}, second}}); };
-    return refused(scene_of_meshes(name, summary, make), refusal);
+    return rejected(scene_of_meshes(name, summary, make), rejection);
 }
 
 /// The identity pose with one entry of the rotation replaced.
@@ -58,20 +58,20 @@ pose stretched(double error) {
     return p;
 }
 
-extreme_scene computed_in(arithmetic kind, extreme_scene scene, std::string refusal) {
+extreme_scene computed_in(arithmetic kind, extreme_scene scene, std::string rejection) {
     scene.computed_in = kind;
-    return refused(std::move(scene), std::move(refusal));
+    return rejected(std::move(scene), std::move(rejection));
 }
 
 /// Valid scenes of boxes and of meshes in a wrong floating-point mode.
 std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name, const std::string& summary,
-                                       const std::string& refusal) {
+                                       const std::string& rejection) {
     const auto boxes = [] {
         return box_frames{{{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{3, 0, 0}, {4, 1, 1}}}};
     };
     const auto meshes = [] { return posed(cube(), {{{}, shifted(1, 1, 1)}}); };
-    return {computed_in(kind, scene_of_boxes(name + "_boxes", summary, boxes), refusal),
-            computed_in(kind, scene_of_meshes(name + "_meshes", summary, meshes), refusal)};
+    return {computed_in(kind, scene_of_boxes(name + "_boxes", summary, boxes), rejection),
+            computed_in(kind, scene_of_meshes(name + "_meshes", summary, meshes), rejection)};
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ std::vector<extreme_scene> bad_mesh_scenes() {
     const std::string not_orthonormal = not_rigid + "is not orthonormal within 1e-6";
     extreme_scene beyond_float = with_pose("beyond_float", "seen from the other mesh, 1e39 away", shifted(1e39, 0, 0),
                                            "seen from one mesh, the other lies beyond the range of float");
-    beyond_float.answered_in_double = true;
+    beyond_float.accepted_in_double = true;
     return {
         with_pose("skewed_within", "a rotation skewed by a little less than 1e-6", skewed(0.999e-6)),
         with_pose("stretched_within", "stretched by a little less than the limit", stretched(0.999e-6)),

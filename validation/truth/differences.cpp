@@ -121,15 +121,15 @@ bool are_near(const triangle3f& s, const triangle3f& t) {
     return std::abs(separation(s_here, t_here)) <= 1e-6 * extent;
 }
 
-/// @param engine_says the engine's result for the two triangles, which differs from the ground truth.
+/// @param engine_result the engine's result for the two triangles, which differs from the ground truth.
 difference_class class_of_difference(const triangle3f& s, const pose& pose_s, const triangle3f& t, const pose& pose_t,
-                                     const triangle3f& t_seen_from_s, bool engine_says) {
+                                     const triangle3f& t_seen_from_s, bool engine_result) {
     if (has_no_area(s) || has_no_area(t) || has_no_area(t_seen_from_s)) return difference_class::degenerate;
-    if (intersect(placed(s, pose_s), placed(t, pose_t)) == engine_says) return difference_class::pose_rounding;
+    if (intersect(placed(s, pose_s), placed(t, pose_t)) == engine_result) return difference_class::pose_rounding;
     const exact_triangle exact_s = converted<rational>(s);
     const exact_triangle exact_t = converted<rational>(t_seen_from_s);
     if (are_coplanar(exact_s, exact_t)) return difference_class::coplanar;
-    if (!engine_says && only_touch(exact_s, exact_t)) return difference_class::touching;
+    if (!engine_result && only_touch(exact_s, exact_t)) return difference_class::touching;
     if (are_near(s, t_seen_from_s)) return difference_class::near;
     return difference_class::other;
 }
@@ -137,9 +137,9 @@ difference_class class_of_difference(const triangle3f& s, const pose& pose_s, co
 }  // namespace
 
 differences& differences::operator+=(const differences& other) {
-    for (std::size_t c = 0; c < missing.size(); ++c) {
-        missing[c] += other.missing[c];
-        invented[c] += other.invented[c];
+    for (std::size_t c = 0; c < false_negatives.size(); ++c) {
+        false_negatives[c] += other.false_negatives[c];
+        false_positives[c] += other.false_positives[c];
     }
     return *this;
 }
@@ -148,11 +148,11 @@ differences compare_triangle_pairs(std::span<const index_pair> exact, std::span<
                                    const mesh& a, const pose& pose_a, const mesh& b, const pose& pose_b) {
     const relative_pose to_a(pose_a, pose_b, bounds_of(b));
     differences counts;
-    const auto count = [&](index_pair pair, bool engine_says) {
+    const auto count = [&](index_pair pair, bool engine_result) {
         const triangle3f s = a.triangle(pair.a);
         const triangle3f t = b.triangle(pair.b);
-        auto& classes = engine_says ? counts.invented : counts.missing;
-        ++classes[static_cast<std::size_t>(class_of_difference(s, pose_a, t, pose_b, to_a(t), engine_says))];
+        auto& classes = engine_result ? counts.false_positives : counts.false_negatives;
+        ++classes[static_cast<std::size_t>(class_of_difference(s, pose_a, t, pose_b, to_a(t), engine_result))];
     };
     auto next_exact = exact.begin();
     auto next_reported = reported.begin();

@@ -10,14 +10,14 @@ export namespace aabb {
 template <class T>
 struct set_difference {
     set_difference(const std::vector<T>& exact, const std::vector<T>& reported) {
-        std::ranges::set_difference(exact, reported, std::back_inserter(missing));
-        std::ranges::set_difference(reported, exact, std::back_inserter(invented));
-        repeated = !invented.empty() && std::ranges::binary_search(exact, invented[0]);
+        std::ranges::set_difference(exact, reported, std::back_inserter(false_negatives));
+        std::ranges::set_difference(reported, exact, std::back_inserter(false_positives));
+        repeated = !false_positives.empty() && std::ranges::binary_search(exact, false_positives[0]);
     }
 
-    std::vector<T> missing;   ///< false negatives
-    std::vector<T> invented;  ///< false positives and repetitions
-    bool repeated = false;    ///< whether the first of `invented` is a repetition
+    std::vector<T> false_negatives;  ///< false negatives
+    std::vector<T> false_positives;  ///< false positives and repetitions
+    bool repeated = false;           ///< whether the first of `false_positives` is a repetition
 };
 
 /// Why an engine's result for two triangles differs from the ground truth; the first class that applies.
@@ -34,8 +34,8 @@ inline constexpr std::array<std::string_view, 6> difference_class_names = {"dege
 
 /// False negatives (missing) and false positives (invented) of an engine, by class.
 struct differences {
-    std::array<std::size_t, difference_class_names.size()> missing{};
-    std::array<std::size_t, difference_class_names.size()> invented{};
+    std::array<std::size_t, difference_class_names.size()> false_negatives{};
+    std::array<std::size_t, difference_class_names.size()> false_positives{};
 
     differences& operator+=(const differences& other);
 };
@@ -58,17 +58,17 @@ struct scene_frame {
 /// The ground truth of a scene, frame by frame. Pairs of boxes: brute force up to 20,000 objects, CGAL above. Contacts:
 /// CGAL's exact kernel on all objects with overlapping bounding spheres. They do not depend on the boxes of the broad
 /// phase, so that a pair of objects that is lost by wrong boxes shows up as a false negative.
-class exact_answer {
+class ground_truth {
 public:
     /// @param objects the number of objects, including absent ones
     /// @param meshes  the scene, which must outlive this; null for a scene of boxes
-    exact_answer(std::size_t objects, const mesh_scene* meshes);
+    ground_truth(std::size_t objects, const mesh_scene* meshes);
 
     /// Names the methods: "brute_force for boxes, cgal on all pairs of objects for triangles".
     [[nodiscard]] std::string name() const;
 
     /// Computes a frame; deforming meshes must be up to date.
-    void play(const scene_frame& frame);
+    void compute(const scene_frame& frame);
 
     /// The overlapping pairs of the frame, sorted, without repetitions.
     [[nodiscard]] const std::vector<index_pair>& pairs() const { return pairs_; }

@@ -20,10 +20,10 @@ public:
     }
 
     using repeats = std::vector<const row*>;
-    using repeats_by_name = std::map<contender_name, repeats>;
+    using repeats_by_name = std::map<candidate_name, repeats>;
     [[nodiscard]] const std::map<scene_key, repeats_by_name>& scenes() const { return scenes_; }
     /// Empty if the run lacks the scene or the name.
-    [[nodiscard]] const repeats& of(const scene_key& scene, const contender_name& name) const {
+    [[nodiscard]] const repeats& of(const scene_key& scene, const candidate_name& name) const {
         static const repeats none;
         const auto by_name = scenes_.find(scene);
         if (by_name == scenes_.end()) return none;
@@ -39,7 +39,7 @@ private:
 struct shared_scene {
     const row* any;                     ///< a row of A
     std::vector<scene_key> seeds;       ///< differ in their seed only
-    std::vector<contender_name> names;  ///< in the order of A
+    std::vector<candidate_name> names;  ///< in the order of A
 };
 
 template <class T>
@@ -62,9 +62,9 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_sc
 }
 
 /// The labels that a table of these compositions would use.
-std::vector<std::string> labels_of(std::span<const contender_name> names) {
+std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     std::vector<row> rows;
-    for (const contender_name& name : names) {
+    for (const candidate_name& name : names) {
         row& r = rows.emplace_back();
         r.name = name;
         r.status = "exact";
@@ -106,8 +106,8 @@ double least_chance(std::size_t n, std::size_t m) {
 }
 
 /// Logarithms of the milliseconds per frame, or of their ratios to the baseline's in the same repeat.
-cells log_times(const rows_by_scene& run, const shared_scene& in, const contender_name& name,
-                const contender_name* base) {
+cells log_times(const rows_by_scene& run, const shared_scene& in, const candidate_name& name,
+                const candidate_name* base) {
     std::vector<std::uint64_t> processes;
     for (const scene_key& seed : in.seeds)
         for (const row* r : run.of(seed, name)) processes.push_back(r->process);
@@ -127,9 +127,9 @@ cells log_times(const rows_by_scene& run, const shared_scene& in, const contende
 }
 
 /// The first name that is timed in both runs; an engine is the baseline only if there is no composition.
-std::optional<contender_name> base_of(const shared_scene& in, const rows_by_scene& a, const rows_by_scene& b) {
+std::optional<candidate_name> base_of(const shared_scene& in, const rows_by_scene& a, const rows_by_scene& b) {
     for (const bool engine : {false, true})
-        for (const contender_name& name : in.names)
+        for (const candidate_name& name : in.names)
             if (name.engine.empty() != engine && !log_times(a, in, name, nullptr).empty() &&
                 !log_times(b, in, name, nullptr).empty())
                 return name;
@@ -183,7 +183,7 @@ std::vector<number> numbers_of(const row& r) {
     for (std::size_t i = 0; i < r.bytes.size(); ++i)
         numbers.emplace_back("bytes_" + std::string(byte_columns[i]), r.bytes[i]);
     numbers.emplace_back("missing", r.missing);
-    numbers.emplace_back("invented", r.invented);
+    numbers.emplace_back("invented", r.false_positives);
     return numbers;
 }
 
@@ -276,11 +276,11 @@ comparison compare(const run_results& a, const run_results& b, compared what) {
         scene.experiment = shared.any->experiment;
         scene.scene = whatever_seed(shared.any->scene);
         report.numbers_compared += compare_numbers(shared, of_a, of_b, labels, scene.changed);
-        const std::optional<contender_name> base = base_of(shared, of_a, of_b);
+        const std::optional<candidate_name> base = base_of(shared, of_a, of_b);
         if (!base) continue;
         for (std::size_t i = 0; i < labels.size(); ++i) {
-            const contender_name& name = shared.names[i];
-            const auto add = [&](std::vector<line>& to, const contender_name* over) {
+            const candidate_name& name = shared.names[i];
+            const auto add = [&](std::vector<line>& to, const candidate_name* over) {
                 line entry{place, labels[i], log_times(of_a, shared, name, over), log_times(of_b, shared, name, over)};
                 if (!entry.a.empty() && !entry.b.empty()) to.push_back(std::move(entry));
             };

@@ -42,7 +42,7 @@ static std::string with_default_axes(const std::string& choice) {
     return std::string(cut) + ":axes=2" + others;
 }
 
-bool selection::matches(const contender_name& name) const {
+bool selection::matches(const candidate_name& name) const {
     return name.engine.empty() && std::ranges::all_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
                return wanted_[kind].empty() || wanted_[kind] == name[kind] ||
                       wanted_[kind] == with_default_axes(name[kind]);
@@ -113,7 +113,7 @@ std::vector<double> condition::values(const row_value& of) const {
 }
 
 std::vector<double> condition::differences(const row_value& of) const {
-    std::map<std::pair<contender_name, std::optional<std::uint64_t>>, const row*> before;
+    std::map<std::pair<candidate_name, std::optional<std::uint64_t>>, const row*> before;
     std::vector<double> shares;
     for (const row* r : rows_) {
         const row*& last = before[{r->name, r->scene.seed}];

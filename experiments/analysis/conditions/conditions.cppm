@@ -33,7 +33,7 @@ public:
     [[nodiscard]] const std::string& operator[](aabb::strategy_kind kind) const { return wanted_[kind]; }
     /// A copy with this kind replaced.
     [[nodiscard]] selection with(aabb::strategy_kind kind, std::string choice) const;
-    [[nodiscard]] bool matches(const contender_name& name) const;
+    [[nodiscard]] bool matches(const candidate_name& name) const;
 
     /// "sort=shell partition=axial_cut"
     friend std::string text_of(const selection& s);

@@ -85,11 +85,11 @@ number tree_bytes(const row& r) {
 }
 
 number wrong_share(const row& r) {
-    if (!r.missing) return std::nullopt;
+    if (!r.false_negatives) return std::nullopt;
     const auto reported = static_cast<double>(r.contacts ? *r.contacts : r.candidates);
-    const auto missing = static_cast<double>(*r.missing);
-    const auto invented = static_cast<double>(*r.invented);
-    return (missing + invented) / std::max(reported - invented + missing, 1.0);
+    const auto false_negatives = static_cast<double>(*r.false_negatives);
+    const auto false_positives = static_cast<double>(*r.false_positives);
+    return (false_negatives + false_positives) / std::max(reported - false_positives + false_negatives, 1.0);
 }
 
 std::vector<metric> row_metrics() {
@@ -123,8 +123,9 @@ std::vector<metric> row_metrics() {
         {"all_bytes", "bytes", "memory of all parts but the meshes, which every composition reads", bytes, better::less,
          all_bytes},
         {"tree_bytes", "bytes a triangle", "memory of the trees", bytes, better::less, tree_bytes},
-        error_of("missing", "pairs of the exact answer that are not found, over all frames", &row::missing),
-        error_of("invented", "pairs that are found and not in the exact answer, over all frames", &row::invented),
+        error_of("missing", "pairs of the exact answer that are not found, over all frames", &row::false_negatives),
+        error_of("invented", "pairs that are found and not in the exact answer, over all frames",
+                 &row::false_positives),
         error_of("wrong_share",
                  "pairs missing and invented, over those of the exact answer, or over one where it has none",
                  wrong_share),

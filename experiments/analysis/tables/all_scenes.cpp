@@ -16,7 +16,7 @@ std::optional<double> least_ratio_of(const scene_summary& scene) {
 
 /// The ratios of one composition or engine over the scenes.
 struct standing {
-    contender_name name;
+    candidate_name name;
     std::size_t wins = 0;  ///< scenes in which it is the fastest exact line
     bool exact = true;
     std::vector<double> ratios;
@@ -53,9 +53,9 @@ std::vector<std::string> cells_of(const scene_summary& scene, const summary_line
                                    fmt::format("{}", scene.objects),
                                    fmt::format("{}", scene.frames)};
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) cells.push_back(line.name[kind]);
-    cells.insert(cells.end(),
-                 {line.name.engine, fmt::format("{}", rank), line.status, text_of(line.missing), text_of(line.invented),
-                  fmt::format("{}", line.pairs), text_of(line.contacts), fmt::format("{}", line.repeats)});
+    cells.insert(cells.end(), {line.name.engine, fmt::format("{}", rank), line.status, text_of(line.false_negatives),
+                               text_of(line.false_positives), fmt::format("{}", line.pairs), text_of(line.contacts),
+                               fmt::format("{}", line.repeats)});
     const auto& ms = line.ms_a_frame;
     const auto& around = line.ratio_interval;
     for (const std::optional<double>& value :
@@ -73,7 +73,7 @@ std::vector<std::string> cells_of(const scene_summary& scene, const summary_line
 
 table overall_table_of(std::span<const scene_summary> scenes) {
     std::vector<standing> standings;
-    std::map<contender_name, std::size_t> places;
+    std::map<candidate_name, std::size_t> places;
     for (const scene_summary& scene : scenes) {
         const summary_line* const fastest = ranking_of(scene).front();
         const std::optional<double> least_ratio = least_ratio_of(scene);
@@ -84,7 +84,7 @@ table overall_table_of(std::span<const scene_summary> scenes) {
             standings[place->second].add(line, &line == fastest, least_ratio);
         }
     }
-    std::vector<contender_name> names;
+    std::vector<candidate_name> names;
     for (const standing& entry : standings) names.push_back(entry.name);
     const std::vector<aabb::strategy_kind> differing = differing_kinds(names);
     std::ranges::sort(standings, {}, [](const standing& s) { return std::tuple(!s.exact, s.ratio(), s.name); });

@@ -23,8 +23,8 @@ std::string interval_text(const std::optional<interval>& around) {
 }
 
 std::string answer_of(const summary_line& line) {
-    if (line.status == "exact" || !line.missing) return line.status;
-    return fmt::format("-{} +{}", *line.missing, *line.invented);
+    if (line.status == "exact" || !line.false_negatives) return line.status;
+    return fmt::format("-{} +{}", *line.false_negatives, *line.false_positives);
 }
 
 /// The decimals that show at least three digits of the fastest line of a scene.
@@ -145,7 +145,7 @@ std::string heading_of(const scene_summary& scene) {
     };
     if (!scene.common.empty())
         text += (scene.differing.empty()                 ? "this composition: "
-                 : any_of(&contender_name::is_automatic) ? "all compositions but auto: "
+                 : any_of(&candidate_name::is_automatic) ? "all compositions but auto: "
                                                          : "all compositions: ") +
                 scene.common + "\n";
     std::string same;
@@ -157,10 +157,10 @@ std::string heading_of(const scene_summary& scene) {
     const auto is_inexact = [](const summary_line& line) { return line.status != "exact"; };
     const bool inexact = std::ranges::any_of(scene.lines, is_inexact);
     const auto counted_line = std::ranges::find_if(
-        ranking, [](const summary_line* line) { return line->status != "exact" && line->missing.has_value(); });
+        ranking, [](const summary_line* line) { return line->status != "exact" && line->false_negatives.has_value(); });
     if (counted_line != ranking.end())
         text += fmt::format("an answer {} misses {} of the exact answer and invents {}\n", answer_of(**counted_line),
-                            *(*counted_line)->missing, *(*counted_line)->invented);
+                            *(*counted_line)->false_negatives, *(*counted_line)->false_positives);
     std::size_t repeats = 0;
     for (const summary_line& line : scene.lines) repeats = std::max(repeats, line.repeats);
     std::string given_up;

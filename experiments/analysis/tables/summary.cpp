@@ -22,8 +22,8 @@ void add(std::optional<Number>& sum, const std::optional<Number>& more) {
 void add_seed(const row& r, double share, summary_line& line) {
     line.pairs += r.candidates;
     add(line.contacts, r.contacts);
-    add(line.missing, r.missing);
-    add(line.invented, r.invented);
+    add(line.false_negatives, r.false_negatives);
+    add(line.false_positives, r.false_positives);
     if (line.status != "inexact") line.status = r.status;
     const auto all_bytes = measured("all_bytes")(r);
     line.bytes = std::max(line.bytes, all_bytes ? std::optional(static_cast<std::uint64_t>(*all_bytes)) : std::nullopt);
@@ -97,10 +97,10 @@ void set_ratio(summary_line& line, std::span<const row* const> repeats, std::spa
 
 /// Splits the strategies into those that differ and those that all share; labels consist of the former.
 void set_labels(scene_summary& scene) {
-    std::vector<contender_name> names;
+    std::vector<candidate_name> names;
     for (const summary_line& line : scene.lines) names.push_back(line.name);
     scene.differing = differing_kinds(names);
-    const auto composition = std::ranges::find(names, "", &contender_name::engine);
+    const auto composition = std::ranges::find(names, "", &candidate_name::engine);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (composition == names.end() || std::ranges::find(scene.differing, kind) != scene.differing.end()) continue;
         if (const std::string value = text_in_line(composition->choices, {&kind, 1}); !value.empty())
@@ -116,7 +116,7 @@ void set_labels(scene_summary& scene) {
 struct rows_of_scene {
     scene_summary scene;
     std::vector<repeats_of_line> lines;
-    std::map<contender_name, std::size_t> places;  // indices of `lines`
+    std::map<candidate_name, std::size_t> places;  // indices of `lines`
 
     void add(const row& r) {
         const auto [place, is_new] = places.emplace(r.name, lines.size());
@@ -168,11 +168,11 @@ std::vector<const summary_line*> ranking_of(const scene_summary& scene) {
     return lines;
 }
 
-std::vector<aabb::strategy_kind> differing_kinds(std::span<const contender_name> names) {
+std::vector<aabb::strategy_kind> differing_kinds(std::span<const candidate_name> names) {
     std::vector<aabb::strategy_kind> kinds;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         std::set<std::string> values;
-        for (const contender_name& name : names)
+        for (const candidate_name& name : names)
             if (name.engine.empty()) values.insert(name[kind]);
         if (values.size() > 1) kinds.push_back(kind);
     }
@@ -186,7 +186,7 @@ std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differi
     return columns;
 }
 
-std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing, const contender_name& name,
+std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing, const candidate_name& name,
                                        std::size_t rank) {
     std::vector<std::string> cells{std::to_string(rank)};
     if (name.engine.empty())
@@ -198,7 +198,7 @@ std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> diff
     return cells;
 }
 
-std::string only_name_of(const contender_name& name) {
+std::string only_name_of(const candidate_name& name) {
     constexpr std::size_t most = 32;  // beside all columns of numbers, in a line of 80
     const std::string text = text_in_line(name.choices);
     return text.empty() || characters(text) > most ? "this composition" : text;

@@ -53,13 +53,13 @@ struct named_table {
 
 /// All repeats of one composition or engine in one scene, over all seeds.
 struct summary_line {
-    contender_name name;
+    candidate_name name;
     std::string label;        ///< the parts of the name that differ within the scene
     std::size_t repeats = 0;  ///< over all seeds
     std::uint64_t pairs = 0;  ///< summed over the seeds, as are contacts, missing and invented
     std::optional<std::uint64_t> contacts;
     std::string status;  ///< "exact", or "inexact" if it is inexact for any seed
-    std::optional<std::uint64_t> missing, invented;
+    std::optional<std::uint64_t> false_negatives, false_positives;
     std::optional<quartiles> ms_a_frame;  ///< frames after frame 0, or frame 0 if there is no other
     /// Time over that of the first composition, the baseline, in the same repeat: the geometric mean over processes and
     /// seeds of the median over repeats.
@@ -119,12 +119,12 @@ struct scene_summary {
 namespace aabblab {
 
 /// The kinds in which these compositions differ.
-[[nodiscard]] std::vector<aabb::strategy_kind> differing_kinds(std::span<const contender_name> names);
+[[nodiscard]] std::vector<aabb::strategy_kind> differing_kinds(std::span<const candidate_name> names);
 /// The rank and the columns that name the rows, and the cells of a row in them. An engine occupies the first.
 [[nodiscard]] std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differing);
 [[nodiscard]] std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing,
-                                                     const contender_name& name, std::size_t rank);
+                                                     const candidate_name& name, std::size_t rank);
 /// The name of the only composition: all its strategies, or "this composition" if they do not fit in a table.
-[[nodiscard]] std::string only_name_of(const contender_name& name);
+[[nodiscard]] std::string only_name_of(const candidate_name& name);
 
 }  // namespace aabblab

@@ -59,7 +59,7 @@ public:
     void take_contacts(std::span<const aabb::contact> contacts) override {
         dynamics_.accelerate(state_.position, state_.velocity, contacts, acceleration_);
         // The first step uses the initial velocity, which contacts of the first frame do not change.
-        if (played() == 1) return;
+        if (frames_run() == 1) return;
         for (std::size_t i = 0; i < state_.velocity.size(); ++i) state_.velocity[i] += step_ * acceleration_[i];
     }
 

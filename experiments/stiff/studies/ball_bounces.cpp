@@ -19,10 +19,10 @@ struct bounce {
     double restitution = 0;
 };
 
-bounce bounce_of(const oscillator& contact, const contender& candidate, const integrator_info& stepping, double step,
+bounce bounce_of(const oscillator& contact, const candidate& tested, const integrator_info& stepping, double step,
                  double adaptive_tolerance) {
     const stepped_world world = ball_on_floor(contact, speed);
-    simulation ball(world, candidate, stepping, adaptive_tolerance);
+    simulation ball(world, tested, stepping, adaptive_tolerance);
     bounce result;
     double before = 0;
     for (double end = 4 * contact.contact_time(); ball.state().time < end;) {
@@ -60,9 +60,9 @@ void convergence(const stiff_setting& setting, stiff_result& result) {
     constexpr std::array steps = {0.4, 0.2, 0.1, 0.05};
     for (const integrator_info& i : integrators()) {
         std::vector<double> errors;
-        unless_it_gives_up(result, i.name, [&] {
+        record_failure_of(result, i.name, [&] {
             for (const double scaled : steps)
-                errors.push_back(bounce_of(contact, setting.who, i, scaled / contact.frequency, tolerance).error);
+                errors.push_back(bounce_of(contact, setting.tested, i, scaled / contact.frequency, tolerance).error);
         });
         if (errors.size() < steps.size()) continue;
         for (std::size_t s = 0; s < steps.size(); ++s) result.plot("ball_error_over_step", i.name, steps[s], errors[s]);
@@ -80,8 +80,8 @@ void stiffness(const stiff_setting& setting, stiff_result& result) {
         const oscillator contact{std::sqrt(k), damped};
         for (const integrator_info& i : integrators()) {
             if (i.order == 1) continue;
-            unless_it_gives_up(result, i.name, [&] {
-                const bounce measured = bounce_of(contact, setting.who, i, 0.05 / contact.frequency, tolerance);
+            record_failure_of(result, i.name, [&] {
+                const bounce measured = bounce_of(contact, setting.tested, i, 0.05 / contact.frequency, tolerance);
                 const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";
                 // Boost's central differences apply the dashpot a step late, which shortens contacts by ζ dt·ω.
                 const double share = i.order == 2 ? 0.015 : 0.01;
@@ -94,7 +94,7 @@ void stiffness(const stiff_setting& setting, stiff_result& result) {
 
 }  // namespace
 
-stiff_result play_ball_bounces(const stiff_setting& setting) {
+stiff_result run_ball_bounces(const stiff_setting& setting) {
     stiff_result result;
     convergence(setting, result);
     stiffness(setting, result);
@@ -107,7 +107,7 @@ stiff_study ball_bounces_study() {
         "A ball of 1 kg meets a floor at 1 m/s, on a linear spring, without a dashpot and with one for a restitution "
         "of 0.5, at dt·ω = 0.05 and stiffness 1e4 to 1e10 N/m",
         "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²))",
-        &play_ball_bounces,
+        &run_ball_bounces,
         {figure{.name = "ball_error_over_step",
                 .caption = "Error of the ball in contact over the step, of position and velocity together: each "
                            "integrator falls with its order.",

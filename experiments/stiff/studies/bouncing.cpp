@@ -38,7 +38,7 @@ constexpr published results[] = {{1e-3, 185.027, 72274.4}, {1e-4, 1.85055, 483.1
 
 }  // namespace
 
-stiff_result play_bouncing(const stiff_setting& setting) {
+stiff_result run_bouncing(const stiff_setting& setting) {
     stiff_result result;
     const stepped_world world = bouncing_balls();
     const double began = 49 * mass * gravity * height;
@@ -47,8 +47,8 @@ stiff_result play_bouncing(const stiff_setting& setting) {
         if (setting.quick && other.step < 1e-3) break;
         for (const integrator_info& i : integrators()) {
             if (i.adaptive || i.order == 5) continue;
-            unless_it_gives_up(result, i.name, [&] {
-                simulation balls(world, setting.who, i);
+            record_failure_of(result, i.name, [&] {
+                simulation balls(world, setting.tested, i);
                 const auto steps = static_cast<std::size_t>(std::llround(seconds / other.step));
                 double squares = 0;
                 double first = 0;
@@ -70,15 +70,15 @@ stiff_result play_bouncing(const stiff_setting& setting) {
                     result.add(
                         at_most(subject, "energy creep, first quarter to last", std::abs(last - first), limit / 4));
                 } else {
-                    result.add(told(subject, "energy error, RMS", std::sqrt(squares)));
-                    result.add(told(subject, "energy creep, first quarter to last", std::abs(last - first)));
+                    result.add(reported(subject, "energy error, RMS", std::sqrt(squares)));
+                    result.add(reported(subject, "energy creep, first quarter to last", std::abs(last - first)));
                 }
             });
         }
-        result.add(told("published: ODE, " + short_number(other.step) + " s, over 20 s", "energy error, RMS",
-                        std::sqrt(other.ode) / began));
-        result.add(told("published: DART, " + short_number(other.step) + " s, over 20 s", "energy error, RMS",
-                        std::sqrt(other.dart) / began));
+        result.add(reported("published: ODE, " + short_number(other.step) + " s, over 20 s", "energy error, RMS",
+                            std::sqrt(other.ode) / began));
+        result.add(reported("published: DART, " + short_number(other.step) + " s, over 20 s", "energy error, RMS",
+                            std::sqrt(other.dart) / began));
     }
     return result;
 }
@@ -90,7 +90,7 @@ stiff_study bouncing_study() {
         "that must not creep; errors are relative to the energy at the beginning",
         "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the error of ODE and "
         "DART with impulses",
-        &play_bouncing,
+        &run_bouncing,
         {figure{.name = "bouncing_energy",
                 .caption = "Energy of 49 balls that bounce without loss, over what they began with.",
                 .x = {"time (s)", false},

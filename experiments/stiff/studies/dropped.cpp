@@ -38,10 +38,10 @@ public:
     /// Ends early if bodies leave the range of valid poses.
     /// @param kept stores the positions of every `kept`-th step
     /// @throws aabb::input_error if it ends before the first of its twenty samples.
-    [[nodiscard]] trajectory play(const contender& candidate, const integrator_info& stepping, double step,
-                                  std::size_t kept, bool with_energy) const {
+    [[nodiscard]] trajectory run(const candidate& tested, const integrator_info& stepping, double step,
+                                 std::size_t kept, bool with_energy) const {
         trajectory t;
-        simulation balls(world_, candidate, stepping);
+        simulation balls(world_, tested, stepping);
         const double began = dynamics(world_).mechanical_energy(balls.state());
         const auto steps = static_cast<std::size_t>(std::llround(seconds(end) / step));
         std::vector<double> squares;
@@ -140,20 +140,20 @@ void plot_depths(const std::string& size, const std::string& label, const trajec
 }
 
 /// The trajectory of each method, with one thread per processor, since these runs are not timed.
-std::vector<trajectory> played_by(const std::vector<method>& methods, const dropped_balls& balls, double step,
-                                  const stiff_setting& setting) {
+std::vector<trajectory> run_by(const std::vector<method>& methods, const dropped_balls& balls, double step,
+                               const stiff_setting& setting) {
     std::vector<trajectory> trajectories(methods.size());
     std::atomic<std::size_t> begun = 0;
-    const auto play = [&](const std::function<void(double)>& progress) {
+    const auto run = [&](const std::function<void(double)>& progress) {
         for (std::size_t m = begun++; m < methods.size(); m = begun++) {
             progress(static_cast<double>(m) / static_cast<double>(methods.size()));
-            trajectories[m] = balls.play(methods[m].who, *integrator_named("velocity_verlet"), step, 1, true);
+            trajectories[m] = balls.run(methods[m].tested, *integrator_named("velocity_verlet"), step, 1, true);
         }
     };
     std::vector<std::future<void>> workers;
     for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
-        workers.push_back(std::async(std::launch::async, play, [](double) {}));
-    play(setting.progress);
+        workers.push_back(std::async(std::launch::async, run, [](double) {}));
+    run(setting.progress);
     for (std::future<void>& worker : workers) worker.get();
     return trajectories;
 }
@@ -162,9 +162,9 @@ std::vector<trajectory> played_by(const std::vector<method>& methods, const drop
 void compare_methods(const dropped_balls& balls, const std::string& size, const stiff_setting& setting,
                      stiff_result& result) {
     const double step = balls.seconds(1e-3);
-    const trajectory reference = balls.play(setting.who, *integrator_named("velocity_verlet"), step, 1, true);
+    const trajectory reference = balls.run(setting.tested, *integrator_named("velocity_verlet"), step, 1, true);
     const std::vector<method> methods = all_methods();
-    const std::vector<trajectory> trajectories = played_by(methods, balls, step, setting);
+    const std::vector<trajectory> trajectories = run_by(methods, balls, step, setting);
     constexpr std::size_t most_drawn = 9;
     std::size_t drawn = 0;
     const std::string departure = figure_name("departure " + size);
@@ -174,23 +174,24 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
         const auto first = std::ranges::find_if(errors, [](double d) { return !(d <= 0); });
         const std::string subject = methods[m].label + ", " + size;
         const double greatest = std::ranges::max(errors);
-        if (methods[m].who.exact && methods[m].who.exact_boxes) {
+        if (methods[m].tested.exact && methods[m].tested.exact_boxes) {
             result.add(at_most(subject, "greatest departure (diameters)", greatest, 0));
             continue;
         }
-        result.add(told(subject, "greatest departure (diameters)", greatest));
+        result.add(reported(subject, "greatest departure (diameters)", greatest));
         if (first == errors.end()) continue;
-        result.add(told(subject, "first step that is wrong", static_cast<double>(first - errors.begin()) + 1));
-        result.add(told(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
-        result.add(told(subject, "energy error, RMS", t.energy_error));
+        result.add(reported(subject, "first step that is wrong", static_cast<double>(first - errors.begin()) + 1));
+        result.add(reported(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
+        result.add(reported(subject, "energy error, RMS", t.energy_error));
         if (drawn == most_drawn) continue;
         if (drawn++ == 0) plot_depths(size, "exact", reference, result);
         for (std::size_t s = 0; s < errors.size(); ++s)
             result.plot(departure, methods[m].label, step * static_cast<double>(s + 1), errors[s]);
         plot_depths(size, methods[m].label, t, result);
     }
-    result.add(told("exact, " + size, "greatest depth of two balls (diameters)", std::ranges::max(reference.depths)));
-    result.add(told("exact, " + size, "energy error, RMS", reference.energy_error));
+    result.add(
+        reported("exact, " + size, "greatest depth of two balls (diameters)", std::ranges::max(reference.depths)));
+    result.add(reported("exact, " + size, "energy error, RMS", reference.energy_error));
 }
 
 /// Error over detection time, of each integrator by step size, and of stale Verlet lists by their age.
@@ -200,18 +201,18 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
     const auto kept = [&](double dt) { return static_cast<std::size_t>(std::llround(steps.front() / dt)); };
     const integrator_info& verlet = *integrator_named("velocity_verlet");
     const double finest = steps.back() / 16;
-    const trajectory reference = balls.play(setting.who, verlet, finest, kept(finest), false);
+    const trajectory reference = balls.run(setting.tested, verlet, finest, kept(finest), false);
     const auto error_of = [&](const trajectory& t) { return balls.departures(t, reference).back(); };
     for (const integrator_info& i : integrators()) {
         if (i.adaptive || i.order == 5) continue;
         std::vector<double> energy_errors;
         for (const double dt : steps) {
-            const trajectory t = balls.play(setting.who, i, dt, kept(dt), true);
+            const trajectory t = balls.run(setting.tested, i, dt, kept(dt), true);
             const double error = error_of(t);
             result.plot("error_over_time", i.name, t.detection_ms, error);
             const std::string subject = std::string(i.name) + ", " + short_number(dt) + " s";
-            result.add(told(subject, "trajectory error at the end (diameters)", error));
-            result.add(told(subject, "energy error, RMS", t.energy_error));
+            result.add(reported(subject, "trajectory error at the end (diameters)", error));
+            result.add(reported(subject, "energy error, RMS", t.energy_error));
             energy_errors.push_back(t.energy_error);
         }
         // Each step size is half of the previous one.
@@ -221,7 +222,7 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
     }
     for (const char* const every : {"8", "16", "32", "64"}) {
         const method m = composed(std::string("prepare neighbour_list:margin=0,every=") + every);
-        const trajectory t = balls.play(m.who, verlet, 1e-3, kept(1e-3), false);
+        const trajectory t = balls.run(m.tested, verlet, 1e-3, kept(1e-3), false);
         result.plot("error_over_time", "velocity_verlet, neighbour_list:margin=0", t.detection_ms, error_of(t));
     }
 }
@@ -254,15 +255,15 @@ std::vector<figure> figures() {
 
 }  // namespace
 
-stiff_result play_dropped(const stiff_setting& setting) {
+stiff_result run_dropped(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t side = setting.quick ? 3 : 6;
     const dropped_balls balls(side, 1);
     compare_steps(balls, setting, result);
     // They publish the mean squared error over the run, J², of an energy of 34,454 J.
-    result.add(told("published: ODE, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(112.326) / 34454));
+    result.add(reported("published: ODE, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(112.326) / 34454));
     result.add(
-        told("published: Bullet without ERP, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
+        reported("published: Bullet without ERP, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
     compare_methods(balls, sizes[0], setting, result);
     compare_methods(dropped_balls(side, 0.01), sizes[1], setting, result);
     return result;
@@ -275,7 +276,7 @@ stiff_study dropped_study() {
         "pushed by a pressure on the surface inside the other: what a step and what each method does to the trajectory",
         "the trajectory of exact contacts; energy errors that fall with the order of the integrator; SimBenchmark's "
         "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv) for ODE and Bullet with impulses",
-        &play_dropped, figures()};
+        &run_dropped, figures()};
 }
 
 }  // namespace aabblab

@@ -22,7 +22,7 @@ double share_of_rest(double frequency, double time) {
 
 }  // namespace
 
-stiff_result play_overdamped(const stiff_setting& setting) {
+stiff_result run_overdamped(const stiff_setting& setting) {
     stiff_result result;
     for (const double k : {1e4, 1e6, 1e8, 1e10}) {
         const double frequency = std::sqrt(k);
@@ -33,9 +33,9 @@ stiff_result play_overdamped(const stiff_setting& setting) {
             if (!i.adaptive) continue;
             // Other adaptive integrators need as many steps as an explicit one, too many for stiff contacts.
             if (i.name != "bdf" && explicit_steps > (setting.quick ? 1e4 : 1e6)) continue;
-            unless_it_gives_up(result, i.name, [&] {
+            record_failure_of(result, i.name, [&] {
                 const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";
-                simulation ball(world, setting.who, i, 1e-6 * gravity / k);
+                simulation ball(world, setting.tested, i, 1e-6 * gravity / k);
                 const double sinking = 1 / (frequency * (damping - std::sqrt(damping * damping - 1)));
                 ball.advance(sinking);
                 result.add(within(subject, "depth while it sinks over depth at rest",
@@ -47,7 +47,7 @@ stiff_result play_overdamped(const stiff_setting& setting) {
                 if (i.name == "bdf")
                     result.add(at_most(subject, "detections", detections, 2000));
                 else
-                    result.add(told(subject, "detections", detections));
+                    result.add(reported(subject, "detections", detections));
             });
         }
     }
@@ -58,7 +58,7 @@ stiff_study overdamped_study() {
     return {"overdamped",
             "A ball of 1 kg is let go on a floor whose dashpot is ten times the critical one, for a second: what "
             "takes steps as long as the motion allows, and what takes them as short as the contact's stiffness asks",
-            "closed form of the overdamped oscillator under gravity", &play_overdamped};
+            "closed form of the overdamped oscillator under gravity", &run_overdamped};
 }
 
 }  // namespace aabblab

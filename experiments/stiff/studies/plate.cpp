@@ -15,12 +15,12 @@ constexpr double extent = double{thickness} + 2 * double{radius};  // over which
 /// A body that flies down through a plate with a constant displacement per frame.
 class shot {
 public:
-    shot(const contender& candidate, double step)
+    shot(const candidate& tested, double step)
         : plate_(slab(2, thickness)),
           body_(octahedron(radius)),
           step_(step),
-          global_(candidate.make_global(aabb::instrumentation::none)),
-          local_(candidate.make_local(aabb::instrumentation::none)) {
+          global_(tested.make_global(aabb::instrumentation::none)),
+          local_(tested.make_local(aabb::instrumentation::none)) {
         for (const std::uint32_t id : {0U, 1U}) global_->insert(id);
         local_->add_model(plate_);
         local_->add_model(body_);
@@ -75,11 +75,11 @@ private:
 
 }  // namespace
 
-stiff_result play_plate(const stiff_setting& setting) {
+stiff_result run_plate(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t shots = setting.quick ? 200 : 2000;
     for (const double ratio : {0.5, 1.0, 1.25, 2.0, 4.0, 8.0, 16.0}) {
-        shot fired(setting.who, ratio * extent);
+        shot fired(setting.tested, ratio * extent);
         const double expected = std::max(0.0, 1 - 1 / ratio);
         result.plot("tunnelled", "1 - reach / way", ratio, expected);
         for (const bool swept : {false, true}) {
@@ -89,7 +89,7 @@ stiff_result play_plate(const stiff_setting& setting) {
             const double share = static_cast<double>(unseen) / static_cast<double>(shots);
             result.plot("tunnelled", swept ? "swept boxes" : "plain boxes", ratio, share);
             const std::string subject = "a step of " + short_number(ratio) + " reaches, " + (swept ? "swept" : "plain");
-            stiff_row row = told(subject, "share tunnelled of " + std::to_string(shots), share);
+            stiff_row row = reported(subject, "share tunnelled of " + std::to_string(shots), share);
             row.rule = swept ? "0" : short_number(expected) + ", one shot more or less";
             row.verdict =
                 verdict_if(std::abs(share - (swept ? 0 : expected)) <= (swept ? 0 : 1.01 / static_cast<double>(shots)));
@@ -106,7 +106,7 @@ stiff_study plate_study() {
         "stand where a step ends; swept ones reach from step to step, and where they meet the step is looked into in "
         "parts that no body jumps over",
         "1 - reach/way where a step's way is longer than body and plate together, their reach; none with swept boxes",
-        &play_plate,
+        &run_plate,
         {figure{
             .name = "tunnelled",
             .caption = "Share of shots that go through a plate unseen, over the way of a step.",

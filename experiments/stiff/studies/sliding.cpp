@@ -65,10 +65,10 @@ aabb::mesh lying(aabb::mesh m, const lie& l) {
 }
 
 /// The normal force at each position, relative to the force if all tips are detected at their depth.
-std::vector<double> forces_of(const contender& candidate, const lie& l) {
+std::vector<double> forces_of(const candidate& tested, const lie& l) {
     const aabb::mesh lower = lying(floor_of(8, 16), l);
     const aabb::mesh upper = lying(comb(), l);
-    const auto stage = candidate.make_local(aabb::instrumentation::none);
+    const auto stage = tested.make_local(aabb::instrumentation::none);
     stage->add_model(lower);
     stage->add_model(upper);
     const contact_law law{contact_geometry::each_vertex, 1, 0, rest * l.size};
@@ -96,7 +96,7 @@ double greatest_jump(const std::vector<double>& forces) {
 
 }  // namespace
 
-stiff_result play_sliding(const stiff_setting& setting) {
+stiff_result run_sliding(const stiff_setting& setting) {
     stiff_result result;
     const std::vector<lie> lies = {{"lattice", {}, 1, 0},
                                    {"oblique, 1 m", oblique(), 1, 1e-5},
@@ -112,20 +112,21 @@ stiff_result play_sliding(const stiff_setting& setting) {
     for (const lie& l : lies)
         for (const method& m : methods) {
             setting.progress(static_cast<double>(done++) / static_cast<double>(lies.size() * methods.size()));
-            const std::vector<double> forces = forces_of(m.who, l);
+            const std::vector<double> forces = forces_of(m.tested, l);
             const double jump = greatest_jump(forces);
             const std::string subject = m.label + ", " + l.name;
             const double least = std::ranges::min(forces);
             const double greatest = std::ranges::max(forces);
             if (l.pressed < 0) {
                 const std::string quantity = "greatest force before they touch";
-                result.add(m.who.exact ? at_most(subject, quantity, greatest, 0) : told(subject, quantity, greatest));
+                result.add(m.tested.exact ? at_most(subject, quantity, greatest, 0)
+                                          : reported(subject, quantity, greatest));
                 continue;
             }
             const std::string jumps = "greatest jump of the force";
             const std::string lost = "least force";
-            result.add(m.who.exact ? at_most(subject, jumps, jump, 1e-3) : told(subject, jumps, jump));
-            result.add(m.who.exact ? within(subject, lost, least, 1, 1e-3) : told(subject, lost, least));
+            result.add(m.tested.exact ? at_most(subject, jumps, jump, 1e-3) : reported(subject, jumps, jump));
+            result.add(m.tested.exact ? within(subject, lost, least, 1, 1e-3) : reported(subject, lost, least));
             if (l.size == 0.01 && least < 0.999 && drawn++ < most_drawn)
                 for (int i = 0; i < positions; ++i)
                     result.plot("sliding_force", m.label, displacement * i, forces[static_cast<std::size_t>(i)]);
@@ -139,7 +140,7 @@ stiff_study sliding_study() {
             "as large as 1 m, 10 mm and 0.1 mm: each tip that is found to touch carries a 64th of the load; and a "
             "100,000th of their size above it, where there is no load",
             "the load, to one in a thousand, without a jump; rounding of vertices to float allows 1e-4",
-            &play_sliding,
+            &run_sliding,
             {figure{.name = "sliding_force",
                     .caption = "The force between two meshes of 10 mm that slide along each other, oblique and pressed "
                                "by a 100,000th, over the one that 64 teeth share; what keeps it is not drawn.",

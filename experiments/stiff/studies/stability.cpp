@@ -19,8 +19,8 @@ constexpr double at_rest = gravity / (frequency * frequency);  // the depth of e
 /// A ball that oscillates about its equilibrium and never leaves contact.
 class swinging_ball {
 public:
-    swinging_ball(const contender& candidate, const integrator_info& stepping, double amplitude, double tolerance)
-        : world_(world_with(amplitude)), ball_(world_, candidate, stepping, tolerance) {}
+    swinging_ball(const candidate& tested, const integrator_info& stepping, double amplitude, double tolerance)
+        : world_(world_with(amplitude)), ball_(world_, tested, stepping, tolerance) {}
 
     void advance(double step) { ball_.advance(step); }
     [[nodiscard]] double energy() const {
@@ -42,9 +42,9 @@ private:
 
 /// The relative change of the greatest energy from the first to the last tenth of the periods, which ignores bounded
 /// oscillations of the energy.
-double drift_of(const contender& candidate, const integrator_info& stepping, double scaled, std::size_t periods,
+double drift_of(const candidate& tested, const integrator_info& stepping, double scaled, std::size_t periods,
                 double tolerance) {
-    swinging_ball ball(candidate, stepping, at_rest / 100, tolerance);
+    swinging_ball ball(tested, stepping, at_rest / 100, tolerance);
     const auto steps = static_cast<std::size_t>(static_cast<double>(periods) * 2 * std::numbers::pi / scaled);
     double first = 0;
     double last = 0;
@@ -66,9 +66,9 @@ double kept_by_dormand_prince(double scaled) {
 
 /// Whether the energy does not grow. Symplectic integrators conserve a modified energy, so that the real one
 /// oscillates, more so near their limit.
-bool is_stable(const contender& candidate, const integrator_info& stepping, double scaled) {
+bool is_stable(const candidate& tested, const integrator_info& stepping, double scaled) {
     // The amplitude is so small that the ball stays in contact even if it grows.
-    swinging_ball ball(candidate, stepping, at_rest * 1e-6, 0);
+    swinging_ball ball(tested, stepping, at_rest * 1e-6, 0);
     double before = 0;
     double after = 0;
     constexpr int steps = 20000;
@@ -83,12 +83,12 @@ bool is_stable(const contender& candidate, const integrator_info& stepping, doub
     return after <= 1.01 * before;
 }
 
-double limit_of(const contender& candidate, const integrator_info& stepping) {
+double limit_of(const candidate& tested, const integrator_info& stepping) {
     double stable = 0.1;
     double unstable = 4;
     while (unstable - stable > 1e-3) {
         const double middle = (stable + unstable) / 2;
-        (is_stable(candidate, stepping, middle) ? stable : unstable) = middle;
+        (is_stable(tested, stepping, middle) ? stable : unstable) = middle;
     }
     return (stable + unstable) / 2;
 }
@@ -101,19 +101,19 @@ void mark_limits(std::span<figure> figures, std::span<const stiff_row> rows) {
 
 }  // namespace
 
-stiff_result play_stability(const stiff_setting& setting) {
+stiff_result run_stability(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t periods = setting.quick ? 100 : 1000;
     for (const integrator_info& i : integrators()) {
         std::vector<double> steps = {0.05, 0.1, 0.157, 0.314, 0.8};
         if (!i.adaptive && i.stable_below > 1.5) steps.insert(steps.end(), {1.6, 1.9});
-        unless_it_gives_up(result, i.name, [&] {
+        record_failure_of(result, i.name, [&] {
             for (const double scaled : steps) {
-                const double drift = drift_of(setting.who, i, scaled, periods, 1e-6 * at_rest / 100);
+                const double drift = drift_of(setting.tested, i, scaled, periods, 1e-6 * at_rest / 100);
                 result.plot("energy_drift", i.name, scaled, std::abs(drift));
                 const std::string subject = std::string(i.name) + ", dt·ω " + short_number(scaled);
                 if (i.adaptive) {
-                    result.add(told(subject, "energy drift", drift));
+                    result.add(reported(subject, "energy drift", drift));
                 } else if (i.order < 5) {
                     result.add(
                         at_most(subject, "energy drift, without sign", std::abs(drift), setting.quick ? 0.05 : 1e-3));
@@ -126,8 +126,8 @@ stiff_result play_stability(const stiff_setting& setting) {
             }
         });
         if (i.adaptive) continue;
-        unless_it_gives_up(result, i.name, [&] {
-            const double limit = limit_of(setting.who, i);
+        record_failure_of(result, i.name, [&] {
+            const double limit = limit_of(setting.tested, i);
             result.add(within(std::string(i.name), greatest_step, limit, i.stable_below, 0.005));
         });
     }
@@ -142,7 +142,7 @@ stiff_study stability_study() {
         "central differences end at dt·ω = 2; the stability polynomial of Dormand and Prince (1980) leaves the unit "
         "circle at 0.9972 on the imaginary axis; steps of 5 to 10 % of the contact time, dt·ω 0.157 to 0.314, are the "
         "usual advice for discrete elements",
-        &play_stability,
+        &run_stability,
         {figure{.name = "energy_drift",
                 .caption = "Relative drift of a ball's energy over 1000 periods (100 with --quick) in contact, without "
                            "sign, over the step; marked are the usual advice and the steps from which on an "

@@ -41,7 +41,7 @@ double depth_of(const motion_state& state, std::size_t i) {
 
 }  // namespace
 
-stiff_result play_stack(const stiff_setting& setting) {
+stiff_result run_stack(const stiff_setting& setting) {
     stiff_result result;
     for (const double ratio : {1.0, 10.0, 100.0, 1000.0}) {
         const stepped_world world = stack_of(ratio);
@@ -49,8 +49,8 @@ stiff_result play_stack(const stiff_setting& setting) {
             // The dashpot limits explicit integrators to steps of a quarter of m/c.
             const double step = i.name == "velocity_verlet" ? 0.25 / world.law.damping : 0.05;
             if (i.name != "bdf" && (i.name != "velocity_verlet" || ratio > (setting.quick ? 1 : 10))) continue;
-            unless_it_gives_up(result, i.name, [&] {
-                simulation stack(world, setting.who, i, 1e-9);
+            record_failure_of(result, i.name, [&] {
+                simulation stack(world, setting.tested, i, 1e-9);
                 double greatest = 0;
                 const double end = 2;
                 while (stack.state().time < end) {
@@ -67,7 +67,7 @@ stiff_result play_stack(const stiff_setting& setting) {
                 const std::string subject = std::string(i.name) + ", masses 1 to " + short_number(ratio) + " kg";
                 result.add(within(subject, "greatest depth (m)", greatest, above * gravity / stiffness, 0.01));
                 result.add(at_most(subject, "error of a depth at rest over mg/k", worst, 1e-3));
-                result.add(told(subject, "detections", static_cast<double>(stack.detections())));
+                result.add(reported(subject, "detections", static_cast<double>(stack.detections())));
             });
         }
     }
@@ -79,7 +79,7 @@ stiff_study stack_study() {
             "Ten bodies on each other, light under heavy, on springs of 1e6 N/m and dashpots that are critical for the "
             "slowest motion: how deep each is in the one below after 2 s",
             "mg/k, where m is all mass above; after the scenes HighMassRatio1 of Box2D and HeavyOnLightTest of Jolt",
-            &play_stack};
+            &run_stack};
 }
 
 }  // namespace aabblab

@@ -90,7 +90,7 @@ void kill_descendants() {
 /// Forks a process that will become the program. The keeper, this process, waits until that one ends, or until SIGTERM,
 /// which the end of the parent also causes. It then kills all descendants, in any session, and ends like the program.
 /// @returns true in the new process; false if fork fails
-[[nodiscard]] bool keep(int output, int refusal, pid_t parent) {
+[[nodiscard]] bool keep(int output, int rejection, pid_t parent) {
     sigset_t awaited;
     sigset_t before;
     sigset_t none;
@@ -110,7 +110,7 @@ void kill_descendants() {
         return true;
     }
     close(output);
-    close(refusal);
+    close(rejection);
     int status = 0;
     for (pid_t ended = 0; ended != program;) {
         if (sigwaitinfo(&awaited, nullptr) == SIGTERM) {
@@ -187,24 +187,24 @@ child_result run_child(const std::string& program, const std::vector<std::string
     for (std::string& text : texts) pointers.push_back(text.data());
     pointers.push_back(nullptr);
     pipe_ends output;
-    pipe_ends refusal;
-    if (!output.open() || !refusal.open()) return {errno, 0, false, {}};
+    pipe_ends rejection;
+    if (!output.open() || !rejection.open()) return {errno, 0, false, {}};
     const pid_t parent = getpid();
     const pid_t child = fork();
     if (child < 0) return {errno, 0, false, {}};
     if (child == 0) {
         if (!where.kept) end_with(parent, SIGKILL);
-        if (!where.kept || keep(output.ends[1], refusal.ends[1], parent))
+        if (!where.kept || keep(output.ends[1], rejection.ends[1], parent))
             become(pointers.data(), where, output.ends[1]);
         const int why = errno;
-        _exit(write(refusal.ends[1], &why, sizeof why) < 0 ? 126 : 127);
+        _exit(write(rejection.ends[1], &why, sizeof why) < 0 ? 126 : 127);
     }
     output.close_end(1);
-    refusal.close_end(1);
+    rejection.close_end(1);
     child_result result{};
     // If the program starts, exec closes the other end, and nothing is read.
-    if (const std::string why = read_all(refusal.ends[0]); why.size() == sizeof result.refused)
-        std::memcpy(&result.refused, why.data(), why.size());
+    if (const std::string why = read_all(rejection.ends[0]); why.size() == sizeof result.rejected)
+        std::memcpy(&result.rejected, why.data(), why.size());
     std::optional<clock::time_point> end;
     if (where.timeout.count() > 0) end = clock::now() + where.timeout;
     result.printed = read_all(output.ends[0], end);
@@ -220,8 +220,8 @@ ended_process run_to_end(const std::filesystem::path& program, const std::vector
                          const std::filesystem::path& log) {
     flush_output();
     const child_result ended = run_child(program.string(), arguments, {.folder = {}, .input = {}, .errors = log});
-    if (ended.refused != 0)
-        throw aabb::input_error(program.string() + " cannot be started: " + std::strerror(ended.refused));
+    if (ended.rejected != 0)
+        throw aabb::input_error(program.string() + " cannot be started: " + std::strerror(ended.rejected));
     const int status = ended.status;
     if (!WIFEXITED(status) || WEXITSTATUS(status) > 1)
         throw aabb::input_error(program.filename().string() +

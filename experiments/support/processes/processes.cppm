@@ -15,7 +15,7 @@ struct surroundings {
 };
 
 struct child_result {
-    int refused;     ///< errno if it could not be started, otherwise 0
+    int rejected;    ///< errno if it could not be started, otherwise 0
     int status;      ///< of waitpid
     bool timed_out;  ///< it was killed; its descendants survive unless it was kept
     std::string printed;

@@ -12,7 +12,7 @@ double length_of(const vec3d& v) {
 
 }  // namespace
 
-exact_answer::exact_answer(std::size_t objects, const mesh_scene* meshes) : meshes_(meshes) {
+ground_truth::ground_truth(std::size_t objects, const mesh_scene* meshes) : meshes_(meshes) {
     constexpr std::size_t most_for_brute_force = 20000;
     box_engine_ = objects <= most_for_brute_force ? "brute_force" : "cgal";
     boxes_ = make_box_engine(box_engine_);
@@ -25,11 +25,11 @@ exact_answer::exact_answer(std::size_t objects, const mesh_scene* meshes) : mesh
     }
 }
 
-std::string exact_answer::name() const {
+std::string ground_truth::name() const {
     return triangles_ ? box_engine_ + " for boxes, cgal on all pairs of objects for triangles" : box_engine_;
 }
 
-void exact_answer::play(const scene_frame& frame) {
+void ground_truth::compute(const scene_frame& frame) {
     pairs_.clear();
     contacts_.clear();
     for (const std::uint32_t object : frame.departures) boxes_->remove(object);
@@ -49,7 +49,7 @@ void exact_answer::play(const scene_frame& frame) {
     std::ranges::sort(contacts_);
 }
 
-void exact_answer::follow_meshes() {
+void ground_truth::follow_meshes() {
     const std::vector<mesh>& meshes = meshes_->meshes;
     for (std::uint32_t m = 0; m < meshes.size(); ++m) {
         if (!meshes_->deforms(m)) continue;
@@ -58,7 +58,7 @@ void exact_answer::follow_meshes() {
     }
 }
 
-exact_answer::sphere exact_answer::sphere_around(const mesh& m) {
+ground_truth::sphere ground_truth::sphere_around(const mesh& m) {
     const box bounds = bounds_of(m);
     sphere around{};
     for (int k = 0; k < 3; ++k) around.centre[k] = (double{bounds.min[k]} + double{bounds.max[k]}) / 2;
@@ -73,7 +73,7 @@ exact_answer::sphere exact_answer::sphere_around(const mesh& m) {
     return around;
 }
 
-std::vector<index_pair> exact_answer::near_objects(std::span<const pose> poses) const {
+std::vector<index_pair> ground_truth::near_objects(std::span<const pose> poses) const {
     std::vector<sphere> placed;
     for (std::size_t object = 0; object < poses.size(); ++object) {
         const pose& p = poses[object];

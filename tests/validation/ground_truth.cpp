@@ -22,15 +22,15 @@ std::vector<contact> contacts_by_brute_force(const told_scene& scene) {
 }  // namespace
 
 TEST_CASE("the exact answer says what gives it") {
-    REQUIRE(exact_answer(20000, nullptr).name() == "brute_force");
-    REQUIRE(exact_answer(20001, nullptr).name() == "cgal");
+    REQUIRE(ground_truth(20000, nullptr).name() == "brute_force");
+    REQUIRE(ground_truth(20001, nullptr).name() == "cgal");
     const told_scene scene({sphere(3)}, {0, 0, 0});
-    REQUIRE(exact_answer(3, &scene).name() == "brute_force for boxes, cgal on all pairs of objects for triangles");
+    REQUIRE(ground_truth(3, &scene).name() == "brute_force for boxes, cgal on all pairs of objects for triangles");
 }
 
 TEST_CASE("the exact pairs are those of the objects that are there") {
     for (const std::size_t objects : {3U, 20001U}) {
-        exact_answer exact(objects, nullptr);
+        ground_truth exact(objects, nullptr);
         std::vector<box> boxes(objects, box{{0, 0, 0}, {1, 1, 1}});
         const std::vector<std::uint32_t> first = {2, 0};
         exact.play({boxes, {}, first, {}});
@@ -48,7 +48,7 @@ TEST_CASE("the exact pairs are those of the objects that are there") {
 TEST_CASE("the exact contacts follow meshes that deform, and do not depend on the boxes of global search") {
     told_scene scene({sphere(6), sphere(5)}, {0, 1, 0});
     scene.soft = 0;
-    exact_answer exact(poses.size(), &scene);
+    ground_truth exact(poses.size(), &scene);
     std::vector<box> apart;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const auto x = static_cast<float>(2 * i);

@@ -15,72 +15,72 @@ namespace aabblab {
 namespace {
 
 /// Takes one stage from the composition.
-void use(contender& candidate, const aabb::composition& c, aabb::stage stage) {
-    for (const aabb::strategy_kind kind : kinds_of(stage)) candidate.name[kind] = to_text(c[kind]);
-    candidate.exact = candidate.exact && is_exact(c, stage);
+void use(candidate& tested, const aabb::composition& c, aabb::stage stage) {
+    for (const aabb::strategy_kind kind : kinds_of(stage)) tested.name[kind] = to_text(c[kind]);
+    tested.exact = tested.exact && is_exact(c, stage);
     if (stage == aabb::stage::global_search) {
-        candidate.exact_boxes = is_exact(c, stage);
-        candidate.whole_boxes = needs_meshes(c).empty();
-        candidate.make_global = [c](aabb::instrumentation counted) { return aabb::compose_global_search(c, counted); };
+        tested.exact_boxes = is_exact(c, stage);
+        tested.whole_boxes = needs_meshes(c).empty();
+        tested.make_global = [c](aabb::instrumentation counted) { return aabb::compose_global_search(c, counted); };
     } else {
-        candidate.make_local = [c](aabb::instrumentation counted) { return aabb::compose_local_detection(c, counted); };
+        tested.make_local = [c](aabb::instrumentation counted) { return aabb::compose_local_detection(c, counted); };
     }
 }
 
 }  // namespace
 
-contender contender_of(const aabb::composition& c, bool meshes) {
-    contender candidate;
-    use(candidate, c, aabb::stage::global_search);
-    if (meshes) use(candidate, c, aabb::stage::local_detection);
-    return candidate;
+candidate candidate_of(const aabb::composition& c, bool meshes) {
+    candidate tested;
+    use(tested, c, aabb::stage::global_search);
+    if (meshes) use(tested, c, aabb::stage::local_detection);
+    return tested;
 }
 
-contender contender_of(const aabb::named_strategies& named, const scene_play& scene) {
+candidate candidate_of(const aabb::named_strategies& named, const scene_frames& scene) {
     aabb::composition initial = aabb::complete_composition(named);
-    const auto selected = [named, outlook = outlook_of(scene)](aabb::composition& c) -> const aabb::composition& {
-        select_for_scene(c, named, outlook);
+    const auto selected = [named, traits = traits_of(scene)](aabb::composition& c) -> const aabb::composition& {
+        select_for_scene(c, named, traits);
         return c;
     };
-    contender candidate = contender_of(selected(initial), scene.meshes() != nullptr);
+    candidate tested = candidate_of(selected(initial), scene.meshes() != nullptr);
     // The selection runs when the stages are created, so that its time counts as build time.
-    candidate.make_global = [selected, initial](aabb::instrumentation counted) mutable {
+    tested.make_global = [selected, initial](aabb::instrumentation counted) mutable {
         return aabb::compose_global_search(selected(initial), counted);
     };
-    if (candidate.make_local)
-        candidate.make_local = [selected, initial](aabb::instrumentation counted) mutable {
+    if (tested.make_local)
+        tested.make_local = [selected, initial](aabb::instrumentation counted) mutable {
             return aabb::compose_local_detection(selected(initial), counted);
         };
     // The name does not depend on what is selected, so that it is the same for all scenes.
-    candidate.name = {};
-    candidate.name.engine = contender_name::automatic;
+    tested.name = {};
+    tested.name.engine = candidate_name::automatic;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (named[kind])
-            candidate.name.engine += " + " +
-                                     (named[kind]->name == "none" ? std::string(name_of(kind)) + " " : std::string()) +
-                                     to_text(*named[kind]);
-    return candidate;
+            tested.name.engine += " + " +
+                                  (named[kind]->name == "none" ? std::string(name_of(kind)) + " " : std::string()) +
+                                  to_text(*named[kind]);
+    return tested;
 }
 
-aabb::scene_outlook outlook_of(const scene_play& scene) {
+aabb::scene_traits traits_of(const scene_frames& scene) {
     if (!scene.meshes()) return {.frames = scene.frames()};
-    return aabb::outlook_of(scene.meshes()->meshes, scene.objects(), scene.frames());
+    return aabb::traits_of(scene.meshes()->meshes, scene.objects(), scene.frames());
 }
 
-std::optional<contender> contender_of(const aabb::engine_info& engine, bool meshes) {
+std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes) {
     if (!engine.searches_boxes && !(meshes && engine.collides_meshes)) return std::nullopt;
-    contender candidate;
-    candidate.name.engine = engine.name;
-    candidate.exact = engine.exact;
+    candidate tested;
+    tested.name.engine = engine.name;
+    tested.exact = engine.exact;
     if (engine.searches_boxes)
-        candidate.make_global = [name = engine.name](aabb::instrumentation) { return aabb::make_box_engine(name); };
+        tested.make_global = [name = engine.name](aabb::instrumentation) { return aabb::make_box_engine(name); };
     else
-        use(candidate, {}, aabb::stage::global_search);
+        use(tested, {}, aabb::stage::global_search);
     if (meshes && engine.collides_meshes)
-        candidate.make_local = [name = engine.name](aabb::instrumentation) { return aabb::make_mesh_engine(name); };
+        tested.make_local = [name = engine.name](aabb::instrumentation) { return aabb::make_mesh_engine(name); };
     else if (meshes)
-        use(candidate, {}, aabb::stage::local_detection);
-    return candidate;
+        use(tested, {}, aabb::stage::local_detection);
+    return tested;
 }
 
 // External engines: third-party programs that read a recording, and write the pairs they find and their times.
@@ -197,7 +197,7 @@ public:
     /// @param times receives the reported times, by frame
     /// @throws engine_timeout, and aabb::input_error if the engine cannot be started or fails, or if its times are
     /// malformed
-    external_search(const external_engine& engine, exchange_folder& exchange, std::vector<told_times>& times)
+    external_search(const external_engine& engine, exchange_folder& exchange, std::vector<reported_times>& times)
         : place_(engine.place + ": " + exchange.scene_text() + ": "), name_("external engine '" + engine.name + "'") {
         in_place([&] {
             run(engine, exchange);
@@ -222,7 +222,7 @@ public:
     [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
 
 private:
-    struct found_pair {
+    struct intersecting_pair {
         std::uint32_t frame;
         aabb::index_pair pair;
     };
@@ -264,15 +264,15 @@ private:
         if (ended.timed_out)
             throw engine_timeout("the " + name_ + " was killed: it had not ended after " +
                                  std::to_string(engine.timeout_s) + " s, its timeout_s");
-        if (ended.refused == ENOENT && engine.program.find('/') == std::string::npos)
+        if (ended.rejected == ENOENT && engine.program.find('/') == std::string::npos)
             fail(": there is no program " + engine.program + " in PATH; write ./" + engine.program +
                  " for one in the folder of the config");
-        if (ended.refused != 0) fail(": " + engine.program + " cannot be started: " + std::strerror(ended.refused));
+        if (ended.rejected != 0) fail(": " + engine.program + " cannot be started: " + std::strerror(ended.rejected));
         if (!WIFEXITED(ended.status)) fail(" was ended by signal " + std::to_string(WTERMSIG(ended.status)));
         if (WEXITSTATUS(ended.status) != 0) fail(" ended with status " + std::to_string(WEXITSTATUS(ended.status)));
     }
 
-    void read_times(std::vector<told_times>& times) const {
+    void read_times(std::vector<reported_times>& times) const {
         times.clear();
         engine_output table("the times of the " + name_, times_file_, "frame,update_ms,search_ms");
         while (table.next()) {
@@ -317,52 +317,51 @@ private:
     std::filesystem::path pairs_file_, times_file_;
     std::size_t objects_ = 0, frames_ = 0;
     std::optional<engine_output> table_;
-    std::uint32_t frame_ = 0;          // the next frame
-    std::optional<found_pair> ahead_;  // the first row of a later frame
+    std::uint32_t frame_ = 0;                 // the next frame
+    std::optional<intersecting_pair> ahead_;  // the first row of a later frame
     std::vector<aabb::index_pair> pairs_;
 };
 
-contender contender_of(const external_engine& engine, const std::shared_ptr<exchange_folder>& exchange) {
-    contender candidate;
-    candidate.name.engine = engine.name;
-    candidate.exact = candidate.exact_boxes = engine.exact;
-    const std::shared_ptr times = std::make_unique<std::vector<told_times>>();
-    candidate.told = times;
-    candidate.make_global = [engine, exchange, times](aabb::instrumentation) {
+candidate candidate_of(const external_engine& engine, const std::shared_ptr<exchange_folder>& exchange) {
+    candidate tested;
+    tested.name.engine = engine.name;
+    tested.exact = tested.exact_boxes = engine.exact;
+    const std::shared_ptr times = std::make_unique<std::vector<reported_times>>();
+    tested.reported = times;
+    tested.make_global = [engine, exchange, times](aabb::instrumentation) {
         return std::make_unique<external_search>(engine, *exchange, *times);
     };
-    return candidate;
+    return tested;
 }
 
 }  // namespace
 
-std::vector<contender> contenders_for(const experiment& e, const scene_choice& scene) {
+std::vector<candidate> candidates_for(const experiment& e, const scene_choice& scene) {
     const bool meshes = has_meshes(scene);
-    std::vector<contender> contenders;
-    std::set<contender_name> names;
+    std::vector<candidate> candidates;
+    std::set<candidate_name> names;
     for (const aabb::composition& c : e.compositions) {
         // A config rejects it; among all compositions, one that needs meshes is skipped for boxes.
         if (!meshes && !needs_meshes(c).empty()) continue;
-        contender candidate = contender_of(c, meshes);
+        candidate tested = candidate_of(c, meshes);
         // For boxes, compositions that differ only in the narrow phase are the same candidate.
-        if (names.insert(candidate.name).second) contenders.push_back(std::move(candidate));
+        if (names.insert(tested.name).second) candidates.push_back(std::move(tested));
     }
     if (!e.automatic.empty()) {
-        const scene_play play(scene);
-        for (const aabb::named_strategies& named : e.automatic) contenders.push_back(contender_of(named, play));
+        const scene_frames play(scene);
+        for (const aabb::named_strategies& named : e.automatic) candidates.push_back(candidate_of(named, play));
     }
     for (const std::string& name : e.engines) {
         const auto engine = std::ranges::find(aabb::engines(), name, &aabb::engine_info::name);
-        if (std::optional<contender> candidate = contender_of(*engine, meshes))
-            contenders.push_back(*std::move(candidate));
+        if (std::optional<candidate> tested = candidate_of(*engine, meshes)) candidates.push_back(*std::move(tested));
     }
-    if (meshes) return contenders;
+    if (meshes) return candidates;
     const std::shared_ptr exchange = std::make_unique<exchange_folder>(scene);
-    for (const external_engine& engine : e.externals) contenders.push_back(contender_of(engine, exchange));
-    return contenders;
+    for (const external_engine& engine : e.externals) candidates.push_back(candidate_of(engine, exchange));
+    return candidates;
 }
 
-std::string text_of(const contender_name& name) {
+std::string text_of(const candidate_name& name) {
     const std::string strategies = text_in_line(name.choices);
     return name.engine + (name.engine.empty() || strategies.empty() ? "" : " + ") + strategies;
 }

@@ -1,4 +1,4 @@
-export module aabb.local_detection:tree_survey;
+export module aabb.local_detection:tree_validation;
 
 import aabb.std;
 import :policies;
@@ -6,7 +6,7 @@ import :policies;
 export namespace aabb {
 
 /// The result of validating a whole tree.
-struct tree_survey {
+struct tree_validation {
     std::string fault;          ///< the first fault; empty if the tree is valid
     std::size_t depth = 0;      ///< number of edges from the root to the deepest leaf
     bool tight = true;          ///< every box is the smallest that contains its triangles
@@ -16,11 +16,11 @@ struct tree_survey {
 namespace detail {
 
 template <TreePolicy Tree>
-class tree_surveyor {
+class tree_validator {
 public:
-    tree_surveyor(const Tree& tree, const mesh& m) : tree_(tree), mesh_(m), seen_(m.triangles.size()) {}
+    tree_validator(const Tree& tree, const mesh& m) : tree_(tree), mesh_(m), seen_(m.triangles.size()) {}
 
-    [[nodiscard]] tree_survey survey() {
+    [[nodiscard]] tree_validation validate_tree() {
         open_.push_back({tree_.root(mesh_), empty_box(), 0});
         // An explicit stack, since trees may be too deep for recursion.
         while (!open_.empty() && result_.fault.empty()) {
@@ -86,7 +86,7 @@ private:
     const mesh& mesh_;
     std::vector<std::uint8_t> seen_;  // by triangle
     std::vector<node> open_;
-    tree_survey result_;
+    tree_validation result_;
     double area_ = 0;
     double smallest_ = 0;
 };
@@ -95,8 +95,8 @@ private:
 
 /// Validates the tree of a mesh: each triangle is in exactly one leaf, and each box contains the triangles below it.
 template <TreePolicy Tree>
-[[nodiscard]] tree_survey survey_of(const Tree& tree, const mesh& m) {
-    return detail::tree_surveyor<Tree>(tree, m).survey();
+[[nodiscard]] tree_validation validation_of(const Tree& tree, const mesh& m) {
+    return detail::tree_validator<Tree>(tree, m).validate_tree();
 }
 
 }  // namespace aabb

@@ -54,7 +54,7 @@ std::vector<aabb::composition> exact_compositions(aabb::stage stage, bool named_
     }
     // Broad phases run on scenes of boxes here, so those that need meshes are excluded.
     std::erase_if(compositions, [&](const aabb::composition& c) {
-        return !is_exact(c, stage) || !refusal_of(c, stage).empty() || !needs_meshes(c).empty();
+        return !is_exact(c, stage) || !rejection_of(c, stage).empty() || !needs_meshes(c).empty();
     });
     return compositions;
 }
@@ -91,22 +91,22 @@ std::vector<named_test> all_triangle_tests() {
     return tests;
 }
 
-extreme_row row_of(const aabb::triangle_case& of, const std::string& name, contender_role role, bool must_be_exact) {
+extreme_row row_of(const aabb::triangle_case& of, const std::string& name, candidate_role role, bool must_be_exact) {
     return {row_group::cases, of.name, of.about, of.kind, name, {}, role, must_be_exact};
 }
 
 /// Compares a result with the ground truth, and counts errors.
 void check(bool result, bool truth, extreme_row& row) {
     if (result == truth) return;
-    ++(truth ? row.made.missing : row.made.invented);
-    row.made.said = aabb::verdict::wrong;
-    row.made.reason = truth ? "says that they do not intersect" : "says that they intersect";
+    ++(truth ? row.result.false_negatives : row.result.false_positives);
+    row.result.outcome = aabb::verdict::wrong;
+    row.result.reason = truth ? "says that they do not intersect" : "says that they intersect";
     row.as_expected = !row.must_be_exact;
 }
 
 template <class Real>
 extreme_row row_of_test(const aabb::triangle_case& of, const named_test& test, bool truth, const char* precision) {
-    extreme_row row = row_of(of, test.name, contender_role::triangle_test, test.exact);
+    extreme_row row = row_of(of, test.name, candidate_role::triangle_test, test.exact);
     row.precision = precision;
     for (const aabb::triangle_pair<Real>& pair : aabb::every_order<Real>(of))
         check(test.test->intersects(pair.a, pair.b), truth, row);
@@ -135,31 +135,31 @@ std::vector<aabb::mesh> meshes_of(std::span<const aabb::triangle_case> cases) {
 constexpr auto uncounted = aabb::instrumentation::none;
 
 /// A composition, an engine or a triangle test, with its name in reports.
-struct candidate {
+struct named_candidate {
     std::string name;
-    contender_role role;
-    contender implementation;
+    candidate_role role;
+    candidate implementation;
 };
 
 /// The candidates for scenes of boxes, or of meshes.
-std::vector<candidate> candidates(aabb::stage stage, bool named_values) {
+std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
     const bool meshes = stage == aabb::stage::local_detection;
-    std::vector<candidate> list;
+    std::vector<named_candidate> list;
     for (const aabb::composition& c : exact_compositions(stage, named_values))
-        list.push_back({to_text(c, stage), contender_role::composition, contender_of(c, meshes)});
+        list.push_back({to_text(c, stage), candidate_role::composition, candidate_of(c, meshes)});
     for (const aabb::engine_info& engine : aabb::engines())
         if (meshes ? engine.collides_meshes : engine.searches_boxes)
-            list.push_back({engine.name, contender_role::engine, contender_of(engine, meshes).value()});
+            list.push_back({engine.name, candidate_role::engine, candidate_of(engine, meshes).value()});
     if (!meshes) return list;
     for (const aabb::composition& c : inexact_compositions())
         list.push_back(
-            {to_text(c[aabb::strategy_kind::triangle]), contender_role::triangle_test, contender_of(c, true)});
+            {to_text(c[aabb::strategy_kind::triangle]), candidate_role::triangle_test, candidate_of(c, true)});
     return list;
 }
 
 /// Tests the two triangles in both orders, with every query.
-void run_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes, const candidate& of,
-               std::vector<extreme_row>& rows) {
+void run_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes,
+               const named_candidate& of, std::vector<extreme_row>& rows) {
     const std::unique_ptr<aabb::local_stage> stage = of.implementation.make_local(uncounted);
     for (const aabb::mesh& m : meshes) stage->add_model(m);
     for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -176,37 +176,38 @@ void run_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb:
     }
 }
 
-void run_candidates(const aabb::extreme_judge& judge, std::span<const candidate> list, std::vector<extreme_row>& rows) {
+void run_candidates(const aabb::extreme_judge& judge, std::span<const named_candidate> list,
+                    std::vector<extreme_row>& rows) {
     const aabb::extreme_scene& scene = judge.scene();
     const bool boxes = static_cast<bool>(scene.make_boxes);
-    for (const candidate& c : list) {
+    for (const named_candidate& c : list) {
         // Engines always list all pairs before they return the first.
-        if (c.role == contender_role::engine && scene.asked == aabb::extreme_query::first_pair) continue;
+        if (c.role == candidate_role::engine && scene.asked == aabb::extreme_query::first_pair) continue;
         extreme_row row{
             boxes ? row_group::boxes : row_group::meshes, scene.name, scene.summary, {}, c.name, {}, c.role};
         // Box tests only compare coordinates, without rounding, so every engine must be exact.
         row.must_be_exact = boxes ? c.implementation.exact_boxes : c.implementation.exact;
         row.stated_bytes = scene.most_bytes;
-        row.made = boxes ? judge.judge([&] { return c.implementation.make_global(uncounted); })
-                         : judge.judge([&] { return c.implementation.make_local(uncounted); });
-        if (c.role == contender_role::composition) require_stated_memory(scene, row.made);
-        row.as_expected = is_as_expected(scene, row.made, row.must_be_exact);
+        row.result = boxes ? judge.judge([&] { return c.implementation.make_global(uncounted); })
+                           : judge.judge([&] { return c.implementation.make_local(uncounted); });
+        if (c.role == candidate_role::composition) require_stated_memory(scene, row.result);
+        row.as_expected = is_as_expected(scene, row.result, row.must_be_exact);
         rows.push_back(std::move(row));
     }
 }
 
 }  // namespace
 
-std::vector<extreme_row> play_cases(std::span<const aabb::triangle_case> cases) {
+std::vector<extreme_row> run_triangle_cases(std::span<const aabb::triangle_case> cases) {
     std::vector<extreme_row> rows;
     run_tests(cases, rows);
     const std::vector<aabb::mesh> meshes = meshes_of(cases);
-    for (const candidate& c : candidates(aabb::stage::local_detection, true))
-        if (c.role != contender_role::triangle_test) run_stage(cases, meshes, c, rows);
+    for (const named_candidate& c : candidates(aabb::stage::local_detection, true))
+        if (c.role != candidate_role::triangle_test) run_stage(cases, meshes, c, rows);
     return rows;
 }
 
-std::vector<extreme_row> play_scenes(std::span<const aabb::extreme_scene> scenes, aabb::extreme_size size) {
+std::vector<extreme_row> run_extreme_scenes(std::span<const aabb::extreme_scene> scenes, aabb::extreme_size size) {
     const bool named_values = size == aabb::extreme_size::full;
     const auto of_boxes = candidates(aabb::stage::global_search, named_values);
     const auto of_meshes = candidates(aabb::stage::local_detection, named_values);

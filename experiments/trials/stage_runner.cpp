@@ -4,31 +4,31 @@ import aabblab.pair_output;
 
 namespace aabblab {
 
-scene_play::scene_play(const scene_choice& choice) {
+scene_frames::scene_frames(const scene_choice& choice) {
     const scene_info& info = scene_named(choice.kind);
     if (!info.has_meshes) {
         box_scene_ = make_box_scene(choice);
         return;
     }
     meshes_ = make_mesh_scene(choice);
-    if (info.plays_file) file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
+    if (info.reads_file) file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
 }
 
-bool scene_play::next() {
+bool scene_frames::next() {
     if (!(meshes_ ? meshes_->next(poses_) : box_scene_->next(boxes_))) return false;
     if (box_scene_) note_changes(box_scene_->present());
-    ++played_;
+    ++frames_run_;
     return true;
 }
 
-void scene_play::tell(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts) {
+void scene_frames::tell(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts) {
     if (meshes_)
         meshes_->take_contacts(contacts);
     else
         box_scene_->take_pairs(pairs);
 }
 
-void scene_play::note_changes(std::span<const std::uint8_t> present) {
+void scene_frames::note_changes(std::span<const std::uint8_t> present) {
     arrivals_.clear();
     departures_.clear();
     present_.resize(boxes_.size(), 0);
@@ -40,10 +40,11 @@ void scene_play::note_changes(std::span<const std::uint8_t> present) {
     }
 }
 
-player::player(const contender& candidate, const scene_play& scene, aabb::instrumentation counted)
-    : player(stages{candidate.make_global(counted), scene.meshes() ? candidate.make_local(counted) : nullptr}, scene) {}
+stage_runner::stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted)
+    : stage_runner(stages{tested.make_global(counted), scene.meshes() ? tested.make_local(counted) : nullptr}, scene) {}
 
-player::player(stages run_stages, const scene_play& scene) : scene_(scene), stages_(std::move(run_stages)) {
+stage_runner::stage_runner(stages run_stages, const scene_frames& scene)
+    : scene_(scene), stages_(std::move(run_stages)) {
     if (stages_.global) stages_.global->expect(scene.frames());
     if (!scene.meshes()) return;
     if (stages_.global)
@@ -52,36 +53,36 @@ player::player(stages run_stages, const scene_play& scene) : scene_(scene), stag
         pipeline_.emplace(*scene.meshes(), *stages_.local);
 }
 
-void player::update() {
+void stage_runner::update() {
     if (pipeline_) return scene_.in_frame([&] { pipeline_->update(scene_.poses()); });
     for (const std::uint32_t object : scene_.departures()) stages_.global->remove(object);
     for (const std::uint32_t object : scene_.arrivals()) stages_.global->insert(object);
     stages_.global->update(scene_.boxes());
 }
 
-void player::search() {
+void stage_runner::search() {
     if (pipeline_) return scene_.in_frame([&] { pipeline_->search(); });
     pairs_.clear();
     stages_.global->search(pairs_);
 }
 
-void player::detect() {
+void stage_runner::detect() {
     if (pipeline_) scene_.in_frame([&] { pipeline_->detect(); });
 }
 
-const std::vector<aabb::index_pair>& player::sorted_pairs() {
+const std::vector<aabb::index_pair>& stage_runner::sorted_pairs() {
     if (pipeline_) pairs_.assign(pipeline_->candidates().begin(), pipeline_->candidates().end());
     sort_rows(pairs_);
     return pairs_;
 }
 
-const std::vector<aabb::contact>& player::sorted_contacts() {
+const std::vector<aabb::contact>& stage_runner::sorted_contacts() {
     if (pipeline_) contacts_.assign(pipeline_->contacts().begin(), pipeline_->contacts().end());
     sort_rows(contacts_);
     return contacts_;
 }
 
-aabb::work_counters player::counters() const {
+aabb::work_counters stage_runner::counters() const {
     aabb::work_counters work;
     if (stages_.global) work = stages_.global->counters();
     if (stages_.local)
@@ -89,13 +90,13 @@ aabb::work_counters player::counters() const {
     return work;
 }
 
-std::vector<aabb::part_bytes> player::global_bytes() const {
+std::vector<aabb::part_bytes> stage_runner::global_bytes() const {
     std::vector<aabb::part_bytes> parts = stages_.global ? stages_.global->bytes() : std::vector<aabb::part_bytes>{};
     if (pipeline_ && pipeline_->division_bytes() > 0) parts.push_back({"prepare", pipeline_->division_bytes()});
     return parts;
 }
 
-std::vector<aabb::part_bytes> player::local_bytes() const {
+std::vector<aabb::part_bytes> stage_runner::local_bytes() const {
     if (!stages_.local) return {};
     std::vector<aabb::part_bytes> parts = stages_.local->bytes();
     std::size_t triangles = 0;
@@ -109,7 +110,7 @@ std::vector<aabb::part_bytes> player::local_bytes() const {
     return parts;
 }
 
-std::size_t player::held_bytes() const {
+std::size_t stage_runner::held_bytes() const {
     std::size_t sum = buffer_bytes();
     for (const aabb::part_bytes& part : global_bytes()) sum += part.bytes;
     for (const aabb::part_bytes& part : local_bytes())
@@ -117,24 +118,24 @@ std::size_t player::held_bytes() const {
     return sum;
 }
 
-std::optional<double> player::box_inflation() const {
+std::optional<double> stage_runner::box_inflation() const {
     if (!stages_.local) return std::nullopt;
     double sum = 0;
     const std::uint32_t models = pipeline_->models();
     for (std::uint32_t m = 0; m < models; ++m) {
-        const std::optional<aabb::tree_survey> survey = stages_.local->survey(m);
+        const std::optional<aabb::tree_validation> survey = stages_.local->survey(m);
         if (!survey) return std::nullopt;
         sum += survey->area_inflation;
     }
     return sum / static_cast<double>(models);
 }
 
-elapsed detect_in(player& p) {
+elapsed detect_in(stage_runner& p) {
     return elapsed_in([&] { p.detect(); });
 }
 
-void play(scene_play& scene, player& p, const std::function<void(const played_frame&)>& each, std::size_t most,
-          const detecting& detect) {
+void play(scene_frames& scene, stage_runner& p, const std::function<void(const searched_frame&)>& each,
+          std::size_t most, const detecting& detect) {
     for (std::uint32_t frame = 0; frame < most && scene.next(); ++frame) {
         phases took{elapsed_in([&] { p.update(); }), elapsed_in([&] { p.search(); }), {}};
         // Sorting within a search, as of column groups, counts as update, as it does for other strategies.
@@ -143,7 +144,7 @@ void play(scene_play& scene, player& p, const std::function<void(const played_fr
         took.update += sorted;
         took.search += {-sorted.wall_ms, -sorted.cpu_ms};
         took.detect = detect(p);
-        const played_frame result{frame, took, p.sorted_pairs(), p.sorted_contacts()};
+        const searched_frame result{frame, took, p.sorted_pairs(), p.sorted_contacts()};
         each(result);
         scene.tell(result.pairs, result.contacts);
     }

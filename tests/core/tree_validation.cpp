@@ -36,14 +36,14 @@ const box all{{0, 0, 0}, {5, 5, 5}};
 const box left{{0, 0, 0}, {1, 1, 0}};
 const box right{{5, 5, 5}, {5, 5, 5}};
 
-tree_survey survey(std::vector<told_tree::node> nodes) {
-    return survey_of(told_tree{std::move(nodes)}, two);
+tree_validation validate_tree(std::vector<told_tree::node> nodes) {
+    return validation_of(told_tree{std::move(nodes)}, two);
 }
 
 }  // namespace
 
 TEST_CASE("a survey finds nothing wrong with a tree that is right") {
-    const tree_survey found = survey({{all, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
+    const tree_validation found = validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
     CHECK(found.fault.empty());
     CHECK(found.depth == 1);
     CHECK(found.tight);
@@ -51,20 +51,20 @@ TEST_CASE("a survey finds nothing wrong with a tree that is right") {
 }
 
 TEST_CASE("a survey tells of boxes that are larger than they must be") {
-    const tree_survey found = survey({{{{0, 0, 0}, {5, 5, 10}}, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
+    const tree_validation found = validate_tree({{{{0, 0, 0}, {5, 5, 10}}, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
     CHECK(found.fault.empty());
     CHECK_FALSE(found.tight);
     CHECK(found.area_inflation == (250.0 + 2) / (150.0 + 2) - 1);
 }
 
 TEST_CASE("a survey finds what is wrong with a tree") {
-    CHECK(survey({{{{0, 0, 0}, {4, 5, 5}}, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}}).fault ==
+    CHECK(validate_tree({{{{0, 0, 0}, {4, 5, 5}}, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}}).fault ==
           "a box does not hold the triangles below it");
-    CHECK(survey({{all, {1, 2}, 0}, {{{0, 0, 0}, {1, 0.5F, 0}}, {}, 0}, {right, {}, 1}}).fault ==
+    CHECK(validate_tree({{all, {1, 2}, 0}, {{{0, 0, 0}, {1, 0.5F, 0}}, {}, 0}, {right, {}, 1}}).fault ==
           "a box does not hold the triangles below it");
-    CHECK(survey({{all, {1, 2}, 0}, {left, {}, 0}, {left, {}, 0}}).fault == "triangle 0 is in two leaves");
-    CHECK(survey({{all, {1, 2}, 0}, {left, {}, 0}, {right, {}, 7}}).fault ==
+    CHECK(validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {left, {}, 0}}).fault == "triangle 0 is in two leaves");
+    CHECK(validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {right, {}, 7}}).fault ==
           "a leaf holds triangle 7, which the mesh has not");
-    CHECK(survey({{left, {}, 0}}).fault == "triangle 1 is in no leaf");
-    CHECK(survey({{all, {0, 1}, 0}, {right, {}, 1}}).fault == "the tree is deeper than it has triangles");
+    CHECK(validate_tree({{left, {}, 0}}).fault == "triangle 1 is in no leaf");
+    CHECK(validate_tree({{all, {0, 1}, 0}, {right, {}, 1}}).fault == "the tree is deeper than it has triangles");
 }

@@ -6,9 +6,9 @@ import aabblab.configs;
 import aabblab.trials;
 import aabblab.scenes;
 
-using aabblab::contender;
-using aabblab::played_frame;
-using aabblab::scene_play;
+using aabblab::candidate;
+using aabblab::scene_frames;
+using aabblab::searched_frame;
 
 namespace {
 
@@ -70,14 +70,15 @@ private:
     std::set<std::uint32_t> stopped_;
 };
 
-std::vector<contender> exact_contenders(bool meshes) {
-    std::vector<contender> all;
+std::vector<candidate> exact_candidates(bool meshes) {
+    std::vector<candidate> all;
     using enum aabb::strategy_kind;
     const aabb::composition coherent = composed({{sort, "insertion"}, {sweep, "incremental"}, {tree, "compressed"}});
-    all.push_back(aabblab::contender_of(aabb::composition(), meshes));
-    all.push_back(aabblab::contender_of(coherent, meshes));
+    all.push_back(aabblab::candidate_of(aabb::composition(), meshes));
+    all.push_back(aabblab::candidate_of(coherent, meshes));
     for (const aabb::engine_info& engine : aabb::engines())
-        if (auto who = aabblab::contender_of(engine, meshes); who && who->exact) all.push_back(*std::move(who));
+        if (auto tested = aabblab::candidate_of(engine, meshes); tested && tested->exact)
+            all.push_back(*std::move(tested));
     return all;
 }
 
@@ -89,19 +90,19 @@ aabblab::stages local_only() {
 
 TEST_CASE("What is asked is answered by each contender, and a wrong answer is told") {
     const aabblab::scene_choice choice{"mesh_pair", {{"frames", "3"}}, {"icosphere:triangles=320"}, 1};
-    const std::vector<contender> contenders = exact_contenders(true);
+    const std::vector<candidate> candidates = exact_candidates(true);
     for (const aabblab::question ask : {aabblab::question::count, aabblab::question::first})
         for (const bool cold : {false, true}) {
             std::string digest;
-            for (const contender& who : contenders) {
-                const aabblab::observation times = aabblab::observe(choice, who, {.asked = {ask, cold}});
-                INFO(aabblab::text_of(who.name) << ": " << times.wrong);
+            for (const candidate& tested : candidates) {
+                const aabblab::observation times = aabblab::observe(choice, tested, {.asked = {ask, cold}});
+                INFO(aabblab::text_of(tested.name) << ": " << times.wrong);
                 CHECK(times.wrong.empty());
                 CHECK(times.rest.detect.wall_ms > 0);
                 if (digest.empty()) digest = times.digest;
                 CHECK(times.digest == digest);
             }
-            contender wrong = contenders[0];
+            candidate wrong = candidates[0];
             // Counts one contact too many, or says of the first one that it is in another triangle.
             wrong.make_local = [](aabb::instrumentation) {
                 return std::make_unique<aabb::altered_meshes>(aabb::alterations{.first_pair =
@@ -117,25 +118,25 @@ TEST_CASE("What is asked is answered by each contender, and a wrong answer is to
 TEST_CASE("A scene that reacts to contacts shows every contender the same frames, validated and timed") {
     for (const bool meshes : {true, false}) {
         const auto made = [&] {
-            return meshes ? scene_play(std::make_unique<stopping_meshes>(4))
-                          : scene_play(std::make_unique<stopping_boxes>());
+            return meshes ? scene_frames(std::make_unique<stopping_meshes>(4))
+                          : scene_frames(std::make_unique<stopping_boxes>());
         };
-        const std::vector<contender> contenders = exact_contenders(meshes);
-        REQUIRE(contenders.size() > 3);
-        scene_play scene = made();
-        const aabblab::scene_validation all = aabblab::validate_scene({"stopping", {}, {}, 1}, scene, contenders);
-        for (std::size_t i = 0; i < contenders.size(); ++i) {
-            INFO(all.contenders[i].failure);
-            CHECK(all.contenders[i].failure.empty());
-            CHECK(all.contenders[i].digest == all.digest);
-            scene_play again = made();
-            CHECK(aabblab::observe(again, contenders[i]).digest == all.digest);
+        const std::vector<candidate> candidates = exact_candidates(meshes);
+        REQUIRE(candidates.size() > 3);
+        scene_frames scene = made();
+        const aabblab::scene_validation all = aabblab::validate_scene({"stopping", {}, {}, 1}, scene, candidates);
+        for (std::size_t i = 0; i < candidates.size(); ++i) {
+            INFO(all.candidates[i].failure);
+            CHECK(all.candidates[i].failure.empty());
+            CHECK(all.candidates[i].digest == all.digest);
+            scene_frames again = made();
+            CHECK(aabblab::observe(again, candidates[i]).digest == all.digest);
         }
         // Each stops where it first touches the one before: nothing passes, and no pair but neighbours ever meets.
-        scene_play last = made();
-        aabblab::player who(contenders[0], last, aabb::instrumentation::none);
+        scene_frames last = made();
+        aabblab::stage_runner tested(candidates[0], last, aabb::instrumentation::none);
         std::set<aabb::index_pair> met;
-        aabblab::play(last, who, [&](const played_frame& frame) {
+        aabblab::play(last, tested, [&](const searched_frame& frame) {
             for (const aabb::index_pair& pair : frame.pairs) met.insert(pair);
         });
         CHECK(met == std::set<aabb::index_pair>{{0, 1}, {1, 2}, {2, 3}});
@@ -145,15 +146,15 @@ TEST_CASE("A scene that reacts to contacts shows every contender the same frames
 TEST_CASE("A scene is handed over frame by frame, all of it or the first frames") {
     const aabblab::scene_choice choice{
         "mesh_swarm", {{"objects", "12"}, {"frames", "3"}}, {"icosphere:triangles=80"}, 1};
-    const contender who = exact_contenders(true)[0];
+    const candidate tested = exact_candidates(true)[0];
     for (const std::size_t most : {std::size_t{2}, std::size_t{9}}) {
-        scene_play scene(choice);
-        aabblab::player p(who, scene, aabb::instrumentation::none);
+        scene_frames scene(choice);
+        aabblab::stage_runner p(tested, scene, aabb::instrumentation::none);
         std::uint32_t frames = 0;
         std::size_t contacts = 0;
         aabblab::play(
             scene, p,
-            [&](const played_frame& frame) {
+            [&](const searched_frame& frame) {
                 CHECK(frame.number == frames++);
                 CHECK(frame.ms() == frame.took.update.wall_ms + frame.took.search.wall_ms + frame.took.detect.wall_ms);
                 CHECK(frame.took.update.wall_ms > 0);
@@ -168,26 +169,26 @@ TEST_CASE("A scene is handed over frame by frame, all of it or the first frames"
 }
 
 TEST_CASE("A player without global search tries every two objects, and can be asked for less than all contacts") {
-    scene_play scene(std::make_unique<stopping_meshes>(3));
-    aabblab::player who(local_only(), scene);
+    scene_frames scene(std::make_unique<stopping_meshes>(3));
+    aabblab::stage_runner tested(local_only(), scene);
     REQUIRE(scene.next());
-    who.update();
-    who.search();
-    CHECK(who.sorted_pairs() == std::vector<aabb::index_pair>{{0, 1}, {0, 2}, {1, 2}});
-    CHECK_FALSE(who.first_contact());
-    CHECK(who.count_contacts() == 0);
-    CHECK(who.global_bytes().empty());
-    while (!who.first_contact() && scene.next()) {
-        who.update();
-        who.search();
+    tested.update();
+    tested.search();
+    CHECK(tested.sorted_pairs() == std::vector<aabb::index_pair>{{0, 1}, {0, 2}, {1, 2}});
+    CHECK_FALSE(tested.first_contact());
+    CHECK(tested.count_contacts() == 0);
+    CHECK(tested.global_bytes().empty());
+    while (!tested.first_contact() && scene.next()) {
+        tested.update();
+        tested.search();
     }
-    who.detect();
-    const std::vector<aabb::contact> contacts = who.sorted_contacts();
+    tested.detect();
+    const std::vector<aabb::contact> contacts = tested.sorted_contacts();
     REQUIRE_FALSE(contacts.empty());
-    CHECK(who.count_contacts() == contacts.size());
-    CHECK(std::ranges::find(contacts, who.first_contact().value()) != contacts.end());
+    CHECK(tested.count_contacts() == contacts.size());
+    CHECK(std::ranges::find(contacts, tested.first_contact().value()) != contacts.end());
     std::vector<aabb::index_pair> neighbours;
-    who.each_self_pair(0, [&](aabb::index_pair pair) { neighbours.push_back(pair); });
+    tested.each_self_pair(0, [&](aabb::index_pair pair) { neighbours.push_back(pair); });
     CHECK(neighbours.size() == 6);
 }
 
@@ -210,9 +211,9 @@ TEST_CASE("What is wrong with poses of a file is said with file and frame") {
     };
     const std::string sentence = "object 0 lies beyond the range of float";
     for (const auto& [file, place] : {std::pair<std::string, std::string>{"a b.txt", "a b.txt: frame 2: "}, {"", ""}}) {
-        scene_play timed(std::make_unique<leaving>(), file);
-        CHECK_REFUSED(aabblab::observe(timed, exact_contenders(true)[0]), place + sentence);
-        scene_play validated(std::make_unique<leaving>(), file);
+        scene_frames timed(std::make_unique<leaving>(), file);
+        CHECK_REFUSED(aabblab::observe(timed, exact_candidates(true)[0]), place + sentence);
+        scene_frames validated(std::make_unique<leaving>(), file);
         CHECK_REFUSED(aabblab::validate_scene({"leaving", {}, {}, 1}, validated, {}), place + sentence);
     }
 }

@@ -1,4 +1,4 @@
-export module aabb.prepare.list_pause;
+export module aabb.prepare.list_backoff;
 
 export import aabb.prepare.list_plan;
 import aabb.std;
@@ -9,16 +9,16 @@ export namespace aabb {
 /// each time, so that failed lists cost an ever smaller share of all frames, and a back-off lasts at most as long as
 /// the frames before it (Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988, bound the loss).
 /// Then a sample of boxes is watched for eight frames, repeatedly with a rest in between, until a list may be worth it.
-class list_pause {
+class list_backoff {
 public:
     [[nodiscard]] bool lasts() const noexcept { return left_ > 0; }
 
     void begin(std::size_t boxes) noexcept {
-        left_ = std::max(next_, rest(boxes)) + glimpse::longest;
+        left_ = std::max(next_, rest(boxes)) + motion_sample::longest;
         next_ = std::min(2 * next_, longest);
     }
     /// Begins by watching a sample of boxes from this frame on.
-    void begin_with_look() noexcept { left_ = glimpse::longest + 1; }
+    void start_with_sample() noexcept { left_ = motion_sample::longest + 1; }
     /// A list served as long as planned, so the next back-off is short again.
     void shorten() noexcept { next_ = shortest; }
 
@@ -27,12 +27,12 @@ public:
     /// @param outlook estimates; its law is that of the sample
     /// @param drawn as in `drawn_id`
     /// @returns whether all eight frames were in vain; another sample is watched next
-    bool pass(std::span<const box> boxes, const membership& objects, list_outlook& outlook, std::uint32_t& drawn) {
+    bool pass(std::span<const box> boxes, const membership& objects, list_estimate& estimate, std::uint32_t& drawn) {
         --left_;
-        const unsigned age = glimpse::longest - std::min(left_, glimpse::longest);
+        const unsigned age = motion_sample::longest - std::min(left_, motion_sample::longest);
         if (std::has_single_bit(age) && !move_too_far_) {
-            outlook.law.observe(age, glimpse_.least_motion(boxes, objects));
-            const list_plan plan = plan_list(outlook);
+            estimate.law.observe(age, sample_.least_motion(boxes, objects));
+            const list_plan plan = plan_list(estimate);
             if (plan.frames > 1) {
                 left_ = 0;
                 return false;
@@ -40,11 +40,11 @@ public:
             move_too_far_ = plan.is_hopeless();
         }
         const bool in_vain = left_ == 0;
-        if (in_vain) left_ = glimpse::longest + rest(objects.size());
-        if (left_ == glimpse::longest) {
-            outlook.look_anew(boxes, objects, drawn);
-            outlook.law.forget();
-            glimpse_.keep(boxes, drawn);
+        if (in_vain) left_ = motion_sample::longest + rest(objects.size());
+        if (left_ == motion_sample::longest) {
+            estimate.resample(boxes, objects, drawn);
+            estimate.law.forget();
+            sample_.keep(boxes, drawn);
             move_too_far_ = false;
         }
         return in_vain;
@@ -62,7 +62,7 @@ private:
 
     unsigned left_ = 0;         // remaining frames of the back-off
     unsigned next_ = shortest;  // length of the next back-off
-    glimpse glimpse_;
+    motion_sample sample_;
     bool move_too_far_ = false;  // the sampled boxes move too far for any list
 };
 

@@ -6,7 +6,7 @@
 
 import aabb.strategies;
 import aabb.wide_tree.child_pairs;
-import aabb.wide_tree.leaf_front;
+import aabb.wide_tree.bvtt_front;
 
 using namespace aabb;
 
@@ -221,7 +221,7 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     const box reach{{-1, -1, -1}, {1, 1, 1}};
     const model_pair of{{1, 2}, {3, 4}};
     const auto at = [&](double x) { return relative_pose({}, shifted({x, 0, 0}), reach).to_boxes(); };
-    leaf_front front;
+    bvtt_front front;
     front.begin(of);
     const auto is_planned = [&](double x) { return front.note(of, at(x), reach, 1).margin.has_value(); };
     CHECK_FALSE(is_planned(0));

@@ -1,4 +1,4 @@
-export module aabb.wide_tree.leaf_front;
+export module aabb.wide_tree.bvtt_front;
 
 export import aabb.geometry;
 export import aabb.simd;
@@ -23,7 +23,7 @@ struct kept_pair {
 /// While no point of B moves further than the margin in A's frame, they include all pairs whose triangles meet. Front
 /// tracking keeps pairs from query to query (Ehmann and Lin, Computer Graphics Forum 20, 2001); the margin is the skin
 /// of Verlet lists (Verlet, Physical Review 159, 1967).
-class leaf_front {
+class bvtt_front {
 public:
     /// The pair of triangles that the last first-pair query reported.
     std::optional<index_pair> hit;
@@ -138,7 +138,7 @@ public:
     /// @param bounds the box of B's vertices, in B's frame
     /// @param near how far B may have moved since the front's last query
     /// @returns the cached front, or a new, empty one
-    [[nodiscard]] leaf_front& find(const model_pair& of, const box_motion& at, const box& bounds, double near) {
+    [[nodiscard]] bvtt_front& find(const model_pair& of, const box_motion& at, const box& bounds, double near) {
         const std::array<float, 3> centre = centre_of(at, bounds);
         const std::size_t place = place_of(of, at, bounds, near, centre);
         for (std::size_t k = 0; k < 3; ++k) centres_[place / width][k][place % width] = centre[k];
@@ -148,7 +148,7 @@ public:
 
     [[nodiscard]] std::size_t bytes() const noexcept {
         std::size_t total = bytes_of(fronts_, centres_);
-        for (const leaf_front& f : fronts_) total += f.bytes();
+        for (const bvtt_front& f : fronts_) total += f.bytes();
         return total;
     }
 
@@ -209,7 +209,7 @@ private:
         return place;
     }
 
-    std::vector<leaf_front> fronts_;
+    std::vector<bvtt_front> fronts_;
     std::vector<std::array<row, 3>> centres_;  // of B in the fronts' last queries, in groups of eight
     std::size_t last_ = 0;                     // the front found last
     std::size_t hand_ = 0;                     // the clock's hand
