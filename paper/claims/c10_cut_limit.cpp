@@ -18,14 +18,15 @@ bool limit_acts(const condition& c, const std::string& segments) {
 }  // namespace
 
 draft c10_claim(const measurements& m) {
-    draft c10{{.claim = "Cutting a box more than once on an axis does not pay",
-               .measured = "time a frame of axial_cut with its limit over that without, where the limit acts",
-               .experiments = {"c10"}},
-              {{{"span", "0.5"}, {"huge", "10"}}}};
+    draft c10{
+        {.claim = "Cutting a box more than once on an axis is not worth its cost",
+         .measured = "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
+         .experiments = {"c10"}},
+        {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.of("c10"))
         for (const std::string segments : {"auto", "32"}) {
             if (!limit_acts(c, segments)) continue;
-            const std::string subject = value_of(c.of(), "span").empty() ? "with that limit on mixed sizes"
+            const std::string subject = value_of(c.of(), "span").empty() ? "with at most one cut per box on mixed sizes"
                                                                          : "with at most one cut of huge boxes";
             c10.add(told(endpoint_of(c, limited("on", segments), limited("off", segments), "frame_cpu_ms",
                                      {{"segments", segments}}),
@@ -33,8 +34,8 @@ draft c10_claim(const measurements& m) {
         }
     figure& f = c10.claim.figures.emplace_back(log_log(
         "c10",
-        "Time of global search with at most one cut of a box on an axis, over that without the limit (the level "
-        "1), with the automatic number of segments, against the number of huge objects, by their edge over the side "
+        "Time of the broad phase with at most one cut per box and axis, over that without the limit (the level 1), "
+        "with the automatic number of segments, against the number of huge objects, by their edge over the side "
         "of the world; 95 % intervals.",
         "huge objects", "time with the limit over that without"));
     f.lines = lines_by_span(c10.endpoints, {{"segments", "auto"}});

@@ -6,9 +6,9 @@ namespace aabblab {
 
 namespace {
 
-const std::vector<method> methods{{"traditional in both stages", traditional.with(kind::tree, "canonical")},
-                                  {"improved global search", improved.with(kind::tree, "canonical")},
-                                  {"improved local detection", traditional.with(kind::tree, compressed)},
+const std::vector<method> methods{{"traditional in both phases", traditional.with(kind::tree, "canonical")},
+                                  {"improved broad phase", improved.with(kind::tree, "canonical")},
+                                  {"improved narrow phase", traditional.with(kind::tree, compressed)},
                                   {"improved in both", improved.with(kind::tree, compressed)}};
 
 /// The broad phase's share of the traditional method's time, in percent.
@@ -20,7 +20,7 @@ table half_steps(const std::vector<condition>& conditions) {
     table t = empty_table({"meshes"}, {"objects"});
     for (const condition& c : conditions) t.rows.push_back({mesh_of(c), value_of(c.of(), "objects")});
     add_ratios(t, conditions, methods);
-    t.columns.push_back({"global search, % of traditional time"});
+    t.columns.push_back({"broad phase, % of traditional time"});
     for (std::size_t i = 0; i < conditions.size(); ++i) t.rows[i].push_back(digits_cell(global_share(conditions[i])));
     return t;
 }
@@ -37,7 +37,7 @@ const factors far_apart{{"density", "0.001"}, {"objects", "100000"}};
 
 draft c11_claim(const measurements& m) {
     draft c11{{.claim = "The whole improved algorithm takes less time than the traditional one on the same models",
-               .measured = "time a frame of both stages, shell + axial_cut + compressed over insertion + none + "
+               .measured = "time per frame of both phases, shell + axial_cut + compressed over insertion + none + "
                            "canonical",
                .experiments = {"c11"}},
               {large_crowd, far_apart}};
@@ -52,19 +52,19 @@ draft c11_claim(const measurements& m) {
                      "objects"));
         if (has(c.of(), large_crowd))
             claim.remark =
-                "Of the traditional method's time global search takes " + share_text(c) + " where models touch";
+                "The broad phase takes " + share_text(c) + " of the traditional method's time where models touch";
         else if (has(c.of(), far_apart) && !claim.remark.empty())
             claim.remark += ", and " + share_text(c) + " with 100,000 simple ones far apart";
     }
     if (conditions.empty()) return c11;
     if (!claim.remark.empty()) claim.remark += ".";
     claim.tables.push_back(
-        {"c11_stages", "Time a frame of both stages over that of the traditional method.", half_steps(conditions)});
-    figure& f = claim.figures.emplace_back(
-        log_log("c11",
-                "Time of both stages against the number of objects, simple models far apart: traditional, improved, "
-                "and each stage improved alone; medians and quartiles.",
-                "objects", "time a frame (ms)"));
+        {"c11_stages", "Time per frame of both phases over that of the traditional method.", half_steps(conditions)});
+    figure& f = claim.figures.emplace_back(log_log(
+        "c11",
+        "Time of both phases against the number of objects, for simple models far apart: traditional, improved, "
+        "and each phase improved alone; medians and quartiles.",
+        "objects", "time per frame (ms)"));
     f.lines = series_of(methods, having(conditions, {{"meshes", mesh_of(conditions.back())}}), "objects",
                         measured("frame_cpu_ms"));
     return c11;

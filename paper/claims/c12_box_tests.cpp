@@ -4,7 +4,7 @@ namespace aabblab {
 
 draft c12_claim(const measurements& m) {
     draft c12{{.claim = "The axial cut avoids needless tests of boxes",
-               .measured = "tests of two boxes in a frame, axial_cut over none, both with shell",
+               .measured = "box tests per frame, axial_cut over none, both with shell",
                .experiments = {"figure1", "three_lists"}},
               {drifting}};
     for (const condition& c : m.of("figure1"))
@@ -15,8 +15,8 @@ draft c12_claim(const measurements& m) {
                                  "box_tests", {{"sweep", "all_axes"}}),
                      "with three sorted lists", "", quantity::box_tests));
     figure& f = c12.claim.figures.emplace_back(
-        log_log("c12", "Tests of two boxes in a frame against the number of objects, with the axial cut and without.",
-                "objects", "box tests a frame"));
+        log_log("c12", "Box tests per frame against the number of objects, with the axial cut and without.", "objects",
+                "box tests per frame"));
     const method methods[] = {{"no cut", uncut}, {"axial cut", improved}};
     f.lines = series_of(methods, having(m.of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}}), "objects",
                         measured("box_tests"));

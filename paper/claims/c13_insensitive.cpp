@@ -25,12 +25,12 @@ endpoint compared(const condition& large, const condition& small, const std::str
 
 draft c13_claim(const measurements& m) {
     // Allocations grow in steps, so that ratios of bytes are less precise and only secondary.
-    draft c13{{.claim = "Sorted and cut lists take time and memory in proportion to N, whatever sizes, space and "
-                        "density, up to ten times",
-               .measured = "time a frame and box, and bytes a box, of shell + axial_cut on three axes with more "
-                           "boxes, denser ones, or sizes more unlike, over those with the least (SMB: Li, Feng and "
-                           "Owen 2006)",
-               .lead = "For each box",
+    draft c13{{.claim = "Sorted and cut lists take time and memory in proportion to N, over tenfold ranges of sizes, "
+                        "space and density",
+               .measured = "time per frame and box, and bytes per box, of shell + axial_cut on three axes with more "
+                           "boxes, a denser world or a wider range of sizes, over those with the least (SMB: Li, "
+                           "Feng and Owen 2006)",
+               .lead = "Per box",
                .experiments = {"smb_objects", "smb_density", "smb_sizes"}},
               {{{"quantity", "time"}, {"objects", "100000"}, {"over", "objects 1000"}},
                {{"quantity", "time"}, {"density", "0.1"}, {"over", "density 0.01"}},
@@ -41,7 +41,7 @@ draft c13_claim(const measurements& m) {
         const char* subject;
     } lines[] = {{"smb_objects", "objects", "with more boxes"},
                  {"smb_density", "density", "in a denser world"},
-                 {"smb_sizes", "ratio", "with sizes more unlike"}};
+                 {"smb_sizes", "ratio", "with a wider range of sizes"}};
     for (const auto& [experiment, factor, subject] : lines) {
         const std::vector<condition>& conditions = m.of(experiment);
         const auto least =
@@ -52,9 +52,9 @@ draft c13_claim(const measurements& m) {
     }
     figure& f = c13.claim.figures.emplace_back(
         log_log("c13",
-                "Time of global search a box against the number of boxes, with every axis cut and without a cut; a "
-                "level line is O(N). Medians and quartiles.",
-                "objects", "time a frame and box (ms)"));
+                "Time of the broad phase per box against the number of boxes, with every axis cut and without a cut. "
+                "A horizontal line is O(N). Medians and quartiles.",
+                "objects", "time per frame and box (ms)"));
     const method methods[] = {{"every axis cut", smb}, {"no cut", uncut}};
     if (const std::vector<condition>& conditions = m.of("smb_objects"); !conditions.empty())
         f.lines = series_of(methods, having(conditions, {}), "objects", an_object(measured("frame_cpu_ms")));

@@ -33,9 +33,9 @@ table half_steps(const std::vector<condition>& conditions) {
 }  // namespace
 
 draft c1_claim(const measurements& m) {
-    draft c1{{.claim = "Shell sort with axial cut takes less time in global search than insertion sort without",
-              .measured = "time a frame of shell + axial_cut over that of insertion + none, both swept with "
-                          "one_axis, or both with all_axes; and over that of insertion + incremental",
+    draft c1{{.claim = "Shell sort with axial cut takes less time in the broad phase than insertion sort without",
+              .measured = "time per frame of shell + axial_cut over that of insertion + none, both with the sweep "
+                          "one_axis or both with all_axes; and over that of insertion + incremental",
               .experiments = {"figure1", "three_lists"}},
              {{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}, {"over", ""}},
               {{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.001"}, {"over", "incremental"}}}};
@@ -56,20 +56,20 @@ draft c1_claim(const measurements& m) {
                     "with three sorted lists", "displacement"));
     for (const condition* c : large)
         c1.add(told(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
-                    "against the classic incremental sweep", "displacement"));
+                    "compared with the classic incremental sweep", "displacement"));
     for (const condition& c : conditions)
         if (!is_brownian(c)) c1.add(over_traditional(c, subject_of(c)));
     for (const condition* c : having(conditions, drifting))
         c1.beside = {
             told(endpoint_of(*c, methods[1].tested, traditional, "frame_cpu_ms"), "with the cut alone at 10,000 boxes"),
             told(endpoint_of(*c, methods[2].tested, traditional, "frame_cpu_ms"), "with Shell sort alone")};
-    c1.claim.tables.push_back(
-        {"figure1", "Time a frame as a ratio to the traditional method, with 95 % intervals.", half_steps(conditions)});
+    c1.claim.tables.push_back({"figure1", "Time per frame over that of the traditional method, with 95 % intervals.",
+                               half_steps(conditions)});
     figure& f = c1.claim.figures.emplace_back(log_log(
         "figure1",
-        "Time of global search against the number of objects: the traditional method, the improved one, and the "
-        "half-steps between. Cubes that drift up to a tenth of their edge in a frame; medians and quartiles.",
-        "objects", "time a frame (ms)"));
+        "Time of the broad phase against the number of objects: the traditional method, the improved one, and each "
+        "change alone. Cubes drift by up to a tenth of their edge per frame; medians and quartiles.",
+        "objects", "time per frame (ms)"));
     f.lines = series_of(methods, of_all_sizes, "objects", measured("frame_cpu_ms"));
     return c1;
 }

@@ -49,7 +49,7 @@ struct reported_sort {
     const char* subject;
 };
 constexpr reported_sort sorts[] = {{"insertion", "with insertion sort"},
-                                   {"shell:gaps=four_one", "with Shell sort of two gaps"},
+                                   {"shell:gaps=four_one", "with two gaps"},
                                    {"shell:gaps=ciura_eight", "with Ciura's eight gaps"},
                                    {"shell:gaps=ciura", "with Ciura's gaps extended as N grows"},
                                    {"shell:gaps=tokuda", "with Tokuda's gaps"},
@@ -81,9 +81,9 @@ std::vector<const condition*> comparable(std::vector<const condition*> condition
 
 draft c2_claim(const measurements& m) {
     draft c2{{.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too",
-              .measured = "comparisons and moves for an element at ten times as many elements over those now, by the "
-                          "straight line through them against log N, from 10,000 elements on",
-              .lead = "For an element at ten times as many",
+              .measured = "comparisons and moves per element at 10 N elements over those at N, by linear regression "
+                          "against log N, from 10,000 elements on",
+              .lead = "Per element, when N grows tenfold",
               .experiments = {"c2"}},
              {{{"sort", "insertion"}, {"displacement", "0.1"}},
               {{"sort", "shell:gaps=four_one"}, {"displacement", "0.1"}},
@@ -113,13 +113,13 @@ draft c2_claim(const measurements& m) {
             c2.add(told(std::move(c), s.subject, "inversions", quantity::work));
         }
     if (by_displacement.empty()) return c2;
-    c2.claim.tables.push_back({"c2_inversions", "Inversions for each element, which are to be the same at every size.",
+    c2.claim.tables.push_back({"c2_inversions", "Inversions per element, which should be equal at all sizes.",
                                inversions_table(by_displacement)});
     figure& f = c2.claim.figures.emplace_back(
         log_log("c2",
-                "Comparisons and moves for each element against the number of elements, at a displacement of a tenth "
-                "of an edge: a level line is O(N).",
-                "elements", "comparisons and moves for each element"));
+                "Comparisons and moves per element against the number of elements, at a displacement of a tenth of an "
+                "edge. A horizontal line is O(N).",
+                "elements", "comparisons and moves per element"));
     std::vector<method> methods;
     for (const reported_sort& s : sorts) methods.push_back({s.sort, {{kind::sort, s.sort}}});
     f.lines = series_of(methods, by_displacement["0.1"], "objects", an_object(work()));

@@ -24,7 +24,7 @@ endpoint over_insertion(const condition& c, const std::string& gaps) {
 table map_of(const std::vector<condition>& conditions) {
     std::vector<const condition*> ordered = having(conditions, {});
     std::ranges::stable_sort(ordered, {}, [](const condition* c) { return disorder_of(*c); });
-    table t{{{"inversions an element"}, {"scene", false}, {"objects"}, {"displacement"}}, {}};
+    table t{{{"inversions per element"}, {"scene", false}, {"objects"}, {"displacement"}}, {}};
     for (const std::string& gaps : gap_sequences) t.columns.push_back({gaps});
     for (const condition* c : ordered) {
         std::vector<std::string>& cells =
@@ -37,9 +37,9 @@ table map_of(const std::vector<condition>& conditions) {
 
 figure figure_of(const std::vector<condition>& conditions) {
     figure f = log_log("c3",
-                       "Time of Shell sort over that of insertion sort (the level 1) against inversions an element, "
-                       "for each sequence of gaps; 95 % intervals.",
-                       "inversions an element", "time over that of insertion sort");
+                       "Time of Shell sort over that of insertion sort (the level 1) against inversions per element, "
+                       "for each gap sequence; 95 % intervals.",
+                       "inversions per element", "time over that of insertion sort");
     for (const bool in_space : {true, false}) {
         figure_panel& panel = f.panels.emplace_back();
         panel.title = in_space ? "in space" : "on a line";
@@ -63,7 +63,7 @@ draft c3_claim(const measurements& m) {
     // Few inversions and many. Boxes on a line that move by 300 edges have as many as 100,000 boxes in space that move
     // by one (186 per element in full runs), and take a hundredth of the time.
     draft c3{{.claim = "Shell sort beats insertion sort under temporal coherence",
-              .measured = "time to take and sort the boxes of a frame, shell with Ciura's gaps over insertion",
+              .measured = "time per frame to update and sort the boxes, shell with Ciura's gaps over insertion",
               .experiments = {"c3"}},
              {drifting, {{"scene", "line"}, {"objects", "100000"}, {"displacement", "300"}}}};
     const std::vector<condition>& conditions = m.of("c3");
@@ -75,8 +75,9 @@ draft c3_claim(const measurements& m) {
                                 (in_space ? " boxes in space" : " boxes on a line"),
                             "inversions"));
     if (conditions.empty()) return c3;
-    c3.claim.tables.push_back(
-        {"c3_map", "Time over that of insertion sort, with each sequence of gaps, by inversions.", map_of(conditions)});
+    c3.claim.tables.push_back({"c3_map",
+                               "Time of Shell sort over that of insertion sort, for each gap sequence, by inversions.",
+                               map_of(conditions)});
     c3.claim.figures.push_back(figure_of(conditions));
     return c3;
 }

@@ -30,10 +30,10 @@ bool is_finer(const condition& c, int axes, int wanted, int before) {
 figure figure_of(const std::string& name, const condition& c) {
     figure f = log_log(
         name,
-        "Time of global search against the segments wanted on each axis, with one, two and three axes cut, on " +
+        "Time of the broad phase against the requested segments per axis, with one, two and three axes cut, on " +
             value_of(c.of(), "scene") +
-            "; the marks say how many segments the limit of one cut a box leaves. The level is without a cut.",
-        "segments wanted on each axis", "time a frame (ms)");
+            ". Marks show how many segments the limit of one cut per box allows. The level is without a cut.",
+        "requested segments per axis", "time per frame (ms)");
     for (int axes = 1; axes <= 3; ++axes) {
         series s{std::to_string(axes) + (axes == 1 ? " axis" : " axes")};
         for (const int wanted : segments_wanted)
@@ -71,9 +71,9 @@ table automatic(const std::vector<condition>& conditions) {
 
 draft c4_claim(const measurements& m) {
     draft c4{{.claim = "The more segments, the faster, up to the limit; and segments need not be tiny",
-              .measured = "time a frame at the limit of one cut a box over that with eight segments on each axis; "
-                          "with more segments over that with the next fewer, up to the limit; and with the automatic "
-                          "number over that at the limit",
+              .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
+                          "with each number of segments over that with the next smaller one, up to the limit; and "
+                          "with the automatic number over that at the limit",
               .experiments = {"c4"}},
              {{{"scene", "brownian"}, {"axes", "2"}, {"segments", "the limit"}},
               {{"scene", "brownian"}, {"axes", "3"}, {"segments", "the limit"}},
@@ -96,7 +96,7 @@ draft c4_claim(const measurements& m) {
     };
     for_each_cut([&](const condition& c, int axes) {
         c4.add(told(ratio(c, axes, limit, {"8", "8"}),
-                    is_brownian(c) ? "on drifting boxes at the limit of one cut a box, against eight segments an axis"
+                    is_brownian(c) ? "on drifting boxes at the limit of one cut per box, compared with eight segments"
                                    : "in clusters",
                     "axes"));
     });
@@ -112,15 +112,14 @@ draft c4_claim(const measurements& m) {
     // Segments need not be tiny: the automatic number is as good as the most that the limit allows.
     for_each_cut([&](const condition& c, int axes) {
         c4.add(told(ratio(c, axes, {"auto", "auto"}, limit),
-                    is_brownian(c) ? "with the automatic number of segments, against the limit"
+                    is_brownian(c) ? "with the automatic number of segments, compared with the limit"
                                    : "in clusters with the automatic number",
                     "axes"))
             .expected = expectation::not_more;
     });
     if (conditions.empty()) return c4;
-    c4.claim.tables.push_back({"c4_auto",
-                               "Segments on each axis, and time, with the automatic choice and at the limit.",
-                               automatic(conditions)});
+    c4.claim.tables.push_back(
+        {"c4_auto", "Segments per axis and time, with the automatic number and at the limit.", automatic(conditions)});
     for (const condition& c : conditions)
         c4.claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.of(), "scene"), c));
     return c4;

@@ -112,14 +112,15 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
     const row_value bytes = all_bytes();
     for (const auto& [label, size] : {std::pair{"cells of 2", "2"}, {"cells chosen anew", "auto"}}) {
         const selection tested = grid(size);
-        const std::string in_the_smallest = std::string("with ") + label + " in the smallest world against the largest";
+        const std::string in_the_smallest =
+            std::string("with ") + label + " in the smallest world compared with the largest";
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large",
-            in_the_smallest + ", both over the cut", small.log_ratios(tested, cut, measured("frame_cpu_ms")),
+            in_the_smallest + ", both relative to the cut", small.log_ratios(tested, cut, measured("frame_cpu_ms")),
             large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::time, expectation::less);
         add(std::string("bytes of a grid, ") + label + ", small world over large", in_the_smallest,
             small.logs(tested, bytes), large.logs(tested, bytes), quantity::bytes, expectation::less);
     }
-    add("bytes of axial_cut, large world over small", "with the cut in the largest world against the smallest",
+    add("bytes of axial_cut, large world over small", "with the cut in the largest world compared with the smallest",
         large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
@@ -127,8 +128,8 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
 figure cell_figure(const std::map<double, std::vector<const condition*>>& by_objects) {
     figure f = log_log(
         "c5",
-        "Time of global search against the size of a grid's cells, over that of the axial cut in the same repeat "
-        "(the level 1), scene by scene; 95 % intervals. Grids of one cell are left out.",
+        "Time of the broad phase with a grid over that with the axial cut in the same repeat (the level 1), against "
+        "the cell size, for each scene; 95 % intervals. Grids with a single cell are left out.",
         "cell size (edges of the smallest box)", "time over that of axial cut");
     for (const auto& [objects, conditions] : by_objects) {
         figure_panel& panel = f.panels.emplace_back();
@@ -152,8 +153,9 @@ figure world_figure(const std::string& name, const std::string& what, const std:
                     const std::vector<condition>& worlds, const row_value& of) {
     figure f = log_log(name,
                        what +
-                           " of global search against the side of the world, for the same 2,000 cubes: a grid of "
-                           "one cell size, one that chooses it anew, and the axial cut; medians and quartiles.",
+                           " of the broad phase against the side of the world, for the same 2,000 cubes: a grid with "
+                           "a fixed cell size, one with an automatic cell size, and the axial cut; medians and "
+                           "quartiles.",
                        "side of the world (edges)", axis);
     const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
     for (const auto& [label, tested] : methods) {
@@ -173,9 +175,9 @@ draft c5_claim(const measurements& m) {
     const std::string over_safest = "axial_cut over the safest cell size";
     draft c5{{.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the "
                        "space",
-              .measured = "the worst slowdown over four scenes of as many objects, each against its best cell size, "
-                          "of axial_cut over that of the cell size whose worst is the least; a grid of one cell is "
-                          "none",
+              .measured = "the worst slowdown of axial_cut over that of the safest cell size; a slowdown is relative "
+                          "to the best cell size of a scene, the worst is that over four scenes with the same number "
+                          "of objects, and grids with a single cell are left out",
               .experiments = {"c5", "c5_world"}},
              {{{"objects", "1000"}, {"comparison", over_safest}}, {{"objects", "10000"}, {"comparison", over_safest}}}};
     std::map<double, std::vector<const condition*>> by_objects;
@@ -197,23 +199,22 @@ draft c5_claim(const measurements& m) {
                     .source = "c5: regret"});
         };
         add(
-            over_safest, "with the cut against the safest cell size, in the worst of four scenes",
+            over_safest, "with the cut compared with the safest cell size, in the worst of four scenes",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(
-            "axial_cut over each scene's best cell size", "with the cut against each scene's best cell size",
+            "axial_cut over each scene's best cell size", "with the cut compared with each scene's best cell size",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
         const resample as_measured(size.processes, size.seeds, level::none, 0);
         c5.claim.remark = fmt::format(
-            "With {} objects the safest of the cell sizes takes {:.1f} times the time of the best one in the scene "
-            "that suits it least.",
+            "With {} objects the safest cell size takes {:.1f} times the time of the best one in its worst scene.",
             number_text(objects), std::exp(scenes.least_worst_regret(as_measured)));
     }
     const std::vector<condition>& worlds = m.of("c5_world");
     add_growth(worlds, c5);
-    c5.claim.tables.push_back({"c5_cells", "Time a frame (ms, medians) with every cell size.", times(m.of("c5"))});
+    c5.claim.tables.push_back({"c5_cells", "Time per frame (ms, medians) with every cell size.", times(m.of("c5"))});
     c5.claim.figures = {cell_figure(by_objects), world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()),
-                        world_figure("c5_world_time", "Time", "time a frame (ms)", worlds, measured("frame_cpu_ms"))};
+                        world_figure("c5_world_time", "Time", "time per frame (ms)", worlds, measured("frame_cpu_ms"))};
     return c5;
 }
 

@@ -77,12 +77,11 @@ table table_of(const test_times& times) {
 
 figure figure_of(const test_times& times) {
     figure f{"c6",
-             "Nanoseconds of one elementary test, on the pairs that a walk through two trees meets; medians and "
-             "quartiles.",
+             "Time of one elementary test, on the pairs that a traversal of two trees visits; medians and quartiles.",
              {"test", false},
-             {"time a test (ns)", false}};
-    series carried{"what is tested of B is carried into A's frame", series_style::points};
-    series of_a{"nothing is carried", series_style::points};
+             {"time per test (ns)", false}};
+    series carried{"with the transformation from B's frame to A's", series_style::points};
+    series of_a{"without a transformation", series_style::points};
     for (const auto& [name, processes] : times) {
         if (name.ends_with(in_place)) continue;
         const auto place = static_cast<double>(f.x.names.size());
@@ -104,8 +103,8 @@ figure figure_of(const test_times& times) {
 
 draft c6_claim(const measurements& m) {
     draft c6{{.claim = "Testing the triangle of a leaf costs what testing its box costs",
-              .measured = "time of a triangle-box test over that of a box test: of a box that is carried into the "
-                          "other frame and boxed anew, and of one that stays rotated, by six axes or all fifteen; in "
+              .measured = "time of a triangle-box test over that of a box test, which encloses the transformed box "
+                          "by an axis-aligned one, or tests it as an oriented box on six or all fifteen axes; in "
                           "whole queries, of leafless over canonical",
               .experiments = {"figure2"}},
              {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", in_frame_of_a}},
@@ -124,17 +123,17 @@ draft c6_claim(const measurements& m) {
                 .subject = subject,
                 .source = "c6: test/" + test + frame + " over test/" + over + frame});
     };
-    add_test("triangle_box", "box", "for a leaf's triangle against its box, made anew after the motion");
-    add_test("triangle_box", "rotated_box_6", "against a box that stays rotated, by six axes");
-    add_test("triangle_box", "rotated_box_15", "against that, by all fifteen");
-    add_test("triangle_box_moller", "box", "by M\u00f6ller's original against a box made anew");
-    add_test("triangle_box_moller", "rotated_box_15", "by M\u00f6ller's original against fifteen axes");
-    add_test("triangle_aabb", "box", "for a box made of the triangle on the fly");
+    add_test("triangle_box", "box", "for a leaf's triangle compared with its transformed axis-aligned box");
+    add_test("triangle_box", "rotated_box_6", "compared with an oriented box on six axes");
+    add_test("triangle_box", "rotated_box_15", "compared with an oriented box on all fifteen axes");
+    add_test("triangle_box_moller", "box", "by M\u00f6ller's original compared with a transformed box");
+    add_test("triangle_box_moller", "rotated_box_15", "by M\u00f6ller's original compared with fifteen axes");
+    add_test("triangle_aabb", "box", "for a triangle's box computed on the fly");
     for (const char* test : {"triangle_box", "triangle_aabb"})
-        add_test(test, "box", "where nothing is carried", std::string(in_place));
+        add_test(test, "box", "without a transformation", std::string(in_place));
     const std::pair<std::string, const char*> queries[] = {
         {"triangle_box", "in whole queries"},
-        {"triangle_aabb", "in whole queries with boxes made on the fly"},
+        {"triangle_aabb", "in whole queries with boxes computed on the fly"},
         {"none", "in whole queries without a test at leaves"}};
     for (const condition& c : m.of("figure2"))
         for (const auto& [test, subject] : queries) {

@@ -44,29 +44,29 @@ draft c7a_claim(const measurements& m) {
               {large_spheres}};
     for (const condition* c : all_sizes(m))
         c7a.add(told(compressed_over_canonical(*c, "tree_bytes", "triangle_box"), "", "", quantity::bytes));
-    c7a.claim.figures.push_back(size_figure(m, "figure2_bytes", "Bytes of trees for each triangle, as allocated.",
-                                            "bytes a triangle", measured("tree_bytes")));
+    c7a.claim.figures.push_back(size_figure(m, "figure2_bytes", "Allocated bytes of trees per triangle.",
+                                            "bytes per triangle", measured("tree_bytes")));
     c7a.claim.figures.back().y.logarithmic = false;
     return c7a;
 }
 
 draft c7b_claim(const measurements& m) {
     draft c7b{{.claim = "Compressed storage takes less time",
-               .measured = "time a query of the compressed tree over that of the canonical one",
+               .measured = "time per query of the compressed tree over that of the canonical one",
                .experiments = {"figure2", "figure2_million"}},
               {{large_spheres.front(), {"leaf_test", "triangle_box"}}}};
     const std::pair<const char*, const char*> leaf_tests[] = {
         {"triangle_box", ""},
-        {"triangle_aabb", "where a box is made of the leaf's triangle on the fly"},
-        {"none", "where the leaf's triangle goes straight to the triangle test"}};
+        {"triangle_aabb", "where the box of a leaf's triangle is computed on the fly"},
+        {"none", "without a test of leaves before the triangle test"}};
     for (const auto& [leaf_test, subject] : leaf_tests)
         for (const condition* c : all_sizes(m))
             c7b.add(told(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject));
     c7b.claim.figures.push_back(
         size_figure(m, "figure2",
-                    "Time of local detection against the number of triangles: the canonical tree, the compressed one, "
-                    "and the half-steps between. Two noise spheres; medians and quartiles.",
-                    "time a query (ms)", measured("detect_cpu_ms")));
+                    "Time of the narrow phase against the number of triangles: the canonical tree, the compressed one, "
+                    "and each half of the compression. Two noise spheres; medians and quartiles.",
+                    "time per query (ms)", measured("detect_cpu_ms")));
     return c7b;
 }
 

@@ -10,8 +10,8 @@ selection canonical(const std::string& build) {
 
 /// The cost of each build and its effect on queries.
 table builds(const std::vector<condition>& conditions) {
-    table t =
-        empty_table({"meshes", "build"}, {"build (ms)", "query (ms)", "box tests a query", "triangle tests a query"});
+    table t = empty_table({"meshes", "build"},
+                          {"build (ms)", "query (ms)", "box tests per query", "triangle tests per query"});
     for (const condition& c : conditions)
         for (const char* build : {"median", "mean", "midpoint", "sah"}) {
             std::vector<std::string> cells{mesh_of(c), build};
@@ -31,18 +31,19 @@ endpoint median_over(const condition& c, const std::string& build) {
 
 draft c8_claim(const measurements& m) {
     draft c8{{.claim = "The balanced (median) tree is searched faster than an unbalanced one",
-              .measured = "time a query, canonical tree split at the median over the same split otherwise",
+              .measured = "time per query of the canonical tree split at the median over that split otherwise",
               .lead = "Split at the median",
               .experiments = {"table1"}},
              {{{"meshes", "noise_sphere:triangles=20000"}}}};
     const std::vector<condition>& conditions = m.of("table1");
     figure f{"c8",
              "Time of a query in the canonical tree split at the median, over that of one split at the mean, at the "
-             "middle of the box, and by surface area, with 95 % intervals: above 1 the median is slower.",
+             "middle of the box, and by the surface area heuristic; 95 % intervals. Above 1 the median is slower.",
              {"meshes", false},
              {"time, median over other splits", false}};
-    const std::pair<const char*, const char*> others[] = {
-        {"mean", "against the mean"}, {"midpoint", "against the middle of the box"}, {"sah", "against surface area"}};
+    const std::pair<const char*, const char*> others[] = {{"mean", "compared with the mean"},
+                                                          {"midpoint", "compared with the middle of the box"},
+                                                          {"sah", "compared with the surface area heuristic"}};
     for (const auto& [build, subject] : others) {
         series& s = f.lines.emplace_back(series{std::string("over ") + build, series_style::points});
         for (const condition& c : conditions) {
@@ -51,7 +52,7 @@ draft c8_claim(const measurements& m) {
         }
     }
     c8.claim.tables.push_back(
-        {"c8_builds", "Medians of time and work of canonical trees, by where nodes are split.", builds(conditions)});
+        {"c8_builds", "Medians of time and work of canonical trees, for each rule of splitting.", builds(conditions)});
     for (std::size_t i = 0; i < conditions.size(); ++i)
         f.x.names.emplace_back(static_cast<double>(i), mesh_of(conditions[i]));
     f.lines.push_back(level_of("equal", 0));

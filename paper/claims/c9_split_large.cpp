@@ -18,9 +18,9 @@ bool splits_something(const condition& c, const selection& split) {
 }  // namespace
 
 draft c9_claim(const measurements& m) {
-    draft c9{{.claim = "Splitting large objects before the search pays off",
-              .measured = "time of global search a frame with large objects split over that without, both with "
-                          "axial_cut: their boxes, or the geometry of their meshes",
+    draft c9{{.claim = "Splitting large objects before the search is worth its cost",
+              .measured = "time per frame of the broad phase with large objects split over that without, both with "
+                          "axial_cut; either their boxes are split, or their meshes",
               .experiments = {"c9", "c9_geometry"}},
              {{{"span", "0.5"}, {"huge", "10"}, {"split_large", "4"}},
               {{"huge", "2"}, {"split_mesh", "4"}, {"time of", "global search"}}}};
@@ -36,13 +36,13 @@ draft c9_claim(const measurements& m) {
             const auto add = [&](const std::string& metric, const std::string& of, const std::string& subject) {
                 c9.add(told(endpoint_of(c, split, whole, metric, {{"split_mesh", size}, {"time of", of}}), subject));
             };
-            add("global_cpu_ms", "global search", "of global search where meshes are split");
-            add("frame_cpu_ms", "both stages", "of both stages there");
+            add("global_cpu_ms", "global search", "in the broad phase where meshes are split");
+            add("frame_cpu_ms", "both stages", "in both phases where meshes are split");
         }
     figure& f = c9.claim.figures.emplace_back(
         log_log("c9",
-                "Time of global search with boxes split that are longer than four mean extents, over that without (the "
-                "level 1), against the number of huge boxes, by their edge over the side of the world; 95 % intervals.",
+                "Time of the broad phase with boxes longer than four mean extents split, over that without (the level "
+                "1), against the number of huge boxes, by their edge over the side of the world; 95 % intervals.",
                 "huge boxes", "time over that without splitting"));
     f.lines = lines_by_span(c9.endpoints, {{"split_large", "4"}});
     f.lines.push_back(level_of("not split"));

@@ -78,8 +78,8 @@ claim_result finished(const draft& source, const std::vector<endpoint>& endpoint
     claim.tables.insert(claim.tables.begin(),
                         {name,
                          "Every endpoint of " + claim.id + ": " + claim.measured +
-                             ". Outcomes are by Holm's rule, of primary ones over all claims, of the others over this "
-                             "one; intervals are each one's own.",
+                             ". Outcomes are corrected by Holm's method: of primary endpoints over all claims, of the "
+                             "others over this claim. Intervals are uncorrected.",
                          endpoint_table(ordered, [](const endpoint& e) {
                              return text_of(e.found) + (e.is_primary ? " (primary)" : "");
                          })});

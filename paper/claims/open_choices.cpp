@@ -42,7 +42,7 @@ measured_choices in_one(const std::vector<const condition*>& conditions, const s
 /// Claim C1 in the only condition of the experiment on choices: time of Shell sort with a cut over insertion sort
 /// without.
 measured_choices of_search(const measurements& m, const std::vector<arms>& tried) {
-    return in_one(having(m.of("choices"), {}), "frame_cpu_ms", " (a run of its own)", tried);
+    return in_one(having(m.of("choices"), {}), "frame_cpu_ms", " (a separate run)", tried);
 }
 
 /// Query times of a tree over those of the canonical one, on the generated mesh of table 1.
@@ -91,12 +91,12 @@ measured_choices over_leaf_tests(const measurements& m) {
 
 /// The growth of work per element, as in claim C2.
 measured_choices over_numbers_of_gaps(const measurements& m) {
-    measured_choices measured{"line, displacement 0.1", "as many as N asks for"};
+    measured_choices measured{"line, displacement 0.1", "as many as N requires"};
     for (endpoint e : c2_claim(m).endpoints) {
         e.expected = expectation::not_more;
         const std::string sort = value_of(e.where, "sort");
         if (value_of(e.where, "displacement") != "0.1" || sort == "insertion") continue;
-        measured.add(sort == "shell:gaps=ciura"         ? "as many as N asks for"
+        measured.add(sort == "shell:gaps=ciura"         ? "as many as N requires"
                      : sort == "shell:gaps=ciura_eight" ? "Ciura's eight"
                      : sort == "shell:gaps=four_one"    ? "two: 4 and 1"
                                                         : sort,
@@ -118,11 +118,11 @@ measured_choices over_models(const measurements& m) {
 }
 
 measured_choices with_first_frame(const measurements& m) {
-    measured_choices measured{"", "without it"};
+    measured_choices measured{"", "without the first frame"};
     for (const condition* c : having(m.of("figure1"), drifting)) {
         measured.where = text_of(c->of());
-        measured.add_search("without it", *c);
-        measured.add("with it", endpoint_of(*c, improved, traditional, "whole_cpu_ms"));
+        measured.add_search("without the first frame", *c);
+        measured.add("with the first frame", endpoint_of(*c, improved, traditional, "whole_cpu_ms"));
     }
     return measured;
 }
@@ -162,8 +162,9 @@ std::vector<open_choice> open_choices(const measurements& m) {
     return {
         choice("Which axes are sorted and swept?",
                "one_axis: the axis on which centres vary most, the other two tested",
-               "three sorted lists (all_axes) report a pair that overlaps on each; one list does the same with less "
-               "memory, and both arms have it alike",
+               "three sorted lists (all_axes) report a pair that overlaps on each; one list finds the same pairs with "
+               "less "
+               "memory, and both compositions use it",
                "C1",
                of_search(m, {{"best axis", shell_cut, traditional},
                              {"x", search("shell", "axial_cut:axes=2", "one_axis:axis=x"),
@@ -175,8 +176,8 @@ std::vector<open_choice> open_choices(const measurements& m) {
                of_search(m, {{"2", shell_cut, traditional},
                              {"1", shell("ciura", "axial_cut:axes=1"), traditional},
                              {"3", shell("ciura", "axial_cut:axes=3"), traditional}})),
-        choice("How many segments?", "auto: what a model of evenly spread boxes finds cheapest",
-               "the paper names a limit and no number; claim C4 has the whole curve", "C1",
+        choice("How many segments?", "auto: the cheapest number by a cost model of uniformly distributed boxes",
+               "the paper gives a limit and no number; claim C4 has the whole curve", "C1",
                of_search(m, {{"auto", shell_cut, traditional},
                              {"8", shell("ciura", "axial_cut:axes=2,segments=8"), traditional}})),
         choice("How are Shell sort's gaps chosen?", "Ciura's sequence",
@@ -184,33 +185,35 @@ std::vector<open_choice> open_choices(const measurements& m) {
                of_search(m, {{"Ciura", shell_cut, traditional},
                              {"Tokuda", shell("tokuda"), traditional},
                              {"Shell", shell("shell"), traditional}})),
-        choice("How many gaps?", "as many as N asks for: Ciura's eight, then each 2.25 times the one before",
-               "the paper says no number; with a fixed one the work an element stays level, and O(N) is true", "C2",
+        choice("How many gaps?", "as many as N requires: Ciura's eight, then each 2.25 times the previous one",
+               "the paper gives no number; with a fixed one the work per element stays constant, and O(N) holds", "C2",
                over_numbers_of_gaps(m)),
-        choice("How far do objects move in a frame?", "up to a tenth of an edge",
+        choice("How far do objects move per frame?", "up to a tenth of an edge",
                "\"only slightly from last time step\"", "C1", over_displacements(m)),
-        choice("How do objects lie?", "drifting cubes, a tenth of the volume filled",
-               "the scene of Broadmark, which other systems are compared on", "C1", over_scenes(m)),
-        choice("Does the first frame count?", "no: it is sorted by std::sort and timed apart",
-               "nothing is almost sorted in it, and insertion sort would be quadratic", "C1", with_first_frame(m)),
-        choice("What stands in for a leaf's box?",
+        choice("How are objects distributed?", "drifting cubes, a tenth of the volume filled",
+               "the scene of Broadmark, on which other systems are compared", "C1", over_scenes(m)),
+        choice("Does the first frame count?", "no: it is sorted by std::sort and timed separately",
+               "its list is not almost sorted, so insertion sort would be quadratic", "C1", with_first_frame(m)),
+        choice("What replaces the box of a leaf?",
                "the triangle is tested against the other box (Möller's test with a margin that keeps it exact)",
-               "\"we can directly adopt triangle to test\"; its box made on the fly, or nothing, are other readings",
+               "\"we can directly adopt triangle to test\"; its box computed on the fly, or no test, are other "
+               "readings",
                "C7b", over_leaf_tests(m)),
-        choice("Twelve bytes of scope values: for whom?", "six planes for two siblings, without loss",
-               "three planes a node cannot hold every box: larger boxes are the literal reading", "C7b",
+        choice("What do twelve bytes of scope values describe?", "six planes for two siblings, without loss",
+               "three planes per node cannot represent every box: the literal reading has larger boxes", "C7b",
                over_trees(m, {{"without loss", tree("compressed", "median"), canonical("median")},
-                              {"to the letter", tree("compressed_literal", "median"), canonical("median")}})),
+                              {"literally", tree("compressed_literal", "median"), canonical("median")}})),
         choice("Where is a node split \"in term of centroids\"?", "at their median, along the longest axis",
                "the tree is to be balanced", "C7b",
                over_trees(m, {{"median", tree("compressed", "median"), canonical("median")},
                               {"mean", tree("compressed", "mean"), canonical("mean")},
                               {"sah", tree("compressed", "sah"), canonical("sah")}})),
-        choice("What are \"different models\"?",
-               "scanned animals in a crowd, many small generated ones, and simple ones far apart",
-               "the paper names none; in the first two nearly all of the time is local detection's, in the last two "
-               "thirds and more are global search's",
-               "C11", over_models(m)),
+        choice(
+            "What are \"different models\"?",
+            "scanned animals in a crowd, many small generated ones, and simple ones far apart",
+            "the paper names none; the narrow phase takes nearly all of the time in the first two, and the broad phase "
+            "takes two thirds or more in the last",
+            "C11", over_models(m)),
     };
 }
 

@@ -101,7 +101,7 @@ std::string predicate_of(std::span<const endpoint> endpoints, wording how) {
 std::string place_text(const std::string& factor, const std::string& value) {
     if (factor == "objects") return number_text(value) + (value == "1" ? " object" : " objects");
     if (factor == "axes") return value + (value == "1" ? " axis" : " axes");
-    if (factor == "inversions") return number_text(value) + " inversions an element";
+    if (factor == "inversions") return number_text(value) + " inversions per element";
     return "a " + factor + " of " + number_text(value);
 }
 
@@ -175,7 +175,7 @@ std::string against_classic_sweep(std::span<const claim_result> claims) {
     const claim_result* claim = claim_named(claims, "C1");
     if (!claim) return "";
     for (const endpoint& e : primaries_of(*claim))
-        if (value_of(e.where, "over") == "incremental") return "; where objects hardly move, " + clause_of({&e, 1}, e);
+        if (value_of(e.where, "over") == "incremental") return "; with little motion, " + clause_of({&e, 1}, e);
     return "";
 }
 
@@ -240,11 +240,11 @@ std::string sentence_of(std::span<const endpoint> endpoints, const std::string& 
 
 std::vector<std::string> headline_of(std::span<const claim_result> claims) {
     return {
-        "To find which boxes overlap, the paper sorts them with Shell sort and cuts the axes; compared with insertion "
-        "sort without cuts: " +
+        "The improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion sort, no "
+        "cut): " +
             first_clause(claims, "C1") + against_classic_sweep(claims) + ".",
-        "To find which triangles meet, it compresses the tree of boxes; compared with the tree as it was: " +
-            first_clause(claims, "C7a") + ", and to search it " + first_clause(claims, "C7b") + ".",
+        "The compressed tree of the narrow phase, compared with the canonical one: " + first_clause(claims, "C7a") +
+            "; its queries: " + first_clause(claims, "C7b") + ".",
         counts_of(claims)};
 }
 

@@ -35,7 +35,7 @@ const condition* measured_on(const measurements& m) {
 
 table bytes_table(const condition& c) {
     table t = empty_table({"tree", "internal node", "leaf"},
-                          {"a triangle, on paper", "allocated", "of it boxes and symbols", "indices"});
+                          {"bytes per triangle, nominal", "allocated", "of these, boxes and symbols", "indices"});
     for (const layout& l : layouts) {
         const selection composition = built(l, "median");
         if (!c.value(composition, measured("tree_bytes"))) continue;
@@ -50,7 +50,7 @@ table bytes_table(const condition& c) {
 }
 
 table cost_table(const condition& c) {
-    table t = empty_table({"tree", "build"}, {"bytes a triangle", "boxes larger by (%)", "build time", "query time"});
+    table t = empty_table({"tree", "build"}, {"bytes per triangle", "boxes larger by (%)", "build time", "query time"});
     for (const layout& l : layouts)
         for (const char* build : {"median", "mean", "midpoint", "sah"}) {
             const std::optional<double> bytes = c.value(built(l, build), measured("tree_bytes"));
@@ -71,12 +71,11 @@ std::vector<named_table> table1(const measurements& m) {
     const condition* c = measured_on(m);
     if (!c) return {};
     return {
-        {"table1", "Nodes of every layout, byte by byte: on paper, and as allocated for trees of " + mesh_of(*c) + ".",
+        {"table1", "Node sizes of every layout in bytes: nominal, and as allocated for trees of " + mesh_of(*c) + ".",
          bytes_table(*c)},
         {"table1_builds",
-         "What the layouts cost, split at the median, at the mean, in the middle of the box and by surface area: times "
-         "over those of canonical, "
-         "median, on " +
+         "Costs of the layouts, split at the median, at the mean, in the middle of the box and by the surface area "
+         "heuristic. Times are relative to canonical, median, on " +
              mesh_of(*c) + ".",
          cost_table(*c)}};
 }

@@ -138,7 +138,7 @@ named_table bands_table(std::span<const draft> drafts) {
         const std::vector<std::vector<endpoint>> endpoints = decided(drafts, band);
         for (std::size_t i = 0; i < drafts.size(); ++i) t.rows[i].push_back(text_of(verdict_of(endpoints[i])));
     }
-    return {"bands", "The verdicts, if ratios that differ from 1 by no more than so much were no difference.", t};
+    return {"bands", "The verdicts under narrower and wider bands of no difference.", t};
 }
 
 named_table null_control(const measurements& m) {
@@ -162,8 +162,8 @@ named_table null_control(const measurements& m) {
         std::ranges::count_if(ratios, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
     return {"null_control",
             fmt::format(
-                "Null control: time a frame of a composition under two names. Of {} intervals {} miss 1, where one in "
-                "twenty would be expected to. Each taken alone, {} are decided as a difference, {} as none, "
+                "Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
+                "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
                 "and {} are undecided.",
                 ratios.size(), without_one, std::ranges::count_if(ratios, is_difference),
                 std::ranges::count(ratios, support::no_difference, &endpoint::found),
@@ -189,18 +189,18 @@ std::string disturbance_of(std::span<const measurements> machines) {
         const double difference = differences.empty() ? 0 : 100 * quartiles_of(differences).median;
         if (waiting <= most_waiting && difference <= most_difference) continue;
         text += (text.empty() ? "The machine" : " The machine") +
-                (machines.size() > 1 ? " of " + m.name() : std::string()) + " was not quiet:";
+                (machines.size() > 1 ? " of " + m.name() : std::string()) + " was not quiet.";
         if (difference > most_difference)
             text += fmt::format(
-                " one repeat differs from the next by {:.1f} % in the median, on a quiet one by less than "
+                " The median difference between successive repeats is {:.1f} %; on a quiet machine it is less than "
                 "{:.0f} %.",
                 difference, most_difference);
         if (waiting > most_waiting)
             text += fmt::format(
-                " of the time of all frames the program waited {:.1f} % for a processor, on a quiet one "
-                "less than {:.0f} %.",
+                " The program waited for a processor during {:.1f} % of the time of all frames; on a quiet machine "
+                "it is less than {:.0f} %.",
                 waiting, most_waiting);
-        text += " Ratios may be off by more than their intervals say.";
+        text += " The errors of ratios may exceed their intervals.";
     }
     return text;
 }

@@ -100,8 +100,8 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
     report_section section{
         .id = "errors",
         .title = "Error against run time",
-        .paragraphs = {"Beyond the paper: what methods get wrong, and what that saves. Every answer is held against "
-                       "the exact one; a method that gets nothing wrong stands at one wrong answer in all."},
+        .paragraphs = {"Beyond the paper: the errors of methods, and the time that these save. Every result is "
+                       "compared with the ground truth; a method without errors is drawn at one wrong result."},
         .figures = {},
         .tables = {}};
     for (const error_study& study : studies_with_curves(quick)) {
@@ -113,8 +113,8 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
                 section.figures.push_back(group_figure(points, group));
                 section.tables.push_back(
                     {section.figures.back().name,
-                     fmt::format("In {}: shares of pairs with a wrong answer, of intersecting ones that were missed, "
-                                 "of others that were invented.",
+                     fmt::format("In {}: the shares of wrong results among all pairs, of false negatives among "
+                                 "intersecting pairs, and of false positives among the others.",
                                  title_of(group)),
                      error_summary(points, group)});
             }
@@ -145,15 +145,15 @@ std::optional<report_section> atlas_section(const std::filesystem::path& folder)
     if (atlas.empty()) return std::nullopt;
     return report_section{
         "atlas",
-        "Atlas of global search",
+        "Atlas of the broad phase",
         {fmt::format("Beyond the paper: which composition or engine is the fastest in each of {} small scenes. "
-                     "`./aabblab atlas` plays the whole atlas, and judges statements of others on it.",
+                     "`./aabblab atlas` runs the whole atlas, and judges published statements by it.",
                      atlas.size())},
         atlas_figures(atlas),
-        {{"winners", "Who wins a frame after the first.", winners_table(atlas)},
-         {"regrets", "What it costs to use one everywhere: a frame's time over that of the fastest of each scene.",
+        {{"winners", "The fastest per frame after the first.", winners_table(atlas)},
+         {"regrets", "The cost of using one everywhere: time per frame over that of the fastest in each scene.",
           regrets_table(atlas, span_of_time::frame)},
-         {"regrets_whole", "The same of all frames, the first and the making included.",
+         {"regrets_whole", "The same for the time of all frames, including the first and construction.",
           regrets_table(atlas, span_of_time::whole)}}};
 }
 
@@ -205,11 +205,11 @@ std::vector<report_section> sections_of_reproduction(const std::filesystem::path
     if (report_section errors = errors_section(folder, quick); !errors.figures.empty())
         sections.push_back(std::move(errors));
     add_suite(sections, folder, "extreme", "Extreme scenes",
-              "Beyond the paper: every composition and engine where exactness is hardest, exact, refused with the "
-              "reason, or wrong.");
+              "Beyond the paper: whether every composition and engine is exact, rejects the input (refused) or is "
+              "wrong, in the scenes in which exactness is hardest.");
     add_suite(sections, folder, "stiff", "Stiff scenes",
-              "Beyond the paper: bodies stepped in time, pushed by the contacts that are found, and held against "
-              "closed forms and published results.");
+              "Beyond the paper: simulations of bodies with the forces of detected contacts, compared with closed "
+              "forms and published results.");
     if (auto atlas = atlas_section(folder)) sections.push_back(*std::move(atlas));
     return sections;
 }
@@ -222,9 +222,9 @@ std::filesystem::path folder_of(const reproduce_request& request) {
 
 void require_sense(const reproduce_request& request) {
     if (!request.sources.empty() && !request.judge)
-        throw aabb::input_error(request.sources.front() + " is named, but only --judge takes results that are there");
+        throw aabb::input_error(request.sources.front() + " is given, but only --judge takes existing results");
     if (request.archive && request.sources.size() > 1)
-        throw aabb::input_error("--archive takes the results of one run, and several are named");
+        throw aabb::input_error("--archive takes the results of one run, but several are given");
 }
 
 /// Reads and verifies the results of one run.
@@ -304,7 +304,7 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
                        failures, agreement);
     print(verdict_text(reproduced));
     if (!failures.empty())
-        print(fmt::format("\n{} answers were wrong; compositions among them have no times:\n", failures.size()));
+        print(fmt::format("\n{} results are wrong; compositions with wrong results have no times:\n", failures.size()));
     for (const std::string& failure : failures) print("  " + failure + "\n");
     print("\nThe report is " + visible((out / "report.html").string()) + "\n");
     if (!agreement.empty()) print_paragraph(agreement);

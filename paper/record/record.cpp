@@ -99,7 +99,7 @@ std::vector<std::filesystem::path> archived_files(const std::filesystem::path& f
 
 source_list::source_list(std::span<const std::string> names) {
     for (const std::string& name : names) {
-        if (!std::filesystem::exists(name)) throw aabb::input_error(name + " is not there");
+        if (!std::filesystem::exists(name)) throw aabb::input_error(name + " does not exist");
         all_.push_back({name, std::filesystem::is_directory(name) ? std::filesystem::path(name)
                                                                   : unpacked_.emplace_back(name, record_top).folder()});
     }
@@ -146,7 +146,7 @@ void verify_record(const std::filesystem::path& folder) {
     for (const auto& [file, sum] : stated) {
         const auto position = actual.find(file);
         if (position == actual.end())
-            throw aabb::input_error((folder / file).string() + " is missing; SHA256SUMS names it");
+            throw aabb::input_error((folder / file).string() + " is missing, but SHA256SUMS names it");
         if (position->second != sum)
             throw aabb::input_error((folder / file).string() +
                                     " was altered after the run: it does not have the checksum that SHA256SUMS states");
@@ -157,7 +157,7 @@ void verify_record(const std::filesystem::path& folder) {
     for (const auto& [file, sum] : stated)
         if (const std::filesystem::path manifest(file); manifest.filename() == "manifest.json")
             if (const auto table = folder / manifest.parent_path() / "results.csv"; !std::filesystem::exists(table))
-                throw aabb::input_error(table.string() + " is missing, and its manifest.json is there");
+                throw aabb::input_error(table.string() + " is missing, but its manifest.json exists");
 }
 
 }  // namespace aabblab

@@ -63,8 +63,9 @@ private:
 
 /// The report's note about unsealed results.
 inline constexpr const char* unsealed_note =
-    "the results are not sealed: the run was not finished, is of an earlier version, or lost its SHA256SUMS, and "
-    "nothing shows whether rows are missing or were altered";
+    "the results are not sealed: the run was not finished, is of an earlier version, or lost its SHA256SUMS. Missing "
+    "or "
+    "altered rows would not be noticed";
 
 /// The name of the file of checksums.
 inline constexpr const char* sums_name = "SHA256SUMS";

@@ -83,7 +83,7 @@ std::string rule_picture() {
         std::string_view outcome;
     };
     constexpr std::array<example, 5> examples{{{0.45, 0.62, "less"},
-                                               {0.84, 0.98, "less, by little"},
+                                               {0.84, 0.98, "slightly less"},
                                                {0.965, 1.035, "the same"},
                                                {1.3, 1.8, "more"},
                                                {0.72, 1.35, "direction open"}}};
@@ -121,8 +121,8 @@ constexpr verdict_word verdict_words[] = {
     {"holds", "Holds", "every primary ratio favours the claim"},
     {"part", "Holds in part", "some primary ratios favour it and some do not; the sentence says where"},
     {"same", "No difference", "every primary ratio lies within the band"},
-    {"not", "Does not hold", "no primary ratio favours it, and one speaks against it"},
-    {"open", "Undecided", "the direction of a primary ratio is open, and the verdict hangs on it"}};
+    {"not", "Does not hold", "no primary ratio favours it, and at least one contradicts it"},
+    {"open", "Undecided", "the direction of a primary ratio is open, and the verdict depends on it"}};
 
 const verdict_word& word_of(verdict_kind verdict) {
     return verdict_words[static_cast<std::size_t>(verdict)];
@@ -166,9 +166,9 @@ void add_claim_rows(page& out, const reproduction& reproduced) {
     }
     out.add_html(element("div", {{"class", "claims"}}, rows) + "\n" +
                  paragraph("soft",
-                           "Each row: what the paper says, the verdict, the first primary ratio with its 95 % "
-                           "interval, and all of them drawn, on one scale for all. Left of 1 favours the claim; the "
-                           "shaded band makes no difference.") +
+                           "Each row gives the paper's claim, the verdict, the first primary ratio with its 95 % "
+                           "interval, and a plot of all primary ratios. All plots share a scale. Ratios left of 1 "
+                           "favour the claim; those in the shaded band make no difference.") +
                  "\n");
     out.add_markdown(to_markdown(brief_table(reproduced)) + "\n");
     for (const claim_result& c : reproduced.claims)
@@ -179,7 +179,7 @@ void add_claim_rows(page& out, const reproduction& reproduced) {
 }
 
 void add_rule(page& out, const reproduction& reproduced) {
-    out.heading("How a verdict comes about", "rule");
+    out.heading("How a verdict is reached", "rule");
     out.add_html(rule_picture() + "\n");
     std::string words;
     for (const auto& [kind, word, meaning] : verdict_words)
@@ -210,8 +210,8 @@ void add_choices(page& out, const reproduction& reproduced) {
                       text_of(a.measured.found);
         const std::string dependence = dependence_of(c);
         ratios += dependence == "yes"  ? ". Its outcome depends on the choice."
-                  : dependence == "no" ? ". Its outcome is the same."
-                                       : ". Whether its outcome is the same cannot be told.";
+                  : dependence == "no" ? ". Its outcome does not depend on the choice."
+                                       : ". Whether its outcome depends on the choice is undecided.";
         list += element("dd", {{"class", "soft"}}, markup_text(ratios)) + "\n";
     }
     out.add_html(element("dl", {}, list) + "\n");
@@ -228,13 +228,13 @@ table rule_table() {
 
 page report_of(const reproduction& reproduced, std::span<const report_section> sections, const provenance& origin,
                const std::vector<std::string>& failures) {
-    page out("AABB Lab: the paper, put to the test", embedded::report_css);
+    page out("AABB Lab: the paper, reproduced", embedded::report_css);
     if (!reproduced.disturbance.empty()) out.paragraph(reproduced.disturbance, "wrong");
     for (const std::string& failure : failures) {
         out.add_html(paragraph("wrong", markup_text("Wrong: " + failure + ".")) + "\n");
         out.add_markdown("**Wrong:** " + failure + ".\n\n");
     }
-    out.title("The paper, put to the test");
+    out.title("The paper, reproduced");
     std::string headline;
     for (const std::string& sentence : reproduced.headline) {
         headline += paragraph("", markup_text(sentence)) + "\n";
@@ -242,10 +242,10 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
     }
     out.add_html(element("div", {{"class", "headline"}}, headline) + "\n");
     if (!origin.agreement.empty()) out.paragraph(origin.agreement);
-    out.paragraph(fmt::format("\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures, "
-                              "its claims and one of the method that it follows (SMB, 2006): {} in all. "
-                              "{}, {} size. Commit {}, {}, {}. {} rows of {} "
-                              "scenes; up to {} processes, {} seeds and {} repeats in all.",
+    out.paragraph(fmt::format("\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and "
+                              "{} claims, one of them of the method that it follows (SMB, 2006). Broad phase means the "
+                              "paper's global search, narrow phase its local detection. {}, {} size. Commit {}, {}, "
+                              "{}. {} rows of {} scenes; up to {} processes, {} seeds and {} repeats.",
                               reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler,
                               origin.cpu, origin.rows, origin.scenes, origin.processes, origin.seeds, origin.repeats),
                   "soft");
@@ -260,7 +260,7 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
                      "\n");
         out.add_markdown("**" + text_of(c) + ":** " + c.sentence + "\n\n");
         if (c.because != c.sentence) out.paragraph(c.because);
-        out.paragraph("The ratio is that of " + c.measured + ".", "soft");
+        out.paragraph("The ratio: " + c.measured + ".", "soft");
         for (const figure& f : c.figures) out.add(f);
         for (const named_table& t : c.tables)
             if (&t != c.tables.data()) out.add(t);
@@ -268,10 +268,9 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         for (const std::string& experiment : c.experiments)
             for (const provenance::config& config : origin.configs)
                 if (config.experiment == experiment)
-                    out.folded("The config that made it: " + experiment + ".toml",
-                               element("pre", {}, markup_text(config.text)));
+                    out.folded("The config: " + experiment + ".toml", element("pre", {}, markup_text(config.text)));
     }
-    out.heading("Table 1: what nodes take", "table1");
+    out.heading("Table 1: sizes of nodes", "table1");
     for (const named_table& t : reproduced.tables) out.add(t);
     add_choices(out, reproduced);
     for (const report_section& section : sections) {
@@ -280,7 +279,7 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         for (const figure& f : section.figures) out.add(f);
         for (const named_table& t : section.tables) out.add(t);
     }
-    out.add_html(element("h2", {{"id", "manifest"}}, "What made it") + "\n");
+    out.add_html(element("h2", {{"id", "manifest"}}, "Provenance") + "\n");
     for (const provenance::config& config : origin.configs)
         out.folded(config.experiment + "/manifest.json", element("pre", {}, markup_text(config.manifest)));
     return out;

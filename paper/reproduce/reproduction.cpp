@@ -17,7 +17,7 @@ public:
     [[nodiscard]] const std::string& text() const { return text_; }
 
 private:
-    std::string text_ = "% Written by ./aabblab reproduce: every number that the report names.\n";
+    std::string text_ = "% Written by ./aabblab reproduce: every number of the report.\n";
 };
 
 /// The values of all factors over all scenes: "scene brownian, still; objects 100, 1000."
@@ -103,8 +103,8 @@ table endpoints_of(const reproduction& reproduced) {
 figure verdict_figure(const reproduction& reproduced) {
     figure f{
         "verdicts",
-        "The primary ratio of every claim with its 95 % interval, and the band in which there is no difference. Ratios "
-        "below 0.2 are left out.",
+        "The first primary ratio of every claim with its 95 % interval, and the band of no difference. Ratios below "
+        "0.2 are left out.",
         {"claim", false},
         {"ratio", true}};
     series ratios{"primary ratio, 95 % interval", series_style::points};

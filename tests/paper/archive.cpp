@@ -61,7 +61,7 @@ TEST_CASE("An archive, and results with other ends of lines and another order of
     CHECK(std::regex_search(judged.out, std::regex("run\\.tar\\.xz \\([0-9.]+ MiB\\), SHA-256 [0-9a-f]{64}\n")));
     const std::string page = bytes_of_file(folder / "a/report.html");
     REQUIRE_FALSE(holds(page, "not sealed"));
-    CHECK(holds(page, "Atlas of global search"));
+    CHECK(holds(page, "Atlas of the broad phase"));
     for (const char* part :
          {"Stiff scenes", "a shot", "Share of shots", "Extreme scenes", "All of it.", "lattice", "Drawn"})
         CHECK(holds(page, part));
@@ -157,10 +157,10 @@ TEST_CASE("What is no archive of a run is refused in one sentence") {
                    Catch::Matchers::ContainsSubstring(sentence));
     };
     rejected({"--judge", results}, "there are no results of a reproduction in " + results);
-    rejected({"--judge", folder / "none"}, "none is not there");
+    rejected({"--judge", folder / "none"}, "none does not exist");
     rejected({"--judge", folder.write("page.html", "<!doctype html>")},
              "page.html is not an archive of results, which is tar compressed by xz");
-    rejected({results}, "only --judge takes results that are there");
+    rejected({results}, "only --judge takes existing results");
     rejected({"--judge", results, results, "--archive", "x"}, "--archive takes the results of one run");
 
     write_finished_run(folder / "run");

@@ -191,9 +191,10 @@ TEST_CASE("A run that waited for a processor, or whose repeats differ, says so")
     CHECK(told(0, 0).empty());
     CHECK(told(0, 0.1).empty());
     CHECK(told(1, 0) ==
-          "The machine was not quiet: of the time of all frames the program waited 25.0 % for a processor, on a quiet "
-          "one less than 2 %. Ratios may be off by more than their intervals say.");
-    CHECK(told(0, 0.6).starts_with("The machine was not quiet: one repeat differs from the next by 18.2 %"));
+          "The machine was not quiet. The program waited for a processor during 25.0 % of the time of all frames; on a "
+          "quiet machine it is less than 2 %. The errors of ratios may exceed their intervals.");
+    CHECK(told(0, 0.6).starts_with(
+        "The machine was not quiet. The median difference between successive repeats is 18.2 %"));
 }
 
 TEST_CASE("What waits for a processor changes no ratio") {

@@ -111,7 +111,7 @@ TEST_CASE("ODE's hashed grid refuses more objects than it can count pairs of") {
     const std::vector<box> boxes(most + 1, {{0, 0, 0}, {1, 1, 1}});
     CHECK_REFUSED(
         engine->update(boxes),
-        "ode_hash takes at most 131071 objects, and here are 131072: ODE counts the bytes for their pairs in an int");
+        "ode_hash takes at most 131071 objects, but there are 131072: ODE counts the bytes for their pairs in an int");
 }
 
 TEST_CASE("engines say what they hold") {

@@ -44,14 +44,13 @@ TEST_CASE("the judge catches a global search that loses, invents, repeats, refus
         verdict outcome;
         std::uint64_t false_negatives, false_positives;
         std::string reason;
-    } wrong[] = {
-        {[](pair_list& pairs) { pairs.pop_back(); }, verdict::wrong, 3, 0, "frame 0: the pair 0 1 is missing"},
-        {[](pair_list& pairs) { pairs.push_back({0, 7}); }, verdict::wrong, 0, 3,
-         "frame 0: the pair 0 7 is reported, but is not in the exact answer"},
-        {[](pair_list& pairs) { pairs.push_back(pairs[0]); }, verdict::wrong, 0, 3,
-         "frame 0: the pair 0 1 is reported more than once"},
-        {[](pair_list&) { reject(); }, verdict::rejected, 0, 0, "not today"},
-        {[](pair_list&) { throw std::runtime_error("no more"); }, verdict::wrong, 0, 0, "breaks off: no more"}};
+    } wrong[] = {{[](pair_list& pairs) { pairs.pop_back(); }, verdict::wrong, 3, 0, "frame 0: the pair 0 1 is missing"},
+                 {[](pair_list& pairs) { pairs.push_back({0, 7}); }, verdict::wrong, 0, 3,
+                  "frame 0: the pair 0 7 is reported, but is not in the ground truth"},
+                 {[](pair_list& pairs) { pairs.push_back(pairs[0]); }, verdict::wrong, 0, 3,
+                  "frame 0: the pair 0 1 is reported more than once"},
+                 {[](pair_list&) { reject(); }, verdict::rejected, 0, 0, "not today"},
+                 {[](pair_list&) { throw std::runtime_error("no more"); }, verdict::wrong, 0, 0, "fails: no more"}};
     for (const auto& [change, outcome, false_negatives, false_positives, reason] : wrong) {
         const extreme_result made = judged(judge, change);
         CHECK(made.outcome == outcome);
@@ -93,7 +92,7 @@ TEST_CASE("the judge catches a local detection that is wrong in any query") {
         {{.first_pair = [](auto& first) { first.reset(); }}, "frame 0: first_pair finds none, but there is one"},
         {{.first_pair = [](auto& first) { first = {0, 4711}; }},
          "frame 0: first_pair finds 0 4711, which do not intersect"},
-        {{.more_counted = 1}, "frame 0: count_pairs says "},
+        {{.more_counted = 1}, "frame 0: count_pairs returns "},
         {{.self_pairs = [](pair_list& pairs) { pairs.pop_back(); }}, "self_pairs: the pair "},
         {{.all_pairs = [](pair_list&) { reject(); }}, "not today"}};
     for (const auto& [change, reason] : others) {
@@ -108,7 +107,7 @@ TEST_CASE("whoever answers where all must refuse is wrong, and so is another rea
     extreme_scene scene = judge_of("two_objects").scene();
     scene.rejection = "box 7";
     const extreme_judge judge(scene);
-    CHECK(judged(judge, [](pair_list&) {}).reason == "answers, though it must refuse");
+    CHECK(judged(judge, [](pair_list&) {}).reason == "returns a result, but must reject the scene");
     const extreme_result other = judged(judge, [](pair_list&) { reject(); });
     CHECK(other.outcome == verdict::rejected);
     CHECK_FALSE(is_as_expected(scene, other));
@@ -136,7 +135,7 @@ TEST_CASE("a stage that answers in other arithmetic is wrong, whichever query it
         const extreme_result made =
             judge.judge([]() -> std::unique_ptr<global_stage> { return std::make_unique<careless>(); });
         CHECK(made.outcome == verdict::wrong);
-        CHECK(made.reason == "search answers, though it must refuse");
+        CHECK(made.reason == "search returns a result, but must reject the scene");
     }
 }
 
@@ -164,7 +163,7 @@ TEST_CASE("more memory than a scene states is wrong") {
     made.bytes = 101;
     require_stated_memory(scene, made);
     CHECK(made.outcome == verdict::wrong);
-    CHECK(made.reason == "holds 101 bytes, more than the 100 that are stated");
+    CHECK(made.reason == "holds 101 bytes, more than the limit of 100");
 }
 
 TEST_CASE("the exact answer is that of the definition") {

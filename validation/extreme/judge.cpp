@@ -25,7 +25,7 @@ void add(extreme_result& result, const pair_comparison& difference, const std::s
     if (!difference.false_positives.empty())
         make_wrong(result, where + ": the pair " + text_of(difference.false_positives[0]) +
                                (difference.repeated ? " is reported more than once"
-                                                    : " is reported, but is not in the exact answer"));
+                                                    : " is reported, but is not in the ground truth"));
 }
 
 std::size_t bytes_in(const std::vector<part_bytes>& parts) {
@@ -88,7 +88,7 @@ void judge_queries(const shown_frame& shown, extreme_query asked, const exact_ob
     if (asked != extreme_query::first_pair) {
         const std::uint64_t count = stage.count_pairs(a, pose_a, b, pose_b);
         if (count != objects.pairs.size())
-            make_wrong(result, shown.where + ": count_pairs says " + std::to_string(count) + ", there are " +
+            make_wrong(result, shown.where + ": count_pairs returns " + std::to_string(count) + ", but there are " +
                                    std::to_string(objects.pairs.size()));
     }
     const std::optional<index_pair> first = stage.first_pair(a, pose_a, b, pose_b);
@@ -126,7 +126,7 @@ void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& sta
             // An error of two poses together is only found when the pair is tested.
             both->search();
             both->detect();
-            if (!both->contacts().empty()) make_wrong(result, "finds pairs, though it must refuse");
+            if (!both->contacts().empty()) make_wrong(result, "finds pairs, but must reject the scene");
             continue;
         }
         const shown_frame shown{*meshes, exact.frames[frame], "frame " + std::to_string(frame)};
@@ -143,11 +143,11 @@ void require_rejection(const extreme_scene& scene, const std::string& query, con
                        extreme_result& result) {
     try {
         in_arithmetic(scene.computed_in, work);
-        make_wrong(result, query + " answers, though it must refuse");
+        make_wrong(result, query + " returns a result, but must reject the scene");
     } catch (const input_error& error) {
         const std::string outcome = error.what();
         if (outcome.find(scene.rejection) == std::string::npos)
-            make_wrong(result, query + " refuses for another reason: " + outcome);
+            make_wrong(result, query + " rejects the scene for another reason: " + outcome);
         if (result.outcome == verdict::exact) {
             result.outcome = verdict::rejected;
             result.reason = outcome;
@@ -195,14 +195,14 @@ extreme_result judged(const extreme_scene& scene, Work work) {
     try {
         work(result);
         if (!scene.rejection.empty() && !scene.accepted_in_double && result.outcome == verdict::exact)
-            make_wrong(result, "answers, though it must refuse");
+            make_wrong(result, "returns a result, but must reject the scene");
     } catch (const input_error& error) {
         if (result.outcome == verdict::exact) {
             result.outcome = verdict::rejected;
             result.reason = error.what();
         }
     } catch (const std::exception& error) {
-        make_wrong(result, std::string("breaks off: ") + error.what());
+        make_wrong(result, std::string("fails: ") + error.what());
     }
     return result;
 }
@@ -241,8 +241,8 @@ bool is_as_expected(const extreme_scene& scene, const extreme_result& result, bo
 
 void require_stated_memory(const extreme_scene& scene, extreme_result& result) {
     if (scene.most_bytes > 0 && result.bytes > scene.most_bytes)
-        make_wrong(result, "holds " + std::to_string(result.bytes) + " bytes, more than the " +
-                               std::to_string(scene.most_bytes) + " that are stated");
+        make_wrong(result, "holds " + std::to_string(result.bytes) + " bytes, more than the limit of " +
+                               std::to_string(scene.most_bytes));
 }
 
 }  // namespace aabb

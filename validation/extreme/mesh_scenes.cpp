@@ -125,28 +125,29 @@ std::unique_ptr<mesh_scene> balls_moved(double far) {
 std::vector<extreme_scene> mesh_scenes(extreme_size size) {
     const std::uint32_t many = size == extreme_size::small ? 300U : size == extreme_size::quick ? 20'000U : 1'000'000U;
     extreme_scene against_one = scene_of_meshes(
-        "many_against_one", std::to_string(many) + " times the same triangle, against one",
+        "many_against_one", std::to_string(many) + " copies of one triangle, against another",
         [many] { return posed(std::vector{coincident(many), soup_of({crossing_triangle})}, {{{}, {}}}); });
     against_one.asked = extreme_query::count_pairs;
     extreme_scene against_itself =
-        scene_of_meshes("many_against_many", "the same against itself: any one pair",
+        scene_of_meshes("many_against_many", "the same mesh against itself: any one pair",
                         [many] { return posed(coincident(many), {{{}, shifted(0.5, 0.5, 0)}}); });
     against_itself.asked = extreme_query::first_pair;
     // The largest layout has an internal node of 32 bytes and a leaf of 28 per triangle; the rest is for stacks.
     for (extreme_scene* scene : {&against_one, &against_itself}) scene->most_bytes = std::size_t{many} * 64 + 65'536;
     std::vector<extreme_scene> scenes{
-        scene_of_meshes("same_place", "a mesh in the place of its twin", same_place),
+        scene_of_meshes("same_place", "two copies of a mesh at the same pose", same_place),
         scene_of_meshes("touch_at_vertices", "two cubes that share a corner", [] { return two_cubes({2, 2, 2}); }),
         scene_of_meshes("touch_along_edges", "two cubes that share an edge", [] { return two_cubes({2, 2, 0}); }),
         scene_of_meshes("touch_at_faces", "two cubes that share a face", [] { return two_cubes({2, 0, 0}); }),
-        scene_of_meshes("corner_on_face", "a corner on a face, an edge, a vertex", corner_on_face),
-        scene_of_meshes("same_centroid", "all triangles about one point", same_centroid),
+        scene_of_meshes("corner_on_face", "a corner on a face, on an edge, on a vertex", corner_on_face),
+        scene_of_meshes("same_centroid", "all triangles have the same centroid", same_centroid),
         scene_of_meshes("duplicates", "each triangle five times", duplicates),
-        scene_of_meshes("one_triangle", "meshes of a triangle each", one_triangle_each),
+        scene_of_meshes("one_triangle", "meshes of one triangle each", one_triangle_each),
         against_one,
         against_itself,
-        scene_of_meshes("slivers", "a millionth as high as long", [] { return needles(1e-6F); }),
-        scene_of_meshes("thinnest", "as high as a step of the last place", [] { return needles(1e-8F); }),
+        scene_of_meshes("slivers", "triangles a millionth as high as long", [] { return needles(1e-6F); }),
+        scene_of_meshes("thinnest", "triangles about as high as one unit in the last place",
+                        [] { return needles(1e-8F); }),
         scene_of_meshes("zero_areas", "triangles, segments and points", zero_areas),
     };
     for (const auto& [name, radius] : {std::pair{"scale_1e-44", 1e-44},
@@ -156,13 +157,13 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
                                        {"scale_1e10", 1e10},
                                        {"scale_1e30", 1e30},
                                        {"scale_1e37", 1e37}})
-        scenes.push_back(scene_of_meshes(name, "two balls of that radius through each other",
+        scenes.push_back(scene_of_meshes(name, "two intersecting spheres of that radius",
                                          [size = radius] { return balls_of(size); }));
     for (const auto& [name, radius] : {std::pair{"beside_1e-6", 1e-6}, {"beside_1e6", 1e6}, {"beside_1e-38", 1e-38}})
-        scenes.push_back(scene_of_meshes(name, "a ball of that radius on one of radius 1",
+        scenes.push_back(scene_of_meshes(name, "a sphere of that radius on one of radius 1",
                                          [size = radius] { return ball_on_ball(size); }));
     for (const auto& [name, far] : {std::pair{"moved_1e6", 1e6}, {"moved_1e9", 1e9}, {"moved_1e15", 1e15}})
-        scenes.push_back(scene_of_meshes(name, "both moved that far, as near to each other as ever",
+        scenes.push_back(scene_of_meshes(name, "two spheres that far from the origin, as close to each other",
                                          [distance = far] { return balls_moved(distance); }));
     return scenes;
 }

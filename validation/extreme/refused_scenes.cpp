@@ -78,9 +78,9 @@ std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name,
 
 std::vector<extreme_scene> bad_box_scenes() {
     return {
-        with_box("box_nan", "a coordinate that is no number", {{0, not_a_number, 0}, {1, 1, 1}},
+        with_box("box_nan", "a NaN coordinate", {{0, not_a_number, 0}, {1, 1, 1}},
                  "box 7 has a coordinate that is not finite"),
-        with_box("box_infinite", "a box without end", {{0, 0, 0}, {1, 1, infinity}},
+        with_box("box_infinite", "an infinite box", {{0, 0, 0}, {1, 1, infinity}},
                  "box 7 has a coordinate that is not finite"),
         with_box("box_inverted", "a minimum above its maximum", {{0, 2, 0}, {1, 1, 1}}, "box 7 is inverted"),
     };
@@ -97,24 +97,24 @@ std::vector<extreme_scene> bad_mesh_scenes() {
         with_pose("stretched_within", "stretched by a little less than the limit", stretched(0.999e-6)),
         with_pose("skewed_beyond", "a rotation skewed by a little more", skewed(1.001e-6), not_orthonormal),
         with_pose("stretched_beyond", "stretched by a little more", stretched(1.001e-6), not_orthonormal),
-        with_pose("reflection", "a rotation that mirrors", with_entry(8, -1), not_rigid + "is a reflection"),
+        with_pose("reflection", "a reflection", with_entry(8, -1), not_rigid + "is a reflection"),
         with_pose("rotation_infinite", "a rotation with an infinite entry", with_entry(4, double{infinity}),
                   not_rigid + "has an entry that is not finite"),
-        with_pose("translation_nan", "a translation that is no number", shifted(0, double{not_a_number}, 0),
+        with_pose("translation_nan", "a NaN translation", shifted(0, double{not_a_number}, 0),
                   "object 1: the pose has a translation that is not finite"),
         beyond_float,
         with_mesh(
-            "vertex_nan", "a coordinate that is no number", [](mesh& m) { m.vertices[5][1] = not_a_number; },
+            "vertex_nan", "a NaN coordinate", [](mesh& m) { m.vertices[5][1] = not_a_number; },
             "vertex 5 has a coordinate that is not finite"),
         with_mesh(
             "vertex_infinite", "an infinite coordinate", [](mesh& m) { m.vertices[6][2] = -infinity; },
             "vertex 6 has a coordinate that is not finite"),
         with_mesh(
-            "no_such_vertex", "a triangle of a vertex that is not there",
+            "no_such_vertex", "a triangle with an invalid vertex index",
             [](mesh& m) { m.triangles[3][1] = static_cast<std::uint32_t>(m.vertices.size()); },
             "triangle 3 uses vertex"),
         with_mesh(
-            "no_triangles", "a mesh of vertices only", [](mesh& m) { m.triangles.clear(); },
+            "no_triangles", "a mesh without triangles", [](mesh& m) { m.triangles.clear(); },
             "the mesh has no triangles"),
     };
 }
@@ -124,7 +124,7 @@ std::vector<extreme_scene> other_arithmetic_scenes() {
                                                     "this thread does not round to nearest");
     if (!can_flush_denormals()) return scenes;
     const std::vector<extreme_scene> flushed =
-        computed_in(arithmetic::denormals_flushed, "flushed", "a thread that takes denormal numbers for zero",
+        computed_in(arithmetic::denormals_flushed, "flushed", "a thread that flushes denormals to zero",
                     "this thread flushes denormal numbers to zero");
     scenes.insert(scenes.begin(), flushed.begin(), flushed.end());
     return scenes;

@@ -85,7 +85,7 @@ private:
 
 engine boost_rtree_engine() {
     return {.name = "boost_rtree",
-            .summary = "Boost.Geometry's R-tree, packed anew in each frame and asked for what meets each box",
+            .summary = "Boost.Geometry's R-tree, rebuilt by packing in each frame and queried with each box",
             .boxes = made<global_stage, boost_rtree>};
 }
 

@@ -69,7 +69,7 @@ std::vector<index_pair> candidates_by_double_loop(std::span<const box> a, std::s
 
 engine brute_force_engine() {
     return {.name = "brute_force",
-            .summary = "every pair of boxes; every pair of triangles whose boxes overlap, in CGAL's exact kernel",
+            .summary = "every pair of boxes; every pair of triangles whose boxes overlap, by CGAL's exact kernel",
             .boxes = made<global_stage, brute_force_boxes>,
             .meshes = [] { return make_pairwise_engine(candidates_by_double_loop, exactly_intersect); }};
 }

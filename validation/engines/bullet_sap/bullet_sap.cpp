@@ -107,7 +107,7 @@ private:
 
 engine bullet_sap_engine() {
     return {.name = "bullet_sap",
-            .summary = "Bullet's incremental sweep on three axes; quadratic in a first frame, and where much moves",
+            .summary = "Bullet's incremental sweep on three axes; quadratic in the first frame and with much motion",
             .boxes = made<global_stage, bullet_sap>};
 }
 

@@ -25,7 +25,8 @@ struct epick_test {
 struct epeck_test {
     static constexpr std::string_view name = "epeck";
     static constexpr std::string_view summary =
-        "CGAL's kernel with exact predicates and exact constructions: exact, numbers kept as intervals until asked";
+        "CGAL's kernel with exact predicates and exact constructions: exact, numbers stay intervals until exact ones "
+        "are needed";
 
     template <class Real>
     [[nodiscard]] static bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) {

@@ -100,7 +100,7 @@ class cgal_tree final : public model_engine<tree_model> {
 
 engine cgal_tree_engine() {
     return {.name = "cgal_tree",
-            .summary = "CGAL's AABB tree of the first mesh, asked for each triangle of the second; its exact kernel",
+            .summary = "CGAL's AABB tree of the first mesh, queried with each triangle of the second; its exact kernel",
             .meshes = made<local_stage, cgal_tree>};
 }
 

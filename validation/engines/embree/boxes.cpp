@@ -81,14 +81,15 @@ private:
 
 engine embree_engine() {
     return {.name = "embree",
-            .summary = "Embree's collision of a scene with itself, on a tree of low quality built anew in each frame",
+            .summary = "Embree's collision of a scene with itself, on a tree of low quality rebuilt in each frame",
             .boxes = made<global_stage, embree_boxes, RTC_BUILD_QUALITY_LOW>};
 }
 
 engine embree_refit_engine() {
-    return {.name = "embree_refit",
-            .summary = "the same on a good tree that is refitted while the number of boxes stays; for little motion",
-            .boxes = made<global_stage, embree_boxes, RTC_BUILD_QUALITY_REFIT>};
+    return {
+        .name = "embree_refit",
+        .summary = "as embree, on a better tree, refitted while the number of boxes stays the same; for little motion",
+        .boxes = made<global_stage, embree_boxes, RTC_BUILD_QUALITY_REFIT>};
 }
 
 }  // namespace aabb

@@ -132,7 +132,7 @@ private:
 engine embree_meshes_engine() {
     return {.name = "embree_meshes",
             .summary =
-                "Embree's collision of two scenes of medium quality, built anew for each new pose, with "
+                "Embree's collision of two scenes of medium quality, rebuilt for each new pose, with "
                 "Devillers and Guigue's test in double",
             .exact = false,
             .meshes = made<local_stage, embree_meshes, RTC_BUILD_QUALITY_MEDIUM>};

@@ -69,14 +69,14 @@ class gjk_test {
 public:
     static constexpr std::string_view name = "gjk";
     static constexpr std::string_view summary =
-        "libccd's GJK in double: inexact, its tolerance is absolute, so small scales go wrong";
+        "libccd's GJK in double: inexact, since its tolerance is absolute: it is wrong at small scales";
     static constexpr bool exact = false;
 
     struct config {
         std::uint32_t iterations = enough_iterations;
     };
     static constexpr std::tuple parameters{integer_parameter{"iterations", &config::iterations, 1U, 1000000U,
-                                                             "after which it says that they do not meet"}};
+                                                             "after which the triangles count as disjoint"}};
 
     explicit gjk_test(const config& c) : ccd_(settings_for(c.iterations)) {}
 
@@ -105,7 +105,7 @@ public:
     static constexpr std::tuple parameters{
         number_parameter{"tolerance", &config::tolerance, 0.0, 1e6, "by which a portal must still move to be refined"},
         integer_parameter{"iterations", &config::iterations, 1U, 1000000U,
-                          "after which it says that they do not meet"}};
+                          "after which the triangles count as disjoint"}};
 
     explicit mpr_test(const config& c) : ccd_(settings_for(c.iterations)), iterations_(c.iterations) {
         ccd_.mpr_tolerance = c.tolerance;
@@ -134,8 +134,8 @@ bool gjk_intersect(const triangle3f& s, const triangle3f& t) {
 engine libccd_engine() {
     return {.name = "libccd",
             .summary =
-                "libccd's GJK in double on triangles whose boxes overlap; its tolerances are absolute, so small scales "
-                "go wrong",
+                "libccd's GJK in double on triangles whose boxes overlap; its tolerances are absolute, so it is "
+                "wrong at small scales",
             .exact = false,
             .meshes = [] { return make_pairwise_engine(candidates_by_cgal, gjk_intersect); },
             .triangles = {library_test_of<gjk_test>(), library_test_of<mpr_test>()}};

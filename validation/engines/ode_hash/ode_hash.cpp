@@ -143,7 +143,7 @@ private:
     void prepare(dSpaceID space, std::span<const numbered> boxes) const override {
         constexpr std::size_t most = (std::size_t{1} << 17) - 1;
         if (boxes.size() > most)
-            throw input_error("ode_hash takes at most " + std::to_string(most) + " objects, and here are " +
+            throw input_error("ode_hash takes at most " + std::to_string(most) + " objects, but there are " +
                               std::to_string(boxes.size()) + ": ODE counts the bytes for their pairs in an int");
         int least = 0;
         int greatest = std::numeric_limits<int>::min();
@@ -191,15 +191,14 @@ private:
 }  // namespace
 
 engine ode_hash_engine() {
-    return {
-        .name = "ode_hash",
-        .summary = "ODE's hashed grid with cells of several sizes; with a bit for each pair, for 131,071 boxes at most",
-        .boxes = made<global_stage, ode_hash>};
+    return {.name = "ode_hash",
+            .summary = "ODE's hashed grid with cells of several sizes; a bit per pair limits it to 131,071 boxes",
+            .boxes = made<global_stage, ode_hash>};
 }
 
 engine ode_sap_engine() {
     return {.name = "ode_sap",
-            .summary = "ODE's sweep along one axis, sorted by radix in each frame",
+            .summary = "ODE's sweep along one axis, radix-sorted in each frame",
             .boxes = made<global_stage, ode_sap>};
 }
 
