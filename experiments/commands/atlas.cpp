@@ -33,7 +33,7 @@ int run(const atlas_request& request) {
     const std::vector<std::string> names(request.source ? 1 : 0, request.source.value_or(""));
     source_list sources(names);
     if (names.empty()) sources.add(out);
-    const results_source& source = sources.all().front();
+    const results_source& source = sources.list().front();
     std::vector<atlas_scene> atlas;
     (void)sources.with_names_of_user([&] {
         verify_record(source.folder);

@@ -182,7 +182,7 @@ void run_candidates(const aabb::extreme_judge& judge, std::span<const named_cand
     const bool boxes = static_cast<bool>(scene.make_boxes);
     for (const named_candidate& c : list) {
         // Engines always list all pairs before they return the first.
-        if (c.role == candidate_role::engine && scene.asked == aabb::extreme_query::first_pair) continue;
+        if (c.role == candidate_role::engine && scene.query == aabb::extreme_query::first_pair) continue;
         extreme_row row{
             boxes ? row_group::boxes : row_group::meshes, scene.name, scene.summary, {}, c.name, {}, c.role};
         // Box tests only compare coordinates, without rounding, so every engine must be exact.

@@ -4,14 +4,14 @@ namespace aabblab {
 
 namespace {
 
-selection limited(const std::string& limit, const std::string& segments) {
+selection with_limit(const std::string& limit, const std::string& segments) {
     return {{kind::partition, "axial_cut:axes=2,limit=" + limit + ",segments=" + segments}};
 }
 
 /// Whether the limit changes the cut: no box might be cut twice anyway.
-bool limit_acts(const condition& c, const std::string& segments) {
-    const auto with = median_of(c, limited("on", segments), measured("segments_got"));
-    const auto without = median_of(c, limited("off", segments), measured("segments_got"));
+bool limit_changes_cut(const condition& c, const std::string& segments) {
+    const auto with = median_of(c, with_limit("on", segments), measured("segments_got"));
+    const auto without = median_of(c, with_limit("off", segments), measured("segments_got"));
     return !with || !without || *with != *without;
 }
 
@@ -25,12 +25,12 @@ draft c10_claim(const measurements& m) {
         {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.of("c10"))
         for (const std::string segments : {"auto", "32"}) {
-            if (!limit_acts(c, segments)) continue;
+            if (!limit_changes_cut(c, segments)) continue;
             const std::string subject = value_of(c.of(), "span").empty() ? "with at most one cut per box on mixed sizes"
                                                                          : "with at most one cut of huge boxes";
-            c10.add(told(endpoint_of(c, limited("on", segments), limited("off", segments), "frame_cpu_ms",
-                                     {{"segments", segments}}),
-                         subject + (segments == "auto" ? "" : " and 32 segments")));
+            c10.add(with_subject(endpoint_of(c, with_limit("on", segments), with_limit("off", segments), "frame_cpu_ms",
+                                             {{"segments", segments}}),
+                                 subject + (segments == "auto" ? "" : " and 32 segments")));
         }
     figure& f = c10.claim.figures.emplace_back(log_log(
         "c10",

@@ -16,7 +16,7 @@ std::optional<double> global_share(const condition& c) {
     return median_of(c, methods[0].tested, measured("global_share"));
 }
 
-table half_steps(const std::vector<condition>& conditions) {
+table table_of_changes(const std::vector<condition>& conditions) {
     table t = empty_table({"meshes"}, {"objects"});
     for (const condition& c : conditions) t.rows.push_back({mesh_of(c), value_of(c.of(), "objects")});
     add_ratios(t, conditions, methods);
@@ -45,27 +45,27 @@ draft c11_claim(const measurements& m) {
     const std::vector<condition>& conditions = m.of("c11");
     for (const condition& c : conditions) {
         const std::string density = value_of(c.of(), "density");
-        c11.add(told(endpoint_of(c, methods[3].tested, methods[0].tested, "frame_cpu_ms"),
-                     density == "0.3"    ? "where detailed models touch"
-                     : density == "0.05" ? "with many small models"
-                                         : "with simple models far apart",
-                     "objects"));
-        if (has(c.of(), large_crowd))
+        c11.add(with_subject(endpoint_of(c, methods[3].tested, methods[0].tested, "frame_cpu_ms"),
+                             density == "0.3"    ? "where detailed models touch"
+                             : density == "0.05" ? "with many small models"
+                                                 : "with simple models far apart",
+                             "objects"));
+        if (has_factors(c.of(), large_crowd))
             claim.remark =
                 "The broad phase takes " + share_text(c) + " of the traditional method's time where models touch";
-        else if (has(c.of(), far_apart) && !claim.remark.empty())
+        else if (has_factors(c.of(), far_apart) && !claim.remark.empty())
             claim.remark += ", and " + share_text(c) + " with 100,000 simple ones far apart";
     }
     if (conditions.empty()) return c11;
     if (!claim.remark.empty()) claim.remark += ".";
-    claim.tables.push_back(
-        {"c11_stages", "Time per frame of both phases over that of the traditional method.", half_steps(conditions)});
+    claim.tables.push_back({"c11_stages", "Time per frame of both phases over that of the traditional method.",
+                            table_of_changes(conditions)});
     figure& f = claim.figures.emplace_back(log_log(
         "c11",
         "Time of both phases against the number of objects, for simple models far apart: traditional, improved, "
         "and each phase improved alone; medians and quartiles.",
         "objects", "time per frame (ms)"));
-    f.lines = series_of(methods, having(conditions, {{"meshes", mesh_of(conditions.back())}}), "objects",
+    f.lines = series_of(methods, conditions_with(conditions, {{"meshes", mesh_of(conditions.back())}}), "objects",
                         measured("frame_cpu_ms"));
     return c11;
 }

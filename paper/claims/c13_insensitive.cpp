@@ -8,7 +8,7 @@ namespace {
 const selection smb{{kind::sort, "shell"}, {kind::partition, "axial_cut:axes=3"}, {kind::sweep, "one_axis"}};
 
 /// The cost per box in one condition over that in another, both with the same composition.
-endpoint compared(const condition& large, const condition& small, const std::string& factor, quantity what) {
+endpoint cost_ratio(const condition& large, const condition& small, const std::string& factor, quantity what) {
     const bool is_time = what == quantity::time;
     const row_value a_box =
         an_object(is_time ? measured("frame_cpu_ms") : bytes_of({"projections", "partition", "sweep"}));
@@ -16,7 +16,7 @@ endpoint compared(const condition& large, const condition& small, const std::str
     ratio.where = large.of();
     ratio.where.emplace_back("quantity", is_time ? "time" : "memory");
     ratio.where.emplace_back("over", factor + " " + value_of(small.of(), factor));
-    ratio.log_ratios = {between(large.logs(smb, a_box), small.logs(smb, a_box))};
+    ratio.log_ratios = {difference_of_means(large.logs(smb, a_box), small.logs(smb, a_box))};
     ratio.source = large.experiment() + (is_time ? ": frame_cpu_ms" : ": bytes") + " an object of " + text_of(smb);
     return ratio;
 }
@@ -48,7 +48,7 @@ draft c13_claim(const measurements& m) {
             std::ranges::min_element(conditions, {}, [&](const condition& c) { return number_of(c.of(), factor); });
         for (const quantity what : {quantity::time, quantity::bytes})
             for (const condition& c : conditions)
-                if (&c != &*least) c13.add(told(compared(c, *least, factor, what), subject, factor, what));
+                if (&c != &*least) c13.add(with_subject(cost_ratio(c, *least, factor, what), subject, factor, what));
     }
     figure& f = c13.claim.figures.emplace_back(
         log_log("c13",
@@ -57,7 +57,7 @@ draft c13_claim(const measurements& m) {
                 "objects", "time per frame and box (ms)"));
     const method methods[] = {{"every axis cut", smb}, {"no cut", uncut}};
     if (const std::vector<condition>& conditions = m.of("smb_objects"); !conditions.empty())
-        f.lines = series_of(methods, having(conditions, {}), "objects", an_object(measured("frame_cpu_ms")));
+        f.lines = series_of(methods, conditions_with(conditions, {}), "objects", an_object(measured("frame_cpu_ms")));
     return c13;
 }
 

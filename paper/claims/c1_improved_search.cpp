@@ -24,7 +24,7 @@ std::string subject_of(const condition& c) {
 }
 
 /// The ratio of every method to the traditional one, which shows the gain of each half-step.
-table half_steps(const std::vector<condition>& conditions) {
+table table_of_changes(const std::vector<condition>& conditions) {
     table t = place_table(places_of(conditions));
     add_ratios(t, conditions, methods);
     return t;
@@ -41,30 +41,33 @@ draft c1_claim(const measurements& m) {
               {{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.001"}, {"over", "incremental"}}}};
     const std::vector<condition>& conditions = m.of("figure1");
     const auto over_traditional = [](const condition& c, const std::string& subject, const std::string& along = "") {
-        return told(endpoint_of(c, improved, traditional, "frame_cpu_ms"), subject, along);
+        return with_subject(endpoint_of(c, improved, traditional, "frame_cpu_ms"), subject, along);
     };
     const std::vector<const condition*> of_all_sizes =
-        having(conditions, {{"scene", "brownian"}, {"displacement", "0.1"}});
-    const std::vector<const condition*> large = having(conditions, {{"scene", "brownian"}, {"objects", "10000"}});
+        conditions_with(conditions, {{"scene", "brownian"}, {"displacement", "0.1"}});
+    const std::vector<const condition*> large =
+        conditions_with(conditions, {{"scene", "brownian"}, {"objects", "10000"}});
     for (const condition* c : of_all_sizes) c1.add(over_traditional(*c, "on drifting boxes", "objects"));
     for (const condition* c : large)
-        if (!has(c->of(), drifting)) c1.add(over_traditional(*c, "on 10,000 drifting boxes", "displacement"));
+        if (!has_factors(c->of(), drifting)) c1.add(over_traditional(*c, "on 10,000 drifting boxes", "displacement"));
     // Both compositions with the paper's three lists, each sorted and swept.
     for (const condition& c : m.of("three_lists"))
-        c1.add(told(endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
-                                "frame_cpu_ms", {{"sweep", "all_axes"}}),
-                    "with three sorted lists", "displacement"));
+        c1.add(with_subject(
+            endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
+                        "frame_cpu_ms", {{"sweep", "all_axes"}}),
+            "with three sorted lists", "displacement"));
     for (const condition* c : large)
-        c1.add(told(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
-                    "compared with the classic incremental sweep", "displacement"));
+        c1.add(with_subject(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
+                            "compared with the classic incremental sweep", "displacement"));
     for (const condition& c : conditions)
         if (!is_brownian(c)) c1.add(over_traditional(c, subject_of(c)));
-    for (const condition* c : having(conditions, drifting))
-        c1.beside = {
-            told(endpoint_of(*c, methods[1].tested, traditional, "frame_cpu_ms"), "with the cut alone at 10,000 boxes"),
-            told(endpoint_of(*c, methods[2].tested, traditional, "frame_cpu_ms"), "with Shell sort alone")};
+    for (const condition* c : conditions_with(conditions, drifting))
+        c1.unjudged = {
+            with_subject(endpoint_of(*c, methods[1].tested, traditional, "frame_cpu_ms"),
+                         "with the cut alone at 10,000 boxes"),
+            with_subject(endpoint_of(*c, methods[2].tested, traditional, "frame_cpu_ms"), "with Shell sort alone")};
     c1.claim.tables.push_back({"figure1", "Time per frame over that of the traditional method, with 95 % intervals.",
-                               half_steps(conditions)});
+                               table_of_changes(conditions)});
     figure& f = c1.claim.figures.emplace_back(log_log(
         "figure1",
         "Time of the broad phase against the number of objects: the traditional method, the improved one, and each "

@@ -65,7 +65,7 @@ std::optional<double> inversions_of(const std::vector<const condition*>& conditi
 
 /// The sizes that are used for growth: with fewer elements the passes of the largest gaps are incomplete, and far from
 /// the origin, where floats cannot represent a move of a hundredth of an edge, the input is more ordered.
-std::vector<const condition*> comparable(std::vector<const condition*> conditions) {
+std::vector<const condition*> comparable_sizes(std::vector<const condition*> conditions) {
     constexpr double fewest = 10'000;
     constexpr double most_off = 0.1;
     std::erase_if(conditions, [](const condition* c) { return number_of(c->of(), "objects") < fewest; });
@@ -94,7 +94,7 @@ draft c2_claim(const measurements& m) {
     for (const reported_sort& s : sorts)
         for (const auto& [displacement, of_all_sizes] : by_displacement) {
             sizes measured_sizes;
-            const std::vector<const condition*> conditions = comparable(of_all_sizes);
+            const std::vector<const condition*> conditions = comparable_sizes(of_all_sizes);
             if (conditions.size() < 2) continue;
             for (const condition* c : conditions) {
                 measured_sizes.log_n.push_back(std::log10(number_of(c->of(), "objects")));
@@ -110,7 +110,7 @@ draft c2_claim(const measurements& m) {
             c.log_ratios = {bootstrap(measured_sizes.per_element.front().size(),
                                       [&](const resample& d) { return measured_sizes.growth(d); })};
             c.source = "c2: growth of comparisons and moves of sort=" + std::string(s.sort);
-            c2.add(told(std::move(c), s.subject, "inversions", quantity::work));
+            c2.add(with_subject(std::move(c), s.subject, "inversions", quantity::work));
         }
     if (by_displacement.empty()) return c2;
     c2.claim.tables.push_back({"c2_inversions", "Inversions per element, which should be equal at all sizes.",

@@ -22,7 +22,7 @@ endpoint over_insertion(const condition& c, const std::string& gaps) {
 
 /// All gap sequences in all conditions, ordered by inversions.
 table map_of(const std::vector<condition>& conditions) {
-    std::vector<const condition*> ordered = having(conditions, {});
+    std::vector<const condition*> ordered = conditions_with(conditions, {});
     std::ranges::stable_sort(ordered, {}, [](const condition* c) { return disorder_of(*c); });
     table t{{{"inversions per element"}, {"scene", false}, {"objects"}, {"displacement"}}, {}};
     for (const std::string& gaps : gap_sequences) t.columns.push_back({gaps});
@@ -70,10 +70,10 @@ draft c3_claim(const measurements& m) {
     for (const bool in_space : {true, false})
         for (const condition& c : conditions)
             if (is_brownian(c) == in_space)
-                c3.add(told(over_insertion(c, "ciura"),
-                            "on " + number_text(value_of(c.of(), "objects")) +
-                                (in_space ? " boxes in space" : " boxes on a line"),
-                            "inversions"));
+                c3.add(with_subject(over_insertion(c, "ciura"),
+                                    "on " + number_text(value_of(c.of(), "objects")) +
+                                        (in_space ? " boxes in space" : " boxes on a line"),
+                                    "inversions"));
     if (conditions.empty()) return c3;
     c3.claim.tables.push_back({"c3_map",
                                "Time of Shell sort over that of insertion sort, for each gap sequence, by inversions.",

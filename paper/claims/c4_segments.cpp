@@ -49,7 +49,7 @@ figure figure_of(const std::string& name, const condition& c) {
 }
 
 /// The automatic number of segments compared with the limit: segments need not be tiny.
-table automatic(const std::vector<condition>& conditions) {
+table automatic_table(const std::vector<condition>& conditions) {
     table t = place_table(places_of(conditions));
     const std::vector<std::vector<std::string>> places = std::exchange(t.rows, {});
     t.columns.insert(t.columns.end(), {{"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}});
@@ -95,10 +95,11 @@ draft c4_claim(const measurements& m) {
                            {{"axes", std::to_string(axes)}, {"segments", finer.name}, {"over", coarser.name}});
     };
     for_each_cut([&](const condition& c, int axes) {
-        c4.add(told(ratio(c, axes, limit, {"8", "8"}),
-                    is_brownian(c) ? "on drifting boxes at the limit of one cut per box, compared with eight segments"
-                                   : "in clusters",
-                    "axes"));
+        c4.add(with_subject(ratio(c, axes, limit, {"8", "8"}),
+                            is_brownian(c)
+                                ? "on drifting boxes at the limit of one cut per box, compared with eight segments"
+                                : "in clusters",
+                            "axes"));
     });
     for_each_cut([&](const condition& c, int axes) {
         for (std::size_t i = 1; i < segments_wanted.size(); ++i) {
@@ -111,15 +112,15 @@ draft c4_claim(const measurements& m) {
     });
     // Segments need not be tiny: the automatic number is as good as the most that the limit allows.
     for_each_cut([&](const condition& c, int axes) {
-        c4.add(told(ratio(c, axes, {"auto", "auto"}, limit),
-                    is_brownian(c) ? "with the automatic number of segments, compared with the limit"
-                                   : "in clusters with the automatic number",
-                    "axes"))
+        c4.add(with_subject(ratio(c, axes, {"auto", "auto"}, limit),
+                            is_brownian(c) ? "with the automatic number of segments, compared with the limit"
+                                           : "in clusters with the automatic number",
+                            "axes"))
             .expected = expectation::not_more;
     });
     if (conditions.empty()) return c4;
-    c4.claim.tables.push_back(
-        {"c4_auto", "Segments per axis and time, with the automatic number and at the limit.", automatic(conditions)});
+    c4.claim.tables.push_back({"c4_auto", "Segments per axis and time, with the automatic number and at the limit.",
+                               automatic_table(conditions)});
     for (const condition& c : conditions)
         c4.claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.of(), "scene"), c));
     return c4;

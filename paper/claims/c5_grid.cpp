@@ -7,7 +7,7 @@ namespace aabblab {
 
 namespace {
 
-const selection cut{{kind::sort, "insertion"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
+const selection axial_cut{{kind::sort, "insertion"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
 
 selection grid(const std::string& cell) {
     return {{kind::sort, "insertion"}, {kind::partition, "uniform_grid:cell_size=" + cell}, {kind::sweep, "one_axis"}};
@@ -35,7 +35,8 @@ public:
         for (const condition* c : conditions) {
             std::map<std::string, cells>& scene = over_cut_.emplace_back();
             for (const std::string& size : cell_sizes)
-                if (is_grid(*c, size)) scene.emplace(size, c->log_ratios(grid(size), cut, measured("frame_cpu_ms")));
+                if (is_grid(*c, size))
+                    scene.emplace(size, c->log_ratios(grid(size), axial_cut, measured("frame_cpu_ms")));
         }
     }
 
@@ -78,7 +79,7 @@ private:
     std::vector<std::map<std::string, cells>> over_cut_;  // by scene, then cell size
 };
 
-table times(const std::vector<condition>& conditions) {
+table times_table(const std::vector<condition>& conditions) {
     table t = place_table(places_of(conditions));
     t.columns.push_back({"axial_cut"});
     for (const std::string& size : cell_sizes) t.columns.push_back({"cells of " + size});
@@ -87,7 +88,7 @@ table times(const std::vector<condition>& conditions) {
         const auto add = [&](const selection& tested) {
             t.rows[i].push_back(digits_cell(median_of(conditions[i], tested, measured("frame_cpu_ms"))));
         };
-        add(cut);
+        add(axial_cut);
         for (const std::string& size : cell_sizes) add(grid(size));
         add(grid("auto"));
     }
@@ -103,7 +104,7 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
     const auto add = [&](const std::string& what, const std::string& subject, const cells& above, const cells& below,
                          quantity compared, expectation expected) {
         c5.add({.where = {{"scene", "brownian"}, {"comparison", what}},
-                .log_ratios = {between(above, below)},
+                .log_ratios = {difference_of_means(above, below)},
                 .expected = expected,
                 .compared = compared,
                 .subject = subject,
@@ -115,13 +116,14 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
         const std::string in_the_smallest =
             std::string("with ") + label + " in the smallest world compared with the largest";
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large",
-            in_the_smallest + ", both relative to the cut", small.log_ratios(tested, cut, measured("frame_cpu_ms")),
-            large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::time, expectation::less);
+            in_the_smallest + ", both relative to the cut",
+            small.log_ratios(tested, axial_cut, measured("frame_cpu_ms")),
+            large.log_ratios(tested, axial_cut, measured("frame_cpu_ms")), quantity::time, expectation::less);
         add(std::string("bytes of a grid, ") + label + ", small world over large", in_the_smallest,
             small.logs(tested, bytes), large.logs(tested, bytes), quantity::bytes, expectation::less);
     }
     add("bytes of axial_cut, large world over small", "with the cut in the largest world compared with the smallest",
-        large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
+        large.logs(axial_cut, bytes), small.logs(axial_cut, bytes), quantity::bytes, expectation::not_more);
 }
 
 /// A figure with one panel per number of objects.
@@ -137,7 +139,7 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
         for (const condition* c : conditions) {
             series s{value_of(c->of(), "scene")};
             for (const std::string& size : cell_sizes) {
-                const endpoint ratio = endpoint_of(*c, grid(size), cut, "frame_cpu_ms");
+                const endpoint ratio = endpoint_of(*c, grid(size), axial_cut, "frame_cpu_ms");
                 if (!ratio.known() || !is_grid(*c, size)) continue;
                 s.points.push_back(point_of(std::stod(size), ratio));
             }
@@ -157,7 +159,7 @@ figure world_figure(const std::string& name, const std::string& what, const std:
                            "a fixed cell size, one with an automatic cell size, and the axial cut; medians and "
                            "quartiles.",
                        "side of the world (edges)", axis);
-    const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
+    const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", axial_cut}};
     for (const auto& [label, tested] : methods) {
         series s{label};
         for (const condition& c : worlds) {
@@ -187,7 +189,7 @@ draft c5_claim(const measurements& m) {
         const scenes_and_cells scenes(conditions);
         if (scenes.sizes().empty()) continue;
         const sample_size size =
-            conditions.front()->log_ratios(grid(scenes.sizes().front()), cut, measured("frame_cpu_ms")).size();
+            conditions.front()->log_ratios(grid(scenes.sizes().front()), axial_cut, measured("frame_cpu_ms")).size();
         const auto add = [&](const std::string& comparison, const std::string& subject, auto log_ratio,
                              quantity compared, expectation expected) {
             c5.add({.where = {{"scene", "the worst of all"}, {"objects", objects}, {"comparison", comparison}},
@@ -212,7 +214,8 @@ draft c5_claim(const measurements& m) {
     }
     const std::vector<condition>& worlds = m.of("c5_world");
     add_growth(worlds, c5);
-    c5.claim.tables.push_back({"c5_cells", "Time per frame (ms, medians) with every cell size.", times(m.of("c5"))});
+    c5.claim.tables.push_back(
+        {"c5_cells", "Time per frame (ms, medians) with every cell size.", times_table(m.of("c5"))});
     c5.claim.figures = {cell_figure(by_objects), world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()),
                         world_figure("c5_world_time", "Time", "time per frame (ms)", worlds, measured("frame_cpu_ms"))};
     return c5;

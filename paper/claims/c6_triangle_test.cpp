@@ -59,15 +59,15 @@ quartiles spread_of(const std::vector<std::vector<double>>& processes) {
 }
 
 /// The suffix of tests of a leaf of A, which is not transformed, unlike one of B.
-constexpr std::string_view in_place = "/frame:a";
+constexpr std::string_view frame_a_suffix = "/frame:a";
 /// The factor's value for leaves of B.
-constexpr const char* in_frame_of_a = "B, carried into A's frame";
+constexpr const char* b_in_frame_of_a = "B, carried into A's frame";
 
 table table_of(const test_times& times) {
     table t{{{"test", false}, {"ns"}, {"quartiles"}, {"over a box test"}}, {}};
     for (const auto& [name, processes] : times) {
         const quartiles q = spread_of(processes);
-        const std::string frame = name.ends_with(in_place) ? std::string(in_place) : "";
+        const std::string frame = name.ends_with(frame_a_suffix) ? std::string(frame_a_suffix) : "";
         const cells ratios = ratios_of(times, name, "test/box" + frame);
         t.rows.push_back({name, three_digits(q.median), three_digits(q.low) + " to " + three_digits(q.high),
                           ratios.empty() ? "-" : ratio_cell({.where = {}, .log_ratios = {bootstrap(ratios)}})});
@@ -80,10 +80,10 @@ figure figure_of(const test_times& times) {
              "Time of one elementary test, on the pairs that a traversal of two trees visits; medians and quartiles.",
              {"test", false},
              {"time per test (ns)", false}};
-    series carried{"with the transformation from B's frame to A's", series_style::points};
-    series of_a{"without a transformation", series_style::points};
+    series transformed{"with the transformation from B's frame to A's", series_style::points};
+    series untransformed{"without a transformation", series_style::points};
     for (const auto& [name, processes] : times) {
-        if (name.ends_with(in_place)) continue;
+        if (name.ends_with(frame_a_suffix)) continue;
         const auto place = static_cast<double>(f.x.names.size());
         f.x.names.emplace_back(place, name.substr(name.find('/') + 1));
         const auto add = [&](series& to, const std::string& test) {
@@ -92,10 +92,10 @@ figure figure_of(const test_times& times) {
             const quartiles q = spread_of(position->second);
             to.points.push_back({place, q.median, q.low, q.high});
         };
-        add(carried, name);
-        add(of_a, name + std::string(in_place));
+        add(transformed, name);
+        add(untransformed, name + std::string(frame_a_suffix));
     }
-    f.lines = {carried, of_a};
+    f.lines = {transformed, untransformed};
     return f;
 }
 
@@ -107,7 +107,7 @@ draft c6_claim(const measurements& m) {
                           "by an axis-aligned one, or tests it as an oriented box on six or all fifteen axes; in "
                           "whole queries, of leafless over canonical",
               .experiments = {"figure2"}},
-             {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", in_frame_of_a}},
+             {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", b_in_frame_of_a}},
               {{"leaf_test", "triangle_box"}, {"over", "rotated_box_6"}},
               {{"leaf_test", "triangle_box"}, {"over", "rotated_box_15"}}}};
     const test_times times = read_tests(m.folder());
@@ -118,7 +118,7 @@ draft c6_claim(const measurements& m) {
         c6.add({.where = {{"quantity", "one test"},
                           {"leaf_test", test},
                           {"over", over},
-                          {"leaf of", frame.empty() ? in_frame_of_a : "A"}},
+                          {"leaf of", frame.empty() ? b_in_frame_of_a : "A"}},
                 .log_ratios = {bootstrap(ratios)},
                 .subject = subject,
                 .source = "c6: test/" + test + frame + " over test/" + over + frame});
@@ -130,7 +130,7 @@ draft c6_claim(const measurements& m) {
     add_test("triangle_box_moller", "rotated_box_15", "by M\u00f6ller's original compared with fifteen axes");
     add_test("triangle_aabb", "box", "for a triangle's box computed on the fly");
     for (const char* test : {"triangle_box", "triangle_aabb"})
-        add_test(test, "box", "without a transformation", std::string(in_place));
+        add_test(test, "box", "without a transformation", std::string(frame_a_suffix));
     const std::pair<std::string, const char*> queries[] = {
         {"triangle_box", "in whole queries"},
         {"triangle_aabb", "in whole queries with boxes computed on the fly"},
@@ -140,7 +140,7 @@ draft c6_claim(const measurements& m) {
             endpoint ratio = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},
                                          "detect_cpu_ms");
             ratio.where = {{"quantity", "a query"}, {"leaf_test", test}, {"meshes", mesh_of(c)}};
-            c6.add(told(std::move(ratio), subject));
+            c6.add(with_subject(std::move(ratio), subject));
         }
     c6.claim.tables.push_back({"tests",
                                "Time of one elementary test, and its ratio to that of a box test, in either frame.",

@@ -8,7 +8,7 @@ selection tree(const std::string& name) {
     return {{kind::tree, name}};
 }
 
-std::vector<const condition*> all_sizes(const measurements& m) {
+std::vector<const condition*> conditions_by_size(const measurements& m) {
     std::vector<const condition*> conditions;
     for (const char* experiment : {"figure2", "figure2_million"})
         for (const condition& c : m.of(experiment)) conditions.push_back(&c);
@@ -23,7 +23,7 @@ figure size_figure(const measurements& m, const std::string& name, const std::st
                               {"leafless", tree("leafless:leaf_test=triangle_box")},
                               {"shared planes", tree("shared_planes")},
                               {"compressed", tree(compressed)}};
-    std::vector<const condition*> generated = all_sizes(m);
+    std::vector<const condition*> generated = conditions_by_size(m);
     std::erase_if(generated, [](const condition* c) { return !mesh_of(*c).starts_with("noise_sphere"); });
     figure f = log_log(name, caption, "triangles", y);
     f.lines = series_of(layouts, generated, "triangles", of);
@@ -42,8 +42,8 @@ draft c7a_claim(const measurements& m) {
                .measured = "bytes of the compressed tree over those of the canonical one",
                .experiments = {"figure2", "figure2_million"}},
               {large_spheres}};
-    for (const condition* c : all_sizes(m))
-        c7a.add(told(compressed_over_canonical(*c, "tree_bytes", "triangle_box"), "", "", quantity::bytes));
+    for (const condition* c : conditions_by_size(m))
+        c7a.add(with_subject(compressed_over_canonical(*c, "tree_bytes", "triangle_box"), "", "", quantity::bytes));
     c7a.claim.figures.push_back(size_figure(m, "figure2_bytes", "Allocated bytes of trees per triangle.",
                                             "bytes per triangle", measured("tree_bytes")));
     c7a.claim.figures.back().y.logarithmic = false;
@@ -60,8 +60,8 @@ draft c7b_claim(const measurements& m) {
         {"triangle_aabb", "where the box of a leaf's triangle is computed on the fly"},
         {"none", "without a test of leaves before the triangle test"}};
     for (const auto& [leaf_test, subject] : leaf_tests)
-        for (const condition* c : all_sizes(m))
-            c7b.add(told(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject));
+        for (const condition* c : conditions_by_size(m))
+            c7b.add(with_subject(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject));
     c7b.claim.figures.push_back(
         size_figure(m, "figure2",
                     "Time of the narrow phase against the number of triangles: the canonical tree, the compressed one, "

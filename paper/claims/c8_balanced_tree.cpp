@@ -9,7 +9,7 @@ selection canonical(const std::string& build) {
 }
 
 /// The cost of each build and its effect on queries.
-table builds(const std::vector<condition>& conditions) {
+table builds_table(const std::vector<condition>& conditions) {
     table t = empty_table({"meshes", "build"},
                           {"build (ms)", "query (ms)", "box tests per query", "triangle tests per query"});
     for (const condition& c : conditions)
@@ -47,12 +47,12 @@ draft c8_claim(const measurements& m) {
     for (const auto& [build, subject] : others) {
         series& s = f.lines.emplace_back(series{std::string("over ") + build, series_style::points});
         for (const condition& c : conditions) {
-            const endpoint& ratio = c8.add(told(median_over(c, build), subject));
+            const endpoint& ratio = c8.add(with_subject(median_over(c, build), subject));
             if (ratio.known()) s.points.push_back(point_of(static_cast<double>(&c - conditions.data()), ratio));
         }
     }
-    c8.claim.tables.push_back(
-        {"c8_builds", "Medians of time and work of canonical trees, for each rule of splitting.", builds(conditions)});
+    c8.claim.tables.push_back({"c8_builds", "Medians of time and work of canonical trees, for each rule of splitting.",
+                               builds_table(conditions)});
     for (std::size_t i = 0; i < conditions.size(); ++i)
         f.x.names.emplace_back(static_cast<double>(i), mesh_of(conditions[i]));
     f.lines.push_back(level_of("equal", 0));

@@ -4,14 +4,14 @@ namespace aabblab {
 
 namespace {
 
-const selection whole{{kind::prepare, "none"}};
+const selection unsplit{{kind::prepare, "none"}};
 
-selection splitting(const std::string& strategy, const std::string& size) {
+selection split_by(const std::string& strategy, const std::string& size) {
     return {{kind::prepare, strategy + ":size=" + size}};
 }
 
 /// Whether any object is split; all may be shorter than the limit.
-bool splits_something(const condition& c, const selection& split) {
+bool has_pieces(const condition& c, const selection& split) {
     return median_of(c, split, measured("pieces")).value_or(0) > 0;
 }
 
@@ -26,15 +26,16 @@ draft c9_claim(const measurements& m) {
               {{"huge", "2"}, {"split_mesh", "4"}, {"time of", "global search"}}}};
     for (const condition& c : m.of("c9"))
         for (const char* size : {"4", "8"})
-            if (const selection split = splitting("split_large", size); splits_something(c, split))
-                c9.add(told(endpoint_of(c, split, whole, "frame_cpu_ms", {{"split_large", size}}),
-                            "where boxes are split"));
+            if (const selection split = split_by("split_large", size); has_pieces(c, split))
+                c9.add(with_subject(endpoint_of(c, split, unsplit, "frame_cpu_ms", {{"split_large", size}}),
+                                    "where boxes are split"));
     for (const condition& c : m.of("c9_geometry"))
         for (const char* size : {"2", "4", "8"}) {
-            const selection split = splitting("split_mesh", size);
-            if (!splits_something(c, split)) continue;
+            const selection split = split_by("split_mesh", size);
+            if (!has_pieces(c, split)) continue;
             const auto add = [&](const std::string& metric, const std::string& of, const std::string& subject) {
-                c9.add(told(endpoint_of(c, split, whole, metric, {{"split_mesh", size}, {"time of", of}}), subject));
+                c9.add(with_subject(endpoint_of(c, split, unsplit, metric, {{"split_mesh", size}, {"time of", of}}),
+                                    subject));
             };
             add("global_cpu_ms", "global search", "in the broad phase where meshes are split");
             add("frame_cpu_ms", "both stages", "in both phases where meshes are split");

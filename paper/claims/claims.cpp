@@ -7,7 +7,7 @@ namespace aabblab {
 namespace {
 
 /// Decides endpoints together; where machines disagree, the outcome is undecided.
-void settle(std::span<endpoint* const> endpoints, double band) {
+void decide_family(std::span<endpoint* const> endpoints, double band) {
     if (endpoints.empty()) return;
     for (std::size_t machine = 0; machine < endpoints.front()->log_ratios.size(); ++machine) {
         std::vector<tested> evidence;
@@ -18,21 +18,21 @@ void settle(std::span<endpoint* const> endpoints, double band) {
             endpoint& e = *endpoints[i];
             const support outcome_here = support_of(evidence[i].expected, evidence[i].p, levels[i]);
             const outcome direction = direction_of(evidence[i].p, levels[i]);
-            e.found = machine == 0 || e.found == outcome_here ? outcome_here : support::undecided;
+            e.corrected = machine == 0 || e.corrected == outcome_here ? outcome_here : support::undecided;
             e.direction = machine == 0 || e.direction == direction ? direction : outcome::undecided;
         }
     }
 }
 
 std::string word_of(const endpoint& e) {
-    if (e.expected == expectation::not_more && e.found == support::favours && e.direction == outcome::undecided)
+    if (e.expected == expectation::not_more && e.corrected == support::favours && e.direction == outcome::undecided)
         return "not more";
     constexpr std::array words{"less", "the same", "more", "open"};
     return words[static_cast<std::size_t>(e.direction)];
 }
 
 /// All primary ratios, and the number of other endpoints by outcome.
-std::string figures_of(std::span<const endpoint> endpoints) {
+std::string evidence_text(std::span<const endpoint> endpoints) {
     std::string text;
     std::vector<endpoint> others;
     for (const endpoint& e : endpoints) {
@@ -53,7 +53,7 @@ std::string figures_of(std::span<const endpoint> endpoints) {
 }
 
 /// Turns a draft and its decided endpoints into a result.
-claim_result finished(const draft& source, const std::vector<endpoint>& endpoints) {
+claim_result result_of(const draft& source, const std::vector<endpoint>& endpoints) {
     claim_result claim = source.claim;
     claim.verdict = verdict_of(endpoints);
     claim.sentence = sentence_of(endpoints, claim.lead);
@@ -62,12 +62,12 @@ claim_result finished(const draft& source, const std::vector<endpoint>& endpoint
         return std::ranges::any_of(endpoints, [&](const endpoint& p) { return p.is_primary && is_same_line(p, e); });
     });
     claim.brief = sentence_of(of_primary_lines, claim.lead);
-    std::vector<endpoint> beside;
-    for (const endpoint& e : source.beside)
-        if (e.known()) beside.push_back(decided_alone(e));
-    if (!beside.empty()) claim.sentence += " " + sentence_of(beside);
+    std::vector<endpoint> unjudged;
+    for (const endpoint& e : source.unjudged)
+        if (e.known()) unjudged.push_back(decided_alone(e));
+    if (!unjudged.empty()) claim.sentence += " " + sentence_of(unjudged);
     if (!claim.remark.empty()) claim.sentence += " " + claim.remark;
-    claim.because = figures_of(endpoints);
+    claim.evidence = evidence_text(endpoints);
     std::vector<endpoint> ordered = endpoints;
     std::ranges::stable_partition(ordered, &endpoint::is_primary);
     claim.has_primary = !ordered.empty() && ordered.front().is_primary;
@@ -81,7 +81,7 @@ claim_result finished(const draft& source, const std::vector<endpoint>& endpoint
                              ". Outcomes are corrected by Holm's method: of primary endpoints over all claims, of the "
                              "others over this claim. Intervals are uncorrected.",
                          endpoint_table(ordered, [](const endpoint& e) {
-                             return text_of(e.found) + (e.is_primary ? " (primary)" : "");
+                             return text_of(e.corrected) + (e.is_primary ? " (primary)" : "");
                          })});
     return claim;
 }
@@ -94,7 +94,7 @@ std::vector<draft> drafts_of(const measurements& m) {
         claim_result& claim = added.claim;
         claim.id = source.listed.id;
         claim.expected = source.listed.expected;
-        for (std::vector<endpoint>* endpoints : {&added.endpoints, &added.beside})
+        for (std::vector<endpoint>* endpoints : {&added.endpoints, &added.unjudged})
             for (endpoint& e : *endpoints) e.expected = e.expected.value_or(claim.expected);
         for (const std::string& experiment : claim.experiments)
             std::ranges::move(places_of(m.of(experiment)), std::back_inserter(claim.scenes));
@@ -113,7 +113,7 @@ void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
     };
     for (std::size_t i = 0; i < drafts.size(); ++i) {
         add(drafts[i].endpoints, more[i].endpoints);
-        add(drafts[i].beside, more[i].beside);
+        add(drafts[i].unjudged, more[i].unjudged);
     }
 }
 
@@ -125,7 +125,7 @@ endpoint decided_alone(endpoint e, double band) {
     const tails p = tails_of(log_ratio, band);
     e.ratio = std::exp(log_ratio.value);
     e.range = {std::exp(range.low), std::exp(range.high)};
-    e.found = e.alone = support_of(e.expected.value_or(expectation::less), p);
+    e.corrected = e.uncorrected = support_of(e.expected.value_or(expectation::less), p);
     e.direction = direction_of(p);
     return e;
 }
@@ -138,16 +138,16 @@ std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double
             if (e.known()) by_claim[i].push_back(decided_alone(e, band));
         std::vector<endpoint*> others;
         for (endpoint& e : by_claim[i]) (e.is_primary ? primaries : others).push_back(&e);
-        settle(others, band);
+        decide_family(others, band);
     }
-    settle(primaries, band);
+    decide_family(primaries, band);
     return by_claim;
 }
 
 verdict_kind verdict_of(std::span<const endpoint> endpoints) {
     std::vector<support> primary;
     for (const endpoint& e : endpoints)
-        if (e.is_primary) primary.push_back(e.found);
+        if (e.is_primary) primary.push_back(e.corrected);
     return verdict_of(primary);
 }
 
@@ -186,7 +186,7 @@ reproduction judged(std::span<const measurements> machines) {
     for (const measurements& m : machines.subspan(1)) add_machine(drafts, drafts_of(m));
     reproduction results;
     const std::vector<std::vector<endpoint>> endpoints = decided(drafts, equivalence_band);
-    for (std::size_t i = 0; i < drafts.size(); ++i) results.claims.push_back(finished(drafts[i], endpoints[i]));
+    for (std::size_t i = 0; i < drafts.size(); ++i) results.claims.push_back(result_of(drafts[i], endpoints[i]));
     results.headline = headline_of(results.claims);
     results.disturbance = disturbance_of(machines);
     results.choices = open_choices(first);

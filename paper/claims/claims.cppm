@@ -20,11 +20,11 @@ struct endpoint {
     factors observed{};                  ///< measured there, so not part of its identity: inversions per element
     std::vector<estimate> log_ratios{};  ///< by machine
     double ratio = 0;
-    interval range{};                        ///< 95 %, of this endpoint alone
-    std::optional<expectation> expected{};   ///< in a draft empty if it is the claim's
-    support found = support::undecided;      ///< with Holm's correction
-    outcome direction = outcome::undecided;  ///< the same
-    support alone = support::undecided;      ///< without correction, from its own interval
+    interval range{};                          ///< 95 %, of this endpoint alone
+    std::optional<expectation> expected{};     ///< in a draft empty if it is the claim's
+    support corrected = support::undecided;    ///< with Holm's correction
+    outcome direction = outcome::undecided;    ///< the same
+    support uncorrected = support::undecided;  ///< without correction, from its own interval
     bool is_primary = false;
     quantity compared = quantity::time;
     /// The name of its line of endpoints in a sentence: "on drifting boxes". Without one it is not mentioned.
@@ -50,7 +50,7 @@ struct claim_result {
     verdict_kind verdict = verdict_kind::undecided;
     std::string sentence{};  ///< the verdict in words: direction, size and conditions
     std::string brief{};     ///< the same for lines with primary endpoints
-    std::string because{};   ///< the numbers that decide
+    std::string evidence{};  ///< the numbers that decide
     bool has_primary = false;
     endpoint primary{};                      ///< the first primary endpoint
     std::vector<endpoint> secondary{};       ///< all others, further primary ones first
@@ -130,14 +130,14 @@ struct reproduction {
 namespace aabblab {
 
 /// Whether all of these factors have these values; a factor with an empty value must be missing.
-[[nodiscard]] bool has(const factors& place, const factors& wanted);
+[[nodiscard]] bool has_factors(const factors& place, const factors& wanted);
 
 /// A claim before it is judged.
 struct draft {
     claim_result claim;
     std::vector<factors> primary;  ///< endpoints with all factors of one of these are primary
     std::vector<endpoint> endpoints{};
-    std::vector<endpoint> beside{};  ///< mentioned after the sentence, by their own intervals, and not judged
+    std::vector<endpoint> unjudged{};  ///< mentioned after the sentence, by their own intervals, and not judged
 
     endpoint& add(endpoint e);
 };
@@ -162,7 +162,7 @@ struct claim_source {
 
 /// The number of endpoints with this outcome.
 [[nodiscard]] inline std::size_t count_of(std::span<const endpoint> endpoints, support what) {
-    return static_cast<std::size_t>(std::ranges::count(endpoints, what, &endpoint::found));
+    return static_cast<std::size_t>(std::ranges::count(endpoints, what, &endpoint::corrected));
 }
 
 /// Whether a sentence reports both in the same clause.
@@ -190,7 +190,8 @@ struct claim_source {
 [[nodiscard]] std::vector<factors> places_of(const std::vector<condition>& conditions);
 
 /// The conditions with these factors.
-[[nodiscard]] std::vector<const condition*> having(const std::vector<condition>& conditions, const factors& wanted);
+[[nodiscard]] std::vector<const condition*> conditions_with(const std::vector<condition>& conditions,
+                                                            const factors& wanted);
 
 /// The ratio of two compositions in one condition.
 /// @param metric the metric's name
@@ -199,10 +200,10 @@ struct claim_source {
                                    const std::string& metric, factors more = {});
 /// The difference of two means; for conditions that do not run in the same repeat, so that cells of the same process
 /// and seed are compared.
-[[nodiscard]] estimate between(const cells& above, const cells& below);
+[[nodiscard]] estimate difference_of_means(const cells& above, const cells& below);
 /// Assigns an endpoint to a line of a sentence.
-[[nodiscard]] endpoint told(endpoint e, const std::string& subject, const std::string& along = "",
-                            quantity compared = quantity::time);
+[[nodiscard]] endpoint with_subject(endpoint e, const std::string& subject, const std::string& along = "",
+                                    quantity compared = quantity::time);
 
 /// The median over all repeats; empty if it was not measured.
 [[nodiscard]] std::optional<double> median_of(const condition& c, const selection& tested, const row_value& of);

@@ -4,14 +4,14 @@ import aabblab.numbers;
 
 namespace aabblab {
 
-bool has(const factors& place, const factors& wanted) {
+bool has_factors(const factors& place, const factors& wanted) {
     return std::ranges::all_of(wanted, [&](const auto& f) { return value_of(place, f.first) == f.second; });
 }
 
-std::vector<const condition*> having(const std::vector<condition>& conditions, const factors& wanted) {
+std::vector<const condition*> conditions_with(const std::vector<condition>& conditions, const factors& wanted) {
     std::vector<const condition*> matching;
     for (const condition& c : conditions)
-        if (has(c.of(), wanted)) matching.push_back(&c);
+        if (has_factors(c.of(), wanted)) matching.push_back(&c);
     return matching;
 }
 
@@ -34,12 +34,12 @@ endpoint endpoint_of(const condition& c, const selection& arm, const selection& 
     return ratio;
 }
 
-estimate between(const cells& above, const cells& below) {
+estimate difference_of_means(const cells& above, const cells& below) {
     if (above.empty() || below.empty()) return {std::nan("")};
     return bootstrap(above.size(), [&](const resample& d) { return d.mean_of(above) - d.mean_of(below); });
 }
 
-endpoint told(endpoint e, const std::string& subject, const std::string& along, quantity compared) {
+endpoint with_subject(endpoint e, const std::string& subject, const std::string& along, quantity compared) {
     e.subject = subject;
     e.along = along;
     e.compared = compared;
@@ -47,7 +47,7 @@ endpoint told(endpoint e, const std::string& subject, const std::string& along, 
 }
 
 endpoint& draft::add(endpoint e) {
-    e.is_primary = std::ranges::any_of(primary, [&](const factors& wanted) { return has(e.where, wanted); });
+    e.is_primary = std::ranges::any_of(primary, [&](const factors& wanted) { return has_factors(e.where, wanted); });
     return endpoints.emplace_back(std::move(e));
 }
 
@@ -113,7 +113,7 @@ std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factor
     std::map<std::string, series> by_span;
     for (const endpoint& e : ratios) {
         const std::string span = value_of(e.where, "span");
-        if (span.empty() || !e.known() || !has(e.where, wanted)) continue;
+        if (span.empty() || !e.known() || !has_factors(e.where, wanted)) continue;
         series& line = by_span[span];
         line.label = "edge " + span + " of the world";
         line.points.push_back(point_of(number_of(e.where, "huge"), e));

@@ -38,24 +38,24 @@ struct extent {
     double strong;
 
     [[nodiscard]] bool is_narrow() const { return strong / mild <= equality_threshold; }
-    [[nodiscard]] double middle() const { return std::sqrt(mild * strong); }
+    [[nodiscard]] double geometric_mean() const { return std::sqrt(mild * strong); }
     [[nodiscard]] std::string times() const {
-        return is_narrow() ? times_text(middle()) : span_text(times_text(mild), times_text(strong), false);
+        return is_narrow() ? times_text(geometric_mean()) : span_text(times_text(mild), times_text(strong), false);
     }
 };
 
-std::string less_of_time(const extent& e) {
+std::string less_time_text(const extent& e) {
     if (e.mild >= factor_threshold) return e.times() + " times as fast";
     if (e.strong >= factor_threshold) return "up to " + times_text(e.strong) + " times as fast";
     return span_text(percent_text(1 - 1 / e.mild), percent_text(1 - 1 / e.strong), false) + " % less time";
 }
 
 /// The strongest reduction comes first.
-std::string less_of(const extent& e, std::string_view noun) {
+std::string less_text(const extent& e, std::string_view noun) {
     return span_text(percent_text(1 / e.strong), percent_text(1 / e.mild), false) + " % of the " + std::string(noun);
 }
 
-std::string more_of(const extent& e, std::string_view noun) {
+std::string more_text(const extent& e, std::string_view noun) {
     if (e.mild >= factor_threshold) return fmt::format("{} times the {}", e.times(), noun);
     if (e.strong >= factor_threshold) return fmt::format("up to {} times the {}", times_text(e.strong), noun);
     return fmt::format("{} % more {}", span_text(percent_text(e.mild - 1), percent_text(e.strong - 1), false), noun);
@@ -74,27 +74,27 @@ extent extent_of(std::span<const endpoint> endpoints) {
 enum class wording : unsigned char { less, same, more, not_more, open };
 wording kind_of(const endpoint& e) {
     if (e.direction != outcome::undecided) return static_cast<wording>(e.direction);
-    return e.found == support::favours ? wording::not_more : wording::open;
+    return e.corrected == support::favours ? wording::not_more : wording::open;
 }
 
 /// Time is the default quantity and not mentioned.
-std::string of_what(quantity compared) {
+std::string quantity_suffix(quantity compared) {
     return compared == quantity::time ? "" : " in the " + std::string(noun_of(compared));
 }
 
 /// The phrase for endpoints with the same outcome: "up to 2.1 times as fast".
-std::string predicate_of(std::span<const endpoint> endpoints, wording how) {
+std::string predicate_of(std::span<const endpoint> endpoints, wording form) {
     const quantity compared = endpoints.front().compared;
     const std::string_view noun = noun_of(compared);
     const extent range = extent_of(endpoints);
-    switch (how) {
-        case wording::less: return compared == quantity::time ? less_of_time(range) : less_of(range, noun);
-        case wording::more: return more_of(range, noun);
-        case wording::same: return "no difference" + of_what(compared);
+    switch (form) {
+        case wording::less: return compared == quantity::time ? less_time_text(range) : less_text(range, noun);
+        case wording::more: return more_text(range, noun);
+        case wording::same: return "no difference" + quantity_suffix(compared);
         case wording::not_more: return fmt::format("no more {}", noun);
         case wording::open: break;
     }
-    return "undecided" + of_what(compared);
+    return "undecided" + quantity_suffix(compared);
 }
 
 /// "10,000 objects", "a displacement of 0.1".
@@ -107,21 +107,21 @@ std::string place_text(const std::string& factor, const std::string& value) {
 
 /// Consecutive endpoints of a line with the same outcome.
 struct stretch {
-    wording how;
+    wording form;
     std::vector<endpoint> endpoints;
 };
 
 std::vector<stretch> stretches_of(std::span<const endpoint> line) {
     std::vector<stretch> stretches;
     for (const endpoint& e : line) {
-        if (stretches.empty() || stretches.back().how != kind_of(e)) stretches.push_back({kind_of(e), {}});
+        if (stretches.empty() || stretches.back().form != kind_of(e)) stretches.push_back({kind_of(e), {}});
         stretches.back().endpoints.push_back(e);
     }
     return stretches;
 }
 
 /// "at 100 objects", "up to 1,000 objects", "from 3,162 objects on", "from 10 to 100 objects".
-std::string where_text(const std::vector<stretch>& stretches, std::size_t i) {
+std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
     const std::string& factor = stretches[i].endpoints.front().along;
     const std::string first = value_of(place_of(stretches[i].endpoints.front()), factor);
     const std::string last = value_of(place_of(stretches[i].endpoints.back()), factor);
@@ -141,9 +141,9 @@ std::string ordered_clause(std::span<const endpoint> line) {
     const std::vector<stretch> stretches = stretches_of(line);
     std::string text;
     for (std::size_t i = 0; i < stretches.size(); ++i) {
-        text += (i == 0 ? "" : ", ") + predicate_of(stretches[i].endpoints, stretches[i].how);
+        text += (i == 0 ? "" : ", ") + predicate_of(stretches[i].endpoints, stretches[i].form);
         if (i == 0) text += subject_text(line.front());
-        text += where_text(stretches, i);
+        text += range_text(stretches, i);
     }
     return text;
 }
@@ -159,7 +159,7 @@ std::string unordered_clause(std::vector<endpoint> line) {
     const std::vector<stretch> stretches = stretches_of(line);
     const auto text_of = [](const endpoint& e) { return predicate_of({&e, 1}, kind_of(e)); };
     const std::string text = stretches.size() == 1
-                                 ? predicate_of(stretches.front().endpoints, stretches.front().how) + subject
+                                 ? predicate_of(stretches.front().endpoints, stretches.front().form) + subject
                                  : "from " + text_of(line.front()) + " to " + text_of(line.back()) + subject;
     return text +
            (line.size() == count ? "" : fmt::format(", {} of {} conditions undecided", count - line.size(), count));
@@ -171,7 +171,7 @@ const claim_result* claim_named(std::span<const claim_result> claims, const std:
 }
 
 /// The comparison with the classic sweep under the paper's own premise, that objects hardly move.
-std::string against_classic_sweep(std::span<const claim_result> claims) {
+std::string classic_sweep_clause(std::span<const claim_result> claims) {
     const claim_result* claim = claim_named(claims, "C1");
     if (!claim) return "";
     for (const endpoint& e : primaries_of(*claim))
@@ -242,7 +242,7 @@ std::vector<std::string> headline_of(std::span<const claim_result> claims) {
     return {
         "The improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion sort, no "
         "cut): " +
-            first_clause(claims, "C1") + against_classic_sweep(claims) + ".",
+            first_clause(claims, "C1") + classic_sweep_clause(claims) + ".",
         "The compressed tree of the narrow phase, compared with the canonical one: " + first_clause(claims, "C7a") +
             "; its queries: " + first_clause(claims, "C7b") + ".",
         counts_of(claims)};

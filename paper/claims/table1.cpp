@@ -23,12 +23,12 @@ constexpr layout layouts[] = {
     {"compressed_literal", "compressed_literal:leaf_test=triangle_box", "scope 12, children 8, symbol 1", "none",
      "21"}};
 
-selection built(const layout& l, const std::string& build) {
+selection layout_with_build(const layout& l, const std::string& build) {
     return {{kind::tree, l.tree}, {kind::build, build}};
 }
 
 /// The condition with the largest mesh, which is the last one.
-const condition* measured_on(const measurements& m) {
+const condition* largest_mesh_condition(const measurements& m) {
     const std::vector<condition>& conditions = m.of("table1");
     return conditions.empty() ? nullptr : &conditions.back();
 }
@@ -37,7 +37,7 @@ table bytes_table(const condition& c) {
     table t = empty_table({"tree", "internal node", "leaf"},
                           {"bytes per triangle, nominal", "allocated", "of these, boxes and symbols", "indices"});
     for (const layout& l : layouts) {
-        const selection composition = built(l, "median");
+        const selection composition = layout_with_build(l, "median");
         if (!c.value(composition, measured("tree_bytes"))) continue;
         const auto text_of = [&](const row_value& bytes) {
             const std::optional<double> each = c.value(composition, a_triangle(bytes));
@@ -53,14 +53,16 @@ table cost_table(const condition& c) {
     table t = empty_table({"tree", "build"}, {"bytes per triangle", "boxes larger by (%)", "build time", "query time"});
     for (const layout& l : layouts)
         for (const char* build : {"median", "mean", "midpoint", "sah"}) {
-            const std::optional<double> bytes = c.value(built(l, build), measured("tree_bytes"));
+            const std::optional<double> bytes = c.value(layout_with_build(l, build), measured("tree_bytes"));
             if (!bytes) continue;
             const auto ratio = [&](const std::string& metric) {
-                return ratio_cell(endpoint_of(c, built(l, build), built(layouts[0], "median"), metric));
+                return ratio_cell(
+                    endpoint_of(c, layout_with_build(l, build), layout_with_build(layouts[0], "median"), metric));
             };
-            t.rows.push_back({l.name, build, fmt::format("{:.2f}", *bytes),
-                              three_digits(100 * c.value(built(l, build), measured("box_inflation")).value_or(0)),
-                              ratio("build_cpu_ms"), ratio("detect_cpu_ms")});
+            t.rows.push_back(
+                {l.name, build, fmt::format("{:.2f}", *bytes),
+                 three_digits(100 * c.value(layout_with_build(l, build), measured("box_inflation")).value_or(0)),
+                 ratio("build_cpu_ms"), ratio("detect_cpu_ms")});
         }
     return t;
 }
@@ -68,7 +70,7 @@ table cost_table(const condition& c) {
 }  // namespace
 
 std::vector<named_table> table1(const measurements& m) {
-    const condition* c = measured_on(m);
+    const condition* c = largest_mesh_condition(m);
     if (!c) return {};
     return {
         {"table1", "Node sizes of every layout in bytes: nominal, and as allocated for trees of " + mesh_of(*c) + ".",

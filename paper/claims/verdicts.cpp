@@ -62,10 +62,10 @@ std::vector<factors> places_of(const std::vector<condition>& conditions) {
 std::string dependence_of(const open_choice& choice) {
     bool undecided = choice.alternatives.empty();
     for (const open_choice::alternative& a : choice.alternatives) {
-        if (a.measured.found == support::undecided)
+        if (a.measured.corrected == support::undecided)
             undecided = true;
-        else if (choice.alternatives.front().measured.found != support::undecided &&
-                 a.measured.found != choice.alternatives.front().measured.found)
+        else if (choice.alternatives.front().measured.corrected != support::undecided &&
+                 a.measured.corrected != choice.alternatives.front().measured.corrected)
             return "yes";
     }
     return undecided ? "undecided" : "no";
@@ -153,23 +153,24 @@ named_table null_control(const measurements& m) {
             if (ratio.known()) ratios.push_back(decided_alone(ratio));
         }
     const table t = endpoint_table(ratios, [&](const endpoint& e) {
-        return is_difference(e)                    ? std::string("a difference")
-               : e.found == support::no_difference ? text_of(e.found)
-                                                   : "undecided";
+        return is_difference(e)                        ? std::string("a difference")
+               : e.corrected == support::no_difference ? text_of(e.corrected)
+                                                       : "undecided";
     });
     if (ratios.empty()) return {"null_control", "There are no measurements of a null control.", t};
     const auto without_one =
         std::ranges::count_if(ratios, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
-    return {"null_control",
-            fmt::format(
-                "Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
-                "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
-                "and {} are undecided.",
-                ratios.size(), without_one, std::ranges::count_if(ratios, is_difference),
-                std::ranges::count(ratios, support::no_difference, &endpoint::found),
-                std::ranges::count_if(
-                    ratios, [](const endpoint& e) { return !is_difference(e) && e.found != support::no_difference; })),
-            t};
+    return {
+        "null_control",
+        fmt::format(
+            "Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
+            "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
+            "and {} are undecided.",
+            ratios.size(), without_one, std::ranges::count_if(ratios, is_difference),
+            std::ranges::count(ratios, support::no_difference, &endpoint::corrected),
+            std::ranges::count_if(
+                ratios, [](const endpoint& e) { return !is_difference(e) && e.corrected != support::no_difference; })),
+        t};
 }
 
 std::string disturbance_of(std::span<const measurements> machines) {

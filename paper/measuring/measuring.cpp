@@ -37,18 +37,18 @@ std::filesystem::path folder_of_study(const std::filesystem::path& folder, const
 /// Times the elementary tests of claim C6 by Google Benchmark in separate processes. Results of the same build and size
 /// are kept.
 /// @returns a sentence if a test is wrong
-std::vector<std::string> time_tests(const std::filesystem::path& folder, bool quick) {
+std::vector<std::string> time_elementary_tests(const std::filesystem::path& folder, bool quick) {
     constexpr std::size_t processes = 5;
     const std::string repetitions = quick ? "3" : "9";
     // Tests of leaves decide the claim; tests of two triangles are only in the table.
     const std::string filter = quick ? "^test/[^/]+(/frame:a)?$" : "^test/";
     const std::string description = build_description() + "repetitions " + repetitions + " of " + filter + "\n";
-    const std::filesystem::path maker = folder / "made_by.txt";
+    const std::filesystem::path description_file = folder / "made_by.txt";
     const auto file_of = [&](std::size_t process) { return folder / ("process-" + std::to_string(process) + ".json"); };
-    if (!std::filesystem::exists(maker) || bytes_of_file(maker) != description)
+    if (!std::filesystem::exists(description_file) || bytes_of_file(description_file) != description)
         for (std::size_t process = 0; std::filesystem::remove(file_of(process));) ++process;
     std::filesystem::create_directories(folder);
-    std::ofstream(maker, std::ios::binary) << description;
+    std::ofstream(description_file, std::ios::binary) << description;
     for (std::size_t process = 0; process < processes; ++process) {
         if (std::filesystem::exists(file_of(process))) continue;
         const std::filesystem::path part = file_of(process).string() + ".part";
@@ -68,7 +68,7 @@ std::vector<std::string> time_tests(const std::filesystem::path& folder, bool qu
 std::filesystem::path file_of_failures(const std::filesystem::path& folder) {
     return folder / "failures.txt";
 }
-void keep_failures(const std::filesystem::path& folder, const std::vector<std::string>& failures) {
+void write_failures(const std::filesystem::path& folder, const std::vector<std::string>& failures) {
     std::string text;
     for (const std::string& failure : failures) text += failure + "\n";
     write_file(file_of_failures(folder), text);
@@ -86,7 +86,7 @@ std::vector<std::string> run_suites(const std::filesystem::path& folder, bool qu
 }
 
 /// Finished tests are not measured again, so that altered ones must be removed. Experiments check their own files.
-void forget_altered_tests(const std::filesystem::path& folder) {
+void remove_altered_tests(const std::filesystem::path& folder) {
     try {
         verify_record(folder);
     } catch (const aabb::input_error& altered) {
@@ -158,7 +158,7 @@ std::optional<report_section> atlas_section(const std::filesystem::path& folder)
 }
 
 /// The stored errors, one sentence each.
-std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
+std::vector<std::string> read_failures(const std::filesystem::path& folder) {
     std::vector<std::string> failures;
     if (!std::filesystem::exists(file_of_failures(folder))) return failures;
     for (line_stream lines(file_of_failures(folder)); lines.next();) failures.emplace_back(lines.line());
@@ -168,7 +168,7 @@ std::vector<std::string> kept_failures(const std::filesystem::path& folder) {
 /// Runs all experiments of the paper and the studies and suites of the report, and stores errors immediately. Results
 /// of the same build and size are kept. At the end the folder is sealed.
 void measure_reproduction(const std::filesystem::path& folder, bool quick) {
-    forget_altered_tests(folder);
+    remove_altered_tests(folder);
     std::vector<experiment> experiments;
     for (const std::filesystem::path& config : configs_in(AABBLAB_CONFIGS))
         experiments.push_back(open_experiment(config.string(), quick));
@@ -177,7 +177,7 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     std::vector<std::string> failures;
     const auto add = [&](const std::vector<std::string>& added) {
         failures.insert(failures.end(), added.begin(), added.end());
-        keep_failures(folder, failures);
+        write_failures(folder, failures);
     };
     unseal_record(folder);
     std::filesystem::remove(file_of_failures(folder));
@@ -186,7 +186,7 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
         add(run_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
     }
     note(fmt::format("experiment {} of {}: c6, the elementary tests", experiments.size() + 1, count));
-    add(time_tests(folder / "c6", quick));
+    add(time_elementary_tests(folder / "c6", quick));
     for (const error_study& study : studies) {
         note(fmt::format("experiment {} of {}: errors of {}", experiments.size() + 2 + (&study - studies.data()), count,
                          study.name));
@@ -214,13 +214,13 @@ std::vector<report_section> sections_of_reproduction(const std::filesystem::path
     return sections;
 }
 
-std::filesystem::path folder_of(const reproduce_request& request) {
+std::filesystem::path output_folder_of(const reproduce_request& request) {
     if (request.out) return *request.out;
     if (!request.sources.empty()) return "results/reproduce-judged";
     return request.quick ? "results/reproduce-quick" : "results/reproduce";
 }
 
-void require_sense(const reproduce_request& request) {
+void require_consistent(const reproduce_request& request) {
     if (!request.sources.empty() && !request.judge)
         throw aabb::input_error(request.sources.front() + " is given, but only --judge takes existing results");
     if (request.archive && request.sources.size() > 1)
@@ -274,7 +274,7 @@ std::string agreement_with_published(std::span<const measurements> runs, const r
     try {
         const std::string file = archive.string();
         const source_list sources({&file, 1});
-        const results_source& source = sources.all().front();
+        const results_source& source = sources.list().front();
         const measurements results = verified_measurements(source.folder, source.name);
         const auto is_published = [&](const measurements& run) {
             return is_sealed_record(run.folder()) && seal_of_record(run.folder()) == seal_of_record(source.folder);
@@ -291,7 +291,7 @@ std::string agreement_with_published(std::span<const measurements> runs, const r
 /// @returns the exit status
 int judge(const std::filesystem::path& out, std::span<const measurements> runs) {
     std::vector<std::string> failures;
-    for (const measurements& run : runs) std::ranges::copy(kept_failures(run.folder()), std::back_inserter(failures));
+    for (const measurements& run : runs) std::ranges::copy(read_failures(run.folder()), std::back_inserter(failures));
     const measurements& first = runs.front();
     for (const measurements& run : runs)
         if (is_quick(run.folder()) != is_quick(first.folder()))
@@ -323,17 +323,17 @@ void archive_reproduction(const std::filesystem::path& folder, const std::filesy
 
 int reproduce(const reproduce_request& request) {
     outlive_reader();
-    require_sense(request);
-    const std::filesystem::path out = folder_of(request);
+    require_consistent(request);
+    const std::filesystem::path out = output_folder_of(request);
     if (request.judge && request.sources.empty() && recorded_experiments(out).empty())
         throw aabb::input_error("there are no results of a reproduction in " + out.string());
     source_list sources(request.sources);
-    const folder_lock alone(out);
+    const folder_lock lock(out);
     if (!request.judge) measure_reproduction(out, request.quick);
     if (request.sources.empty()) sources.add(out);
     return sources.with_names_of_user([&] {
         std::vector<measurements> runs;
-        for (const results_source& source : sources.all())
+        for (const results_source& source : sources.list())
             runs.push_back(verified_measurements(source.folder, source.name));
         const int status = judge(out, runs);
         if (request.archive) archive_reproduction(runs.front().folder(), *request.archive);

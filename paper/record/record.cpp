@@ -23,7 +23,7 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
 using sums = std::map<std::string, std::string>;
 
 /// The checksum of a file with normalised line endings, which copying may have changed.
-std::string sum_of(const std::filesystem::path& file) {
+std::string checksum_of(const std::filesystem::path& file) {
     const std::string bytes = bytes_of_file(file);
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); ++i)
@@ -36,7 +36,7 @@ sums sums_of(const std::filesystem::path& folder) {
     sums checksums;
     for (const std::filesystem::path& file : recorded_files(folder))
         if (const std::string name = file.filename().string(); name != "results.csv" && name != "differences.csv")
-            checksums.emplace(file.generic_string(), sum_of(folder / file));
+            checksums.emplace(file.generic_string(), checksum_of(folder / file));
     return checksums;
 }
 
@@ -82,9 +82,9 @@ std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& f
         add("atlas/" + name, {"manifest.json", "results.csv", "differences.csv"});
     for (const std::string suite : {"extreme", "stiff"}) {
         // Earlier versions sealed their report instead of rows.
-        const bool drawn = std::filesystem::exists(folder / suite / "report.json");
+        const bool has_report = std::filesystem::exists(folder / suite / "report.json");
         for (const std::string& name : names_in(folder / suite))
-            if (drawn ? name == "report.json" : name.ends_with(".csv")) add(suite, {name.c_str()});
+            if (has_report ? name == "report.json" : name.ends_with(".csv")) add(suite, {name.c_str()});
     }
     add("", {"failures.txt"});
     std::ranges::sort(files);
@@ -100,13 +100,14 @@ std::vector<std::filesystem::path> archived_files(const std::filesystem::path& f
 source_list::source_list(std::span<const std::string> names) {
     for (const std::string& name : names) {
         if (!std::filesystem::exists(name)) throw aabb::input_error(name + " does not exist");
-        all_.push_back({name, std::filesystem::is_directory(name) ? std::filesystem::path(name)
-                                                                  : unpacked_.emplace_back(name, record_top).folder()});
+        sources_.push_back({name, std::filesystem::is_directory(name)
+                                      ? std::filesystem::path(name)
+                                      : unpacked_.emplace_back(name, record_top).folder()});
     }
 }
 
 void source_list::add(const std::filesystem::path& folder) {
-    all_.push_back({folder.string(), folder});
+    sources_.push_back({folder.string(), folder});
 }
 
 int source_list::with_names_of_user(const std::function<int()>& work) const {
@@ -114,7 +115,7 @@ int source_list::with_names_of_user(const std::function<int()>& work) const {
         return work();
     } catch (const aabb::input_error& error) {
         std::string sentence = error.what();
-        for (const results_source& source : all_)
+        for (const results_source& source : sources_)
             if (const std::size_t at = sentence.find(source.folder.string()); at != std::string::npos)
                 sentence.replace(at, source.folder.string().size(), source.name);
         throw aabb::input_error(sentence);
@@ -136,7 +137,7 @@ bool is_sealed_record(const std::filesystem::path& folder) {
 }
 
 std::string seal_of_record(const std::filesystem::path& folder) {
-    return sum_of(folder / sums_name);
+    return checksum_of(folder / sums_name);
 }
 
 void verify_record(const std::filesystem::path& folder) {

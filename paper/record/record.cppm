@@ -52,13 +52,13 @@ public:
     explicit source_list(std::span<const std::string> names);
     void add(const std::filesystem::path& folder);
 
-    [[nodiscard]] const std::vector<results_source>& all() const { return all_; }
+    [[nodiscard]] const std::vector<results_source>& list() const { return sources_; }
     /// Runs the work; if it rejects a file of an archive, the message has the archive's name.
     [[nodiscard]] int with_names_of_user(const std::function<int()>& work) const;
 
 private:
     std::list<unpacked_archive> unpacked_;
-    std::vector<results_source> all_;
+    std::vector<results_source> sources_;
 };
 
 /// The report's note about unsealed results.

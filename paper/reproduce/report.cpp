@@ -15,11 +15,11 @@ namespace aabblab {
 namespace {
 
 // The scale of all claims, logarithmic with 1 in the middle.
-const scale shared{0.2, 5, true};
+const scale claims_scale{0.2, 5, true};
 constexpr double margin = 4;  // at both ends, in percent, for arrows
 
-double place_of(double ratio) {
-    return margin + (100 - 2 * margin) * shared.place(std::clamp(ratio, shared.from, shared.to));
+double x_percent(double ratio) {
+    return margin + (100 - 2 * margin) * claims_scale.place(std::clamp(ratio, claims_scale.from, claims_scale.to));
 }
 
 /// Draws the band of no difference, with 1 in the middle.
@@ -35,8 +35,8 @@ constexpr double row_height = 12;
 void add_axis(svg_picture& to, double y) {
     to.line("axis", {margin, y}, {100 - margin, y});
     for (const double ratio : {0.25, 0.5, 1., 2., 4.}) {
-        to.line("axis", {place_of(ratio), y}, {place_of(ratio), y + 3});
-        to.text("", {place_of(ratio), y + 14}, short_number(ratio), {{"text-anchor", "middle"}});
+        to.line("axis", {x_percent(ratio), y}, {x_percent(ratio), y + 3});
+        to.text("", {x_percent(ratio), y + 14}, short_number(ratio), {{"text-anchor", "middle"}});
     }
 }
 
@@ -52,12 +52,12 @@ void add_arrow(svg_picture& to, bool to_left, double y, double number) {
 
 void add_interval(svg_picture& to, const endpoint& e, double y) {
     const auto& [low, high] = e.range;
-    const bool below = low < shared.from;
-    const bool above = high > shared.to;
-    to.line("range", {below ? 2 : place_of(low), y}, {above ? 98 : place_of(high), y});
-    if (shared.from <= e.ratio && e.ratio <= shared.to) to.disc({place_of(e.ratio), y}, 4);
-    if (below) add_arrow(to, true, y, e.ratio < shared.from ? e.ratio : low);
-    if (above) add_arrow(to, false, y, e.ratio > shared.to ? e.ratio : high);
+    const bool below = low < claims_scale.from;
+    const bool above = high > claims_scale.to;
+    to.line("range", {below ? 2 : x_percent(low), y}, {above ? 98 : x_percent(high), y});
+    if (claims_scale.from <= e.ratio && e.ratio <= claims_scale.to) to.disc({x_percent(e.ratio), y}, 4);
+    if (below) add_arrow(to, true, y, e.ratio < claims_scale.from ? e.ratio : low);
+    if (above) add_arrow(to, false, y, e.ratio > claims_scale.to ? e.ratio : high);
 }
 
 /// Ratios with their intervals, one per row, against the band of no difference, as SVG for the page. All claims share a
@@ -65,14 +65,14 @@ void add_interval(svg_picture& to, const endpoint& e, double y) {
 std::string interval_picture(std::span<const endpoint> endpoints) {
     const double axis = first_row + row_height * static_cast<double>(endpoints.size());
     std::string label;
-    svg_picture drawn("%");
-    add_band(drawn, place_of(1 / (1 + equivalence_band)), 50, place_of(1 + equivalence_band), 4, axis);
-    add_axis(drawn, axis);
+    svg_picture picture("%");
+    add_band(picture, x_percent(1 / (1 + equivalence_band)), 50, x_percent(1 + equivalence_band), 4, axis);
+    add_axis(picture, axis);
     for (const endpoint& e : endpoints) {
         label += (label.empty() ? "ratio " : "; ") + ratio_text(e);
-        add_interval(drawn, e, first_row + row_height * static_cast<double>(&e - endpoints.data()));
+        add_interval(picture, e, first_row + row_height * static_cast<double>(&e - endpoints.data()));
     }
-    return drawn.in_page("interval", label, axis + 16);
+    return picture.in_page("interval", label, axis + 16);
 }
 
 /// The rule as SVG for the page: example intervals and their outcomes.
@@ -94,20 +94,20 @@ std::string rule_picture() {
     constexpr double row = 26;
     constexpr double first = 40;
     constexpr double end = first + row * examples.size() - 8;
-    svg_picture drawn("%");
-    add_band(drawn, x(1 / (1 + equivalence_band)), part / 2, x(1 + equivalence_band), 22, end);
-    drawn.text("", {part / 2, 14}, "1", {{"text-anchor", "middle"}});
-    drawn.text("", {0, 14}, "\u2190 for the claim");
-    drawn.text("", {part, 14}, "against \u2192", {{"text-anchor", "end"}});
+    svg_picture picture("%");
+    add_band(picture, x(1 / (1 + equivalence_band)), part / 2, x(1 + equivalence_band), 22, end);
+    picture.text("", {part / 2, 14}, "1", {{"text-anchor", "middle"}});
+    picture.text("", {0, 14}, "\u2190 for the claim");
+    picture.text("", {part, 14}, "against \u2192", {{"text-anchor", "end"}});
     for (const example& e : examples) {
         const double y = first + row * static_cast<double>(&e - examples.data());
-        drawn.line("range", {x(e.low), y}, {x(e.high), y});
-        drawn.disc({x(std::sqrt(e.low * e.high)), y}, 5);
-        drawn.text("outcome", {part + 3, y + 5}, e.outcome);
+        picture.line("range", {x(e.low), y}, {x(e.high), y});
+        picture.disc({x(std::sqrt(e.low * e.high)), y}, 5);
+        picture.text("outcome", {part + 3, y + 5}, e.outcome);
     }
-    drawn.text("", {part / 2, end + 18}, fmt::format("band of \u00b1{:.0f} %", 100 * equivalence_band),
-               {{"text-anchor", "middle"}});
-    return drawn.in_page("rule", "an interval against the band of no difference", end + 26);
+    picture.text("", {part / 2, end + 18}, fmt::format("band of \u00b1{:.0f} %", 100 * equivalence_band),
+                 {{"text-anchor", "middle"}});
+    return picture.in_page("rule", "an interval against the band of no difference", end + 26);
 }
 
 struct verdict_word {
@@ -207,7 +207,7 @@ void add_choices(page& out, const reproduction& reproduced) {
         std::string ratios = c.claim + " at " + c.where + ", under each choice: ";
         for (const open_choice::alternative& a : c.alternatives)
             ratios += (&a == c.alternatives.data() ? "" : "; ") + a.label + " " + ratio_text(a.measured) + " " +
-                      text_of(a.measured.found);
+                      text_of(a.measured.corrected);
         const std::string dependence = dependence_of(c);
         ratios += dependence == "yes"  ? ". Its outcome depends on the choice."
                   : dependence == "no" ? ". Its outcome does not depend on the choice."
@@ -259,7 +259,7 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         out.add_html(paragraph("verdict " + std::string(word_of(c.verdict).kind), verdict_markup(c, c.sentence)) +
                      "\n");
         out.add_markdown("**" + text_of(c) + ":** " + c.sentence + "\n\n");
-        if (c.because != c.sentence) out.paragraph(c.because);
+        if (c.evidence != c.sentence) out.paragraph(c.evidence);
         out.paragraph("The ratio: " + c.measured + ".", "soft");
         for (const figure& f : c.figures) out.add(f);
         for (const named_table& t : c.tables)

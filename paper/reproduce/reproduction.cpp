@@ -54,7 +54,7 @@ void add_claim(macros& to, const claim_result& c) {
     set("measured", c.measured);
     set("verdict", text_of(c));
     set("sentence", c.sentence);
-    set("because", c.because == c.sentence ? "" : c.because);
+    set("because", c.evidence == c.sentence ? "" : c.evidence);
     to.set_tex(c.id + ".figures", list_of(c.figures));
     // The first table has the endpoints and belongs to the appendix.
     to.set_tex(c.id + ".tables", list_of(c.tables, 1));
@@ -67,7 +67,7 @@ void add_claim(macros& to, const claim_result& c) {
     const std::vector<endpoint> others = secondaries_of(c);
     to.set(c.id + ".endpoints", others.size());
     const auto count = [&](const char* key, support what) {
-        to.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(others, what, &endpoint::found)));
+        to.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(others, what, &endpoint::corrected)));
     };
     count("for", support::favours);
     count("against", support::contradicts);
@@ -90,7 +90,7 @@ table endpoints_of(const reproduction& reproduced) {
         const auto digits = [](double ratio) { return fmt::format("{:.9g}", ratio); };
         t.rows.push_back({c.id, e.is_primary ? "primary" : "secondary", where, e.source,
                           e.expected == expectation::less ? "less" : "not more", digits(e.ratio), digits(e.range.low),
-                          digits(e.range.high), text_of(e.direction), text_of(e.found)});
+                          digits(e.range.high), text_of(e.direction), text_of(e.corrected)});
     };
     for (const claim_result& c : reproduced.claims) {
         if (c.has_primary) add(c, c.primary);
@@ -255,20 +255,20 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     write_file(folder / "report.html", report.html());
 }
 
-std::string agreement_of(std::span<const claim_result> here, std::span<const claim_result> there,
+std::string agreement_of(std::span<const claim_result> claims, std::span<const claim_result> other_claims,
                          const std::string& other) {
     std::string differing;
     std::size_t same = 0;
-    for (const claim_result& c : here) {
-        const auto counterpart = std::ranges::find(there, c.id, &claim_result::id);
-        const std::string verdict = counterpart == there.end() ? "none" : text_of(*counterpart);
+    for (const claim_result& c : claims) {
+        const auto counterpart = std::ranges::find(other_claims, c.id, &claim_result::id);
+        const std::string verdict = counterpart == other_claims.end() ? "none" : text_of(*counterpart);
         if (verdict == text_of(c))
             ++same;
         else
             differing +=
                 fmt::format("{} {}: here {}, there {}", differing.empty() ? ":" : ";", c.id, text_of(c), verdict);
     }
-    return fmt::format("{} of {} verdicts agree with {}{}.", same, here.size(), other, differing);
+    return fmt::format("{} of {} verdicts agree with {}{}.", same, claims.size(), other, differing);
 }
 
 }  // namespace aabblab

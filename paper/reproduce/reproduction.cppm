@@ -36,7 +36,7 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
 
 /// Compares two judgements in a sentence: the number of equal verdicts, and the claims whose verdicts differ.
 /// @param other the name of the other judgement: "the published run"
-[[nodiscard]] std::string agreement_of(std::span<const claim_result> here, std::span<const claim_result> there,
+[[nodiscard]] std::string agreement_of(std::span<const claim_result> claims, std::span<const claim_result> other_claims,
                                        const std::string& other);
 
 }  // namespace aabblab

@@ -48,7 +48,7 @@ void check_verdicts(const aabblab::reproduction& all, const Expected& expected) 
     REQUIRE(all.claims.size() == worlds::claim_rows().size());
     for (std::size_t i = 0; i < all.claims.size(); ++i) {
         const claim_result& c = all.claims[i];
-        INFO(c.sentence + "\n" + c.because);
+        INFO(c.sentence + "\n" + c.evidence);
         CHECK(c.id == worlds::claim_rows()[i].id);
         const std::string verdict = expected(worlds::claim_rows()[i]);
         if (!verdict.empty()) CHECK(c.id + " " + text_of(c) == c.id + " " + verdict);
@@ -359,9 +359,9 @@ TEST_CASE("An alternative counts only where the others beside it leave it standi
     const auto choice = std::ranges::find_if(
         c11->alternatives, [](const aabblab::open_choice::alternative& a) { return a.label.starts_with("100 "); });
     REQUIRE(choice != c11->alternatives.end());
-    CHECK(choice->measured.alone == support::favours);
-    CHECK(choice->measured.found == support::undecided);
-    CHECK(same->found == support::undecided);
+    CHECK(choice->measured.uncorrected == support::favours);
+    CHECK(choice->measured.corrected == support::undecided);
+    CHECK(same->corrected == support::undecided);
 }
 
 TEST_CASE("What was wrong in a run is said by every later judgement") {

@@ -21,7 +21,7 @@ claim_result claim(const std::string& id, verdict_kind verdict, double ratio, aa
             .verdict = verdict,
             .sentence = "The verdict on " + id + " in words.",
             .brief = "The verdict on " + id + " in brief.",
-            .because = "The figures of " + id + ".",
+            .evidence = "The figures of " + id + ".",
             .has_primary = true,
             .primary = {.ratio = ratio, .range = range}};
 }

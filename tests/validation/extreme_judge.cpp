@@ -184,7 +184,7 @@ TEST_CASE("the exact answer is that of the definition") {
     REQUIRE(answer.frames.size() == 2);
     for (const exact_mesh_frame& frame : answer.frames) {
         REQUIRE(frame.objects.size() == 1);
-        CHECK(frame.objects[0].meet);
+        CHECK(frame.objects[0].intersect);
     }
     CHECK(answer.frames[0].objects[0].pairs.size() == 9);
 }

@@ -22,14 +22,14 @@ public:
                 if (is_present(id)) ids_.push_back(id);
             objects_.settle();
         }
-        frame_.change([&] { take(boxes, ids_); });
+        frame_.change([&] { take_boxes(boxes, ids_); });
         frame_.taken();
     }
 
     void search(std::vector<index_pair>& pairs) final {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_whole(pairs, [&] { find(pairs); });
+        append_whole(pairs, [&] { find_pairs(pairs); });
     }
 
     [[nodiscard]] work_counters counters() const final { return {}; }
@@ -48,9 +48,9 @@ protected:
     }
 
     /// Takes the boxes of the present objects, in ascending order of ids.
-    virtual void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) = 0;
+    virtual void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) = 0;
     /// Appends the overlapping pairs of these boxes.
-    virtual void find(std::vector<index_pair>& pairs) = 0;
+    virtual void find_pairs(std::vector<index_pair>& pairs) = 0;
 
 private:
     membership objects_;
@@ -59,12 +59,12 @@ private:
 };
 
 /// Collects pairs in a library's callback, through which no exception may propagate.
-struct finding {
+struct pair_collector {
     std::vector<index_pair>& pairs;
     bool out_of_memory = false;
 
     /// Calls `append`, which appends to the pairs.
-    void note(auto append) {
+    void append_safely(auto append) {
         try {
             append();
         } catch (const std::bad_alloc&) {
@@ -73,7 +73,7 @@ struct finding {
     }
     /// Call it after the library has returned.
     /// @throws std::bad_alloc if memory ran out in a callback.
-    void require_all() const {
+    void require_memory() const {
         if (out_of_memory) throw std::bad_alloc();
     }
     /// Removes unwanted pairs from index `known` on.

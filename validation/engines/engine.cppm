@@ -36,7 +36,7 @@ struct engine {
 
 /// @tparam Arguments the arguments of the engine's constructor
 template <class Stage, class Engine, auto... Arguments>
-[[nodiscard]] std::unique_ptr<Stage> made() {
+[[nodiscard]] std::unique_ptr<Stage> make_stage() {
     return std::make_unique<Engine>(Arguments...);
 }
 

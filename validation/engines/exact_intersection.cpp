@@ -128,12 +128,12 @@ triangle_intersection exact_intersection::rounded() const {
     triangle_intersection common;
     common.kind = construction_->kind;
     for (const exact_point& corner : construction_->corners) {
-        vec3d& at = common.corners[common.size++];
+        vec3d& point = common.corners[common.size++];
         for (int k = 0; k < 3; ++k) {
             const auto [low, high] = CGAL::to_interval(corner[static_cast<std::size_t>(k)]);
-            at[k] = low / 2 + high / 2;
+            point[k] = low / 2 + high / 2;
             // Halves of the smallest denormals are rounded.
-            if (at[k] < low || at[k] > high) at[k] = low;
+            if (point[k] < low || point[k] > high) point[k] = low;
             common.error[k] = std::max(common.error[k], high - low);
         }
     }
@@ -156,7 +156,9 @@ corner_errors exact_intersection::errors_of(const triangle_intersection& compute
     struct alignment {
         double distance;
         std::size_t first, step;
-        [[nodiscard]] std::size_t operator()(std::size_t i, std::size_t of) const { return (first + i * step) % of; }
+        [[nodiscard]] std::size_t operator()(std::size_t i, std::size_t count) const {
+            return (first + i * step) % count;
+        }
     };
     std::vector<alignment> alignments;
     for (std::size_t first = 0; first < size; ++first)

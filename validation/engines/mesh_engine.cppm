@@ -7,13 +7,13 @@ namespace aabb {
 
 /// The vertices of B in A's frame, by index. Unused vertices outside B's box stay unchanged.
 /// @param bounds the box of B, in B's frame
-[[nodiscard]] std::vector<vec3f> moved_vertices(const pose& pose_a, const pose& pose_b, const mesh& b,
-                                                const box& bounds) {
+[[nodiscard]] std::vector<vec3f> transformed_vertices(const pose& pose_a, const pose& pose_b, const mesh& b,
+                                                      const box& bounds) {
     const relative_pose to_a(pose_a, pose_b, bounds);
-    std::vector<vec3f> moved = b.vertices;
-    for (vec3f& v : moved)
+    std::vector<vec3f> transformed = b.vertices;
+    for (vec3f& v : transformed)
         if (contains(bounds, bounds_of(v))) v = to_a(v);
-    return moved;
+    return transformed;
 }
 
 /// A cache key: the poses of two models for which something was built.
@@ -38,7 +38,7 @@ class mesh_engine : public local_stage {
 public:
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                    std::vector<index_pair>& pairs) final {
-        append_whole(pairs, [&] { find(model_a, pose_a, model_b, pose_b, pairs); });
+        append_whole(pairs, [&] { find_pairs(model_a, pose_a, model_b, pose_b, pairs); });
     }
     [[nodiscard]] std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                             const pose& pose_b) final {
@@ -59,8 +59,8 @@ public:
     [[nodiscard]] std::vector<omission> left_out() const final { return {}; }
 
 protected:
-    virtual void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
-                      std::vector<index_pair>& pairs) = 0;
+    virtual void find_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+                            std::vector<index_pair>& pairs) = 0;
 };
 
 /// The common part of all models.
@@ -80,7 +80,7 @@ public:
         require_ieee_arithmetic();
         require_valid(m);
         Model model{{&m, m.triangles.size(), bounds_of(m)}};
-        follow(model);
+        update_model(model);
         models_.push_back(std::move(model));
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
@@ -91,13 +91,13 @@ public:
             require_ieee_arithmetic();
             require_still_valid(*changed.source, changed.count);
             changed.bounds = bounds_of(*changed.source);
-            follow(changed);
+            update_model(changed);
         });
     }
 
     [[nodiscard]] std::optional<index_pair> first_pair(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                                        const pose& pose_b) final {
-        return any_pair(asked_of(model_a, pose_a, model_b, pose_b));
+        return any_pair(query_of(model_a, pose_a, model_b, pose_b));
     }
 
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
@@ -108,7 +108,7 @@ public:
 
 protected:
     /// A query of two models that are up to date.
-    struct asked {
+    struct model_query {
         const Model& a;
         const pose& pose_a;
         Model& b;
@@ -116,21 +116,22 @@ protected:
     };
 
     /// Builds or updates the model, initially and after vertices moved.
-    virtual void follow(Model& changed) = 0;
-    virtual void append_pairs(const asked& q, std::vector<index_pair>& pairs) = 0;
-    [[nodiscard]] virtual std::optional<index_pair> any_pair(const asked& q) = 0;
+    virtual void update_model(Model& changed) = 0;
+    virtual void append_pairs(const model_query& q, std::vector<index_pair>& pairs) = 0;
+    [[nodiscard]] virtual std::optional<index_pair> any_pair(const model_query& q) = 0;
 
 private:
-    [[nodiscard]] asked asked_of(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b) {
+    [[nodiscard]] model_query query_of(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
+                                       const pose& pose_b) {
         require_ieee_arithmetic();
         models_[model_a].fit.require();
         models_[model_b].fit.require();
         return {models_[model_a], pose_a, models_[model_b], pose_b};
     }
 
-    void find(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
-              std::vector<index_pair>& pairs) final {
-        append_pairs(asked_of(model_a, pose_a, model_b, pose_b), pairs);
+    void find_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
+                    std::vector<index_pair>& pairs) final {
+        append_pairs(query_of(model_a, pose_a, model_b, pose_b), pairs);
     }
 
     std::vector<Model> models_;

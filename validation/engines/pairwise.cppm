@@ -40,20 +40,20 @@ public:
     pairwise_engine(candidate_search& search, triangle_decision& decide) : search_(search), decide_(decide) {}
 
 private:
-    void follow(boxed_model& changed) override {
+    void update_model(boxed_model& changed) override {
         changed.boxes.clear();
         for (std::uint32_t t = 0; t < changed.count; ++t)
             changed.boxes.push_back(bounds_of(changed.source->triangle(t)));
     }
 
-    void append_pairs(const asked& q, std::vector<index_pair>& pairs) override {
+    void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         decide(q, [&](index_pair pair) {
             pairs.push_back(pair);
             return false;
         });
     }
 
-    [[nodiscard]] std::optional<index_pair> any_pair(const asked& q) override {
+    [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         std::optional<index_pair> first;
         decide(q, [&](index_pair pair) {
             first = pair;
@@ -64,7 +64,7 @@ private:
 
     /// Calls `emit` for intersecting pairs until it returns true.
     template <class Emit>
-    void decide(const asked& q, Emit emit) const {
+    void decide(const model_query& q, Emit emit) const {
         const mesh& b = *q.b.source;
         const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
         std::vector<box> boxes_b;

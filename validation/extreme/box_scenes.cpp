@@ -9,7 +9,7 @@ namespace {
 // Shapes and arrangements.
 
 /// The boxes, and `times` frames in which all move by a step along each axis.
-box_frames moved(std::vector<box> boxes, float step, int times) {
+box_frames moving(std::vector<box> boxes, float step, int times) {
     box_frames frames{std::move(boxes)};
     for (int frame = 0; frame < times; ++frame) {
         frames.push_back(frames.back());
@@ -30,7 +30,7 @@ std::vector<box> boxes_of(std::uint32_t count, Make make) {
 }
 
 box_frames identical() {
-    return moved(std::vector<box>(60, {{1, 2, 3}, {2, 3, 4}}), 0.5F, 2);
+    return moving(std::vector<box>(60, {{1, 2, 3}, {2, 3, 4}}), 0.5F, 2);
 }
 
 box_frames lattice() {
@@ -39,28 +39,28 @@ box_frames lattice() {
         const vec3f low{static_cast<float>(i % 5), static_cast<float>(i / 5 % 5), static_cast<float>(layer)};
         return box_at(low, {1, 1, 1});
     };
-    return moved(boxes_of(125, cell), 0.25F, 1);
+    return moving(boxes_of(125, cell), 0.25F, 1);
 }
 
 box_frames points() {
     draws random(11);
     const auto coordinate = [&] { return static_cast<float>(random.below(4)); };
     const auto point = [&](std::uint32_t) { return bounds_of(vec3f{coordinate(), coordinate(), coordinate()}); };
-    return moved(boxes_of(80, point), 1, 1);
+    return moving(boxes_of(80, point), 1, 1);
 }
 
-/// Boxes with zero extent on `flat` of the axes.
-box_frames without_extent(int flat, std::uint32_t seed) {
+/// Boxes with zero extent on `flat_axes` of the axes.
+box_frames without_extent(int flat_axes, std::uint32_t seed) {
     draws random(seed);
     const auto make_box = [&](std::uint32_t i) {
         vec3f extents = random.point(0, 6);
-        for (int k = 0; k < flat; ++k) extents[static_cast<int>(i + static_cast<unsigned>(k)) % 3] = 0;
+        for (int k = 0; k < flat_axes; ++k) extents[static_cast<int>(i + static_cast<unsigned>(k)) % 3] = 0;
         vec3f low = random.point(0, 10);
         // Integer coordinates, so that some of the boxes overlap.
         for (int k = 0; k < 3; ++k) low[k] = std::floor(low[k]);
         return box_at(low, extents);
     };
-    return moved(boxes_of(80, make_box), 0.5F, 1);
+    return moving(boxes_of(80, make_box), 0.5F, 1);
 }
 
 box_frames mixed_sizes() {
@@ -69,7 +69,7 @@ box_frames mixed_sizes() {
         const float size = std::pow(10.0F, static_cast<float>(i % 13) - 6);
         return box_at(random.point(-1000, 1000), random.point(0.5F * size, size));
     };
-    return moved(boxes_of(39, make_box), 100, 1);
+    return moving(boxes_of(39, make_box), 100, 1);
 }
 
 box_frames one_huge() {
@@ -78,7 +78,7 @@ box_frames one_huge() {
         return i == 40 ? box{{-1e9F, -1e9F, -1e9F}, {1e9F, 1e9F, 1e9F}}
                        : box_at(random.point(0, 1), random.point(0, 1e-3F));
     };
-    return moved(boxes_of(60, make_box), 1e-3F, 1);
+    return moving(boxes_of(60, make_box), 1e-3F, 1);
 }
 
 /// Integer coordinates, so that the centres are exact.
@@ -88,19 +88,19 @@ box_frames concentric(bool on_a_line) {
         const auto half = static_cast<float>(1 + i % 7);
         return box{{x - half, -half, -half}, {x + half, half, half}};
     };
-    return moved(boxes_of(70, make_box), 1, 1);
+    return moving(boxes_of(70, make_box), 1, 1);
 }
 
 box_frames pile() {
     draws random(15);
     // 110 boxes with a mean edge of 2 in a cube of edge 3.8: each overlaps some 50 others.
     const auto make_box = [&](std::uint32_t) { return box_at(random.point(0, 3.8F), random.point(1.5F, 2.5F)); };
-    return moved(boxes_of(110, make_box), 0.01F, 1);
+    return moving(boxes_of(110, make_box), 0.01F, 1);
 }
 
 box_frames row_of(std::uint32_t objects) {
     const auto make_box = [](std::uint32_t i) { return box_at({static_cast<float>(i), 0, 0}, {1, 1, 1}); };
-    return moved(boxes_of(objects, make_box), 1, 2);
+    return moving(boxes_of(objects, make_box), 1, 2);
 }
 
 // Coordinates: few distinct values, or far from the origin.
@@ -111,7 +111,7 @@ constexpr float most = std::numeric_limits<float>::max();
 
 /// Two independent frames.
 template <class Make>
-box_frames two_frames(std::uint32_t count, Make make) {
+box_frames independent_frames(std::uint32_t count, Make make) {
     std::vector<box> first = boxes_of(count, make);
     return {std::move(first), boxes_of(count, make)};
 }
@@ -120,7 +120,7 @@ box_frames two_frames(std::uint32_t count, Make make) {
 box_frames with_ends(std::span<const float> ends, std::uint32_t objects, std::uint32_t seed) {
     draws random(seed);
     const auto end = [&] { return ends[random.below(static_cast<std::uint32_t>(ends.size()))]; };
-    return two_frames(objects, [&](std::uint32_t) {
+    return independent_frames(objects, [&](std::uint32_t) {
         box b{};
         for (int k = 0; k < 3; ++k) {
             b.min[k] = end();
@@ -150,7 +150,7 @@ box_frames greatest_floats() {
 /// Boxes of about ten in size; floats are a sixteenth apart at a million, 64 apart at 10^9.
 box_frames far_out(float offset) {
     draws random(24);
-    return two_frames(80, [&](std::uint32_t) {
+    return independent_frames(80, [&](std::uint32_t) {
         const vec3f low = random.point(0, 40);
         return box_at({offset + low[0], offset + low[1], -offset - low[2]}, random.point(0, 20));
     });
@@ -158,18 +158,19 @@ box_frames far_out(float offset) {
 
 // Motion and population.
 
-constexpr std::uint32_t changing = 72;
+constexpr std::uint32_t population_size = 72;
 
-box_frames elsewhere_in_each() {
+box_frames jumping_boxes() {
     draws random(31);
     box_frames frames(6);
     for (std::vector<box>& boxes : frames)
-        boxes = boxes_of(changing, [&](std::uint32_t) { return box_at(random.point(0, 10), random.point(0, 4)); });
+        boxes =
+            boxes_of(population_size, [&](std::uint32_t) { return box_at(random.point(0, 10), random.point(0, 4)); });
     return frames;
 }
 
 box_frames huge_and_tiny() {
-    box_frames frames = elsewhere_in_each();
+    box_frames frames = jumping_boxes();
     for (std::size_t frame = 0; frame < frames.size(); ++frame)
         for (box& b : frames[frame])
             for (int k = 0; k < 3; ++k) {
@@ -183,14 +184,14 @@ box_frames huge_and_tiny() {
 /// Boxes that appear and disappear.
 /// @param is_there whether an object is present in a frame
 template <class IsThere>
-extreme_scene population(std::string name, std::string summary, IsThere is_there) {
+extreme_scene population(std::string name, std::string summary, IsThere is_present) {
     extreme_scene scene{.name = std::move(name), .summary = std::move(summary)};
-    scene.make_boxes = [is_there]() -> std::unique_ptr<box_scene> {
-        box_frames frames = elsewhere_in_each();
-        std::vector<std::vector<std::uint8_t>> present(frames.size(), std::vector<std::uint8_t>(changing));
+    scene.make_boxes = [is_present]() -> std::unique_ptr<box_scene> {
+        box_frames frames = jumping_boxes();
+        std::vector<std::vector<std::uint8_t>> present(frames.size(), std::vector<std::uint8_t>(population_size));
         for (std::size_t frame = 0; frame < frames.size(); ++frame)
-            for (std::uint32_t i = 0; i < changing; ++i) {
-                present[frame][i] = static_cast<std::uint8_t>(is_there(frame, i));
+            for (std::uint32_t i = 0; i < population_size; ++i) {
+                present[frame][i] = static_cast<std::uint8_t>(is_present(frame, i));
                 // Absent objects are placed far away.
                 if (!present[frame][i]) frames[frame][i] = bounds_of(vec3f{1000 + static_cast<float>(i), 0, 0});
             }
@@ -221,14 +222,14 @@ std::vector<extreme_scene> box_scenes() {
         scene_of_boxes("greatest_floats", "boxes that reach to the greatest floats", greatest_floats),
         scene_of_boxes("far_1e6", "a million from the origin", [] { return far_out(1e6F); }),
         scene_of_boxes("far_1e9", "10^9 from the origin, where floats are 64 apart", [] { return far_out(1e9F); }),
-        scene_of_boxes("teleport", "every box jumps in each frame", elsewhere_in_each),
+        scene_of_boxes("teleport", "every box jumps in each frame", jumping_boxes),
         scene_of_boxes("huge_and_tiny", "alternately 10^9 times as large and as small", huge_and_tiny),
         population("comings_and_goings", "a third of the objects leaves in each frame, another third returns",
                    [](std::size_t frame, std::uint32_t i) { return (frame + i) % 3 != 0; }),
         population("all_leave", "all objects leave, then all return",
                    [](std::size_t frame, std::uint32_t) { return frame % 3 != 1; }),
         population("all_change", "one half leaves as the other arrives",
-                   [](std::size_t frame, std::uint32_t i) { return (i < changing / 2) == (frame % 2 == 0); }),
+                   [](std::size_t frame, std::uint32_t i) { return (i < population_size / 2) == (frame % 2 == 0); }),
     };
 }
 

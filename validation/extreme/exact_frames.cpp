@@ -9,42 +9,42 @@ namespace {
 /// Two closed boxes overlap if on each axis some number lies in both intervals.
 bool share_a_point(const box& a, const box& b) {
     for (int k = 0; k < 3; ++k) {
-        const bool meet =
+        const bool intersect =
             (a.min[k] <= b.min[k] && b.min[k] <= a.max[k]) || (b.min[k] <= a.min[k] && a.min[k] <= b.max[k]);
-        if (!meet) return false;
+        if (!intersect) return false;
     }
     return true;
 }
 
-void add_changes(exact_box_frame& frame, std::vector<std::uint8_t>& was, const std::vector<std::uint8_t>& is) {
-    was.resize(is.size(), 0);
-    for (std::uint32_t object = 0; object < is.size(); ++object)
-        if (is[object] && !was[object])
+void add_changes(exact_box_frame& frame, std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& present) {
+    before.resize(present.size(), 0);
+    for (std::uint32_t object = 0; object < present.size(); ++object)
+        if (present[object] && !before[object])
             frame.arrivals.push_back(object);
-        else if (!is[object] && was[object])
+        else if (!present[object] && before[object])
             frame.departures.push_back(object);
-    was = is;
+    before = present;
 }
 
-/// Calls `take` for all intersecting pairs, with b transformed by `to_a`, until it returns true.
-template <class Take>
-void for_each_true_pair(const mesh& a, const mesh& b, const relative_pose& to_a, Take take) {
+/// Calls `visit` for all intersecting pairs, with b transformed by `to_a`, until it returns true.
+template <class Visit>
+void for_each_true_pair(const mesh& a, const mesh& b, const relative_pose& to_a, Visit visit) {
     for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
         const triangle3f transformed = to_a(b.triangle(t));
         for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
-            if (exactly_intersect(a.triangle(s), transformed) && take(index_pair{s, t})) return;
+            if (exactly_intersect(a.triangle(s), transformed) && visit(index_pair{s, t})) return;
     }
 }
 
 exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>& poses, index_pair objects,
-                               extreme_query asked) {
+                               extreme_query query) {
     exact_objects result{objects.a, objects.b, {}, false};
     const mesh& a = scene.meshes[scene.mesh_of[objects.a]];
     const mesh& b = scene.meshes[scene.mesh_of[objects.b]];
     for_each_true_pair(a, b, {poses[objects.a], poses[objects.b], bounds_of(b)}, [&](index_pair pair) {
-        result.meet = true;
-        if (asked != extreme_query::first_pair) result.pairs.push_back(pair);
-        return asked == extreme_query::first_pair;
+        result.intersect = true;
+        if (query != extreme_query::first_pair) result.pairs.push_back(pair);
+        return query == extreme_query::first_pair;
     });
     std::ranges::sort(result.pairs);
     return result;
@@ -68,15 +68,15 @@ exact_boxes exact_boxes_of(box_scene& scene) {
     return frames;
 }
 
-exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query asked) {
+exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query query) {
     exact_meshes truth;
     for (exact_mesh_frame frame; scene.next(frame.poses); frame = {}) {
         for (std::uint32_t a = 0; a < frame.poses.size(); ++a)
             for (std::uint32_t b = a + 1; b < frame.poses.size(); ++b)
-                frame.objects.push_back(exact_objects_of(scene, frame.poses, {a, b}, asked));
+                frame.objects.push_back(exact_objects_of(scene, frame.poses, {a, b}, query));
         truth.frames.push_back(frame);
     }
-    if (scene.meshes.size() != 1 || asked != extreme_query::all_pairs) return truth;
+    if (scene.meshes.size() != 1 || query != extreme_query::all_pairs) return truth;
     const mesh& m = scene.meshes[0];
     for (std::uint32_t a = 0; a < m.triangle_count(); ++a)
         for (std::uint32_t b = a + 1; b < m.triangle_count(); ++b)

@@ -35,7 +35,7 @@ struct extreme_scene {
     bool accepted_in_double = false;
     arithmetic computed_in = arithmetic::ieee;
     /// `all_pairs` runs all queries, `count_pairs` that and `first_pair`, `first_pair` only itself.
-    extreme_query asked = extreme_query::all_pairs;
+    extreme_query query = extreme_query::all_pairs;
     std::size_t most_bytes = 0;  ///< the memory limit of a composition; 0 for no limit
 };
 
@@ -116,7 +116,7 @@ struct exact_objects {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     std::vector<index_pair> pairs;  // of triangles, sorted; empty for `first_pair`
-    bool meet = false;
+    bool intersect = false;
 };
 
 struct exact_mesh_frame {
@@ -130,7 +130,7 @@ struct exact_meshes {
 };
 
 /// Finds pairs by CGAL's exact kernel, with vertices transformed into the first object's frame.
-[[nodiscard]] exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query asked);
+[[nodiscard]] exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query query);
 
 /// Whether a reported pair of triangles has valid indices and intersects.
 [[nodiscard]] bool is_true_pair(const mesh_scene& scene, const exact_mesh_frame& frame, const exact_objects& objects,

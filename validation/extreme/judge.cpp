@@ -16,7 +16,7 @@ void make_wrong(extreme_result& result, const std::string& reason) {
 }
 
 /// @param where "frame 2"
-void add(extreme_result& result, const pair_comparison& difference, const std::string& where) {
+void record_difference(extreme_result& result, const pair_comparison& difference, const std::string& where) {
     const auto text_of = [](const index_pair& pair) { return std::to_string(pair.a) + " " + std::to_string(pair.b); };
     result.false_negatives += difference.false_negatives.size();
     result.false_positives += difference.false_positives.size();
@@ -43,12 +43,12 @@ void run(const exact_boxes& exact, global_stage& stage, extreme_result& result) 
         pairs.clear();
         stage.search(pairs);
         std::ranges::sort(pairs);
-        add(result, {exact[frame].pairs, pairs}, "frame " + std::to_string(frame));
+        record_difference(result, {exact[frame].pairs, pairs}, "frame " + std::to_string(frame));
     }
 }
 
 /// One frame of the scene and its ground truth.
-struct shown_frame {
+struct judged_frame {
     const mesh_scene& scene;
     const exact_mesh_frame& exact;
     std::string where;  ///< "frame 2"
@@ -63,40 +63,40 @@ void add_classes(const mesh_scene& scene, pair_comparison difference, index_pair
                                              scene.meshes[scene.mesh_of[objects.b]], pose_b);
 }
 
-void judge_all_pairs(const shown_frame& shown, pipeline& both, extreme_result& result) {
-    both.search();
-    both.detect();
-    for (const exact_objects& objects : shown.exact.objects) {
+void judge_all_pairs(const judged_frame& current, pipeline& stages, extreme_result& result) {
+    stages.search();
+    stages.detect();
+    for (const exact_objects& objects : current.exact.objects) {
         std::vector<index_pair> pairs;
-        for (const contact& c : both.contacts())
+        for (const contact& c : stages.contacts())
             if (c.a == objects.a && c.b == objects.b) pairs.push_back({c.triangle_a, c.triangle_b});
         std::ranges::sort(pairs);
         const pair_comparison difference(objects.pairs, pairs);
-        add(result, difference, shown.where);
-        add_classes(shown.scene, difference, {objects.a, objects.b}, shown.exact.poses[objects.a],
-                    shown.exact.poses[objects.b], result);
+        record_difference(result, difference, current.where);
+        add_classes(current.scene, difference, {objects.a, objects.b}, current.exact.poses[objects.a],
+                    current.exact.poses[objects.b], result);
     }
 }
 
 /// Checks the queries that do not list all pairs.
-void judge_queries(const shown_frame& shown, extreme_query asked, const exact_objects& objects, local_stage& stage,
+void judge_queries(const judged_frame& current, extreme_query query, const exact_objects& objects, local_stage& stage,
                    extreme_result& result) {
-    const std::uint32_t a = shown.scene.mesh_of[objects.a];
-    const std::uint32_t b = shown.scene.mesh_of[objects.b];
-    const pose& pose_a = shown.exact.poses[objects.a];
-    const pose& pose_b = shown.exact.poses[objects.b];
-    if (asked != extreme_query::first_pair) {
+    const std::uint32_t a = current.scene.mesh_of[objects.a];
+    const std::uint32_t b = current.scene.mesh_of[objects.b];
+    const pose& pose_a = current.exact.poses[objects.a];
+    const pose& pose_b = current.exact.poses[objects.b];
+    if (query != extreme_query::first_pair) {
         const std::uint64_t count = stage.count_pairs(a, pose_a, b, pose_b);
         if (count != objects.pairs.size())
-            make_wrong(result, shown.where + ": count_pairs returns " + std::to_string(count) + ", but there are " +
+            make_wrong(result, current.where + ": count_pairs returns " + std::to_string(count) + ", but there are " +
                                    std::to_string(objects.pairs.size()));
     }
     const std::optional<index_pair> first = stage.first_pair(a, pose_a, b, pose_b);
-    if (first.has_value() != objects.meet)
-        make_wrong(result, shown.where + (objects.meet ? ": first_pair finds none, but there is one"
-                                                       : ": first_pair finds one, but there is none"));
-    else if (first && !is_true_pair(shown.scene, shown.exact, objects, *first))
-        make_wrong(result, shown.where + ": first_pair finds " + std::to_string(first->a) + " " +
+    if (first.has_value() != objects.intersect)
+        make_wrong(result, current.where + (objects.intersect ? ": first_pair finds none, but there is one"
+                                                              : ": first_pair finds one, but there is none"));
+    else if (first && !is_true_pair(current.scene, current.exact, objects, *first))
+        make_wrong(result, current.where + ": first_pair finds " + std::to_string(first->a) + " " +
                                std::to_string(first->b) + ", which do not intersect");
 }
 
@@ -105,7 +105,7 @@ void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_
     stage.self_pairs(0, pairs);
     std::ranges::sort(pairs);
     const pair_comparison difference(exact.self_pairs, pairs);
-    add(result, difference, "self_pairs");
+    record_difference(result, difference, "self_pairs");
     add_classes(scene, difference, {0, 0}, {}, {}, result);
 }
 
@@ -114,27 +114,27 @@ void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& sta
     // Objects with overlapping boxes are candidates, so that a box that is too small causes false negatives. In invalid
     // scenes all pairs of objects are candidates.
     const std::unique_ptr<global_stage> boxes = make_box_engine("brute_force");
-    std::optional<pipeline> both;
+    std::optional<pipeline> stages;
     if (scene.rejection.empty())
-        both.emplace(*meshes, *boxes, stage);
+        stages.emplace(*meshes, *boxes, stage);
     else
-        both.emplace(*meshes, stage);
+        stages.emplace(*meshes, stage);
     std::vector<pose> poses;
     for (std::size_t frame = 0; meshes->next(poses); ++frame) {
-        both->update(poses);
+        stages->update(poses);
         if (!scene.rejection.empty()) {
             // An error of two poses together is only found when the pair is tested.
-            both->search();
-            both->detect();
-            if (!both->contacts().empty()) make_wrong(result, "finds pairs, but must reject the scene");
+            stages->search();
+            stages->detect();
+            if (!stages->contacts().empty()) make_wrong(result, "finds pairs, but must reject the scene");
             continue;
         }
-        const shown_frame shown{*meshes, exact.frames[frame], "frame " + std::to_string(frame)};
-        if (scene.asked == extreme_query::all_pairs) judge_all_pairs(shown, *both, result);
-        for (const exact_objects& objects : shown.exact.objects)
-            judge_queries(shown, scene.asked, objects, stage, result);
+        const judged_frame current{*meshes, exact.frames[frame], "frame " + std::to_string(frame)};
+        if (scene.query == extreme_query::all_pairs) judge_all_pairs(current, *stages, result);
+        for (const exact_objects& objects : current.exact.objects)
+            judge_queries(current, scene.query, objects, stage, result);
     }
-    if (scene.rejection.empty() && scene.asked == extreme_query::all_pairs && meshes->meshes.size() == 1)
+    if (scene.rejection.empty() && scene.query == extreme_query::all_pairs && meshes->meshes.size() == 1)
         judge_self_pairs(*meshes, exact, stage, result);
 }
 
@@ -190,7 +190,7 @@ void reject_each_query(const extreme_scene& scene, const std::function<std::uniq
 
 /// Runs the work and turns exceptions into a result.
 template <class Work>
-extreme_result judged(const extreme_scene& scene, Work work) {
+extreme_result result_of(const extreme_scene& scene, Work work) {
     extreme_result result;
     try {
         work(result);
@@ -212,11 +212,11 @@ extreme_result judged(const extreme_scene& scene, Work work) {
 extreme_judge::extreme_judge(extreme_scene scene) : scene_(std::move(scene)) {
     // Invalid input has no ground truth; for boxes only the frames are used.
     if (scene_.make_boxes) boxes_ = exact_boxes_of(*scene_.make_boxes());
-    if (scene_.make_meshes && scene_.rejection.empty()) meshes_ = exact_meshes_of(*scene_.make_meshes(), scene_.asked);
+    if (scene_.make_meshes && scene_.rejection.empty()) meshes_ = exact_meshes_of(*scene_.make_meshes(), scene_.query);
 }
 
 extreme_result extreme_judge::judge(const std::function<std::unique_ptr<global_stage>()>& make) const {
-    return judged(scene_, [&](extreme_result& result) {
+    return result_of(scene_, [&](extreme_result& result) {
         if (scene_.computed_in != arithmetic::ieee) return reject_each_query(scene_, make, result);
         const std::unique_ptr<global_stage> stage = make();
         run(boxes_, *stage, result);
@@ -225,7 +225,7 @@ extreme_result extreme_judge::judge(const std::function<std::unique_ptr<global_s
 }
 
 extreme_result extreme_judge::judge(const std::function<std::unique_ptr<local_stage>()>& make) const {
-    return judged(scene_, [&](extreme_result& result) {
+    return result_of(scene_, [&](extreme_result& result) {
         if (scene_.computed_in != arithmetic::ieee) return reject_each_query(scene_, make, result);
         const std::unique_ptr<local_stage> stage = make();
         run(scene_, meshes_, *stage, result);

@@ -127,11 +127,11 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
     extreme_scene against_one = scene_of_meshes(
         "many_against_one", std::to_string(many) + " copies of one triangle, against another",
         [many] { return posed(std::vector{coincident(many), soup_of({crossing_triangle})}, {{{}, {}}}); });
-    against_one.asked = extreme_query::count_pairs;
+    against_one.query = extreme_query::count_pairs;
     extreme_scene against_itself =
         scene_of_meshes("many_against_many", "the same mesh against itself: any one pair",
                         [many] { return posed(coincident(many), {{{}, shifted(0.5, 0.5, 0)}}); });
-    against_itself.asked = extreme_query::first_pair;
+    against_itself.query = extreme_query::first_pair;
     // The largest layout has an internal node of 32 bytes and a leaf of 28 per triangle; the rest is for stacks.
     for (extreme_scene* scene : {&against_one, &against_itself}) scene->most_bytes = std::size_t{many} * 64 + 65'536;
     std::vector<extreme_scene> scenes{

@@ -14,7 +14,7 @@ using rational = kernel::FT;
 using exact_triangle = triangle3<rational>;
 
 template <class Real>
-triangle3<Real> converted(const triangle3f& t) {
+triangle3<Real> converted_to(const triangle3f& t) {
     triangle3<Real> result;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) result[i][k] = Real(double{t[i][k]});
@@ -22,7 +22,7 @@ triangle3<Real> converted(const triangle3f& t) {
 }
 
 /// The triangle in world coordinates, transformed without rounding.
-exact_triangle placed(const triangle3f& t, const pose& p) {
+exact_triangle exactly_transformed(const triangle3f& t, const pose& p) {
     exact_triangle world;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) {
@@ -33,7 +33,7 @@ exact_triangle placed(const triangle3f& t, const pose& p) {
     return world;
 }
 
-bool intersect(const exact_triangle& s, const exact_triangle& t) {
+bool intersect_exactly(const exact_triangle& s, const exact_triangle& t) {
     const auto point = [](const vec3<rational>& p) { return kernel::Point_3(p[0], p[1], p[2]); };
     return hulls_intersect<kernel>({point(s[0]), point(s[1]), point(s[2])}, {point(t[0]), point(t[1]), point(t[2])});
 }
@@ -49,7 +49,7 @@ bool is_zero(const vec3<Real>& v) {
 }
 
 bool has_no_area(const triangle3f& t) {
-    return is_zero(normal_of(converted<rational>(t)));
+    return is_zero(normal_of(converted_to<rational>(t)));
 }
 
 bool are_coplanar(const exact_triangle& s, const exact_triangle& t) {
@@ -72,22 +72,22 @@ std::vector<vec3<Real>> facet_axes(const triangle3<Real>& s, const triangle3<Rea
 
 /// The distance of the projections on an axis, times the axis' length; negative if they overlap.
 template <class Real>
-Real gap(const triangle3<Real>& s, const triangle3<Real>& t, const vec3<Real>& axis) {
-    const Real on_s[3] = {dot(axis, s[0]), dot(axis, s[1]), dot(axis, s[2])};
-    const Real on_t[3] = {dot(axis, t[0]), dot(axis, t[1]), dot(axis, t[2])};
-    const Real t_above = *std::ranges::min_element(on_t) - *std::ranges::max_element(on_s);
-    const Real s_above = *std::ranges::min_element(on_s) - *std::ranges::max_element(on_t);
+Real gap_along(const triangle3<Real>& s, const triangle3<Real>& t, const vec3<Real>& axis) {
+    const Real projections_s[3] = {dot(axis, s[0]), dot(axis, s[1]), dot(axis, s[2])};
+    const Real projections_t[3] = {dot(axis, t[0]), dot(axis, t[1]), dot(axis, t[2])};
+    const Real t_above = *std::ranges::min_element(projections_t) - *std::ranges::max_element(projections_s);
+    const Real s_above = *std::ranges::min_element(projections_s) - *std::ranges::max_element(projections_t);
     return std::max(t_above, s_above);
 }
 
 /// Whether intersecting triangles that are not coplanar touch without crossing.
 bool only_touch(const exact_triangle& s, const exact_triangle& t) {
-    return std::ranges::any_of(facet_axes(s, t), [&](const auto& axis) { return gap(s, t, axis) == 0; });
+    return std::ranges::any_of(facet_axes(s, t), [&](const auto& axis) { return gap_along(s, t, axis) == 0; });
 }
 
 /// The distance of two triangles, or the negative penetration depth: the greatest gap over all directions in which two
 /// of their corners, edges or faces can be closest.
-double separation(const triangle3d& s, const triangle3d& t) {
+double signed_distance(const triangle3d& s, const triangle3d& t) {
     std::vector<vec3d> axes = facet_axes(s, t);
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
@@ -102,32 +102,33 @@ double separation(const triangle3d& s, const triangle3d& t) {
     double greatest = -std::numeric_limits<double>::infinity();
     for (const vec3d& axis : axes)
         if (const double length = std::sqrt(dot(axis, axis)); length > 0)
-            greatest = std::max(greatest, gap(s, t, axis) / length);
+            greatest = std::max(greatest, gap_along(s, t, axis) / length);
     return greatest;
 }
 
 bool are_near(const triangle3f& s, const triangle3f& t) {
-    const box both = merged(bounds_of(s), bounds_of(t));
-    const int axis = longest_axis(both);
-    const double extent = double{both.max[axis]} - double{both.min[axis]};
+    const box bounds = merged(bounds_of(s), bounds_of(t));
+    const int axis = longest_axis(bounds);
+    const double extent = double{bounds.max[axis]} - double{bounds.min[axis]};
     // Relative to a corner, which avoids cancellation far from the origin.
-    triangle3d s_here = converted<double>(s);
-    triangle3d t_here = converted<double>(t);
-    const vec3d origin = s_here[0];
+    triangle3d local_s = converted_to<double>(s);
+    triangle3d local_t = converted_to<double>(t);
+    const vec3d origin = local_s[0];
     for (int i = 0; i < 3; ++i) {
-        s_here[i] = s_here[i] - origin;
-        t_here[i] = t_here[i] - origin;
+        local_s[i] = local_s[i] - origin;
+        local_t[i] = local_t[i] - origin;
     }
-    return std::abs(separation(s_here, t_here)) <= 1e-6 * extent;
+    return std::abs(signed_distance(local_s, local_t)) <= 1e-6 * extent;
 }
 
 /// @param engine_result the engine's result for the two triangles, which differs from the ground truth.
 difference_class class_of_difference(const triangle3f& s, const pose& pose_s, const triangle3f& t, const pose& pose_t,
                                      const triangle3f& t_seen_from_s, bool engine_result) {
     if (has_no_area(s) || has_no_area(t) || has_no_area(t_seen_from_s)) return difference_class::degenerate;
-    if (intersect(placed(s, pose_s), placed(t, pose_t)) == engine_result) return difference_class::pose_rounding;
-    const exact_triangle exact_s = converted<rational>(s);
-    const exact_triangle exact_t = converted<rational>(t_seen_from_s);
+    if (intersect_exactly(exactly_transformed(s, pose_s), exactly_transformed(t, pose_t)) == engine_result)
+        return difference_class::pose_rounding;
+    const exact_triangle exact_s = converted_to<rational>(s);
+    const exact_triangle exact_t = converted_to<rational>(t_seen_from_s);
     if (are_coplanar(exact_s, exact_t)) return difference_class::coplanar;
     if (!engine_result && only_touch(exact_s, exact_t)) return difference_class::touching;
     if (are_near(s, t_seen_from_s)) return difference_class::near;

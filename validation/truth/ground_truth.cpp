@@ -13,8 +13,8 @@ double length_of(const vec3d& v) {
 }  // namespace
 
 ground_truth::ground_truth(std::size_t objects, const mesh_scene* meshes) : meshes_(meshes) {
-    constexpr std::size_t most_for_brute_force = 20000;
-    box_engine_ = objects <= most_for_brute_force ? "brute_force" : "cgal";
+    constexpr std::size_t brute_force_limit = 20000;
+    box_engine_ = objects <= brute_force_limit ? "brute_force" : "cgal";
     boxes_ = make_box_engine(box_engine_);
     if (!meshes) return;
     for (std::uint32_t object = 0; object < objects; ++object) boxes_->insert(object);
@@ -38,18 +38,18 @@ void ground_truth::compute(const scene_frame& frame) {
     boxes_->search(pairs_);
     std::ranges::sort(pairs_);
     if (!triangles_) return;
-    follow_meshes();
+    update_deformed_meshes();
     const std::vector<std::uint32_t>& mesh_of = meshes_->mesh_of;
-    std::vector<index_pair> hits;
-    for (const auto [a, b] : near_objects(frame.poses)) {
-        hits.clear();
-        triangles_->all_pairs(mesh_of[a], frame.poses[a], mesh_of[b], frame.poses[b], hits);
-        for (const auto [s, t] : hits) contacts_.push_back({a, b, s, t});
+    std::vector<index_pair> triangle_pairs;
+    for (const auto [a, b] : overlapping_spheres(frame.poses)) {
+        triangle_pairs.clear();
+        triangles_->all_pairs(mesh_of[a], frame.poses[a], mesh_of[b], frame.poses[b], triangle_pairs);
+        for (const auto [s, t] : triangle_pairs) contacts_.push_back({a, b, s, t});
     }
     std::ranges::sort(contacts_);
 }
 
-void ground_truth::follow_meshes() {
+void ground_truth::update_deformed_meshes() {
     const std::vector<mesh>& meshes = meshes_->meshes;
     for (std::uint32_t m = 0; m < meshes.size(); ++m) {
         if (!meshes_->deforms(m)) continue;
@@ -60,38 +60,40 @@ void ground_truth::follow_meshes() {
 
 ground_truth::sphere ground_truth::sphere_around(const mesh& m) {
     const box bounds = bounds_of(m);
-    sphere around{};
-    for (int k = 0; k < 3; ++k) around.centre[k] = (double{bounds.min[k]} + double{bounds.max[k]}) / 2;
+    sphere bounding{};
+    for (int k = 0; k < 3; ++k) bounding.centre[k] = (double{bounds.min[k]} + double{bounds.max[k]}) / 2;
     double extent = 0;
     for (const vec3f& v : m.vertices) {
         const vec3d p{v[0], v[1], v[2]};
-        around.radius = std::max(around.radius, length_of(p - around.centre));
+        bounding.radius = std::max(bounding.radius, length_of(p - bounding.centre));
         extent = std::max(extent, length_of(p));
     }
     // A generous margin: the effect of rounding and of inexact rotations is less than a 100,000th of the extent.
-    around.radius += 0.01 * extent;
-    return around;
+    bounding.radius += 0.01 * extent;
+    return bounding;
 }
 
-std::vector<index_pair> ground_truth::near_objects(std::span<const pose> poses) const {
-    std::vector<sphere> placed;
+std::vector<index_pair> ground_truth::overlapping_spheres(std::span<const pose> poses) const {
+    std::vector<sphere> world_spheres;
     for (std::size_t object = 0; object < poses.size(); ++object) {
         const pose& p = poses[object];
         const sphere& local = spheres_[meshes_->mesh_of[object]];
         sphere world{p.translation, local.radius + 1e-9 * length_of(p.translation)};
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) world.centre[i] += p.rotation[3 * i + j] * local.centre[j];
-        placed.push_back(world);
+        world_spheres.push_back(world);
     }
-    const auto low = [&](std::uint32_t object) { return placed[object].centre[0] - placed[object].radius; };
-    std::vector<std::uint32_t> by_low(placed.size());
+    const auto low = [&](std::uint32_t object) {
+        return world_spheres[object].centre[0] - world_spheres[object].radius;
+    };
+    std::vector<std::uint32_t> by_low(world_spheres.size());
     std::iota(by_low.begin(), by_low.end(), 0U);
     std::ranges::sort(by_low, {}, low);
     std::vector<index_pair> near;
     for (std::size_t i = 0; i < by_low.size(); ++i) {
-        const sphere& first = placed[by_low[i]];
+        const sphere& first = world_spheres[by_low[i]];
         for (std::size_t j = i + 1; j < by_low.size() && low(by_low[j]) <= first.centre[0] + first.radius; ++j) {
-            const sphere& second = placed[by_low[j]];
+            const sphere& second = world_spheres[by_low[j]];
             if (length_of(first.centre - second.centre) <= first.radius + second.radius)
                 near.push_back(ordered_pair(by_low[i], by_low[j]));
         }

@@ -80,9 +80,9 @@ private:
         double radius;
     };
     [[nodiscard]] static sphere sphere_around(const mesh& m);
-    void follow_meshes();
+    void update_deformed_meshes();
     /// The pairs of objects with overlapping bounding spheres.
-    [[nodiscard]] std::vector<index_pair> near_objects(std::span<const pose> poses) const;
+    [[nodiscard]] std::vector<index_pair> overlapping_spheres(std::span<const pose> poses) const;
 
     const mesh_scene* meshes_;
     std::string box_engine_;

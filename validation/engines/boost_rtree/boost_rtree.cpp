@@ -56,7 +56,7 @@ public:
     }
 
 private:
-    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+    void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         tree_.reset();
         entries_.clear();
         for (const std::uint32_t id : ids) {
@@ -68,7 +68,7 @@ private:
                       index::equal_to<entry>(), counting_allocator<entry>(tree_bytes_));
     }
 
-    void find(std::vector<index_pair>& pairs) override {
+    void find_pairs(std::vector<index_pair>& pairs) override {
         // In the order of the leaves, so that successive queries share cached nodes.
         for (const entry& query : *tree_)
             tree_->query(index::intersects(query.first), boost::make_function_output_iterator([&](const entry& other) {
@@ -86,7 +86,7 @@ private:
 engine boost_rtree_engine() {
     return {.name = "boost_rtree",
             .summary = "Boost.Geometry's R-tree, rebuilt by packing in each frame and queried with each box",
-            .boxes = made<global_stage, boost_rtree>};
+            .boxes = make_stage<global_stage, boost_rtree>};
 }
 
 }  // namespace aabb

@@ -14,7 +14,7 @@ public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"engine", bytes_of(ids_, min_, max_)}}; }
 
 private:
-    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+    void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         ids_.assign(ids.begin(), ids.end());
         for (std::size_t k = 0; k < 3; ++k) {
             min_[k].clear();
@@ -26,7 +26,7 @@ private:
         }
     }
 
-    void find(std::vector<index_pair>& pairs) override {
+    void find_pairs(std::vector<index_pair>& pairs) override {
         std::array<std::uint32_t, 512> hits{};
         for (std::size_t i = 0; i < ids_.size(); ++i)
             for (std::size_t begin = i + 1; begin < ids_.size(); begin += hits.size()) {
@@ -70,7 +70,7 @@ std::vector<index_pair> candidates_by_double_loop(std::span<const box> a, std::s
 engine brute_force_engine() {
     return {.name = "brute_force",
             .summary = "every pair of boxes; every pair of triangles whose boxes overlap, by CGAL's exact kernel",
-            .boxes = made<global_stage, brute_force_boxes>,
+            .boxes = make_stage<global_stage, brute_force_boxes>,
             .meshes = [] { return make_pairwise_engine(candidates_by_double_loop, exactly_intersect); }};
 }
 

@@ -25,7 +25,7 @@ public:
     }
 
 private:
-    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+    void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         drop_absent(leaves_, [&](btDbvtNode* leaf) { tree_.remove(leaf); });
         boxes_.assign(boxes.begin(), boxes.end());
         if (leaves_.size() < boxes.size()) leaves_.resize(boxes.size());
@@ -54,7 +54,7 @@ private:
         return static_cast<btScalar>(std::min(margin, double{std::numeric_limits<float>::max()}));
     }
 
-    void find(std::vector<index_pair>& pairs) override {
+    void find_pairs(std::vector<index_pair>& pairs) override {
         struct collector final : btDbvt::ICollide {
             collector(const std::vector<box>& tested, std::vector<index_pair>& to) : boxes(tested), pairs(to) {}
             using btDbvt::ICollide::Process;
@@ -80,7 +80,7 @@ private:
 engine bullet_dbvt_engine() {
     return {.name = "bullet_dbvt",
             .summary = "Bullet's dynamic tree of boxes, collided with itself",
-            .boxes = made<global_stage, bullet_dbvt>};
+            .boxes = make_stage<global_stage, bullet_dbvt>};
 }
 
 }  // namespace aabb

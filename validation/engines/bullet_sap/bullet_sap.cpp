@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+    void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         boxes_.assign(boxes.begin(), boxes.end());
         box bounds = empty_box();
         for (const std::uint32_t id : ids) bounds = merged(bounds, clamped(boxes[id]));
@@ -81,7 +81,7 @@ private:
         }
     }
 
-    void find(std::vector<index_pair>& pairs) override {
+    void find_pairs(std::vector<index_pair>& pairs) override {
         if (!sweep_) return;
         btOverlappingPairCache& cache = *sweep_->getOverlappingPairCache();
         const auto count = static_cast<std::size_t>(cache.getNumOverlappingPairs());
@@ -108,7 +108,7 @@ private:
 engine bullet_sap_engine() {
     return {.name = "bullet_sap",
             .summary = "Bullet's incremental sweep on three axes; quadratic in the first frame and with much motion",
-            .boxes = made<global_stage, bullet_sap>};
+            .boxes = make_stage<global_stage, bullet_sap>};
 }
 
 }  // namespace aabb

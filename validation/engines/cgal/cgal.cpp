@@ -19,12 +19,12 @@ public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"engine", bytes_of(boxes_)}}; }
 
 private:
-    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+    void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         boxes_.clear();
         for (const std::uint32_t id : ids) boxes_.push_back({boxes[id], id});
     }
 
-    void find(std::vector<index_pair>& pairs) override {
+    void find_pairs(std::vector<index_pair>& pairs) override {
         const auto collect = [&](const numbered_box& a, const numbered_box& b) {
             pairs.push_back(ordered_pair(static_cast<std::uint32_t>(a.number), static_cast<std::uint32_t>(b.number)));
         };
@@ -42,7 +42,7 @@ private:
 engine cgal_engine() {
     return {.name = "cgal",
             .summary = "CGAL's intersection of box sequences, and its exact kernel for triangles",
-            .boxes = made<global_stage, cgal_boxes>,
+            .boxes = make_stage<global_stage, cgal_boxes>,
             .meshes = [] { return make_pairwise_engine(candidates_by_cgal, exactly_intersect); },
             .triangles = cgal_tests()};
 }

@@ -64,7 +64,7 @@ struct tree_model : engine_model {
 
 /// Queries a tree of A's triangles with the triangles of B, transformed into A's frame.
 class cgal_tree final : public model_engine<tree_model> {
-    void follow(tree_model& changed) override {
+    void update_model(tree_model& changed) override {
         changed.triangles.clear();
         changed.triangles.reserve(changed.count);
         for (std::uint32_t t = 0; t < changed.count; ++t)
@@ -72,7 +72,7 @@ class cgal_tree final : public model_engine<tree_model> {
         changed.tree.rebuild(changed.triangles.cbegin(), changed.triangles.cend());
     }
 
-    [[nodiscard]] std::optional<index_pair> any_pair(const asked& q) override {
+    [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         const mesh& b = *q.b.source;
         const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
@@ -81,15 +81,15 @@ class cgal_tree final : public model_engine<tree_model> {
         return std::nullopt;
     }
 
-    void append_pairs(const asked& q, std::vector<index_pair>& pairs) override {
+    void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         const mesh& b = *q.b.source;
         // Transforms each vertex once, since triangles share vertices.
-        const std::vector<vec3f> moved = moved_vertices(q.pose_a, q.pose_b, b, q.b.bounds);
+        const std::vector<vec3f> transformed = transformed_vertices(q.pose_a, q.pose_b, b, q.b.bounds);
         std::vector<kernel_triangles::const_iterator> hits;
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
             const auto& [i, j, k] = b.triangles[t];
             hits.clear();
-            q.a.tree.all_intersected_primitives(query_triangle({moved[i], moved[j], moved[k]}),
+            q.a.tree.all_intersected_primitives(query_triangle({transformed[i], transformed[j], transformed[k]}),
                                                 std::back_inserter(hits));
             for (const auto hit : hits) pairs.push_back({q.a.number_of(hit), t});
         }
@@ -101,7 +101,7 @@ class cgal_tree final : public model_engine<tree_model> {
 engine cgal_tree_engine() {
     return {.name = "cgal_tree",
             .summary = "CGAL's AABB tree of the first mesh, queried with each triangle of the second; its exact kernel",
-            .meshes = made<local_stage, cgal_tree>};
+            .meshes = make_stage<local_stage, cgal_tree>};
 }
 
 }  // namespace aabb

@@ -31,30 +31,30 @@ inline void require_success(RTCDevice device) {
 }
 
 /// The account to which Embree's allocations are charged; null if they are not counted.
-inline thread_local std::ptrdiff_t* charged = nullptr;
+inline thread_local std::ptrdiff_t* charged_account = nullptr;
 
 class charge_to {
 public:
-    explicit charge_to(std::ptrdiff_t& account) { charged = &account; }
+    explicit charge_to(std::ptrdiff_t& account) { charged_account = &account; }
     charge_to(const charge_to&) = delete;
     charge_to& operator=(const charge_to&) = delete;
-    ~charge_to() { charged = nullptr; }
+    ~charge_to() { charged_account = nullptr; }
 };
 
 /// The only device of the process, which is never released. Releasing the last device would reset Embree's limit of one
 /// thread, and a second thread would disturb later timings.
-inline RTCDevice the_device() {
-    static const RTCDevice the_only = [] {
+inline RTCDevice embree_device() {
+    static const RTCDevice only_device = [] {
         const RTCDevice device = rtcNewDevice("threads=1");
         require_success(device);
-        const auto note = [](void*, std::ptrdiff_t bytes, bool) {
-            if (charged) *charged += bytes;
+        const auto count_bytes = [](void*, std::ptrdiff_t bytes, bool) {
+            if (charged_account) *charged_account += bytes;
             return true;
         };
-        rtcSetDeviceMemoryMonitorFunction(device, note, nullptr);
+        rtcSetDeviceMemoryMonitorFunction(device, count_bytes, nullptr);
         return device;
     }();
-    return the_only;
+    return only_device;
 }
 
 /// A scene with a single geometry of user-defined boxes.
@@ -66,12 +66,12 @@ struct user_scene {
     /// @param bounds returns the bounds of a box
     void begin(RTCBuildQuality quality, bool is_dynamic, RTCBoundsFunction bounds) {
         scene.reset();
-        geometry.reset(rtcNewGeometry(the_device(), RTC_GEOMETRY_TYPE_USER));
-        require_success(the_device());
+        geometry.reset(rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_USER));
+        require_success(embree_device());
         rtcSetGeometryBuildQuality(geometry.get(), quality);
         rtcSetGeometryBoundsFunction(geometry.get(), bounds, nullptr);
-        scene.reset(rtcNewScene(the_device()));
-        require_success(the_device());
+        scene.reset(rtcNewScene(embree_device()));
+        require_success(embree_device());
         // Embree respects the quality of a geometry only in low-quality scenes, and refits only in dynamic scenes.
         rtcSetSceneBuildQuality(scene.get(), quality == RTC_BUILD_QUALITY_REFIT ? RTC_BUILD_QUALITY_LOW : quality);
         if (is_dynamic) rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_DYNAMIC);
@@ -84,26 +84,26 @@ struct user_scene {
         rtcSetGeometryUserData(geometry.get(), data);
         rtcCommitGeometry(geometry.get());
         rtcCommitScene(scene.get());
-        require_success(the_device());
+        require_success(embree_device());
     }
 };
 
 /// Embree builds with flushed denormals and ignores boxes beyond 1.844e18. Clamping to its range preserves the order of
 /// coordinates, though not strictly, so that there are no false negatives.
-inline float workable(float x) {
+inline float clamped_to_embree(float x) {
     constexpr float most = 1e18F;
     return std::abs(x) < std::numeric_limits<float>::min() ? 0 : std::clamp(x, -most, most);
 }
 
 template <class Box>
-RTCBounds workable(const Box& b) {
+RTCBounds clamped_to_embree(const Box& b) {
     RTCBounds bounds{};
-    bounds.lower_x = workable(b.min[0]);
-    bounds.lower_y = workable(b.min[1]);
-    bounds.lower_z = workable(b.min[2]);
-    bounds.upper_x = workable(b.max[0]);
-    bounds.upper_y = workable(b.max[1]);
-    bounds.upper_z = workable(b.max[2]);
+    bounds.lower_x = clamped_to_embree(b.min[0]);
+    bounds.lower_y = clamped_to_embree(b.min[1]);
+    bounds.lower_z = clamped_to_embree(b.min[2]);
+    bounds.upper_x = clamped_to_embree(b.max[0]);
+    bounds.upper_y = clamped_to_embree(b.max[1]);
+    bounds.upper_z = clamped_to_embree(b.max[2]);
     return bounds;
 }
 

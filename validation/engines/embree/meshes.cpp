@@ -24,8 +24,8 @@ public:
     triangle_scene(const triangle_scene&) = delete;
     triangle_scene& operator=(const triangle_scene&) = delete;
     ~triangle_scene() {
-        if (!held_) return;  // moved away, or never built
-        const charge_to here(*held_);
+        if (!embree_bytes_) return;  // moved away, or never built
+        const charge_to charging(*embree_bytes_);
         scene_ = user_scene();
     }
 
@@ -33,18 +33,18 @@ public:
     /// @param m always the same mesh
     /// @param held the account of Embree's allocations; always the same
     void build(RTCBuildQuality quality, const mesh& m, std::span<const vec3f> vertices,
-               const std::shared_ptr<std::ptrdiff_t>& held) {
-        held_ = held;
+               const std::shared_ptr<std::ptrdiff_t>& embree_bytes) {
+        embree_bytes_ = embree_bytes;
         triangles_.clear();
         triangles_.reserve(m.triangles.size());
         for (const auto& t : m.triangles) triangles_.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]]});
         // With low quality, Embree fails an assertion if so few boxes are all the same point.
         if (triangles_.size() <= 4) quality = RTC_BUILD_QUALITY_MEDIUM;
-        const charge_to here(*held_);
+        const charge_to charging(*embree_bytes_);
         const bool refits = quality == RTC_BUILD_QUALITY_REFIT;
         const auto bounds_of_one = [](const RTCBoundsFunctionArguments* request) {
             const auto* triangles = static_cast<const triangle3f*>(request->geometryUserPtr);
-            *request->bounds_o = workable(bounds_of(triangles[request->primID]));
+            *request->bounds_o = clamped_to_embree(bounds_of(triangles[request->primID]));
         };
         if (!refits || built_ != quality) scene_.begin(quality, refits, bounds_of_one);
         built_.reset();  // so that a failed build is not refitted
@@ -52,24 +52,24 @@ public:
         built_ = quality;
     }
 
-    [[nodiscard]] bool is_new() const { return !held_; }
+    [[nodiscard]] bool is_new() const { return !embree_bytes_; }
     [[nodiscard]] std::span<const triangle3f> triangles() const { return triangles_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_of(triangles_); }
     [[nodiscard]] RTCScene get() const { return scene_.scene.get(); }
 
 private:
-    std::shared_ptr<std::ptrdiff_t> held_;
+    std::shared_ptr<std::ptrdiff_t> embree_bytes_;
     std::optional<RTCBuildQuality> built_;
     std::vector<triangle3f> triangles_;
     user_scene scene_;
 };
 
 struct embree_model : engine_model {
-    triangle_scene still{};
-    triangle_scene moved{};  ///< in the frame of another model
-    posed_pair poses{};      ///< of that model and this one
+    triangle_scene local{};
+    triangle_scene transformed{};  ///< in the frame of another model
+    posed_pair poses{};            ///< of that model and this one
 
-    [[nodiscard]] std::size_t bytes() const { return bytes_of(still, moved); }
+    [[nodiscard]] std::size_t bytes() const { return bytes_of(local, transformed); }
 };
 
 /// Embree has no poses: for each new pose, the second mesh is transformed and its scene rebuilt or refitted.
@@ -79,52 +79,53 @@ public:
 
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::vector<part_bytes> parts = model_engine::bytes();
-        parts[0].bytes += static_cast<std::size_t>(*held_);
+        parts[0].bytes += static_cast<std::size_t>(*embree_bytes_);
         return parts;
     }
 
 private:
-    void follow(embree_model& changed) override {
+    void update_model(embree_model& changed) override {
         changed.poses.forget();
         // Most meshes never deform, so that only transformed meshes start with a refittable scene.
-        const bool is_first = changed.still.is_new() && quality_ == RTC_BUILD_QUALITY_REFIT;
-        changed.still.build(is_first ? RTC_BUILD_QUALITY_MEDIUM : quality_, *changed.source, changed.source->vertices,
-                            held_);
+        const bool is_first = changed.local.is_new() && quality_ == RTC_BUILD_QUALITY_REFIT;
+        changed.local.build(is_first ? RTC_BUILD_QUALITY_MEDIUM : quality_, *changed.source, changed.source->vertices,
+                            embree_bytes_);
     }
 
-    [[nodiscard]] std::optional<index_pair> any_pair(const asked& q) override {
+    [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         std::vector<index_pair> pairs;
         append_pairs(q, pairs);
         if (pairs.empty()) return std::nullopt;
         return pairs.front();
     }
 
-    void append_pairs(const asked& q, std::vector<index_pair>& pairs) override {
+    void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
-            q.b.moved.build(quality_, *q.b.source, moved_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds), held_);
+            q.b.transformed.build(quality_, *q.b.source,
+                                  transformed_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds), embree_bytes_);
         });
         const std::size_t known = pairs.size();
-        finding collected{pairs};
-        rtcCollide(q.a.still.get(), q.b.moved.get(), collect, &collected);
-        require_success(the_device());
-        collected.require_all();
+        pair_collector collected{pairs};
+        rtcCollide(q.a.local.get(), q.b.transformed.get(), collect, &collected);
+        require_success(embree_device());
+        collected.require_memory();
         // Tested only after the search, during which Embree may flush denormals.
         const devillers_guigue_triangle test;
-        const std::span<const triangle3f> of_a = q.a.still.triangles();
-        const std::span<const triangle3f> of_b = q.b.moved.triangles();
+        const std::span<const triangle3f> of_a = q.a.local.triangles();
+        const std::span<const triangle3f> of_b = q.b.transformed.triangles();
         collected.drop(known, [&](index_pair p) { return !test.intersects(of_a[p.a], of_b[p.b]); });
     }
 
     static void collect(void* to, RTCCollision* collisions, unsigned count) {
-        finding& collected = *static_cast<finding*>(to);
-        collected.note([&] {
+        pair_collector& collected = *static_cast<pair_collector*>(to);
+        collected.append_safely([&] {
             for (const RTCCollision& c : std::span(collisions, count))
                 collected.pairs.push_back({c.primID0, c.primID1});
         });
     }
 
     RTCBuildQuality quality_;
-    std::shared_ptr<std::ptrdiff_t> held_ = std::make_unique<std::ptrdiff_t>(0);  // bytes that Embree holds
+    std::shared_ptr<std::ptrdiff_t> embree_bytes_ = std::make_unique<std::ptrdiff_t>(0);  // bytes that Embree holds
 };
 
 }  // namespace
@@ -135,21 +136,21 @@ engine embree_meshes_engine() {
                 "Embree's collision of two scenes of medium quality, rebuilt for each new pose, with "
                 "Devillers and Guigue's test in double",
             .exact = false,
-            .meshes = made<local_stage, embree_meshes, RTC_BUILD_QUALITY_MEDIUM>};
+            .meshes = make_stage<local_stage, embree_meshes, RTC_BUILD_QUALITY_MEDIUM>};
 }
 
 engine embree_meshes_low_engine() {
     return {.name = "embree_meshes_low",
             .summary = "as embree_meshes, with scenes of low quality, which are built faster",
             .exact = false,
-            .meshes = made<local_stage, embree_meshes, RTC_BUILD_QUALITY_LOW>};
+            .meshes = make_stage<local_stage, embree_meshes, RTC_BUILD_QUALITY_LOW>};
 }
 
 engine embree_meshes_refit_engine() {
     return {.name = "embree_meshes_refit",
             .summary = "as embree_meshes, with scenes that are refitted for each new pose and when vertices move",
             .exact = false,
-            .meshes = made<local_stage, embree_meshes, RTC_BUILD_QUALITY_REFIT>};
+            .meshes = make_stage<local_stage, embree_meshes, RTC_BUILD_QUALITY_REFIT>};
 }
 
 }  // namespace aabb

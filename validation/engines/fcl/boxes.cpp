@@ -39,7 +39,7 @@ public:
     }
 
 private:
-    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
+    void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         drop_absent(objects_, [&](const auto& object) { manager_.unregisterObject(object.get()); });
         if (!ids.empty() && objects_.size() <= ids.back()) objects_.resize(std::size_t{ids.back()} + 1);
         std::vector<fcl::CollisionObjectd*> arrivals;
@@ -54,7 +54,7 @@ private:
         manager_.update();
     }
 
-    void find(std::vector<index_pair>& pairs) override {
+    void find_pairs(std::vector<index_pair>& pairs) override {
         manager_.collide(&pairs, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* to) {
             static_cast<std::vector<index_pair>*>(to)->push_back(
                 ordered_pair(static_cast<fcl_object*>(a)->id(), static_cast<fcl_object*>(b)->id()));
@@ -75,7 +75,7 @@ engine fcl_engine() {
     return {.name = "fcl",
             .summary = "FCL's dynamic AABB tree for boxes, and its trees of oriented boxes in double for meshes",
             .exact = false,
-            .boxes = made<global_stage, fcl_boxes>,
+            .boxes = make_stage<global_stage, fcl_boxes>,
             .meshes = make_fcl_meshes};
 }
 

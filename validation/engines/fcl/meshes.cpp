@@ -21,7 +21,7 @@ public:
     void build(const mesh& m, std::span<const vec3f> vertices) {
         // Removed during the refit: after a failure, FCL would continue it and write beyond the vertices.
         std::unique_ptr<tree> built = std::move(tree_);
-        if (built && is_of(*built, m)) {
+        if (built && has_same_triangles(*built, m)) {
             require_done(built->beginReplaceModel());
             for (const vec3f& v : vertices) require_done(built->replaceVertex(in_double(v)));
             require_done(built->endReplaceModel(true, true));
@@ -51,7 +51,7 @@ private:
     using tree = fcl::BVHModel<Volume>;
 
     /// Whether the tree has the same triangles as the mesh, which FCL does not check in a refit.
-    [[nodiscard]] static bool is_of(const tree& built, const mesh& m) {
+    [[nodiscard]] static bool has_same_triangles(const tree& built, const mesh& m) {
         const auto same = [](const fcl::Triangle& indices, const std::array<std::uint32_t, 3>& t) {
             return indices[0] == t[0] && indices[1] == t[1] && indices[2] == t[2];
         };
@@ -72,11 +72,11 @@ private:
 
 template <class Volume>
 struct fcl_model : engine_model {
-    fcl_tree<Volume> still{};
-    fcl_tree<Volume> moved{};  ///< in the frame of another model, for trees without poses
-    posed_pair poses{};        ///< of that model and this one
+    fcl_tree<Volume> local{};
+    fcl_tree<Volume> transformed{};  ///< in the frame of another model, for trees without poses
+    posed_pair poses{};              ///< of that model and this one
 
-    [[nodiscard]] std::size_t bytes() const { return bytes_of(still, moved); }
+    [[nodiscard]] std::size_t bytes() const { return bytes_of(local, transformed); }
 };
 
 /// The common part of both engines.
@@ -84,25 +84,26 @@ template <class Volume>
 class fcl_meshes : public model_engine<fcl_model<Volume>> {
 protected:
     using model = fcl_model<Volume>;
-    using asked = typename model_engine<model>::asked;
+    using model_query = typename model_engine<model>::model_query;
 
     /// Adds the intersecting pairs to the result.
-    virtual void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) = 0;
+    virtual void collide(const model_query& q, const fcl::CollisionRequestd& request,
+                         fcl::CollisionResultd& result) = 0;
 
 private:
-    void follow(model& changed) final {
+    void update_model(model& changed) final {
         changed.poses.forget();
-        changed.still.build(*changed.source, changed.source->vertices);
+        changed.local.build(*changed.source, changed.source->vertices);
     }
 
-    [[nodiscard]] std::optional<index_pair> any_pair(const asked& q) final {
-        const fcl::CollisionResultd result = collision(q, 1);
+    [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) final {
+        const fcl::CollisionResultd result = collide_up_to(q, 1);
         if (!result.isCollision()) return std::nullopt;
         return pair_of(result.getContact(0));
     }
 
-    void append_pairs(const asked& q, std::vector<index_pair>& pairs) final {
-        const fcl::CollisionResultd result = collision(q, std::numeric_limits<std::size_t>::max());
+    void append_pairs(const model_query& q, std::vector<index_pair>& pairs) final {
+        const fcl::CollisionResultd result = collide_up_to(q, std::numeric_limits<std::size_t>::max());
         for (std::size_t i = 0; i < result.numContacts(); ++i) pairs.push_back(pair_of(result.getContact(i)));
     }
 
@@ -111,7 +112,7 @@ private:
     }
 
     /// Contact points are disabled, so that each pair of triangles is reported once.
-    [[nodiscard]] fcl::CollisionResultd collision(const asked& q, std::size_t most) {
+    [[nodiscard]] fcl::CollisionResultd collide_up_to(const model_query& q, std::size_t most) {
         fcl::CollisionRequestd request;
         request.num_max_contacts = most;
         request.enable_contact = false;
@@ -123,8 +124,8 @@ private:
 
 /// Oriented boxes. FCL uses the raw poses, so that no vertex is rounded to float.
 class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
-    void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
-        fcl::collide(&q.a.still.get(), transform(q.pose_a), &q.b.still.get(), transform(q.pose_b), request, result);
+    void collide(const model_query& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
+        fcl::collide(&q.a.local.get(), transform(q.pose_a), &q.b.local.get(), transform(q.pose_b), request, result);
     }
 
     [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
@@ -140,13 +141,13 @@ class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
 /// Axis-aligned boxes, which need both trees in one frame. FCL's own call would copy and rebuild them in each query, so
 /// that this engine calls its parts: B's tree is refitted for each new pose and cached until the pose changes.
 class fcl_axis_aligned final : public fcl_meshes<fcl::AABBd> {
-    void collide(const asked& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
+    void collide(const model_query& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
-            q.b.moved.build(*q.b.source, moved_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds));
+            q.b.transformed.build(*q.b.source, transformed_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds));
         });
-        fcl::Transform3d still = fcl::Transform3d::Identity();
+        fcl::Transform3d identity = fcl::Transform3d::Identity();
         fcl::detail::MeshCollisionTraversalNode<fcl::AABBd> node;
-        fcl::detail::initialize(node, q.a.still.get(), still, q.b.moved.get(), still, request, result);
+        fcl::detail::initialize(node, q.a.local.get(), identity, q.b.transformed.get(), identity, request, result);
         fcl::detail::collide(&node);
     }
 };
@@ -163,7 +164,7 @@ engine fcl_aabb_engine() {
                 "FCL's trees of axis-aligned boxes, the second mesh's refitted for each new pose, with vertices "
                 "rounded to float in the first one's frame",
             .exact = false,
-            .meshes = made<local_stage, fcl_axis_aligned>};
+            .meshes = make_stage<local_stage, fcl_axis_aligned>};
 }
 
 }  // namespace aabb

@@ -52,7 +52,7 @@ struct ccd_triangle {
 };
 
 /// Without a limit both algorithms may cycle on flat Minkowski differences; a test takes about ten iterations.
-constexpr std::uint32_t enough_iterations = 1000;
+constexpr std::uint32_t default_iterations = 1000;
 
 [[nodiscard]] ccd_t settings_for(std::uint32_t iterations) {
     ccd_t ccd;
@@ -73,7 +73,7 @@ public:
     static constexpr bool exact = false;
 
     struct config {
-        std::uint32_t iterations = enough_iterations;
+        std::uint32_t iterations = default_iterations;
     };
     static constexpr std::tuple parameters{integer_parameter{"iterations", &config::iterations, 1U, 1000000U,
                                                              "after which the triangles count as disjoint"}};
@@ -100,7 +100,7 @@ public:
 
     struct config {
         double tolerance = 1e-4;  ///< libccd's default
-        std::uint32_t iterations = enough_iterations;
+        std::uint32_t iterations = default_iterations;
     };
     static constexpr std::tuple parameters{
         number_parameter{"tolerance", &config::tolerance, 0.0, 1e6, "by which a portal must still move to be refined"},

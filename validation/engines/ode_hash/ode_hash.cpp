@@ -11,13 +11,13 @@ namespace aabb {
 namespace {
 
 /// A box in ODE's layout: the lower and the upper end for each axis.
-struct numbered {
+struct ode_box {
     std::array<dReal, 6> ends;
     std::uint32_t id;
 };
 
-numbered& data_of(dGeomID geom) {
-    return *static_cast<numbered*>(dGeomGetClassData(geom));
+ode_box& data_of(dGeomID geom) {
+    return *static_cast<ode_box*>(dGeomGetClassData(geom));
 }
 
 /// A geometry class that keeps our exact boxes: for its own classes, ODE would compute boxes with rounding. ODE
@@ -26,7 +26,7 @@ int class_of_boxes() {
     static const int box_class = [] {
         if (!dInitODE2(0) || !dAllocateODEDataForThread(dAllocateMaskAll)) throw std::bad_alloc();
         dGeomClass boxes{};
-        boxes.bytes = sizeof(numbered);
+        boxes.bytes = sizeof(ode_box);
         boxes.collider = [](int) -> dColliderFn* { return nullptr; };
         boxes.aabb = [](dGeomID geom, dReal* ends) { std::ranges::copy(data_of(geom).ends, ends); };
         return dCreateGeomClass(&boxes);
@@ -48,19 +48,19 @@ public:
 
     /// Counts position, rotation, box and our data, but not ODE's other members, whose size is not public.
     [[nodiscard]] std::vector<part_bytes> bytes() const final {
-        constexpr std::size_t per_box = sizeof(dVector3) + sizeof(dMatrix3) + 6 * sizeof(dReal) + sizeof(numbered);
+        constexpr std::size_t per_box = sizeof(dVector3) + sizeof(dMatrix3) + 6 * sizeof(dReal) + sizeof(ode_box);
         const std::size_t boxes = space_ ? static_cast<std::size_t>(dSpaceGetNumGeoms(space_.get())) : 0;
         return {{"engine", bytes_of(boxes_, geoms_) + boxes * per_box}};
     }
 
 protected:
     /// Makes an empty space for boxes like these.
-    [[nodiscard]] virtual space_handle make_space(std::span<const numbered> boxes) const = 0;
+    [[nodiscard]] virtual space_handle make_space(std::span<const ode_box> boxes) const = 0;
     /// Called before each search.
-    virtual void prepare(dSpaceID space, std::span<const numbered> boxes) const = 0;
+    virtual void prepare(dSpaceID space, std::span<const ode_box> boxes) const = 0;
 
 private:
-    void take(std::span<const box> boxes, std::span<const std::uint32_t> ids) final {
+    void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) final {
         boxes_.clear();
         for (const std::uint32_t id : ids) {
             const box& b = boxes[id];
@@ -80,7 +80,7 @@ private:
             dSpaceSetCleanup(space_.get(), 0);
         }
         if (geoms_.size() <= boxes_.back().id) geoms_.resize(std::size_t{boxes_.back().id} + 1);
-        for (const numbered& entry : boxes_) {
+        for (const ode_box& entry : boxes_) {
             auto& geom = geoms_[entry.id];
             if (!geom) {
                 geom.reset(dCreateGeom(class_of_boxes()));
@@ -93,28 +93,28 @@ private:
         prepare(space_.get(), boxes_);
     }
 
-    void find(std::vector<index_pair>& pairs) final {
+    void find_pairs(std::vector<index_pair>& pairs) final {
         if (!space_) fill();
         if (boxes_.size() < 2) return;
-        finding collected{pairs};
+        pair_collector collected{pairs};
         try {
             dSpaceCollide(space_.get(), &collected, collect);
         } catch (...) {
-            abandon();
+            leak_locked_space();
             throw;
         }
-        collected.require_all();
+        collected.require_memory();
     }
 
     /// Must not throw, since ODE would stay locked.
     static void collect(void* to, dGeomID a, dGeomID b) {
-        finding& collected = *static_cast<finding*>(to);
-        collected.note([&] { collected.pairs.push_back(ordered_pair(data_of(a).id, data_of(b).id)); });
+        pair_collector& collected = *static_cast<pair_collector*>(to);
+        collected.append_safely([&] { collected.pairs.push_back(ordered_pair(data_of(a).id, data_of(b).id)); });
     }
 
     /// A space that runs out of memory in a search stays locked, and ODE aborts the process on any further access to it
     /// or its objects. So they are leaked, and the next search creates new ones.
-    void abandon() {
+    void leak_locked_space() {
         // NOLINTBEGIN(bugprone-unused-return-value)
         for (auto& geom : geoms_) (void)geom.release();
         (void)space_.release();
@@ -122,7 +122,7 @@ private:
     }
 
     dReal unit_;
-    std::vector<numbered> boxes_;
+    std::vector<ode_box> boxes_;
     space_handle space_;
     std::vector<std::unique_ptr<dxGeom, release>> geoms_;  // by id, null if absent; destroyed before the space
 };
@@ -135,12 +135,12 @@ public:
     ode_hash() : ode_boxes(dReal{0x1p-160}) {}
 
 private:
-    [[nodiscard]] space_handle make_space(std::span<const numbered>) const override {
+    [[nodiscard]] space_handle make_space(std::span<const ode_box>) const override {
         return space_handle(dHashSpaceCreate(nullptr));
     }
 
     /// Cell sizes from the smallest to the largest object, limited so that cell indices fit into an int.
-    void prepare(dSpaceID space, std::span<const numbered> boxes) const override {
+    void prepare(dSpaceID space, std::span<const ode_box> boxes) const override {
         constexpr std::size_t most = (std::size_t{1} << 17) - 1;
         if (boxes.size() > most)
             throw input_error("ode_hash takes at most " + std::to_string(most) + " objects, but there are " +
@@ -170,12 +170,12 @@ public:
 
 private:
     /// Sweeps along the axis with the largest extent of the scene.
-    [[nodiscard]] space_handle make_space(std::span<const numbered> boxes) const override {
+    [[nodiscard]] space_handle make_space(std::span<const ode_box> boxes) const override {
         std::array<dReal, 3> extents{};
         std::array<int, 3> axes{};
         for (int k = 0; k < 3; ++k) {
             const std::size_t low = 2 * static_cast<std::size_t>(k);
-            const auto lower_end = [&](const numbered& entry) { return entry.ends[low]; };
+            const auto lower_end = [&](const ode_box& entry) { return entry.ends[low]; };
             const auto [first, last] = std::ranges::minmax_element(boxes, {}, lower_end);
             extents[static_cast<std::size_t>(k)] = lower_end(*last) - lower_end(*first);
             axes[static_cast<std::size_t>(k)] = k;
@@ -185,7 +185,7 @@ private:
         return space_handle(dSweepAndPruneSpaceCreate(nullptr, axes[0] | axes[1] << 2 | axes[2] << 4));
     }
 
-    void prepare(dSpaceID, std::span<const numbered>) const override {}
+    void prepare(dSpaceID, std::span<const ode_box>) const override {}
 };
 
 }  // namespace
@@ -193,13 +193,13 @@ private:
 engine ode_hash_engine() {
     return {.name = "ode_hash",
             .summary = "ODE's hashed grid with cells of several sizes; a bit per pair limits it to 131,071 boxes",
-            .boxes = made<global_stage, ode_hash>};
+            .boxes = make_stage<global_stage, ode_hash>};
 }
 
 engine ode_sap_engine() {
     return {.name = "ode_sap",
             .summary = "ODE's sweep along one axis, radix-sorted in each frame",
-            .boxes = made<global_stage, ode_sap>};
+            .boxes = make_stage<global_stage, ode_sap>};
 }
 
 }  // namespace aabb
