@@ -17,6 +17,7 @@ bool limit_changes_cut(const condition& c, const std::string& segments) {
 
 }  // namespace
 
+/// Claim C10: with the limit against without it, for each number and size of huge boxes.
 draft c10_claim(const measurements& m) {
     draft c10{
         {.claim = "Cutting a box more than once on an axis is not worth its cost",
@@ -28,9 +29,9 @@ draft c10_claim(const measurements& m) {
             if (!limit_changes_cut(c, segments)) continue;
             const std::string subject = value_of(c.of(), "span").empty() ? "with at most one cut per box on mixed sizes"
                                                                          : "with at most one cut of huge boxes";
-            c10.add(with_subject(endpoint_of(c, with_limit("on", segments), with_limit("off", segments), "frame_cpu_ms",
-                                             {{"segments", segments}}),
-                                 subject + (segments == "auto" ? "" : " and 32 segments")));
+            c10.add(endpoint_of(c, with_limit("on", segments), with_limit("off", segments), "frame_cpu_ms",
+                                {{"segments", segments}}),
+                    subject + (segments == "auto" ? "" : " and 32 segments"));
         }
     figure& f = c10.claim.figures.emplace_back(log_log(
         "c10",
@@ -38,8 +39,7 @@ draft c10_claim(const measurements& m) {
         "with the automatic number of segments, against the number of huge objects, by their edge over the side "
         "of the world; 95 % intervals.",
         "huge objects", "time with the limit over that without"));
-    f.lines = lines_by_span(c10.endpoints, {{"segments", "auto"}});
-    f.lines.push_back(level_of("any number of cuts"));
+    f.lines = lines_by_span(c10.endpoints, {{"segments", "auto"}}, "any number of cuts");
     return c10;
 }
 

@@ -23,6 +23,7 @@ endpoint cost_ratio(const condition& large, const condition& small, const std::s
 
 }  // namespace
 
+/// Claim C13: the cost per box at each value of a factor against that at its least value.
 draft c13_claim(const measurements& m) {
     // Allocations grow in steps, so that ratios of bytes are less precise and only secondary.
     draft c13{{.claim = "Sorted and cut lists take time and memory in proportion to N, over tenfold ranges of sizes, "
@@ -48,7 +49,7 @@ draft c13_claim(const measurements& m) {
             std::ranges::min_element(conditions, {}, [&](const condition& c) { return number_of(c.of(), factor); });
         for (const quantity what : {quantity::time, quantity::bytes})
             for (const condition& c : conditions)
-                if (&c != &*least) c13.add(with_subject(cost_ratio(c, *least, factor, what), subject, factor, what));
+                if (&c != &*least) c13.add(cost_ratio(c, *least, factor, what), subject, factor, what);
     }
     figure& f = c13.claim.figures.emplace_back(
         log_log("c13",
@@ -57,7 +58,7 @@ draft c13_claim(const measurements& m) {
                 "objects", "time per frame and box (ms)"));
     const method methods[] = {{"every axis cut", smb}, {"no cut", uncut}};
     if (const std::vector<condition>& conditions = m.of("smb_objects"); !conditions.empty())
-        f.lines = series_of(methods, conditions_with(conditions, {}), "objects", an_object(measured("frame_cpu_ms")));
+        f.lines = series_of(methods, matching(conditions, {}), "objects", an_object(measured("frame_cpu_ms")));
     return c13;
 }
 

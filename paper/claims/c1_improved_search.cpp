@@ -23,7 +23,7 @@ std::string subject_of(const condition& c) {
                                     : "where every box jumps";
 }
 
-/// The ratio of every method to the traditional one, which shows the gain of each half-step.
+/// The ratio of every method to the traditional one, which shows the gain of each change alone.
 table table_of_changes(const std::vector<condition>& conditions) {
     table t = place_table(places_of(conditions));
     add_ratios(t, conditions, methods);
@@ -32,6 +32,7 @@ table table_of_changes(const std::vector<condition>& conditions) {
 
 }  // namespace
 
+/// Claim C1: the improved broad phase against the traditional one and against incremental sweep and prune.
 draft c1_claim(const measurements& m) {
     draft c1{{.claim = "Shell sort with axial cut takes less time in the broad phase than insertion sort without",
               .measured = "time per frame of shell + axial_cut over that of insertion + none, both with the sweep "
@@ -40,32 +41,29 @@ draft c1_claim(const measurements& m) {
              {{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}, {"over", ""}},
               {{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.001"}, {"over", "incremental"}}}};
     const std::vector<condition>& conditions = m.of("figure1");
-    const auto over_traditional = [](const condition& c, const std::string& subject, const std::string& along = "") {
-        return with_subject(endpoint_of(c, improved, traditional, "frame_cpu_ms"), subject, along);
+    const auto add = [&](const condition& c, const std::string& subject, const std::string& along = "") {
+        c1.add(endpoint_of(c, improved, traditional, "frame_cpu_ms"), subject, along);
     };
     const std::vector<const condition*> of_all_sizes =
-        conditions_with(conditions, {{"scene", "brownian"}, {"displacement", "0.1"}});
-    const std::vector<const condition*> large =
-        conditions_with(conditions, {{"scene", "brownian"}, {"objects", "10000"}});
-    for (const condition* c : of_all_sizes) c1.add(over_traditional(*c, "on drifting boxes", "objects"));
+        matching(conditions, {{"scene", "brownian"}, {"displacement", "0.1"}});
+    const std::vector<const condition*> large = matching(conditions, {{"scene", "brownian"}, {"objects", "10000"}});
+    for (const condition* c : of_all_sizes) add(*c, "on drifting boxes", "objects");
     for (const condition* c : large)
-        if (!has_factors(c->of(), drifting)) c1.add(over_traditional(*c, "on 10,000 drifting boxes", "displacement"));
+        if (!matches(c->of(), drifting)) add(*c, "on 10,000 drifting boxes", "displacement");
     // Both compositions with the paper's three lists, each sorted and swept.
     for (const condition& c : m.of("three_lists"))
-        c1.add(with_subject(
-            endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
-                        "frame_cpu_ms", {{"sweep", "all_axes"}}),
-            "with three sorted lists", "displacement"));
+        c1.add(endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
+                           "frame_cpu_ms", {{"sweep", "all_axes"}}),
+               "with three sorted lists", "displacement");
     for (const condition* c : large)
-        c1.add(with_subject(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
-                            "compared with the classic incremental sweep", "displacement"));
+        c1.add(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
+               "compared with the classic incremental sweep", "displacement");
     for (const condition& c : conditions)
-        if (!is_brownian(c)) c1.add(over_traditional(c, subject_of(c)));
-    for (const condition* c : conditions_with(conditions, drifting))
-        c1.unjudged = {
-            with_subject(endpoint_of(*c, methods[1].tested, traditional, "frame_cpu_ms"),
-                         "with the cut alone at 10,000 boxes"),
-            with_subject(endpoint_of(*c, methods[2].tested, traditional, "frame_cpu_ms"), "with Shell sort alone")};
+        if (!is_brownian(c)) add(c, subject_of(c));
+    for (const condition* c : matching(conditions, drifting))
+        for (const auto& [arm, subject] : {std::pair{methods[1].tested, "with the cut alone at 10,000 boxes"},
+                                           {methods[2].tested, "with Shell sort alone"}})
+            c1.unjudged.emplace_back(endpoint_of(*c, arm, traditional, "frame_cpu_ms")).subject = subject;
     c1.claim.tables.push_back({"figure1", "Time per frame over that of the traditional method, with 95 % intervals.",
                                table_of_changes(conditions)});
     figure& f = c1.claim.figures.emplace_back(log_log(

@@ -11,8 +11,7 @@ struct sizes {
     std::vector<double> log_n;
     std::vector<cells> per_element;  // logarithms
 
-    /// The growth of work per element when N grows tenfold, from a linear regression against log N; the line is flat if
-    /// the sort is O(N).
+    /// The growth of work per element when N grows tenfold, by linear regression against log N; none if it is O(N).
     [[nodiscard]] double growth(const resample& d) const {
         std::vector<double> y;
         for (const cells& logs : per_element) y.push_back(std::exp(d.mean_of(logs)));
@@ -79,6 +78,7 @@ std::vector<const condition*> comparable_sizes(std::vector<const condition*> con
 
 }  // namespace
 
+/// Claim C2: the growth of each sort's counted work per element, by displacement; a sort in O(N) has the ratio 1.
 draft c2_claim(const measurements& m) {
     draft c2{{.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too",
               .measured = "comparisons and moves per element at 10 N elements over those at N, by linear regression "
@@ -110,7 +110,7 @@ draft c2_claim(const measurements& m) {
             c.log_ratios = {bootstrap(measured_sizes.per_element.front().size(),
                                       [&](const resample& d) { return measured_sizes.growth(d); })};
             c.source = "c2: growth of comparisons and moves of sort=" + std::string(s.sort);
-            c2.add(with_subject(std::move(c), s.subject, "inversions", quantity::work));
+            c2.add(std::move(c), s.subject, "inversions", quantity::work);
         }
     if (by_displacement.empty()) return c2;
     c2.claim.tables.push_back({"c2_inversions", "Inversions per element, which should be equal at all sizes.",

@@ -22,7 +22,7 @@ endpoint over_insertion(const condition& c, const std::string& gaps) {
 
 /// All gap sequences in all conditions, ordered by inversions.
 table map_of(const std::vector<condition>& conditions) {
-    std::vector<const condition*> ordered = conditions_with(conditions, {});
+    std::vector<const condition*> ordered = matching(conditions, {});
     std::ranges::stable_sort(ordered, {}, [](const condition* c) { return disorder_of(*c); });
     table t{{{"inversions per element"}, {"scene", false}, {"objects"}, {"displacement"}}, {}};
     for (const std::string& gaps : gap_sequences) t.columns.push_back({gaps});
@@ -35,6 +35,7 @@ table map_of(const std::vector<condition>& conditions) {
     return t;
 }
 
+/// Ratios against inversions, in one panel for boxes in space and one for boxes on a line.
 figure figure_of(const std::vector<condition>& conditions) {
     figure f = log_log("c3",
                        "Time of Shell sort over that of insertion sort (the level 1) against inversions per element, "
@@ -59,6 +60,7 @@ figure figure_of(const std::vector<condition>& conditions) {
 
 }  // namespace
 
+/// Claim C3: Shell sort against insertion sort, ordered by inversions per element, which decide between the two.
 draft c3_claim(const measurements& m) {
     // Few inversions and many. Boxes on a line that move by 300 edges have as many as 100,000 boxes in space that move
     // by one (186 per element in full runs), and take a hundredth of the time.
@@ -70,10 +72,10 @@ draft c3_claim(const measurements& m) {
     for (const bool in_space : {true, false})
         for (const condition& c : conditions)
             if (is_brownian(c) == in_space)
-                c3.add(with_subject(over_insertion(c, "ciura"),
-                                    "on " + number_text(value_of(c.of(), "objects")) +
-                                        (in_space ? " boxes in space" : " boxes on a line"),
-                                    "inversions"));
+                c3.add(over_insertion(c, "ciura"),
+                       "on " + number_text(value_of(c.of(), "objects")) +
+                           (in_space ? " boxes in space" : " boxes on a line"),
+                       "inversions");
     if (conditions.empty()) return c3;
     c3.claim.tables.push_back({"c3_map",
                                "Time of Shell sort over that of insertion sort, for each gap sequence, by inversions.",

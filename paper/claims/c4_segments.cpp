@@ -27,6 +27,7 @@ bool is_finer(const condition& c, int axes, int wanted, int before) {
     return segments && coarser && *segments > 1.1 * *coarser;
 }
 
+/// Times against the requested number of segments in one scene, with the limit of each number of axes as a mark.
 figure figure_of(const std::string& name, const condition& c) {
     figure f = log_log(
         name,
@@ -69,6 +70,7 @@ table automatic_table(const std::vector<condition>& conditions) {
 
 }  // namespace
 
+/// Claim C4: finer cuts against coarser ones, and the automatic number of segments against the limit.
 draft c4_claim(const measurements& m) {
     draft c4{{.claim = "The more segments, the faster, up to the limit; and segments need not be tiny",
               .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
@@ -95,11 +97,11 @@ draft c4_claim(const measurements& m) {
                            {{"axes", std::to_string(axes)}, {"segments", finer.name}, {"over", coarser.name}});
     };
     for_each_cut([&](const condition& c, int axes) {
-        c4.add(with_subject(ratio(c, axes, limit, {"8", "8"}),
-                            is_brownian(c)
-                                ? "on drifting boxes at the limit of one cut per box, compared with eight segments"
-                                : "in clusters",
-                            "axes"));
+        c4.add(ratio(c, axes, limit, {"8", "8"}),
+               is_brownian(c)
+                   ? "on drifting boxes at the limit of one cut per box, compared with eight segments per axis"
+                   : "in clusters",
+               "axes");
     });
     for_each_cut([&](const condition& c, int axes) {
         for (std::size_t i = 1; i < segments_wanted.size(); ++i) {
@@ -112,10 +114,10 @@ draft c4_claim(const measurements& m) {
     });
     // Segments need not be tiny: the automatic number is as good as the most that the limit allows.
     for_each_cut([&](const condition& c, int axes) {
-        c4.add(with_subject(ratio(c, axes, {"auto", "auto"}, limit),
-                            is_brownian(c) ? "with the automatic number of segments, compared with the limit"
-                                           : "in clusters with the automatic number",
-                            "axes"))
+        c4.add(ratio(c, axes, {"auto", "auto"}, limit),
+               is_brownian(c) ? "with the automatic number of segments, compared with the limit"
+                              : "in clusters with the automatic number",
+               "axes")
             .expected = expectation::not_more;
     });
     if (conditions.empty()) return c4;

@@ -7,7 +7,7 @@ namespace aabblab {
 
 namespace {
 
-const selection axial_cut{{kind::sort, "insertion"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
+const selection cut{{kind::sort, "insertion"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
 
 selection grid(const std::string& cell) {
     return {{kind::sort, "insertion"}, {kind::partition, "uniform_grid:cell_size=" + cell}, {kind::sweep, "one_axis"}};
@@ -28,6 +28,7 @@ bool is_grid(const condition& c, const std::string& size) {
 /// Times of all cell sizes over that of the axial cut, by scene.
 class scenes_and_cells {
 public:
+    /// @param conditions the scenes with one number of objects
     explicit scenes_and_cells(const std::vector<const condition*>& conditions) {
         for (const std::string& size : cell_sizes)
             if (std::ranges::all_of(conditions, [&](const condition* c) { return is_grid(*c, size); }))
@@ -35,14 +36,14 @@ public:
         for (const condition* c : conditions) {
             std::map<std::string, cells>& scene = over_cut_.emplace_back();
             for (const std::string& size : cell_sizes)
-                if (is_grid(*c, size))
-                    scene.emplace(size, c->log_ratios(grid(size), axial_cut, measured("frame_cpu_ms")));
+                if (is_grid(*c, size)) scene.emplace(size, c->log_ratios(grid(size), cut, measured("frame_cpu_ms")));
         }
     }
 
-    /// The sizes that give a grid in all scenes, among which is the safest one.
+    /// The sizes that give a grid in all scenes. The safest size is one of these.
     [[nodiscard]] const std::vector<std::string>& sizes() const { return everywhere_; }
 
+    /// The regret of a size in a scene is the logarithm of its time over that of the best size there.
     [[nodiscard]] double worst_regret(const std::string& size, const resample& d) const {
         return worst([&](const auto& scene) { return d.mean_of(scene.at(size)) - best(scene, d); });
     }
@@ -79,6 +80,7 @@ private:
     std::vector<std::map<std::string, cells>> over_cut_;  // by scene, then cell size
 };
 
+/// Median times of the cut and of every cell size, for each scene.
 table times_table(const std::vector<condition>& conditions) {
     table t = place_table(places_of(conditions));
     t.columns.push_back({"axial_cut"});
@@ -88,7 +90,7 @@ table times_table(const std::vector<condition>& conditions) {
         const auto add = [&](const selection& tested) {
             t.rows[i].push_back(digits_cell(median_of(conditions[i], tested, measured("frame_cpu_ms"))));
         };
-        add(axial_cut);
+        add(cut);
         for (const std::string& size : cell_sizes) add(grid(size));
         add(grid("auto"));
     }
@@ -116,14 +118,13 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
         const std::string in_the_smallest =
             std::string("with ") + label + " in the smallest world compared with the largest";
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large",
-            in_the_smallest + ", both relative to the cut",
-            small.log_ratios(tested, axial_cut, measured("frame_cpu_ms")),
-            large.log_ratios(tested, axial_cut, measured("frame_cpu_ms")), quantity::time, expectation::less);
+            in_the_smallest + ", both relative to the cut", small.log_ratios(tested, cut, measured("frame_cpu_ms")),
+            large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::time, expectation::less);
         add(std::string("bytes of a grid, ") + label + ", small world over large", in_the_smallest,
             small.logs(tested, bytes), large.logs(tested, bytes), quantity::bytes, expectation::less);
     }
     add("bytes of axial_cut, large world over small", "with the cut in the largest world compared with the smallest",
-        large.logs(axial_cut, bytes), small.logs(axial_cut, bytes), quantity::bytes, expectation::not_more);
+        large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
 /// A figure with one panel per number of objects.
@@ -139,7 +140,7 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
         for (const condition* c : conditions) {
             series s{value_of(c->of(), "scene")};
             for (const std::string& size : cell_sizes) {
-                const endpoint ratio = endpoint_of(*c, grid(size), axial_cut, "frame_cpu_ms");
+                const endpoint ratio = endpoint_of(*c, grid(size), cut, "frame_cpu_ms");
                 if (!ratio.known() || !is_grid(*c, size)) continue;
                 s.points.push_back(point_of(std::stod(size), ratio));
             }
@@ -159,7 +160,7 @@ figure world_figure(const std::string& name, const std::string& what, const std:
                            "a fixed cell size, one with an automatic cell size, and the axial cut; medians and "
                            "quartiles.",
                        "side of the world (edges)", axis);
-    const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", axial_cut}};
+    const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
     for (const auto& [label, tested] : methods) {
         series s{label};
         for (const condition& c : worlds) {
@@ -173,6 +174,7 @@ figure world_figure(const std::string& name, const std::string& what, const std:
 
 }  // namespace
 
+/// Claim C5: the worst slowdown of the cut against that of the safest cell size, and growth with the world.
 draft c5_claim(const measurements& m) {
     const std::string over_safest = "axial_cut over the safest cell size";
     draft c5{{.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the "
@@ -189,7 +191,7 @@ draft c5_claim(const measurements& m) {
         const scenes_and_cells scenes(conditions);
         if (scenes.sizes().empty()) continue;
         const sample_size size =
-            conditions.front()->log_ratios(grid(scenes.sizes().front()), axial_cut, measured("frame_cpu_ms")).size();
+            conditions.front()->log_ratios(grid(scenes.sizes().front()), cut, measured("frame_cpu_ms")).size();
         const auto add = [&](const std::string& comparison, const std::string& subject, auto log_ratio,
                              quantity compared, expectation expected) {
             c5.add({.where = {{"scene", "the worst of all"}, {"objects", objects}, {"comparison", comparison}},

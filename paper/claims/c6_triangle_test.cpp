@@ -12,6 +12,7 @@ namespace {
 /// Nanoseconds of each elementary test, by name, process and repetition.
 using test_times = std::map<std::string, std::vector<std::vector<double>>>;
 
+/// Reads the times of one process of Google Benchmark; its aggregates are skipped.
 void read_process(const std::filesystem::path& file, std::size_t process, test_times& times) {
     const std::string otherwise = "is not a result of Google Benchmark (remove it to measure again)";
     const json_value results(file.string(), text_of_file(file), otherwise);
@@ -40,6 +41,7 @@ test_times read_tests(const std::filesystem::path& folder) {
     }
 }
 
+/// Logarithms of the ratios of two tests, by process and repetition; empty if one was not measured.
 cells ratios_of(const test_times& times, const std::string& arm, const std::string& base) {
     const auto a = times.find(arm);
     const auto b = times.find(base);
@@ -58,11 +60,12 @@ quartiles spread_of(const std::vector<std::vector<double>>& processes) {
     return quartiles_of(times);
 }
 
-/// The suffix of tests of a leaf of A, which is not transformed, unlike one of B.
+/// The suffix of tests of a leaf of A, which needs no transformation, unlike a leaf of B.
 constexpr std::string_view frame_a_suffix = "/frame:a";
 /// The factor's value for leaves of B.
 constexpr const char* b_in_frame_of_a = "B, carried into A's frame";
 
+/// All tests with their ratios to a box test in the same frame.
 table table_of(const test_times& times) {
     table t{{{"test", false}, {"ns"}, {"quartiles"}, {"over a box test"}}, {}};
     for (const auto& [name, processes] : times) {
@@ -75,6 +78,7 @@ table table_of(const test_times& times) {
     return t;
 }
 
+/// Medians of all tests, those in B's frame beside those that need no transformation.
 figure figure_of(const test_times& times) {
     figure f{"c6",
              "Time of one elementary test, on the pairs that a traversal of two trees visits; medians and quartiles.",
@@ -101,6 +105,7 @@ figure figure_of(const test_times& times) {
 
 }  // namespace
 
+/// Claim C6: a triangle-box test against box tests, alone and, by trees with and without leaves, in whole queries.
 draft c6_claim(const measurements& m) {
     draft c6{{.claim = "Testing the triangle of a leaf costs what testing its box costs",
               .measured = "time of a triangle-box test over that of a box test, which encloses the transformed box "
@@ -140,7 +145,7 @@ draft c6_claim(const measurements& m) {
             endpoint ratio = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},
                                          "detect_cpu_ms");
             ratio.where = {{"quantity", "a query"}, {"leaf_test", test}, {"meshes", mesh_of(c)}};
-            c6.add(with_subject(std::move(ratio), subject));
+            c6.add(std::move(ratio), subject);
         }
     c6.claim.tables.push_back({"tests",
                                "Time of one elementary test, and its ratio to that of a box test, in either frame.",

@@ -37,19 +37,21 @@ endpoint compressed_over_canonical(const condition& c, const std::string& metric
 
 }  // namespace
 
+/// Claim C7a: the bytes of the compressed tree against the canonical one, by mesh.
 draft c7a_claim(const measurements& m) {
     draft c7a{{.claim = "Compressed storage takes less memory",
                .measured = "bytes of the compressed tree over those of the canonical one",
                .experiments = {"figure2", "figure2_million"}},
               {large_spheres}};
     for (const condition* c : conditions_by_size(m))
-        c7a.add(with_subject(compressed_over_canonical(*c, "tree_bytes", "triangle_box"), "", "", quantity::bytes));
+        c7a.add(compressed_over_canonical(*c, "tree_bytes", "triangle_box"), "", "", quantity::bytes);
     c7a.claim.figures.push_back(size_figure(m, "figure2_bytes", "Allocated bytes of trees per triangle.",
                                             "bytes per triangle", measured("tree_bytes")));
     c7a.claim.figures.back().y.logarithmic = false;
     return c7a;
 }
 
+/// Claim C7b: the query times of the same trees, for each replacement of the leaf test.
 draft c7b_claim(const measurements& m) {
     draft c7b{{.claim = "Compressed storage takes less time",
                .measured = "time per query of the compressed tree over that of the canonical one",
@@ -61,7 +63,7 @@ draft c7b_claim(const measurements& m) {
         {"none", "without a test of leaves before the triangle test"}};
     for (const auto& [leaf_test, subject] : leaf_tests)
         for (const condition* c : conditions_by_size(m))
-            c7b.add(with_subject(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject));
+            c7b.add(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject);
     c7b.claim.figures.push_back(
         size_figure(m, "figure2",
                     "Time of the narrow phase against the number of triangles: the canonical tree, the compressed one, "

@@ -6,7 +6,7 @@ namespace aabblab {
 
 namespace {
 
-/// Decides endpoints together; where machines disagree, the outcome is undecided.
+/// Decides a family of endpoints with Holm's correction (1979); outcomes on which machines disagree are undecided.
 void decide_family(std::span<endpoint* const> endpoints, double band) {
     if (endpoints.empty()) return;
     for (std::size_t machine = 0; machine < endpoints.front()->log_ratios.size(); ++machine) {
@@ -24,6 +24,7 @@ void decide_family(std::span<endpoint* const> endpoints, double band) {
     }
 }
 
+/// The direction of a ratio in a word, or "not more" if only that is decided.
 std::string word_of(const endpoint& e) {
     if (e.expected == expectation::not_more && e.corrected == support::favours && e.direction == outcome::undecided)
         return "not more";
@@ -31,7 +32,7 @@ std::string word_of(const endpoint& e) {
     return words[static_cast<std::size_t>(e.direction)];
 }
 
-/// All primary ratios, and the number of other endpoints by outcome.
+/// The ratios behind a verdict: all primary ones, and the number of other endpoints by outcome.
 std::string evidence_text(std::span<const endpoint> endpoints) {
     std::string text;
     std::vector<endpoint> others;
@@ -119,6 +120,7 @@ void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
 
 }  // namespace
 
+/// Decides an endpoint by its own 95 % interval.
 endpoint decided_alone(endpoint e, double band) {
     const estimate log_ratio = e.log_ratio();
     const interval range = log_ratio.range();
@@ -130,6 +132,8 @@ endpoint decided_alone(endpoint e, double band) {
     return e;
 }
 
+/// Decides the primary endpoints of all claims as one family, the others within their claim, and returns them by claim.
+/// Endpoints without a finite ratio (a composition was wrong, an experiment has not run) are left out.
 std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band) {
     std::vector<std::vector<endpoint>> by_claim(drafts.size());
     std::vector<endpoint*> primaries;
@@ -176,10 +180,7 @@ std::vector<listed_claim> listed_claims() {
     return listed;
 }
 
-reproduction judged(const measurements& m) {
-    return judged({&m, 1});
-}
-
+/// Drafts all claims from every machine's rows, then decides them together, since Holm's correction spans all claims.
 reproduction judged(std::span<const measurements> machines) {
     const measurements& first = machines.front();
     std::vector<draft> drafts = drafts_of(first);

@@ -82,9 +82,7 @@ struct open_choice {
     };
     std::vector<alternative> alternatives;  ///< ours first
 };
-/// The primary endpoints of a claim.
 [[nodiscard]] std::vector<endpoint> primaries_of(const claim_result& claim);
-/// The secondary endpoints of a claim.
 [[nodiscard]] std::vector<endpoint> secondaries_of(const claim_result& claim);
 /// Whether the outcome depends on the choice: "no", "yes", or "undecided" if an alternative is undecided.
 [[nodiscard]] std::string dependence_of(const open_choice& choice);
@@ -100,14 +98,13 @@ struct reproduction {
     named_table bands;                ///< the verdicts under narrower and wider bands of no difference
     named_table null_control;         ///< ratios without a true difference
 };
-/// @param machines the results of all experiments, from one or several machines. With several, a ratio is their mean,
-/// and an outcome must be found on each of them; tables, figures, open choices and the null control are those of the
-/// first machine.
+/// @param machines the results of all experiments. With several machines, a ratio is their mean, and an outcome must be
+/// found on each; tables, figures, open choices and the null control are those of the first one.
 [[nodiscard]] reproduction judged(std::span<const measurements> machines);
-[[nodiscard]] reproduction judged(const measurements& results);
+[[nodiscard]] inline reproduction judged(const measurements& results) {
+    return judged({&results, 1});
+}
 
-/// "holds", "holds in part", "no difference", …
-[[nodiscard]] std::string text_of(const claim_result& claim);
 /// "brownian, objects 10,000, displacement 0.1"
 [[nodiscard]] std::string text_of(const factors& where);
 /// "0.334 (0.328 to 0.341)"
@@ -121,16 +118,15 @@ struct reproduction {
 [[nodiscard]] table verdict_table(const reproduction& results);
 /// A short version for the README.
 [[nodiscard]] table brief_table(const reproduction& results);
-/// The choices that the paper leaves open.
 [[nodiscard]] table choice_table(const reproduction& results);
 
 }  // namespace aabblab
 
-// Shared by the units of the module, which see the imports above.
+// Shared by the units of the module, which see the imports above; comments are at the definitions.
 namespace aabblab {
 
 /// Whether all of these factors have these values; a factor with an empty value must be missing.
-[[nodiscard]] bool has_factors(const factors& place, const factors& wanted);
+[[nodiscard]] bool matches(const factors& place, const factors& wanted);
 
 /// A claim before it is judged.
 struct draft {
@@ -139,7 +135,11 @@ struct draft {
     std::vector<endpoint> endpoints{};
     std::vector<endpoint> unjudged{};  ///< mentioned after the sentence, by their own intervals, and not judged
 
+    /// Adds an endpoint that no sentence mentions.
     endpoint& add(endpoint e);
+    /// Adds an endpoint to the line of this subject.
+    endpoint& add(endpoint e, const std::string& subject, const std::string& along = "",
+                  quantity compared = quantity::time);
 };
 
 /// A claim and the function that drafts it.
@@ -150,12 +150,7 @@ struct claim_source {
 /// Defined in a generated unit.
 [[nodiscard]] std::vector<claim_source> claim_sources();
 
-/// Decides an endpoint by its own 95 % interval.
 [[nodiscard]] endpoint decided_alone(endpoint e, double band = equivalence_band);
-
-/// Decides endpoints together: primary ones over all claims, the others within their claim. Endpoints without a finite
-/// ratio (a composition was wrong, an experiment has not run) are left out.
-/// @returns the endpoints by claim, in order
 [[nodiscard]] std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band);
 /// By the rule of aabblab.statistics.
 [[nodiscard]] verdict_kind verdict_of(std::span<const endpoint> endpoints);
@@ -171,39 +166,22 @@ struct claim_source {
 }
 /// The factors of its condition and the observed ones.
 [[nodiscard]] factors place_of(const endpoint& e);
-/// The clause about the line of one of these endpoints.
 [[nodiscard]] std::string clause_of(std::span<const endpoint> endpoints, const endpoint& member);
-/// A summary in three sentences.
 [[nodiscard]] std::vector<std::string> headline_of(std::span<const claim_result> claims);
-/// A sentence if a machine was not quiet; otherwise empty.
 [[nodiscard]] std::string disturbance_of(std::span<const measurements> machines);
-
-/// The verdicts under bands of 0, 3, 5 and 10 %.
 [[nodiscard]] named_table bands_table(std::span<const draft> drafts);
-
-/// One row per endpoint, with the factors in which they differ as columns.
 [[nodiscard]] table endpoint_table(std::span<const endpoint> endpoints,
                                    const std::function<std::string(const endpoint&)>& outcome);
-
-/// One row per place, with the factors in which they differ as columns.
 [[nodiscard]] table place_table(std::span<const factors> places);
 [[nodiscard]] std::vector<factors> places_of(const std::vector<condition>& conditions);
 
 /// The conditions with these factors.
-[[nodiscard]] std::vector<const condition*> conditions_with(const std::vector<condition>& conditions,
-                                                            const factors& wanted);
+[[nodiscard]] std::vector<const condition*> matching(const std::vector<condition>& conditions, const factors& wanted);
 
-/// The ratio of two compositions in one condition.
-/// @param metric the metric's name
-/// @param more factors in addition to the condition's
 [[nodiscard]] endpoint endpoint_of(const condition& c, const selection& arm, const selection& base,
                                    const std::string& metric, factors more = {});
-/// The difference of two means; for conditions that do not run in the same repeat, so that cells of the same process
-/// and seed are compared.
+/// The difference of two means over cells of the same processes and seeds, for conditions that share no repeats.
 [[nodiscard]] estimate difference_of_means(const cells& above, const cells& below);
-/// Assigns an endpoint to a line of a sentence.
-[[nodiscard]] endpoint with_subject(endpoint e, const std::string& subject, const std::string& along = "",
-                                    quantity compared = quantity::time);
 
 /// The median over all repeats; empty if it was not measured.
 [[nodiscard]] std::optional<double> median_of(const condition& c, const selection& tested, const row_value& of);
@@ -212,37 +190,43 @@ struct claim_source {
 
 /// Table cells, "-" if nothing was measured.
 [[nodiscard]] std::string digits_cell(const std::optional<double>& value);
-[[nodiscard]] std::string ratio_cell(const endpoint& e);
+[[nodiscard]] inline std::string ratio_cell(const endpoint& e) {
+    return e.known() ? ratio_text(decided_alone(e)) : "-";
+}
 
 /// A composition and its label in figures and tables.
 struct method {
     std::string label;
     selection tested;
 };
-/// Adds columns to a table with one row per condition: each method's time per frame over that of the first method.
 void add_ratios(table& t, const std::vector<condition>& conditions, std::span<const method> methods);
 
 /// A figure with two logarithmic axes.
-[[nodiscard]] figure log_log(const std::string& name, const std::string& caption, const std::string& x,
-                             const std::string& y);
+[[nodiscard]] inline figure log_log(const std::string& name, const std::string& caption, const std::string& x,
+                                    const std::string& y) {
+    return {name, caption, {x, true}, {y, true}};
+}
 /// A ratio with its 95 % interval as a point of a figure.
 [[nodiscard]] figure_point point_of(double x, const endpoint& e);
 /// The level of the ratios' base.
-[[nodiscard]] series level_of(const std::string& label, double x = 1);
-/// A series of medians over the conditions of an experiment, in the order of x.
+[[nodiscard]] inline series level_of(const std::string& label, double x = 1) {
+    return {label, series_style::level, {{x, 1}}};
+}
 [[nodiscard]] series series_of(const std::string& label, std::span<const condition* const> conditions,
                                const std::string& x, const selection& tested, const row_value& of);
-/// One series per method.
 [[nodiscard]] std::vector<series> series_of(std::span<const method> methods,
                                             std::span<const condition* const> conditions, const std::string& x,
                                             const row_value& of);
-/// Ratios against the number of huge boxes, one line per edge length relative to the world.
-/// @param wanted the factors of the shown ratios
-[[nodiscard]] std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted);
+[[nodiscard]] std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted,
+                                                const std::string& base);
 
 /// The condition's mesh: "noise_sphere:triangles=1000", "elephant.off".
-[[nodiscard]] std::string mesh_of(const condition& c);
-[[nodiscard]] bool is_brownian(const condition& c);
+[[nodiscard]] inline std::string mesh_of(const condition& c) {
+    return value_of(c.of(), "meshes");
+}
+[[nodiscard]] inline bool is_brownian(const condition& c) {
+    return value_of(c.of(), "scene") == "brownian";
+}
 
 /// The first primary condition of claims on the broad phase: 10,000 cubes that drift by a tenth of their edge.
 inline const factors drifting{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}};

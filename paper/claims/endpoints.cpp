@@ -4,25 +4,19 @@ import aabblab.numbers;
 
 namespace aabblab {
 
-bool has_factors(const factors& place, const factors& wanted) {
+bool matches(const factors& place, const factors& wanted) {
     return std::ranges::all_of(wanted, [&](const auto& f) { return value_of(place, f.first) == f.second; });
 }
 
-std::vector<const condition*> conditions_with(const std::vector<condition>& conditions, const factors& wanted) {
-    std::vector<const condition*> matching;
+std::vector<const condition*> matching(const std::vector<condition>& conditions, const factors& wanted) {
+    std::vector<const condition*> selected;
     for (const condition& c : conditions)
-        if (has_factors(c.of(), wanted)) matching.push_back(&c);
-    return matching;
+        if (matches(c.of(), wanted)) selected.push_back(&c);
+    return selected;
 }
 
-std::string mesh_of(const condition& c) {
-    return value_of(c.of(), "meshes");
-}
-
-bool is_brownian(const condition& c) {
-    return value_of(c.of(), "scene") == "brownian";
-}
-
+/// The ratio of two compositions in one condition, averaged as a logarithm; NaN if it was not measured.
+/// @param more factors in addition to the condition's
 endpoint endpoint_of(const condition& c, const selection& arm, const selection& base, const std::string& metric,
                      factors more) {
     endpoint ratio;
@@ -39,16 +33,16 @@ estimate difference_of_means(const cells& above, const cells& below) {
     return bootstrap(above.size(), [&](const resample& d) { return d.mean_of(above) - d.mean_of(below); });
 }
 
-endpoint with_subject(endpoint e, const std::string& subject, const std::string& along, quantity compared) {
+endpoint& draft::add(endpoint e) {
+    e.is_primary = std::ranges::any_of(primary, [&](const factors& wanted) { return matches(e.where, wanted); });
+    return endpoints.emplace_back(std::move(e));
+}
+
+endpoint& draft::add(endpoint e, const std::string& subject, const std::string& along, quantity compared) {
     e.subject = subject;
     e.along = along;
     e.compared = compared;
-    return e;
-}
-
-endpoint& draft::add(endpoint e) {
-    e.is_primary = std::ranges::any_of(primary, [&](const factors& wanted) { return has_factors(e.where, wanted); });
-    return endpoints.emplace_back(std::move(e));
+    return add(std::move(e));
 }
 
 std::optional<double> median_of(const condition& c, const selection& tested, const row_value& of) {
@@ -64,10 +58,7 @@ std::string digits_cell(const std::optional<double>& value) {
     return value ? three_digits(*value) : "-";
 }
 
-std::string ratio_cell(const endpoint& e) {
-    return e.known() ? ratio_text(decided_alone(e)) : "-";
-}
-
+/// Adds columns to a table with one row per condition: each method's time per frame over that of the first method.
 void add_ratios(table& t, const std::vector<condition>& conditions, std::span<const method> methods) {
     for (const method& m : methods.subspan(1)) {
         t.columns.push_back({m.label});
@@ -77,20 +68,13 @@ void add_ratios(table& t, const std::vector<condition>& conditions, std::span<co
     }
 }
 
-figure log_log(const std::string& name, const std::string& caption, const std::string& x, const std::string& y) {
-    return {name, caption, {x, true}, {y, true}};
-}
-
 figure_point point_of(double x, const endpoint& e) {
     const estimate ratio = e.log_ratio();
     const interval range = ratio.range();
     return {x, std::exp(ratio.value), std::exp(range.low), std::exp(range.high)};
 }
 
-series level_of(const std::string& label, double x) {
-    return {label, series_style::level, {{x, 1}}};
-}
-
+/// A series of medians over the conditions of an experiment, in the order of x.
 series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
                  const selection& tested, const row_value& of) {
     series s{label};
@@ -109,17 +93,19 @@ std::vector<series> series_of(std::span<const method> methods, std::span<const c
     return lines;
 }
 
-std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted) {
+/// Ratios with the factors `wanted` against the number of huge boxes, one line per edge length, and the level of 1.
+std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted, const std::string& base) {
     std::map<std::string, series> by_span;
     for (const endpoint& e : ratios) {
         const std::string span = value_of(e.where, "span");
-        if (span.empty() || !e.known() || !has_factors(e.where, wanted)) continue;
+        if (span.empty() || !e.known() || !matches(e.where, wanted)) continue;
         series& line = by_span[span];
         line.label = "edge " + span + " of the world";
         line.points.push_back(point_of(number_of(e.where, "huge"), e));
     }
     std::vector<series> lines;
     for (auto& [span, line] : by_span) lines.push_back(std::move(line));
+    lines.push_back(level_of(base));
     return lines;
 }
 

@@ -39,16 +39,15 @@ measured_choices ratios_in_condition(const std::vector<const condition*>& condit
     return measured;
 }
 
-/// Claim C1 in the only condition of the experiment on choices: time of Shell sort with a cut over insertion sort
-/// without.
+/// Claim C1's ratio in the only condition of the experiment on choices.
 measured_choices search_choices(const measurements& m, const std::vector<arms>& tried) {
-    return ratios_in_condition(conditions_with(m.of("choices"), {}), "frame_cpu_ms", " (a separate run)", tried);
+    return ratios_in_condition(matching(m.of("choices"), {}), "frame_cpu_ms", " (a separate run)", tried);
 }
 
 /// Query times of a tree over those of the canonical one, on the generated mesh of table 1.
 measured_choices tree_choices(const measurements& m, const std::vector<arms>& tried) {
-    return ratios_in_condition(conditions_with(m.of("table1"), {{"meshes", "noise_sphere:triangles=20000"}}),
-                               "detect_cpu_ms", "", tried);
+    return ratios_in_condition(matching(m.of("table1"), {{"meshes", "noise_sphere:triangles=20000"}}), "detect_cpu_ms",
+                               "", tried);
 }
 
 selection search_composition(const std::string& sort, const std::string& partition,
@@ -58,7 +57,7 @@ selection search_composition(const std::string& sort, const std::string& partiti
 
 measured_choices displacement_choices(const measurements& m) {
     measured_choices measured{"brownian, objects 10,000", "0.1"};
-    for (const condition* c : conditions_with(m.of("figure1"), {{"scene", "brownian"}, {"objects", "10000"}}))
+    for (const condition* c : matching(m.of("figure1"), {{"scene", "brownian"}, {"objects", "10000"}}))
         measured.add_search(value_of(c->of(), "displacement"), *c);
     return measured;
 }
@@ -66,12 +65,11 @@ measured_choices displacement_choices(const measurements& m) {
 /// Other scenes with this displacement, and the drifting scene of the nearest size.
 measured_choices scene_choices(const measurements& m) {
     measured_choices measured{"displacement 0.1 of the extent", ""};
-    std::vector<const condition*> scenes =
-        conditions_with(m.of("figure1"), {{"displacement", "0.1"}, {"unit", "extent"}});
+    std::vector<const condition*> scenes = matching(m.of("figure1"), {{"displacement", "0.1"}, {"unit", "extent"}});
     if (scenes.empty()) return measured;
     const double objects = number_of(scenes.front()->of(), "objects");
     const std::vector<const condition*> drifts =
-        conditions_with(m.of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}});
+        matching(m.of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}});
     const auto nearest = std::ranges::min_element(
         drifts, {}, [&](const condition* c) { return std::abs(std::log(number_of(c->of(), "objects") / objects)); });
     const auto label_of = [](const condition& c) {
@@ -89,7 +87,7 @@ measured_choices leaf_test_choices(const measurements& m) {
     std::vector<arms> tests;
     for (const std::string test : {"triangle_box", "triangle_aabb", "none"})
         tests.push_back({test, {{kind::tree, "compressed:leaf_test=" + test}}, {{kind::tree, "canonical"}}});
-    return ratios_in_condition(conditions_with(m.of("figure2"), large_spheres), "detect_cpu_ms", "", tests);
+    return ratios_in_condition(matching(m.of("figure2"), large_spheres), "detect_cpu_ms", "", tests);
 }
 
 /// The growth of work per element, as in claim C2.
@@ -108,21 +106,23 @@ measured_choices gap_count_choices(const measurements& m) {
     return measured;
 }
 
+/// Claim C11 in each of its scenes.
 measured_choices model_choices(const measurements& m) {
     measured_choices measured{"displacement 0.05", ""};
     for (const condition& c : m.of("c11")) {
         const std::string label =
             value_of(c.of(), "objects") + " of " + mesh_of(c) + ", density " + value_of(c.of(), "density");
-        if (has_factors(c.of(), large_crowd)) measured.ours = label;
+        if (matches(c.of(), large_crowd)) measured.ours = label;
         measured.add(label, endpoint_of(c, improved.with(kind::tree, compressed),
                                         traditional.with(kind::tree, "canonical"), "frame_cpu_ms"));
     }
     return measured;
 }
 
+/// Claim C1 with the time of all frames and with that of later frames only.
 measured_choices first_frame_choices(const measurements& m) {
     measured_choices measured{"", "without the first frame"};
-    for (const condition* c : conditions_with(m.of("figure1"), drifting)) {
+    for (const condition* c : matching(m.of("figure1"), drifting)) {
         measured.where = text_of(c->of());
         measured.add_search("without the first frame", *c);
         measured.add("with the first frame", endpoint_of(*c, improved, traditional, "whole_cpu_ms"));
@@ -132,8 +132,8 @@ measured_choices first_frame_choices(const measurements& m) {
 
 /// Puts our choice first and decides it alone, the others together, like the endpoints of a claim. Without a
 /// measurement of our choice there are no alternatives, since nothing can be compared.
-open_choice decided_choice(const std::string& question, const std::string& ours, const std::string& why,
-                           const std::string& claim, measured_choices measured) {
+open_choice judge(const std::string& question, const std::string& ours, const std::string& why,
+                  const std::string& claim, measured_choices measured) {
     open_choice result{question, ours, why, claim, measured.where, {}};
     std::ranges::stable_partition(measured.alternatives,
                                   [&](const alternative& a) { return a.label == measured.ours; });
@@ -164,57 +164,54 @@ std::vector<open_choice> open_choices(const measurements& m) {
         return selection{{kind::tree, "canonical"}, {kind::build, build}};
     };
     return {
-        decided_choice(
-            "Which axes are sorted and swept?", "one_axis: the axis on which centres vary most, the other two tested",
-            "three sorted lists (all_axes) report a pair that overlaps on each; one list finds the same pairs with "
-            "less "
-            "memory, and both compositions use it",
-            "C1",
-            search_choices(m, {{"best axis", shell_cut, traditional},
-                               {"x", search_composition("shell", "axial_cut:axes=2", "one_axis:axis=x"),
-                                search_composition("insertion", "none", "one_axis:axis=x")},
-                               {"all axes", search_composition("shell", "axial_cut:axes=2", "all_axes"),
-                                search_composition("insertion", "none", "all_axes")}})),
-        decided_choice("How many axes are cut?", "two: those on which centres vary most, the swept one last",
-                       "\"each axis is cut\" allows three; the swept axis needs no cut", "C1",
-                       search_choices(m, {{"2", shell_cut, traditional},
-                                          {"1", shell("ciura", "axial_cut:axes=1"), traditional},
-                                          {"3", shell("ciura", "axial_cut:axes=3"), traditional}})),
-        decided_choice("How many segments?", "auto: the cheapest number by a cost model of uniformly distributed boxes",
-                       "the paper gives a limit and no number; claim C4 has the whole curve", "C1",
-                       search_choices(m, {{"auto", shell_cut, traditional},
-                                          {"8", shell("ciura", "axial_cut:axes=2,segments=8"), traditional}})),
-        decided_choice("How are Shell sort's gaps chosen?", "Ciura's sequence",
-                       "the best known by experiment; the paper names none", "C1",
-                       search_choices(m, {{"Ciura", shell_cut, traditional},
-                                          {"Tokuda", shell("tokuda"), traditional},
-                                          {"Shell", shell("shell"), traditional}})),
-        decided_choice(
-            "How many gaps?", "as many as N requires: Ciura's eight, then each 2.25 times the previous one",
-            "the paper gives no number; with a fixed one the work per element stays constant, and O(N) holds", "C2",
-            gap_count_choices(m)),
-        decided_choice("How far do objects move per frame?", "up to a tenth of an edge",
-                       "\"only slightly from last time step\"", "C1", displacement_choices(m)),
-        decided_choice("How are objects distributed?", "drifting cubes, a tenth of the volume filled",
-                       "the scene of Broadmark, on which other systems are compared", "C1", scene_choices(m)),
-        decided_choice("Does the first frame count?", "no: it is sorted by std::sort and timed separately",
-                       "its list is not almost sorted, so insertion sort would be quadratic", "C1",
-                       first_frame_choices(m)),
-        decided_choice("What replaces the box of a leaf?",
-                       "the triangle is tested against the other box (Möller's test with a margin that keeps it exact)",
-                       "\"we can directly adopt triangle to test\"; its box computed on the fly, or no test, are other "
-                       "readings",
-                       "C7b", leaf_test_choices(m)),
-        decided_choice("What do twelve bytes of scope values describe?", "six planes for two siblings, without loss",
-                       "three planes per node cannot represent every box: the literal reading has larger boxes", "C7b",
-                       tree_choices(m, {{"without loss", tree("compressed", "median"), canonical("median")},
-                                        {"literally", tree("compressed_literal", "median"), canonical("median")}})),
-        decided_choice("Where is a node split \"in term of centroids\"?", "at their median, along the longest axis",
-                       "the tree is to be balanced", "C7b",
-                       tree_choices(m, {{"median", tree("compressed", "median"), canonical("median")},
-                                        {"mean", tree("compressed", "mean"), canonical("mean")},
-                                        {"sah", tree("compressed", "sah"), canonical("sah")}})),
-        decided_choice(
+        judge("Which axes are sorted and swept?", "one_axis: the axis on which centres vary most, the other two tested",
+              "three sorted lists (all_axes) report a pair that overlaps on each; one list finds the same pairs with "
+              "less "
+              "memory, and both compositions use it",
+              "C1",
+              search_choices(m, {{"best axis", shell_cut, traditional},
+                                 {"x", search_composition("shell", "axial_cut:axes=2", "one_axis:axis=x"),
+                                  search_composition("insertion", "none", "one_axis:axis=x")},
+                                 {"all axes", search_composition("shell", "axial_cut:axes=2", "all_axes"),
+                                  search_composition("insertion", "none", "all_axes")}})),
+        judge("How many axes are cut?", "two: those on which centres vary most, the swept one last",
+              "\"each axis is cut\" allows three; the swept axis needs no cut", "C1",
+              search_choices(m, {{"2", shell_cut, traditional},
+                                 {"1", shell("ciura", "axial_cut:axes=1"), traditional},
+                                 {"3", shell("ciura", "axial_cut:axes=3"), traditional}})),
+        judge("How many segments?", "auto: the cheapest number by a cost model of uniformly distributed boxes",
+              "the paper gives a limit and no number; claim C4 has the whole curve", "C1",
+              search_choices(m, {{"auto", shell_cut, traditional},
+                                 {"8", shell("ciura", "axial_cut:axes=2,segments=8"), traditional}})),
+        judge("How are Shell sort's gaps chosen?", "Ciura's sequence",
+              "the best known by experiment; the paper names none", "C1",
+              search_choices(m, {{"Ciura", shell_cut, traditional},
+                                 {"Tokuda", shell("tokuda"), traditional},
+                                 {"Shell", shell("shell"), traditional}})),
+        judge("How many gaps?", "as many as N requires: Ciura's eight, then each 2.25 times the previous one",
+              "the paper gives no number; with a fixed one the work per element stays constant, and O(N) holds", "C2",
+              gap_count_choices(m)),
+        judge("How far do objects move per frame?", "up to a tenth of an edge", "\"only slightly from last time step\"",
+              "C1", displacement_choices(m)),
+        judge("How are objects distributed?", "drifting cubes, a tenth of the volume filled",
+              "the scene of Broadmark, on which other systems are compared", "C1", scene_choices(m)),
+        judge("Does the first frame count?", "no: it is sorted by std::sort and timed separately",
+              "its list is not almost sorted, so insertion sort would be quadratic", "C1", first_frame_choices(m)),
+        judge("What replaces the box of a leaf?",
+              "the triangle is tested against the other box (Möller's test with a margin that keeps it exact)",
+              "\"we can directly adopt triangle to test\"; its box computed on the fly, or no test, are other "
+              "readings",
+              "C7b", leaf_test_choices(m)),
+        judge("What do twelve bytes of scope values describe?", "six planes for two siblings, without loss",
+              "three planes per node cannot represent every box: the literal reading has larger boxes", "C7b",
+              tree_choices(m, {{"without loss", tree("compressed", "median"), canonical("median")},
+                               {"literally", tree("compressed_literal", "median"), canonical("median")}})),
+        judge("Where is a node split \"in term of centroids\"?", "at their median, along the longest axis",
+              "the tree is to be balanced", "C7b",
+              tree_choices(m, {{"median", tree("compressed", "median"), canonical("median")},
+                               {"mean", tree("compressed", "mean"), canonical("mean")},
+                               {"sah", tree("compressed", "sah"), canonical("sah")}})),
+        judge(
             "What are \"different models\"?",
             "scanned animals in a crowd, many small generated ones, and simple ones far apart",
             "the paper names none; the narrow phase takes nearly all of the time in the first two, and the broad phase "

@@ -44,6 +44,7 @@ struct extent {
     }
 };
 
+/// A reduction of time, as a factor of speed if it is large: "12 % less time", "2.1 times as fast".
 std::string less_time_text(const extent& e) {
     if (e.mild >= factor_threshold) return e.times() + " times as fast";
     if (e.strong >= factor_threshold) return "up to " + times_text(e.strong) + " times as fast";
@@ -61,6 +62,7 @@ std::string more_text(const extent& e, std::string_view noun) {
     return fmt::format("{} % more {}", span_text(percent_text(e.mild - 1), percent_text(e.strong - 1), false), noun);
 }
 
+/// The extent of ratios that all lie on one side of 1; those below 1 are inverted.
 extent extent_of(std::span<const endpoint> endpoints) {
     extent range{std::max(endpoints[0].ratio, 1 / endpoints[0].ratio), 0};
     for (const endpoint& e : endpoints) {
@@ -111,6 +113,7 @@ struct stretch {
     std::vector<endpoint> endpoints;
 };
 
+/// Divides an ordered line where the outcome changes.
 std::vector<stretch> stretches_of(std::span<const endpoint> line) {
     std::vector<stretch> stretches;
     for (const endpoint& e : line) {
@@ -137,6 +140,7 @@ std::string subject_text(const endpoint& e) {
     return e.subject->empty() ? "" : " " + *e.subject;
 }
 
+/// Reports each stretch with its range: "30 % more time at 100 objects, 2.0 times as fast from 1,000 objects on".
 std::string ordered_clause(std::span<const endpoint> line) {
     const std::vector<stretch> stretches = stretches_of(line);
     std::string text;
@@ -215,6 +219,7 @@ std::string number_text(const std::string& value) {
                                                                                                   : value;
 }
 
+/// The clause about the line of `member`: all endpoints with the same subject and quantity.
 std::string clause_of(std::span<const endpoint> endpoints, const endpoint& member) {
     std::vector<endpoint> line;
     std::ranges::copy_if(endpoints, std::back_inserter(line),
@@ -225,6 +230,7 @@ std::string clause_of(std::span<const endpoint> endpoints, const endpoint& membe
     return ordered_clause(line);
 }
 
+/// Joins the clauses of all lines, in the order of their first endpoints.
 std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead) {
     if (endpoints.empty()) return "There are no measurements that decide it.";
     std::string text;
@@ -238,6 +244,7 @@ std::string sentence_of(std::span<const endpoint> endpoints, const std::string& 
     return text + ".";
 }
 
+/// A summary in three sentences: broad phase, narrow phase, number of verdicts of each kind.
 std::vector<std::string> headline_of(std::span<const claim_result> claims) {
     return {
         "The improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion sort, no "

@@ -23,7 +23,7 @@ constexpr layout layouts[] = {
     {"compressed_literal", "compressed_literal:leaf_test=triangle_box", "scope 12, children 8, symbol 1", "none",
      "21"}};
 
-selection layout_with_build(const layout& l, const std::string& build) {
+selection selection_of(const layout& l, const std::string& build) {
     return {{kind::tree, l.tree}, {kind::build, build}};
 }
 
@@ -33,11 +33,12 @@ const condition* largest_mesh_condition(const measurements& m) {
     return conditions.empty() ? nullptr : &conditions.back();
 }
 
+/// Nominal and allocated bytes per triangle of every layout.
 table bytes_table(const condition& c) {
     table t = empty_table({"tree", "internal node", "leaf"},
                           {"bytes per triangle, nominal", "allocated", "of these, boxes and symbols", "indices"});
     for (const layout& l : layouts) {
-        const selection composition = layout_with_build(l, "median");
+        const selection composition = selection_of(l, "median");
         if (!c.value(composition, measured("tree_bytes"))) continue;
         const auto text_of = [&](const row_value& bytes) {
             const std::optional<double> each = c.value(composition, a_triangle(bytes));
@@ -49,19 +50,19 @@ table bytes_table(const condition& c) {
     return t;
 }
 
+/// Bytes, box inflation and times of every layout under every split rule.
 table cost_table(const condition& c) {
     table t = empty_table({"tree", "build"}, {"bytes per triangle", "boxes larger by (%)", "build time", "query time"});
     for (const layout& l : layouts)
         for (const char* build : {"median", "mean", "midpoint", "sah"}) {
-            const std::optional<double> bytes = c.value(layout_with_build(l, build), measured("tree_bytes"));
+            const std::optional<double> bytes = c.value(selection_of(l, build), measured("tree_bytes"));
             if (!bytes) continue;
             const auto ratio = [&](const std::string& metric) {
-                return ratio_cell(
-                    endpoint_of(c, layout_with_build(l, build), layout_with_build(layouts[0], "median"), metric));
+                return ratio_cell(endpoint_of(c, selection_of(l, build), selection_of(layouts[0], "median"), metric));
             };
             t.rows.push_back(
                 {l.name, build, fmt::format("{:.2f}", *bytes),
-                 three_digits(100 * c.value(layout_with_build(l, build), measured("box_inflation")).value_or(0)),
+                 three_digits(100 * c.value(selection_of(l, build), measured("box_inflation")).value_or(0)),
                  ratio("build_cpu_ms"), ratio("detect_cpu_ms")});
         }
     return t;

@@ -24,6 +24,7 @@ constexpr double most_difference = 5;
 
 }  // namespace
 
+/// One row per endpoint, with the factors in which they differ as columns.
 table endpoint_table(std::span<const endpoint> endpoints, const std::function<std::string(const endpoint&)>& outcome) {
     std::vector<factors> places;
     for (const endpoint& e : endpoints) places.push_back(place_of(e));
@@ -37,6 +38,7 @@ table endpoint_table(std::span<const endpoint> endpoints, const std::function<st
     return t;
 }
 
+/// One row per place, with the factors in which they differ as columns, so that equal ones do not widen the table.
 table place_table(std::span<const factors> places) {
     table t;
     t.rows.resize(places.size());
@@ -59,6 +61,7 @@ std::vector<factors> places_of(const std::vector<condition>& conditions) {
     return places;
 }
 
+/// Compares the outcome of each alternative with that of our choice; undecided ones contradict nothing.
 std::string dependence_of(const open_choice& choice) {
     bool undecided = choice.alternatives.empty();
     for (const open_choice::alternative& a : choice.alternatives) {
@@ -88,15 +91,12 @@ std::string text_of(const factors& where) {
     return text;
 }
 
-std::string text_of(const claim_result& claim) {
-    return text_of(claim.verdict);
-}
-
 table verdict_table(const reproduction& results) {
     table t =
         empty_table({"", "claim", "verdict", "in words"}, {"ratio", "95 %", "for", "against", "same", "undecided"});
     for (const claim_result& c : results.claims) {
-        std::vector<std::string>& cells = t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c), c.sentence});
+        std::vector<std::string>& cells =
+            t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c.verdict), c.sentence});
         cells.push_back(c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
         cells.push_back(c.has_primary
                             ? ratio_digits_of(c.primary.range.low) + " to " + ratio_digits_of(c.primary.range.high)
@@ -113,7 +113,7 @@ table brief_table(const reproduction& results) {
     for (const claim_result& c : results.claims) {
         std::string ratios;
         for (const endpoint& e : primaries_of(c)) ratios += (ratios.empty() ? "" : ", ") + ratio_digits_of(e.ratio);
-        t.rows.push_back({c.id, c.claim, text_of(c), ratios.empty() ? "-" : ratios});
+        t.rows.push_back({c.id, c.claim, text_of(c.verdict), ratios.empty() ? "-" : ratios});
     }
     return t;
 }
@@ -130,6 +130,7 @@ table choice_table(const reproduction& results) {
     return t;
 }
 
+/// The verdicts under bands of 0, 3, 5 and 10 %, which show how much they depend on the chosen band.
 named_table bands_table(std::span<const draft> drafts) {
     table t = empty_table({"", "claim"});
     for (const draft& d : drafts) t.rows.push_back({d.claim.id, d.claim.claim});
@@ -141,6 +142,8 @@ named_table bands_table(std::span<const draft> drafts) {
     return {"bands", "The verdicts under narrower and wider bands of no difference.", t};
 }
 
+/// Judges ratios of a composition to itself under another name. Every difference that is found here is an error of the
+/// intervals, so their number shows how far the intervals of claims can be trusted.
 named_table null_control(const measurements& m) {
     // A composition, and the same one with an explicit default.
     const std::pair<selection, selection> twins[] = {{traditional, traditional.with(kind::sweep, "one_axis:axis=auto")},
@@ -152,27 +155,26 @@ named_table null_control(const measurements& m) {
                                                {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
             if (ratio.known()) ratios.push_back(decided_alone(ratio));
         }
-    const table t = endpoint_table(ratios, [&](const endpoint& e) {
+    const auto outcome_of = [](const endpoint& e) {
         return is_difference(e)                        ? std::string("a difference")
                : e.corrected == support::no_difference ? text_of(e.corrected)
                                                        : "undecided";
-    });
+    };
+    const table t = endpoint_table(ratios, outcome_of);
     if (ratios.empty()) return {"null_control", "There are no measurements of a null control.", t};
+    const auto count = [&](const std::string& outcome) { return std::ranges::count(ratios, outcome, outcome_of); };
     const auto without_one =
         std::ranges::count_if(ratios, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
     return {
         "null_control",
-        fmt::format(
-            "Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
-            "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
-            "and {} are undecided.",
-            ratios.size(), without_one, std::ranges::count_if(ratios, is_difference),
-            std::ranges::count(ratios, support::no_difference, &endpoint::corrected),
-            std::ranges::count_if(
-                ratios, [](const endpoint& e) { return !is_difference(e) && e.corrected != support::no_difference; })),
+        fmt::format("Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
+                    "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
+                    "and {} are undecided.",
+                    ratios.size(), without_one, count("a difference"), count("no difference"), count("undecided")),
         t};
 }
 
+/// A warning if a machine was not quiet, by the time without a processor and the scatter of repeats; otherwise empty.
 std::string disturbance_of(std::span<const measurements> machines) {
     std::string text;
     for (const measurements& m : machines) {

@@ -13,6 +13,7 @@ import aabblab.processes;
 import aabblab.record;
 import aabblab.results;
 import aabblab.sha256;
+import aabblab.statistics;
 import aabblab.suites;
 import aabblab.tables;
 
@@ -30,12 +31,7 @@ std::vector<error_study> studies_with_curves(bool quick) {
     return studies;
 }
 
-std::filesystem::path folder_of_study(const std::filesystem::path& folder, const error_study& study) {
-    return folder / "errors" / study.name;
-}
-
-/// Times the elementary tests of claim C6 by Google Benchmark in separate processes. Results of the same build and size
-/// are kept.
+/// Times the elementary tests of claim C6 by Google Benchmark in separate processes; keeps results of the same build.
 /// @returns a sentence if a test is wrong
 std::vector<std::string> time_elementary_tests(const std::filesystem::path& folder, bool quick) {
     constexpr std::size_t processes = 5;
@@ -65,14 +61,7 @@ std::vector<std::string> time_elementary_tests(const std::filesystem::path& fold
 }
 
 /// Errors are stored with the results, one sentence per line, because a later judgement must report them too.
-std::filesystem::path file_of_failures(const std::filesystem::path& folder) {
-    return folder / "failures.txt";
-}
-void write_failures(const std::filesystem::path& folder, const std::vector<std::string>& failures) {
-    std::string text;
-    for (const std::string& failure : failures) text += failure + "\n";
-    write_file(file_of_failures(folder), text);
-}
+constexpr const char* failures_name = "failures.txt";
 
 /// @returns the errors
 std::vector<std::string> run_suites(const std::filesystem::path& folder, bool quick) {
@@ -105,7 +94,7 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
         .figures = {},
         .tables = {}};
     for (const error_study& study : studies_with_curves(quick)) {
-        const std::filesystem::path results = folder_of_study(folder, study);
+        const std::filesystem::path results = folder / "errors" / study.name;
         if (!study.whole && std::filesystem::exists(results / "errors.csv")) {
             const std::vector<error_point> points = read_error_rows(results / "errors.csv");
             for (const pair_group group : groups_in(points)) {
@@ -160,8 +149,8 @@ std::optional<report_section> atlas_section(const std::filesystem::path& folder)
 /// The stored errors, one sentence each.
 std::vector<std::string> read_failures(const std::filesystem::path& folder) {
     std::vector<std::string> failures;
-    if (!std::filesystem::exists(file_of_failures(folder))) return failures;
-    for (line_stream lines(file_of_failures(folder)); lines.next();) failures.emplace_back(lines.line());
+    if (!std::filesystem::exists(folder / failures_name)) return failures;
+    for (line_stream lines(folder / failures_name); lines.next();) failures.emplace_back(lines.line());
     return failures;
 }
 
@@ -174,13 +163,13 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
         experiments.push_back(open_experiment(config.string(), quick));
     const std::vector<error_study> studies = studies_with_curves(quick);
     const std::size_t count = experiments.size() + 1 + studies.size();
-    std::vector<std::string> failures;
+    std::string failures;
     const auto add = [&](const std::vector<std::string>& added) {
-        failures.insert(failures.end(), added.begin(), added.end());
-        write_failures(folder, failures);
+        for (const std::string& failure : added) failures += failure + "\n";
+        write_file(folder / failures_name, failures);
     };
     unseal_record(folder);
-    std::filesystem::remove(file_of_failures(folder));
+    std::filesystem::remove(folder / failures_name);
     for (const experiment& e : experiments) {
         note(fmt::format("experiment {} of {}: {}", &e - experiments.data() + 1, count, e.name));
         add(run_experiment(e, folder / e.name, existing_results::replace, "the same command", printed::nothing));
@@ -190,7 +179,7 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     for (const error_study& study : studies) {
         note(fmt::format("experiment {} of {}: errors of {}", experiments.size() + 2 + (&study - studies.data()), count,
                          study.name));
-        add(measure_study(study, folder_of_study(folder, study), printed::nothing));
+        add(measure_study(study, folder / "errors" / study.name, printed::nothing));
     }
     add(run_suites(folder, quick));
     // Always the small atlas: the whole one takes half an hour.
@@ -198,8 +187,7 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     seal_record(folder);
 }
 
-/// The sections behind the claims, from the results in the folder: errors against run time, extreme scenes, stiff
-/// scenes and the atlas.
+/// The sections behind the claims: errors against run time, extreme scenes, stiff scenes and the atlas.
 std::vector<report_section> sections_of_reproduction(const std::filesystem::path& folder, bool quick) {
     std::vector<report_section> sections;
     if (report_section errors = errors_section(folder, quick); !errors.figures.empty())
@@ -246,7 +234,7 @@ std::string verdict_text(const reproduction& reproduced) {
     for (const std::string& sentence : reproduced.headline) text += sentence + "\n";
     text += "\n";
     for (const claim_result& c : reproduced.claims)
-        text += fmt::format("{:<4} {}\n     {}. {}\n", c.id, c.claim, text_of(c), c.sentence);
+        text += fmt::format("{:<4} {}\n     {}. {}\n", c.id, c.claim, text_of(c.verdict), c.sentence);
     return text;
 }
 

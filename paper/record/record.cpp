@@ -40,6 +40,7 @@ sums sums_of(const std::filesystem::path& folder) {
     return checksums;
 }
 
+/// Reads SHA256SUMS, whose lines are 64 hexadecimal digits, two blanks and a file.
 sums stated_sums(const std::filesystem::path& file) {
     sums checksums;
     std::istringstream in(text_of_file(file));
@@ -128,18 +129,11 @@ void seal_record(const std::filesystem::path& folder) {
     write_file(folder / sums_name, text);
 }
 
-void unseal_record(const std::filesystem::path& folder) {
-    std::filesystem::remove(folder / sums_name);
-}
-
-bool is_sealed_record(const std::filesystem::path& folder) {
-    return std::filesystem::exists(folder / sums_name);
-}
-
 std::string seal_of_record(const std::filesystem::path& folder) {
     return checksum_of(folder / sums_name);
 }
 
+/// Compares files with stated checksums in both directions, so that added files are found as well as missing ones.
 void verify_record(const std::filesystem::path& folder) {
     if (!is_sealed_record(folder)) return;
     const sums actual = sums_of(folder);

@@ -11,6 +11,8 @@ export namespace aabblab {
 
 /// The folder of these files in an archive.
 inline constexpr const char* record_top = "reproduction";
+/// The name of the file of checksums.
+inline constexpr const char* sums_name = "SHA256SUMS";
 
 /// The names of the experiments in a folder.
 [[nodiscard]] std::vector<std::string> recorded_experiments(const std::filesystem::path& folder);
@@ -25,8 +27,12 @@ inline constexpr const char* record_top = "reproduction";
 /// checksums are in their manifests, since their rows may have any order.
 void seal_record(const std::filesystem::path& folder);
 /// Unseals a run before it begins.
-void unseal_record(const std::filesystem::path& folder);
-[[nodiscard]] bool is_sealed_record(const std::filesystem::path& folder);
+inline void unseal_record(const std::filesystem::path& folder) {
+    std::filesystem::remove(folder / sums_name);
+}
+[[nodiscard]] inline bool is_sealed_record(const std::filesystem::path& folder) {
+    return std::filesystem::exists(folder / sums_name);
+}
 /// The seal of a sealed run, which identifies it: only copies have the same seal.
 [[nodiscard]] std::string seal_of_record(const std::filesystem::path& folder);
 
@@ -66,8 +72,5 @@ inline constexpr const char* unsealed_note =
     "the results are not sealed: the run was not finished, is of an earlier version, or lost its SHA256SUMS. Missing "
     "or "
     "altered rows would not be noticed";
-
-/// The name of the file of checksums.
-inline constexpr const char* sums_name = "SHA256SUMS";
 
 }  // namespace aabblab

@@ -50,6 +50,7 @@ void add_arrow(svg_picture& to, bool to_left, double y, double number) {
             {{"text-anchor", to_left ? "start" : "end"}});
 }
 
+/// Draws a ratio as a disc on its interval; what lies beyond the scale is drawn as an arrow.
 void add_interval(svg_picture& to, const endpoint& e, double y) {
     const auto& [low, high] = e.range;
     const bool below = low < claims_scale.from;
@@ -60,8 +61,7 @@ void add_interval(svg_picture& to, const endpoint& e, double y) {
     if (above) add_arrow(to, false, y, e.ratio > claims_scale.to ? e.ratio : high);
 }
 
-/// Ratios with their intervals, one per row, against the band of no difference, as SVG for the page. All claims share a
-/// scale; values beyond it are arrows with the number.
+/// Ratios with their intervals, one per row, against the band of no difference, as SVG. All claims share a scale.
 std::string interval_picture(std::span<const endpoint> endpoints) {
     const double axis = first_row + row_height * static_cast<double>(endpoints.size());
     std::string label;
@@ -154,6 +154,7 @@ std::string verdict_markup(const claim_result& c, const std::string& sentence) {
            markup_text(sentence);
 }
 
+/// Adds a row per claim, which links to its section; in Markdown a table, sentences and figures.
 void add_claim_rows(page& out, const reproduction& reproduced) {
     std::string rows = "\n";
     for (const claim_result& c : reproduced.claims) {
@@ -172,12 +173,13 @@ void add_claim_rows(page& out, const reproduction& reproduced) {
                  "\n");
     out.add_markdown(to_markdown(brief_table(reproduced)) + "\n");
     for (const claim_result& c : reproduced.claims)
-        out.add_markdown("- " + c.id + ", " + text_of(c) + ": " + c.sentence + "\n");
+        out.add_markdown("- " + c.id + ", " + text_of(c.verdict) + ": " + c.sentence + "\n");
     out.add_markdown("\n");
     for (const figure& f : reproduced.figures)
         out.add_markdown("![" + f.caption + "](figures/" + f.name + ".svg)\n\n" + f.caption + "\n\n");
 }
 
+/// Adds the section on the rule: a picture, the meaning of each verdict, rule.md and the null control.
 void add_rule(page& out, const reproduction& reproduced) {
     out.heading("How a verdict is reached", "rule");
     out.add_html(rule_picture() + "\n");
@@ -197,6 +199,7 @@ void add_rule(page& out, const reproduction& reproduced) {
     out.folded("Every ratio of the null control", reproduced.null_control);
 }
 
+/// Adds the section on choices that the paper leaves open, with the claim's ratio under each alternative.
 void add_choices(page& out, const reproduction& reproduced) {
     out.heading("What the paper leaves open", "open");
     std::string list;
@@ -226,6 +229,7 @@ table rule_table() {
     return t;
 }
 
+/// Composes the page: warnings and headline first, then claims, the rule, details per claim, and provenance.
 page report_of(const reproduction& reproduced, std::span<const report_section> sections, const provenance& origin,
                const std::vector<std::string>& failures) {
     page out("AABB Lab: the paper, reproduced", embedded::report_css);
@@ -258,7 +262,7 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         out.heading(c.id + ": " + c.claim, c.id);
         out.add_html(paragraph("verdict " + std::string(word_of(c.verdict).kind), verdict_markup(c, c.sentence)) +
                      "\n");
-        out.add_markdown("**" + text_of(c) + ":** " + c.sentence + "\n\n");
+        out.add_markdown("**" + text_of(c.verdict) + ":** " + c.sentence + "\n\n");
         if (c.evidence != c.sentence) out.paragraph(c.evidence);
         out.paragraph("The ratio: " + c.measured + ".", "soft");
         for (const figure& f : c.figures) out.add(f);

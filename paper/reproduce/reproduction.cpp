@@ -48,11 +48,12 @@ std::string list_of(const std::vector<Named>& entries, std::size_t from = 0) {
     return text;
 }
 
+/// Sets the macros of a claim, whose keys begin with its id.
 void add_claim(macros& to, const claim_result& c) {
     const auto set = [&](const char* key, std::string_view text) { to.set(c.id + "." + key, text); };
     set("claim", c.claim);
     set("measured", c.measured);
-    set("verdict", text_of(c));
+    set("verdict", text_of(c.verdict));
     set("sentence", c.sentence);
     set("because", c.evidence == c.sentence ? "" : c.evidence);
     to.set_tex(c.id + ".figures", list_of(c.figures));
@@ -66,31 +67,26 @@ void add_claim(macros& to, const claim_result& c) {
     set("high", c.has_primary ? ratio_digits_of(c.primary.range.high) : "-");
     const std::vector<endpoint> others = secondaries_of(c);
     to.set(c.id + ".endpoints", others.size());
-    const auto count = [&](const char* key, support what) {
+    for (const auto& [key, what] : {std::pair{"for", support::favours},
+                                    {"against", support::contradicts},
+                                    {"same", support::no_difference},
+                                    {"undecided", support::undecided}})
         to.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(others, what, &endpoint::corrected)));
-    };
-    count("for", support::favours);
-    count("against", support::contradicts);
-    count("same", support::no_difference);
-    count("undecided", support::undecided);
-}
-
-std::string text_of(outcome direction) {
-    constexpr std::array names{"less", "same", "more", "open"};
-    return names[static_cast<std::size_t>(direction)];
 }
 
 /// Every endpoint of every claim, for programs.
 table endpoints_of(const reproduction& reproduced) {
     table t = empty_table({"claim", "endpoint", "where", "source", "expected"}, {"ratio", "low", "high"},
                           {"direction", "outcome"});
+    constexpr std::array directions{"less", "same", "more", "open"};  // in the order of `outcome`
     const auto add = [&](const claim_result& c, const endpoint& e) {
         std::string where;
         for (const auto& [name, value] : e.where) where += (where.empty() ? "" : "; ") + name + "=" + value;
         const auto digits = [](double ratio) { return fmt::format("{:.9g}", ratio); };
         t.rows.push_back({c.id, e.is_primary ? "primary" : "secondary", where, e.source,
                           e.expected == expectation::less ? "less" : "not more", digits(e.ratio), digits(e.range.low),
-                          digits(e.range.high), text_of(e.direction), text_of(e.corrected)});
+                          digits(e.range.high), directions[static_cast<std::size_t>(e.direction)],
+                          text_of(e.corrected)});
     };
     for (const claim_result& c : reproduced.claims) {
         if (c.has_primary) add(c, c.primary);
@@ -125,6 +121,7 @@ void write_table(const std::filesystem::path& folder, const named_table& t) {
     write_file(folder / (t.name + ".tex"), to_tex(t.content));
 }
 
+/// All macros of the LaTeX report. A missing key ends its build, so keys of unmeasured values are set too.
 std::string macros_of(const reproduction& reproduced, const provenance& origin,
                       const std::vector<std::string>& failures) {
     macros to;
@@ -179,6 +176,7 @@ std::string macros_of(const reproduction& reproduced, const provenance& origin,
     return to.text();
 }
 
+/// Collects the origin of the results from the manifests of all experiments behind claims, choices and null control.
 provenance provenance_of(const measurements& results, const reproduction& reproduced) {
     provenance origin;
     const std::filesystem::path& folder = results.folder();
@@ -261,12 +259,12 @@ std::string agreement_of(std::span<const claim_result> claims, std::span<const c
     std::size_t same = 0;
     for (const claim_result& c : claims) {
         const auto counterpart = std::ranges::find(other_claims, c.id, &claim_result::id);
-        const std::string verdict = counterpart == other_claims.end() ? "none" : text_of(*counterpart);
-        if (verdict == text_of(c))
+        const std::string verdict = counterpart == other_claims.end() ? "none" : text_of(counterpart->verdict);
+        if (verdict == text_of(c.verdict))
             ++same;
         else
-            differing +=
-                fmt::format("{} {}: here {}, there {}", differing.empty() ? ":" : ";", c.id, text_of(c), verdict);
+            differing += fmt::format("{} {}: here {}, there {}", differing.empty() ? ":" : ";", c.id,
+                                     text_of(c.verdict), verdict);
     }
     return fmt::format("{} of {} verdicts agree with {}{}.", same, claims.size(), other, differing);
 }

@@ -11,6 +11,7 @@ public:
     void insert(std::uint32_t id) final { objects_.insert(id); }
     void remove(std::uint32_t id) final { objects_.remove(id); }
 
+    /// Rejects invalid boxes before the engine sees them, and lists the present objects anew if they changed.
     void update(std::span<const box> boxes) final {
         frame_.begin();
         require_ieee_arithmetic();
@@ -71,8 +72,7 @@ struct pair_collector {
             out_of_memory = true;
         }
     }
-    /// Call it after the library has returned.
-    /// @throws std::bad_alloc if memory ran out in a callback.
+    /// Call it after the library has returned. @throws std::bad_alloc if memory ran out in a callback.
     void require_memory() const {
         if (out_of_memory) throw std::bad_alloc();
     }

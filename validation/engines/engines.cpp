@@ -71,18 +71,16 @@ bool is_exact_engine(std::string_view name) {
 
 std::unique_ptr<global_stage> make_box_engine(std::string_view name) {
     const engine& e = engine_named(name);
-    if (!e.boxes)
-        throw input_error("the engine '" + e.name +
-                          "' has no broad phase, so it cannot search boxes; it only collides meshes");
-    return e.boxes();
+    if (e.boxes) return e.boxes();
+    throw input_error("the engine '" + e.name +
+                      "' has no broad phase, so it cannot search boxes; it only collides meshes");
 }
 
 std::unique_ptr<local_stage> make_mesh_engine(std::string_view name) {
     const engine& e = engine_named(name);
-    if (!e.meshes)
-        throw input_error("the engine '" + e.name +
-                          "' has no narrow phase, so it cannot collide meshes; it only searches boxes");
-    return e.meshes();
+    if (e.meshes) return e.meshes();
+    throw input_error("the engine '" + e.name +
+                      "' has no narrow phase, so it cannot collide meshes; it only searches boxes");
 }
 
 }  // namespace aabb

@@ -26,12 +26,10 @@ struct left_out_engine {
 };
 [[nodiscard]] std::span<const left_out_engine> left_out_engines();
 
-/// The reason why there is no engine of this name: it was left out, or it is unknown, in which case the nearest name is
-/// suggested. Empty if there is one.
+/// Why there is no engine of this name: it was left out, or is unknown (with the nearest name). Empty if there is one.
 [[nodiscard]] std::string rejection_of_engine(std::string_view name, std::span<const engine_info> built = engines(),
                                               std::span<const left_out_engine> left_out = left_out_engines());
 
-/// Whether this engine is exact.
 /// @throws input_error if there is no such engine.
 [[nodiscard]] bool is_exact_engine(std::string_view name);
 
@@ -43,8 +41,7 @@ struct left_out_engine {
 /// @throws input_error if there is no such engine, or it has no narrow phase.
 [[nodiscard]] std::unique_ptr<local_stage> make_mesh_engine(std::string_view name);
 
-/// A triangle test of an engine's library. It is chosen and configured like a strategy of the kind triangle, but cannot
-/// be part of a composition.
+/// A triangle test of an engine's library; configured like a strategy, but cannot be part of a composition.
 struct library_test_info {
     std::string name;
     std::string summary;

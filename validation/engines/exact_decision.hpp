@@ -9,8 +9,7 @@
 
 namespace aabb {
 
-/// Calls `visit` with the triangle, segment or point that three points span, since CGAL's tests exclude degenerate
-/// triangles and segments. Returns its result.
+/// Calls `visit` with the triangle, segment or point that three points span: CGAL's tests exclude degenerate ones.
 template <class Kernel>
 [[nodiscard]] auto with_hull(const typename Kernel::Point_3 (&p)[3], const auto& visit) {
     if (!CGAL::collinear(p[0], p[1], p[2])) return visit(typename Kernel::Triangle_3(p[0], p[1], p[2]));

@@ -74,6 +74,7 @@ bool is_interior(const exact_hull& h, const point_3& p) {
     return true;
 }
 
+/// A segment is transversal if its middle, and thus the segment, lies inside both triangles.
 intersection_kind kind_of(const std::vector<point_3>& corners, const exact_hull& g, const exact_hull& h) {
     if (corners.empty()) return intersection_kind::none;
     if (corners.size() == 1) return intersection_kind::point;

@@ -19,8 +19,7 @@ struct corner_errors {
     double bound = 0;     ///< the stated error of that coordinate
 };
 
-/// The intersection of two closed triangles without rounding, by CGAL's kernel with exact constructions; zero-area
-/// triangles count as segments or points.
+/// The intersection of two closed triangles (segments or points if degenerate) by CGAL's kernel of exact constructions.
 class exact_intersection {
 public:
     exact_intersection(const triangle3d& s, const triangle3d& t);
@@ -28,8 +27,7 @@ public:
 
     [[nodiscard]] intersection_kind kind() const;
 
-    /// Corners rounded once: the stated error is the distance of the two doubles around a coordinate, or 0 if all
-    /// corners are doubles.
+    /// Corners rounded once. The stated error is the gap of the doubles around a coordinate, or 0 if all are doubles.
     [[nodiscard]] triangle_intersection rounded() const;
 
     /// Compares corners in their order around the polygon, for any first corner and either orientation.

@@ -5,8 +5,7 @@ import aabb.std;
 
 namespace aabb {
 
-/// The vertices of B in A's frame, by index. Unused vertices outside B's box stay unchanged.
-/// @param bounds the box of B, in B's frame
+/// The vertices of B in A's frame, by index. Unused vertices outside B's box (`bounds`) stay unchanged.
 [[nodiscard]] std::vector<vec3f> transformed_vertices(const pose& pose_a, const pose& pose_b, const mesh& b,
                                                       const box& bounds) {
     const relative_pose to_a(pose_a, pose_b, bounds);
@@ -46,6 +45,7 @@ public:
         all_pairs(model_a, pose_a, model_b, pose_b, pairs);
         return pairs.size();
     }
+    /// The pairs of a mesh with its copy contain each pair in both orders, and each triangle with itself.
     void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final {
         std::vector<index_pair> both_ways;
         all_pairs(model, {}, model, {}, both_ways);
@@ -71,8 +71,7 @@ struct engine_model {
     mesh_fit fit{};
 };
 
-/// An engine with a model of each mesh; it rejects the same input as a composed stage.
-/// @tparam Model derived from engine_model
+/// An engine with a Model (derived from engine_model) of each mesh; it rejects the same input as a composed stage.
 template <class Model>
 class model_engine : public mesh_engine {
 public:

@@ -23,7 +23,7 @@ struct numbered_box {
 
 /// Finds pairs of overlapping boxes: {i, t} for box i of `a` and t of `b`, in any order.
 using candidate_search = std::vector<index_pair>(std::span<const box> a, std::span<const box> b);
-/// CGAL's intersection of box sequences (Zomorodian and Edelsbrunner, 2000).
+/// CGAL's intersection of box sequences (Zomorodian and Edelsbrunner 2002).
 candidate_search candidates_by_cgal;
 
 /// Tests two triangles in the same frame.

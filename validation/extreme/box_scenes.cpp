@@ -29,10 +29,6 @@ std::vector<box> boxes_of(std::uint32_t count, Make make) {
     return boxes;
 }
 
-box_frames identical() {
-    return moving(std::vector<box>(60, {{1, 2, 3}, {2, 3, 4}}), 0.5F, 2);
-}
-
 box_frames lattice() {
     const auto cell = [](std::uint32_t i) {
         const std::uint32_t layer = i / 25;
@@ -49,7 +45,7 @@ box_frames points() {
     return moving(boxes_of(80, point), 1, 1);
 }
 
-/// Boxes with zero extent on `flat_axes` of the axes.
+/// Boxes with zero extent on this number of axes.
 box_frames without_extent(int flat_axes, std::uint32_t seed) {
     draws random(seed);
     const auto make_box = [&](std::uint32_t i) {
@@ -117,7 +113,7 @@ box_frames independent_frames(std::uint32_t count, Make make) {
 }
 
 /// Two frames of boxes with all coordinates among `ends`.
-box_frames with_ends(std::span<const float> ends, std::uint32_t objects, std::uint32_t seed) {
+box_frames with_ends(const std::vector<float>& ends, std::uint32_t objects, std::uint32_t seed) {
     draws random(seed);
     const auto end = [&] { return ends[random.below(static_cast<std::uint32_t>(ends.size()))]; };
     return independent_frames(objects, [&](std::uint32_t) {
@@ -135,16 +131,6 @@ box_frames denormals() {
     std::vector<float> ends;
     for (int i = -12; i <= 12; ++i) ends.push_back(static_cast<float>(i) * least);
     return with_ends(ends, 80, 21);
-}
-
-box_frames signed_zeros() {
-    constexpr std::array<float, 8> ends{-1, -least_normal, -least, -0.0F, 0.0F, least, least_normal, 1};
-    return with_ends(ends, 70, 22);
-}
-
-box_frames greatest_floats() {
-    constexpr std::array<float, 5> ends{-most, -1, 0, 1, most};
-    return with_ends(ends, 70, 23);
 }
 
 /// Boxes of about ten in size; floats are a sixteenth apart at a million, 64 apart at 10^9.
@@ -181,10 +167,9 @@ box_frames huge_and_tiny() {
     return frames;
 }
 
-/// Boxes that appear and disappear.
-/// @param is_there whether an object is present in a frame
-template <class IsThere>
-extreme_scene population(std::string name, std::string summary, IsThere is_present) {
+/// Boxes that appear and disappear; `is_present` states whether an object is present in a frame.
+template <class IsPresent>
+extreme_scene population(std::string name, std::string summary, IsPresent is_present) {
     extreme_scene scene{.name = std::move(name), .summary = std::move(summary)};
     scene.make_boxes = [is_present]() -> std::unique_ptr<box_scene> {
         box_frames frames = jumping_boxes();
@@ -204,7 +189,8 @@ extreme_scene population(std::string name, std::string summary, IsThere is_prese
 
 std::vector<extreme_scene> box_scenes() {
     return {
-        scene_of_boxes("identical", "60 copies of one box", identical),
+        scene_of_boxes("identical", "60 copies of one box",
+                       [] { return moving(std::vector<box>(60, {{1, 2, 3}, {2, 3, 4}}), 0.5F, 2); }),
         scene_of_boxes("lattice", "cubes that touch on a lattice: all comparisons are ties", lattice),
         scene_of_boxes("points", "boxes without extent, many in the same place", points),
         scene_of_boxes("plates", "boxes without extent on one axis", [] { return without_extent(1, 16); }),
@@ -218,8 +204,11 @@ std::vector<extreme_scene> box_scenes() {
         scene_of_boxes("one_object", "one box", [] { return row_of(1); }),
         scene_of_boxes("two_objects", "two boxes that touch", [] { return row_of(2); }),
         scene_of_boxes("denormals", "coordinates are small multiples of the least float", denormals),
-        scene_of_boxes("signed_zeros", "-0 against +0, and the numbers next to them", signed_zeros),
-        scene_of_boxes("greatest_floats", "boxes that reach to the greatest floats", greatest_floats),
+        scene_of_boxes(
+            "signed_zeros", "-0 against +0, and the numbers next to them",
+            [] { return with_ends({-1, -least_normal, -least, -0.0F, 0.0F, least, least_normal, 1}, 70, 22); }),
+        scene_of_boxes("greatest_floats", "boxes that reach to the greatest floats",
+                       [] { return with_ends({-most, -1, 0, 1, most}, 70, 23); }),
         scene_of_boxes("far_1e6", "a million from the origin", [] { return far_out(1e6F); }),
         scene_of_boxes("far_1e9", "10^9 from the origin, where floats are 64 apart", [] { return far_out(1e9F); }),
         scene_of_boxes("teleport", "every box jumps in each frame", jumping_boxes),

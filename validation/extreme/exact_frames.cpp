@@ -16,6 +16,7 @@ bool share_a_point(const box& a, const box& b) {
     return true;
 }
 
+/// Records the objects that arrive and depart between the frame before and this one.
 void add_changes(exact_box_frame& frame, std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& present) {
     before.resize(present.size(), 0);
     for (std::uint32_t object = 0; object < present.size(); ++object)
@@ -36,6 +37,7 @@ void for_each_true_pair(const mesh& a, const mesh& b, const relative_pose& to_a,
     }
 }
 
+/// The ground truth for two objects, by a double loop over their triangles.
 exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>& poses, index_pair objects,
                                extreme_query query) {
     exact_objects result{objects.a, objects.b, {}, false};

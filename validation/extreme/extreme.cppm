@@ -20,8 +20,7 @@ enum class arithmetic : std::uint8_t {
 /// Runs the work in a separate thread in this mode; exceptions are rethrown here.
 void in_arithmetic(arithmetic kind, const std::function<void()>& work);
 
-/// The queries of a scene of meshes. Engines that list all candidates first cannot run `first_pair`: the candidates
-/// exceed any memory.
+/// The queries of a scene of meshes. Engines that list all candidates first lack the memory for `first_pair`.
 enum class extreme_query : std::uint8_t { all_pairs, count_pairs, first_pair };
 
 /// A scene and the expected result of a candidate: the ground truth, or an input_error.
@@ -172,8 +171,7 @@ private:
     exact_meshes meshes_;  // empty in a scene of boxes and in an invalid scene
 };
 
-/// Whether the result is the expected one: the ground truth, or an input_error with the right message. Inexact stages
-/// must reject invalid scenes as well.
+/// Whether the result is the ground truth or, also of inexact stages, the expected rejection of an invalid scene.
 [[nodiscard]] bool is_as_expected(const extreme_scene& scene, const extreme_result& result, bool must_be_exact = true);
 
 /// Turns the result into a wrong one if it exceeds the scene's memory limit.

@@ -34,6 +34,7 @@ std::size_t bytes_in(const std::vector<part_bytes>& parts) {
     return total;
 }
 
+/// Runs a broad phase over all frames, and compares each result with the ground truth.
 void run(const exact_boxes& exact, global_stage& stage, extreme_result& result) {
     std::vector<index_pair> pairs;
     for (std::size_t frame = 0; frame < exact.size(); ++frame) {
@@ -63,6 +64,7 @@ void add_classes(const mesh_scene& scene, pair_comparison difference, index_pair
                                              scene.meshes[scene.mesh_of[objects.b]], pose_b);
 }
 
+/// Runs both stages on a frame, and compares the contacts of each two objects with the ground truth.
 void judge_all_pairs(const judged_frame& current, pipeline& stages, extreme_result& result) {
     stages.search();
     stages.detect();
@@ -109,10 +111,10 @@ void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_
     add_classes(scene, difference, {0, 0}, {}, {}, result);
 }
 
+/// Runs every query of a narrow phase over all frames; of invalid scenes only the search, which must be rejected.
 void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& stage, extreme_result& result) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();
-    // Objects with overlapping boxes are candidates, so that a box that is too small causes false negatives. In invalid
-    // scenes all pairs of objects are candidates.
+    // Objects with overlapping boxes are candidates, so that a box that is too small causes false negatives.
     const std::unique_ptr<global_stage> boxes = make_box_engine("brute_force");
     std::optional<pipeline> stages;
     if (scene.rejection.empty())
@@ -188,12 +190,20 @@ void reject_each_query(const extreme_scene& scene, const std::function<std::uniq
     require("add_model", [&] { stage->add_model(m); });
 }
 
-/// Runs the work and turns exceptions into a result.
-template <class Work>
-extreme_result result_of(const extreme_scene& scene, Work work) {
+/// Makes and runs a stage, and turns exceptions into a result.
+/// @param run_frames runs all frames of the scene, and adds to the result
+template <class Stage, class RunFrames>
+extreme_result result_of(const extreme_scene& scene, const std::function<std::unique_ptr<Stage>()>& make,
+                         RunFrames run_frames) {
     extreme_result result;
     try {
-        work(result);
+        if (scene.computed_in != arithmetic::ieee) {
+            reject_each_query(scene, make, result);
+        } else {
+            const std::unique_ptr<Stage> stage = make();
+            run_frames(*stage, result);
+            result.bytes = bytes_in(stage->bytes());
+        }
         if (!scene.rejection.empty() && !scene.accepted_in_double && result.outcome == verdict::exact)
             make_wrong(result, "returns a result, but must reject the scene");
     } catch (const input_error& error) {
@@ -216,21 +226,12 @@ extreme_judge::extreme_judge(extreme_scene scene) : scene_(std::move(scene)) {
 }
 
 extreme_result extreme_judge::judge(const std::function<std::unique_ptr<global_stage>()>& make) const {
-    return result_of(scene_, [&](extreme_result& result) {
-        if (scene_.computed_in != arithmetic::ieee) return reject_each_query(scene_, make, result);
-        const std::unique_ptr<global_stage> stage = make();
-        run(boxes_, *stage, result);
-        result.bytes = bytes_in(stage->bytes());
-    });
+    return result_of(scene_, make, [&](global_stage& stage, extreme_result& result) { run(boxes_, stage, result); });
 }
 
 extreme_result extreme_judge::judge(const std::function<std::unique_ptr<local_stage>()>& make) const {
-    return result_of(scene_, [&](extreme_result& result) {
-        if (scene_.computed_in != arithmetic::ieee) return reject_each_query(scene_, make, result);
-        const std::unique_ptr<local_stage> stage = make();
-        run(scene_, meshes_, *stage, result);
-        result.bytes = bytes_in(stage->bytes());
-    });
+    return result_of(scene_, make,
+                     [&](local_stage& stage, extreme_result& result) { run(scene_, meshes_, stage, result); });
 }
 
 bool is_as_expected(const extreme_scene& scene, const extreme_result& result, bool must_be_exact) {

@@ -31,7 +31,7 @@ extreme_scene with_mesh(const char* name, const char* summary, Spoil spoil, cons
     return rejected(scene_of_meshes(name, summary, make), rejection);
 }
 
-/// @param refusal empty if the pose is valid
+/// @param rejection empty if the pose is valid
 extreme_scene with_pose(const char* name, const char* summary, const pose& second, const std::string& rejection = {}) {
     const auto make = [second] { return posed(ball(4, 1), {{{}, second}}); };
     return rejected(scene_of_meshes(name, summary, make), rejection);
@@ -58,11 +58,6 @@ pose stretched(double error) {
     return p;
 }
 
-extreme_scene computed_in(arithmetic kind, extreme_scene scene, std::string rejection) {
-    scene.computed_in = kind;
-    return rejected(std::move(scene), std::move(rejection));
-}
-
 /// Valid scenes of boxes and of meshes in a wrong floating-point mode.
 std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name, const std::string& summary,
                                        const std::string& rejection) {
@@ -70,8 +65,10 @@ std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name,
         return box_frames{{{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{3, 0, 0}, {4, 1, 1}}}};
     };
     const auto meshes = [] { return posed(cube(), {{{}, shifted(1, 1, 1)}}); };
-    return {computed_in(kind, scene_of_boxes(name + "_boxes", summary, boxes), rejection),
-            computed_in(kind, scene_of_meshes(name + "_meshes", summary, meshes), rejection)};
+    std::vector<extreme_scene> scenes = {rejected(scene_of_boxes(name + "_boxes", summary, boxes), rejection),
+                                         rejected(scene_of_meshes(name + "_meshes", summary, meshes), rejection)};
+    for (extreme_scene& scene : scenes) scene.computed_in = kind;
+    return scenes;
 }
 
 }  // namespace

@@ -85,8 +85,7 @@ bool only_touch(const exact_triangle& s, const exact_triangle& t) {
     return std::ranges::any_of(facet_axes(s, t), [&](const auto& axis) { return gap_along(s, t, axis) == 0; });
 }
 
-/// The distance of two triangles, or the negative penetration depth: the greatest gap over all directions in which two
-/// of their corners, edges or faces can be closest.
+/// The distance, or negative penetration depth: the greatest gap over all directions between closest features.
 double signed_distance(const triangle3d& s, const triangle3d& t) {
     std::vector<vec3d> axes = facet_axes(s, t);
     for (int i = 0; i < 3; ++i)
@@ -106,6 +105,7 @@ double signed_distance(const triangle3d& s, const triangle3d& t) {
     return greatest;
 }
 
+/// Whether a displacement of a millionth of the pair's extent can change the result, so that rounding may as well.
 bool are_near(const triangle3f& s, const triangle3f& t) {
     const box bounds = merged(bounds_of(s), bounds_of(t));
     const int axis = longest_axis(bounds);
@@ -145,6 +145,7 @@ differences& differences::operator+=(const differences& other) {
     return *this;
 }
 
+/// Merges the two sorted lists, and classifies each pair that is in one of them only.
 differences compare_triangle_pairs(std::span<const index_pair> exact, std::span<const index_pair> reported,
                                    const mesh& a, const pose& pose_a, const mesh& b, const pose& pose_b) {
     const relative_pose to_a(pose_a, pose_b, bounds_of(b));

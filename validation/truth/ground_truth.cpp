@@ -12,6 +12,7 @@ double length_of(const vec3d& v) {
 
 }  // namespace
 
+/// Chooses brute force for few boxes, since it has the least that can be wrong, and CGAL where that is too slow.
 ground_truth::ground_truth(std::size_t objects, const mesh_scene* meshes) : meshes_(meshes) {
     constexpr std::size_t brute_force_limit = 20000;
     box_engine_ = objects <= brute_force_limit ? "brute_force" : "cgal";
@@ -73,6 +74,7 @@ ground_truth::sphere ground_truth::sphere_around(const mesh& m) {
     return bounding;
 }
 
+/// Sweeps over the spheres, sorted by their least x, and tests those that overlap on x.
 std::vector<index_pair> ground_truth::overlapping_spheres(std::span<const pose> poses) const {
     std::vector<sphere> world_spheres;
     for (std::size_t object = 0; object < poses.size(); ++object) {

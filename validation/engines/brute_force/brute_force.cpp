@@ -26,6 +26,7 @@ private:
         }
     }
 
+    /// Tests blocks without branches, which vectorises, and looks for pairs only in blocks that have any.
     void find_pairs(std::vector<index_pair>& pairs) override {
         std::array<std::uint32_t, 512> hits{};
         for (std::size_t i = 0; i < ids_.size(); ++i)

@@ -62,6 +62,7 @@ private:
         for (const std::uint32_t id : ids) place(id, clamped(boxes[id]));
     }
 
+    /// Makes an empty sweep with a larger world: Bullet's world cannot grow.
     void begin(const box& bounds, std::size_t objects) {
         world_ = world_around(bounds);
         proxies_.assign(objects, nullptr);

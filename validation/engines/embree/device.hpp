@@ -62,8 +62,7 @@ struct user_scene {
     geometry_pointer geometry;
     scene_pointer scene;
 
-    /// Creates an empty scene.
-    /// @param bounds returns the bounds of a box
+    /// Creates an empty scene; `bounds` returns the bounds of a box.
     void begin(RTCBuildQuality quality, bool is_dynamic, RTCBoundsFunction bounds) {
         scene.reset();
         geometry.reset(rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_USER));
@@ -95,16 +94,11 @@ inline float clamped_to_embree(float x) {
     return std::abs(x) < std::numeric_limits<float>::min() ? 0 : std::clamp(x, -most, most);
 }
 
+/// A template because this header cannot import our box.
 template <class Box>
 RTCBounds clamped_to_embree(const Box& b) {
-    RTCBounds bounds{};
-    bounds.lower_x = clamped_to_embree(b.min[0]);
-    bounds.lower_y = clamped_to_embree(b.min[1]);
-    bounds.lower_z = clamped_to_embree(b.min[2]);
-    bounds.upper_x = clamped_to_embree(b.max[0]);
-    bounds.upper_y = clamped_to_embree(b.max[1]);
-    bounds.upper_z = clamped_to_embree(b.max[2]);
-    return bounds;
+    return {clamped_to_embree(b.min[0]), clamped_to_embree(b.min[1]), clamped_to_embree(b.min[2]), 0,
+            clamped_to_embree(b.max[0]), clamped_to_embree(b.max[1]), clamped_to_embree(b.max[2]), 0};
 }
 
 }  // namespace aabb::embree

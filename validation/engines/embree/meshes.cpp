@@ -128,29 +128,30 @@ private:
     std::shared_ptr<std::ptrdiff_t> embree_bytes_ = std::make_unique<std::ptrdiff_t>(0);  // bytes that Embree holds
 };
 
+template <RTCBuildQuality Quality>
+engine engine_of_quality(const char* name, const char* summary) {
+    return {
+        .name = name, .summary = summary, .exact = false, .meshes = make_stage<local_stage, embree_meshes, Quality>};
+}
+
 }  // namespace
 
 engine embree_meshes_engine() {
-    return {.name = "embree_meshes",
-            .summary =
-                "Embree's collision of two scenes of medium quality, rebuilt for each new pose, with "
-                "Devillers and Guigue's test in double",
-            .exact = false,
-            .meshes = make_stage<local_stage, embree_meshes, RTC_BUILD_QUALITY_MEDIUM>};
+    return engine_of_quality<RTC_BUILD_QUALITY_MEDIUM>(
+        "embree_meshes",
+        "Embree's collision of two scenes of medium quality, rebuilt for each new pose, with Devillers and Guigue's "
+        "test in double");
 }
 
 engine embree_meshes_low_engine() {
-    return {.name = "embree_meshes_low",
-            .summary = "as embree_meshes, with scenes of low quality, which are built faster",
-            .exact = false,
-            .meshes = make_stage<local_stage, embree_meshes, RTC_BUILD_QUALITY_LOW>};
+    return engine_of_quality<RTC_BUILD_QUALITY_LOW>(
+        "embree_meshes_low", "as embree_meshes, with scenes of low quality, which are built faster");
 }
 
 engine embree_meshes_refit_engine() {
-    return {.name = "embree_meshes_refit",
-            .summary = "as embree_meshes, with scenes that are refitted for each new pose and when vertices move",
-            .exact = false,
-            .meshes = make_stage<local_stage, embree_meshes, RTC_BUILD_QUALITY_REFIT>};
+    return engine_of_quality<RTC_BUILD_QUALITY_REFIT>(
+        "embree_meshes_refit",
+        "as embree_meshes, with scenes that are refitted for each new pose and when vertices move");
 }
 
 }  // namespace aabb

@@ -57,7 +57,7 @@ protected:
     /// Makes an empty space for boxes like these.
     [[nodiscard]] virtual space_handle make_space(std::span<const ode_box> boxes) const = 0;
     /// Called before each search.
-    virtual void prepare(dSpaceID space, std::span<const ode_box> boxes) const = 0;
+    virtual void prepare(dSpaceID, std::span<const ode_box>) const {}
 
 private:
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) final {
@@ -184,8 +184,6 @@ private:
         std::ranges::stable_sort(axes, std::greater(), extent_of);
         return space_handle(dSweepAndPruneSpaceCreate(nullptr, axes[0] | axes[1] << 2 | axes[2] << 4));
     }
-
-    void prepare(dSpaceID, std::span<const ode_box>) const override {}
 };
 
 }  // namespace
