@@ -35,7 +35,7 @@ int run(const atlas_request& request) {
     if (names.empty()) sources.add(out);
     const results_source& source = sources.list().front();
     std::vector<atlas_scene> atlas;
-    (void)sources.with_names_of_user([&] {
+    (void)sources.run_with_source_names([&] {
         verify_record(source.folder);
         std::filesystem::path parts = source.folder;
         atlas = measured_atlas(parts);

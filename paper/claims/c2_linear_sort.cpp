@@ -70,8 +70,8 @@ std::vector<const condition*> comparable_sizes(std::vector<const condition*> con
     std::erase_if(conditions, [](const condition* c) { return number_of(c->of(), "objects") < fewest; });
     const std::optional<double> usual = inversions_of(conditions);
     std::erase_if(conditions, [&](const condition* c) {
-        const std::optional<double> here = inversions_of(*c);
-        return usual && here && std::abs(*here - *usual) > most_off * *usual;
+        const std::optional<double> inversions = inversions_of(*c);
+        return usual && inversions && std::abs(*inversions - *usual) > most_off * *usual;
     });
     return conditions;
 }

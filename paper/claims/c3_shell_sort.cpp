@@ -62,8 +62,8 @@ figure figure_of(const std::vector<condition>& conditions) {
 
 /// Claim C3: Shell sort against insertion sort, ordered by inversions per element, which decide between the two.
 draft c3_claim(const measurements& m) {
-    // Few inversions and many. Boxes on a line that move by 300 edges have as many as 100,000 boxes in space that move
-    // by one (186 per element in full runs), and take a hundredth of the time.
+    // Few inversions and many. Boxes on a line that move by 300 edges have the inversions of 100,000 boxes in space
+    // that move by one edge (186 per element in full runs), and take a hundredth of the time.
     draft c3{{.claim = "Shell sort beats insertion sort under temporal coherence",
               .measured = "time per frame to update and sort the boxes, shell with Ciura's gaps over insertion",
               .experiments = {"c3"}},

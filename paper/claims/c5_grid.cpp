@@ -61,9 +61,9 @@ private:
     [[nodiscard]] static double least_of(const Range& range, Value value) {
         double least = std::numeric_limits<double>::infinity();
         for (const auto& element : range) {
-            const double here = value(element);
-            if (std::isnan(here)) return here;
-            least = std::min(least, here);
+            const double current = value(element);
+            if (std::isnan(current)) return current;
+            least = std::min(least, current);
         }
         return least;
     }
@@ -153,7 +153,7 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
 
 /// A quantity of a grid and of the cut against the size of the world.
 figure world_figure(const std::string& name, const std::string& what, const std::string& axis,
-                    const std::vector<condition>& worlds, const row_value& of) {
+                    const std::vector<condition>& worlds, const row_value& value) {
     figure f = log_log(name,
                        what +
                            " of the broad phase against the side of the world, for the same 2,000 cubes: a grid with "
@@ -165,7 +165,7 @@ figure world_figure(const std::string& name, const std::string& what, const std:
         series s{label};
         for (const condition& c : worlds) {
             const double side = std::cbrt(number_of(c.of(), "objects") / number_of(c.of(), "density"));
-            if (const auto point = c.point(side, tested, of)) s.points.push_back(*point);
+            if (const auto point = c.point(side, tested, value)) s.points.push_back(*point);
         }
         f.lines.push_back(s);
     }

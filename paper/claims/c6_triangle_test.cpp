@@ -90,11 +90,11 @@ figure figure_of(const test_times& times) {
         if (name.ends_with(frame_a_suffix)) continue;
         const auto place = static_cast<double>(f.x.names.size());
         f.x.names.emplace_back(place, name.substr(name.find('/') + 1));
-        const auto add = [&](series& to, const std::string& test) {
+        const auto add = [&](series& line, const std::string& test) {
             const auto position = times.find(test);
             if (position == times.end()) return;
             const quartiles q = spread_of(position->second);
-            to.points.push_back({place, q.median, q.low, q.high});
+            line.points.push_back({place, q.median, q.low, q.high});
         };
         add(transformed, name);
         add(untransformed, name + std::string(frame_a_suffix));

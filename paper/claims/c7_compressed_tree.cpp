@@ -18,7 +18,7 @@ std::vector<const condition*> conditions_by_size(const measurements& m) {
 
 /// A figure against the number of triangles of generated meshes.
 figure size_figure(const measurements& m, const std::string& name, const std::string& caption, const std::string& y,
-                   const row_value& of) {
+                   const row_value& value) {
     const method layouts[] = {{"canonical", tree("canonical")},
                               {"leafless", tree("leafless:leaf_test=triangle_box")},
                               {"shared planes", tree("shared_planes")},
@@ -26,7 +26,7 @@ figure size_figure(const measurements& m, const std::string& name, const std::st
     std::vector<const condition*> generated = conditions_by_size(m);
     std::erase_if(generated, [](const condition* c) { return !mesh_of(*c).starts_with("noise_sphere"); });
     figure f = log_log(name, caption, "triangles", y);
-    f.lines = series_of(layouts, generated, "triangles", of);
+    f.lines = series_of(layouts, generated, "triangles", value);
     return f;
 }
 

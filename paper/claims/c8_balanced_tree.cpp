@@ -15,9 +15,9 @@ table builds_table(const std::vector<condition>& conditions) {
     for (const condition& c : conditions)
         for (const char* build : {"median", "mean", "midpoint", "sah"}) {
             std::vector<std::string> cells{mesh_of(c), build};
-            for (const row_value& of : {measured("build_cpu_ms"), measured("detect_cpu_ms"), measured("box_tests"),
-                                        measured("triangle_tests")})
-                cells.push_back(digits_cell(median_of(c, canonical(build), of)));
+            for (const row_value& value : {measured("build_cpu_ms"), measured("detect_cpu_ms"), measured("box_tests"),
+                                           measured("triangle_tests")})
+                cells.push_back(digits_cell(median_of(c, canonical(build), value)));
             t.rows.push_back(cells);
         }
     return t;

@@ -34,8 +34,8 @@ draft c9_claim(const measurements& m) {
         for (const char* size : {"2", "4", "8"}) {
             const selection split = split_by("split_mesh", size);
             if (!has_pieces(c, split)) continue;
-            const auto add = [&](const std::string& metric, const std::string& of, const std::string& subject) {
-                c9.add(endpoint_of(c, split, unsplit, metric, {{"split_mesh", size}, {"time of", of}}), subject);
+            const auto add = [&](const std::string& metric, const std::string& part, const std::string& subject) {
+                c9.add(endpoint_of(c, split, unsplit, metric, {{"split_mesh", size}, {"time of", part}}), subject);
             };
             add("global_cpu_ms", "global search", "in the broad phase where meshes are split");
             add("frame_cpu_ms", "both stages", "in both phases where meshes are split");

@@ -105,11 +105,11 @@ std::vector<draft> drafts_of(const measurements& m) {
 
 /// Adds another machine's measurements. Endpoints that it lacks become unknown.
 void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
-    const auto add = [](std::vector<endpoint>& to, const std::vector<endpoint>& from) {
-        for (endpoint& e : to) {
+    const auto add = [](std::vector<endpoint>& endpoints, const std::vector<endpoint>& others) {
+        for (endpoint& e : endpoints) {
             const auto same = std::ranges::find_if(
-                from, [&](const endpoint& other) { return other.where == e.where && other.source == e.source; });
-            e.log_ratios.push_back(same == from.end() ? estimate{std::nan("")} : same->log_ratios.front());
+                others, [&](const endpoint& other) { return other.where == e.where && other.source == e.source; });
+            e.log_ratios.push_back(same == others.end() ? estimate{std::nan("")} : same->log_ratios.front());
         }
     };
     for (std::size_t i = 0; i < drafts.size(); ++i) {

@@ -184,7 +184,7 @@ struct claim_source {
 [[nodiscard]] estimate difference_of_means(const cells& above, const cells& below);
 
 /// The median over all repeats; empty if it was not measured.
-[[nodiscard]] std::optional<double> median_of(const condition& c, const selection& tested, const row_value& of);
+[[nodiscard]] std::optional<double> median_of(const condition& c, const selection& tested, const row_value& value);
 /// Inversions per element of the sorted list.
 [[nodiscard]] std::optional<double> inversions_of(const condition& c);
 
@@ -213,10 +213,10 @@ void add_ratios(table& t, const std::vector<condition>& conditions, std::span<co
     return {label, series_style::level, {{x, 1}}};
 }
 [[nodiscard]] series series_of(const std::string& label, std::span<const condition* const> conditions,
-                               const std::string& x, const selection& tested, const row_value& of);
+                               const std::string& x, const selection& tested, const row_value& value);
 [[nodiscard]] std::vector<series> series_of(std::span<const method> methods,
                                             std::span<const condition* const> conditions, const std::string& x,
-                                            const row_value& of);
+                                            const row_value& value);
 [[nodiscard]] std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted,
                                                 const std::string& base);
 

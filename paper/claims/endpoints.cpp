@@ -45,8 +45,8 @@ endpoint& draft::add(endpoint e, const std::string& subject, const std::string& 
     return add(std::move(e));
 }
 
-std::optional<double> median_of(const condition& c, const selection& tested, const row_value& of) {
-    const std::optional<quartiles> spread = c.spread(tested, of);
+std::optional<double> median_of(const condition& c, const selection& tested, const row_value& value) {
+    const std::optional<quartiles> spread = c.spread(tested, value);
     return spread ? std::optional(spread->median) : std::nullopt;
 }
 
@@ -76,20 +76,20 @@ figure_point point_of(double x, const endpoint& e) {
 
 /// A series of medians over the conditions of an experiment, in the order of x.
 series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
-                 const selection& tested, const row_value& of) {
+                 const selection& tested, const row_value& value) {
     series s{label};
     for (const condition* c : conditions) {
         const double place = x == "triangles" ? c->triangles() : number_of(c->of(), x);
-        if (const auto point = c->point(place, tested, of)) s.points.push_back(*point);
+        if (const auto point = c->point(place, tested, value)) s.points.push_back(*point);
     }
     std::ranges::sort(s.points, {}, &figure_point::x);
     return s;
 }
 
 std::vector<series> series_of(std::span<const method> methods, std::span<const condition* const> conditions,
-                              const std::string& x, const row_value& of) {
+                              const std::string& x, const row_value& value) {
     std::vector<series> lines;
-    for (const method& m : methods) lines.push_back(series_of(m.label, conditions, x, m.tested, of));
+    for (const method& m : methods) lines.push_back(series_of(m.label, conditions, x, m.tested, value));
     return lines;
 }
 

@@ -92,12 +92,12 @@ measured_choices leaf_test_choices(const measurements& m) {
 
 /// The growth of work per element, as in claim C2.
 measured_choices gap_count_choices(const measurements& m) {
-    measured_choices measured{"line, displacement 0.1", "as many as N requires"};
+    measured_choices measured{"line, displacement 0.1", "enough for N"};
     for (endpoint e : c2_claim(m).endpoints) {
         e.expected = expectation::not_more;
         const std::string sort = value_of(e.where, "sort");
         if (value_of(e.where, "displacement") != "0.1" || sort == "insertion") continue;
-        measured.add(sort == "shell:gaps=ciura"         ? "as many as N requires"
+        measured.add(sort == "shell:gaps=ciura"         ? "enough for N"
                      : sort == "shell:gaps=ciura_eight" ? "Ciura's eight"
                      : sort == "shell:gaps=four_one"    ? "two: 4 and 1"
                                                         : sort,
@@ -188,7 +188,7 @@ std::vector<open_choice> open_choices(const measurements& m) {
               search_choices(m, {{"Ciura", shell_cut, traditional},
                                  {"Tokuda", shell("tokuda"), traditional},
                                  {"Shell", shell("shell"), traditional}})),
-        judge("How many gaps?", "as many as N requires: Ciura's eight, then each 2.25 times the previous one",
+        judge("How many gaps?", "enough for N: Ciura's eight, then each 2.25 times the previous one",
               "the paper gives no number; with a fixed one the work per element stays constant, and O(N) holds", "C2",
               gap_count_choices(m)),
         judge("How far do objects move per frame?", "up to a tenth of an edge", "\"only slightly from last time step\"",
@@ -199,9 +199,8 @@ std::vector<open_choice> open_choices(const measurements& m) {
               "its list is not almost sorted, so insertion sort would be quadratic", "C1", first_frame_choices(m)),
         judge("What replaces the box of a leaf?",
               "the triangle is tested against the other box (Möller's test with a margin that keeps it exact)",
-              "\"we can directly adopt triangle to test\"; its box computed on the fly, or no test, are other "
-              "readings",
-              "C7b", leaf_test_choices(m)),
+              "\"we can directly adopt triangle to test\"; its box on the fly, or no test, are other readings", "C7b",
+              leaf_test_choices(m)),
         judge("What do twelve bytes of scope values describe?", "six planes for two siblings, without loss",
               "three planes per node cannot represent every box: the literal reading has larger boxes", "C7b",
               tree_choices(m, {{"without loss", tree("compressed", "median"), canonical("median")},

@@ -319,7 +319,7 @@ int reproduce(const reproduce_request& request) {
     const folder_lock lock(out);
     if (!request.judge) measure_reproduction(out, request.quick);
     if (request.sources.empty()) sources.add(out);
-    return sources.with_names_of_user([&] {
+    return sources.run_with_source_names([&] {
         std::vector<measurements> runs;
         for (const results_source& source : sources.list())
             runs.push_back(verified_measurements(source.folder, source.name));

@@ -111,14 +111,15 @@ void source_list::add(const std::filesystem::path& folder) {
     sources_.push_back({folder.string(), folder});
 }
 
-int source_list::with_names_of_user(const std::function<int()>& work) const {
+/// Archives are unpacked into temporary folders, which the user does not know: messages have the archive's name.
+int source_list::run_with_source_names(const std::function<int()>& work) const {
     try {
         return work();
     } catch (const aabb::input_error& error) {
         std::string sentence = error.what();
         for (const results_source& source : sources_)
-            if (const std::size_t at = sentence.find(source.folder.string()); at != std::string::npos)
-                sentence.replace(at, source.folder.string().size(), source.name);
+            if (const std::size_t position = sentence.find(source.folder.string()); position != std::string::npos)
+                sentence.replace(position, source.folder.string().size(), source.name);
         throw aabb::input_error(sentence);
     }
 }

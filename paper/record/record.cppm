@@ -60,7 +60,7 @@ public:
 
     [[nodiscard]] const std::vector<results_source>& list() const { return sources_; }
     /// Runs the work; if it rejects a file of an archive, the message has the archive's name.
-    [[nodiscard]] int with_names_of_user(const std::function<int()>& work) const;
+    [[nodiscard]] int run_with_source_names(const std::function<int()>& work) const;
 
 private:
     std::list<unpacked_archive> unpacked_;

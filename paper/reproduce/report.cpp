@@ -23,42 +23,42 @@ double x_percent(double ratio) {
 }
 
 /// Draws the band of no difference, with 1 in the middle.
-void add_band(svg_picture& to, double low, double one, double high, double top, double bottom) {
-    to.rectangle("band", {low, top, high - low, bottom - top});
-    to.line("one", {one, top}, {one, bottom});
+void add_band(svg_picture& picture, double low, double centre, double high, double top, double bottom) {
+    picture.rectangle("band", {low, top, high - low, bottom - top});
+    picture.line("one", {centre, top}, {centre, bottom});
 }
 
 constexpr double first_row = 16;
 constexpr double row_height = 12;
 
 /// @param y the vertical position
-void add_axis(svg_picture& to, double y) {
-    to.line("axis", {margin, y}, {100 - margin, y});
+void add_axis(svg_picture& picture, double y) {
+    picture.line("axis", {margin, y}, {100 - margin, y});
     for (const double ratio : {0.25, 0.5, 1., 2., 4.}) {
-        to.line("axis", {x_percent(ratio), y}, {x_percent(ratio), y + 3});
-        to.text("", {x_percent(ratio), y + 14}, short_number(ratio), {{"text-anchor", "middle"}});
+        picture.line("axis", {x_percent(ratio), y}, {x_percent(ratio), y + 3});
+        picture.text("", {x_percent(ratio), y + 14}, short_number(ratio), {{"text-anchor", "middle"}});
     }
 }
 
 /// Draws a value beyond the scale as an arrow at its end, with the number.
-void add_arrow(svg_picture& to, bool to_left, double y, double number) {
+void add_arrow(svg_picture& picture, bool to_left, double y, double number) {
     const double back = to_left ? 8 : -8;
     svg_picture head;
     head.path("", {{{back, -5}, {0, 0}, {back, 5}}}, true);
-    to.put({to_left ? 1. : 99., y}, head);
-    to.text("", {to_left ? margin : 100 - margin, y - 4}, ratio_digits_of(number),
-            {{"text-anchor", to_left ? "start" : "end"}});
+    picture.put({to_left ? 1. : 99., y}, head);
+    picture.text("", {to_left ? margin : 100 - margin, y - 4}, ratio_digits_of(number),
+                 {{"text-anchor", to_left ? "start" : "end"}});
 }
 
 /// Draws a ratio as a disc on its interval; what lies beyond the scale is drawn as an arrow.
-void add_interval(svg_picture& to, const endpoint& e, double y) {
+void add_interval(svg_picture& picture, const endpoint& e, double y) {
     const auto& [low, high] = e.range;
     const bool below = low < claims_scale.from;
     const bool above = high > claims_scale.to;
-    to.line("range", {below ? 2 : x_percent(low), y}, {above ? 98 : x_percent(high), y});
-    if (claims_scale.from <= e.ratio && e.ratio <= claims_scale.to) to.disc({x_percent(e.ratio), y}, 4);
-    if (below) add_arrow(to, true, y, e.ratio < claims_scale.from ? e.ratio : low);
-    if (above) add_arrow(to, false, y, e.ratio > claims_scale.to ? e.ratio : high);
+    picture.line("range", {below ? 2 : x_percent(low), y}, {above ? 98 : x_percent(high), y});
+    if (claims_scale.from <= e.ratio && e.ratio <= claims_scale.to) picture.disc({x_percent(e.ratio), y}, 4);
+    if (below) add_arrow(picture, true, y, e.ratio < claims_scale.from ? e.ratio : low);
+    if (above) add_arrow(picture, false, y, e.ratio > claims_scale.to ? e.ratio : high);
 }
 
 /// Ratios with their intervals, one per row, against the band of no difference, as SVG. All claims share a scale.
@@ -88,24 +88,24 @@ std::string rule_picture() {
                                                {1.3, 1.8, "more"},
                                                {0.72, 1.35, "direction open"}}};
     // The left part of the picture has the scale, and the right part the words.
-    constexpr double part = 64;
+    constexpr double plot_width = 64;
     const scale shown{0.4, 2.5, true};
-    const auto x = [&](double ratio) { return part * shown.place(ratio); };
+    const auto x = [&](double ratio) { return plot_width * shown.place(ratio); };
     constexpr double row = 26;
     constexpr double first = 40;
     constexpr double end = first + row * examples.size() - 8;
     svg_picture picture("%");
-    add_band(picture, x(1 / (1 + equivalence_band)), part / 2, x(1 + equivalence_band), 22, end);
-    picture.text("", {part / 2, 14}, "1", {{"text-anchor", "middle"}});
+    add_band(picture, x(1 / (1 + equivalence_band)), plot_width / 2, x(1 + equivalence_band), 22, end);
+    picture.text("", {plot_width / 2, 14}, "1", {{"text-anchor", "middle"}});
     picture.text("", {0, 14}, "\u2190 for the claim");
-    picture.text("", {part, 14}, "against \u2192", {{"text-anchor", "end"}});
+    picture.text("", {plot_width, 14}, "against \u2192", {{"text-anchor", "end"}});
     for (const example& e : examples) {
         const double y = first + row * static_cast<double>(&e - examples.data());
         picture.line("range", {x(e.low), y}, {x(e.high), y});
         picture.disc({x(std::sqrt(e.low * e.high)), y}, 5);
-        picture.text("outcome", {part + 3, y + 5}, e.outcome);
+        picture.text("outcome", {plot_width + 3, y + 5}, e.outcome);
     }
-    picture.text("", {part / 2, end + 18}, fmt::format("band of \u00b1{:.0f} %", 100 * equivalence_band),
+    picture.text("", {plot_width / 2, end + 18}, fmt::format("band of \u00b1{:.0f} %", 100 * equivalence_band),
                  {{"text-anchor", "middle"}});
     return picture.in_page("rule", "an interval against the band of no difference", end + 26);
 }

@@ -49,16 +49,16 @@ std::string list_of(const std::vector<Named>& entries, std::size_t from = 0) {
 }
 
 /// Sets the macros of a claim, whose keys begin with its id.
-void add_claim(macros& to, const claim_result& c) {
-    const auto set = [&](const char* key, std::string_view text) { to.set(c.id + "." + key, text); };
+void add_claim(macros& tex, const claim_result& c) {
+    const auto set = [&](const char* key, std::string_view text) { tex.set(c.id + "." + key, text); };
     set("claim", c.claim);
     set("measured", c.measured);
     set("verdict", text_of(c.verdict));
     set("sentence", c.sentence);
     set("because", c.evidence == c.sentence ? "" : c.evidence);
-    to.set_tex(c.id + ".figures", list_of(c.figures));
+    tex.set_tex(c.id + ".figures", list_of(c.figures));
     // The first table has the endpoints and belongs to the appendix.
-    to.set_tex(c.id + ".tables", list_of(c.tables, 1));
+    tex.set_tex(c.id + ".tables", list_of(c.tables, 1));
     set("setup", setup_of(c));
     set("favourable", c.expected == expectation::less ? "below 1" : "below 1.05");
     set("condition", c.has_primary ? text_of(c.primary.where) : "-");
@@ -66,12 +66,12 @@ void add_claim(macros& to, const claim_result& c) {
     set("low", c.has_primary ? ratio_digits_of(c.primary.range.low) : "-");
     set("high", c.has_primary ? ratio_digits_of(c.primary.range.high) : "-");
     const std::vector<endpoint> others = secondaries_of(c);
-    to.set(c.id + ".endpoints", others.size());
+    tex.set(c.id + ".endpoints", others.size());
     for (const auto& [key, what] : {std::pair{"for", support::favours},
                                     {"against", support::contradicts},
                                     {"same", support::no_difference},
                                     {"undecided", support::undecided}})
-        to.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(others, what, &endpoint::corrected)));
+        tex.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(others, what, &endpoint::corrected)));
 }
 
 /// Every endpoint of every claim, for programs.
@@ -124,56 +124,56 @@ void write_table(const std::filesystem::path& folder, const named_table& t) {
 /// All macros of the LaTeX report. A missing key ends its build, so keys of unmeasured values are set too.
 std::string macros_of(const reproduction& reproduced, const provenance& origin,
                       const std::vector<std::string>& failures) {
-    macros to;
+    macros tex;
     // A layout that was wrong has no row in table 1.
     for (const char* tree : {"canonical", "leafless", "shared_planes", "compressed", "compressed_literal"})
-        for (const char* bytes : {"paper", "allocated"}) to.set(std::string("table1.") + tree + "." + bytes, "-");
+        for (const char* bytes : {"paper", "allocated"}) tex.set(std::string("table1.") + tree + "." + bytes, "-");
     for (const char* name : {"table1", "table1_builds"})
-        to.set(std::string("table.") + name + ".caption", "There are no measurements.");
-    to.set("date", origin.date);
-    to.set("commit", origin.commit);
-    to.set("compiler", origin.compiler);
-    to.set("flags", origin.flags);
-    to.set("cpu", origin.cpu);
-    to.set("size", origin.size);
-    to.set("rows", origin.rows);
-    to.set("compositions", origin.compositions);
-    to.set("scenes", origin.scenes);
-    to.set("processes", origin.processes);
-    to.set("seeds", origin.seeds);
-    to.set("repeats", origin.repeats);
-    to.set_tex("confidence", "95\\,\\%");
-    to.set_tex("band", fmt::format("{:.0f}\\,\\%", 100 * equivalence_band));
-    to.set("band.low", fmt::format("{:.3f}", 1 / (1 + equivalence_band)));
-    to.set("band.high", fmt::format("{:.2f}", 1 + equivalence_band));
-    to.set("draws", draws_of_a_level);
-    to.set("failures",
-           failures.empty() ? std::string("none") : std::to_string(failures.size()) + ", " + failures.front());
+        tex.set(std::string("table.") + name + ".caption", "There are no measurements.");
+    tex.set("date", origin.date);
+    tex.set("commit", origin.commit);
+    tex.set("compiler", origin.compiler);
+    tex.set("flags", origin.flags);
+    tex.set("cpu", origin.cpu);
+    tex.set("size", origin.size);
+    tex.set("rows", origin.rows);
+    tex.set("compositions", origin.compositions);
+    tex.set("scenes", origin.scenes);
+    tex.set("processes", origin.processes);
+    tex.set("seeds", origin.seeds);
+    tex.set("repeats", origin.repeats);
+    tex.set_tex("confidence", "95\\,\\%");
+    tex.set_tex("band", fmt::format("{:.0f}\\,\\%", 100 * equivalence_band));
+    tex.set("band.low", fmt::format("{:.3f}", 1 / (1 + equivalence_band)));
+    tex.set("band.high", fmt::format("{:.2f}", 1 + equivalence_band));
+    tex.set("draws", draws_of_a_level);
+    tex.set("failures",
+            failures.empty() ? std::string("none") : std::to_string(failures.size()) + ", " + failures.front());
     std::string ids;
     for (const claim_result& c : reproduced.claims) ids += (ids.empty() ? "" : ",") + c.id;
-    to.set_tex("claims", ids);
-    to.set("claims.count", reproduced.claims.size());
+    tex.set_tex("claims", ids);
+    tex.set("claims.count", reproduced.claims.size());
     std::string headline;
     for (const std::string& sentence : reproduced.headline) headline += (headline.empty() ? "" : " ") + sentence;
-    to.set("headline", headline);
-    to.set("disturbance", reproduced.disturbance);
-    to.set("table.bands.caption", reproduced.bands.caption);
+    tex.set("headline", headline);
+    tex.set("disturbance", reproduced.disturbance);
+    tex.set("table.bands.caption", reproduced.bands.caption);
     for (const claim_result& c : reproduced.claims) {
-        add_claim(to, c);
-        for (const figure& f : c.figures) to.set("figure." + f.name + ".caption", f.caption);
-        for (const named_table& t : c.tables) to.set("table." + t.name + ".caption", t.caption);
+        add_claim(tex, c);
+        for (const figure& f : c.figures) tex.set("figure." + f.name + ".caption", f.caption);
+        for (const named_table& t : c.tables) tex.set("table." + t.name + ".caption", t.caption);
     }
-    to.set("table.null_control.caption", reproduced.null_control.caption);
-    for (const figure& f : reproduced.figures) to.set("figure." + f.name + ".caption", f.caption);
+    tex.set("table.null_control.caption", reproduced.null_control.caption);
+    for (const figure& f : reproduced.figures) tex.set("figure." + f.name + ".caption", f.caption);
     for (const named_table& t : reproduced.tables) {
-        to.set("table." + t.name + ".caption", t.caption);
+        tex.set("table." + t.name + ".caption", t.caption);
         if (t.name != "table1") continue;
         for (const std::vector<std::string>& cells : t.content.rows) {
-            to.set("table1." + cells[0] + ".paper", cells[3]);
-            to.set("table1." + cells[0] + ".allocated", cells[4]);
+            tex.set("table1." + cells[0] + ".paper", cells[3]);
+            tex.set("table1." + cells[0] + ".allocated", cells[4]);
         }
     }
-    return to.text();
+    return tex.text();
 }
 
 /// Collects the origin of the results from the manifests of all experiments behind claims, choices and null control.

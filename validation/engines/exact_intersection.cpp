@@ -125,6 +125,7 @@ intersection_kind exact_intersection::kind() const {
     return construction_->kind;
 }
 
+/// Rounds to the middle of CGAL's interval of doubles around a coordinate, whose width bounds the error.
 triangle_intersection exact_intersection::rounded() const {
     triangle_intersection common;
     common.kind = construction_->kind;

@@ -207,7 +207,7 @@ std::vector<extreme_scene> box_scenes() {
         scene_of_boxes(
             "signed_zeros", "-0 against +0, and the numbers next to them",
             [] { return with_ends({-1, -least_normal, -least, -0.0F, 0.0F, least, least_normal, 1}, 70, 22); }),
-        scene_of_boxes("greatest_floats", "boxes that reach to the greatest floats",
+        scene_of_boxes("greatest_floats", "boxes that extend to the greatest floats",
                        [] { return with_ends({-most, -1, 0, 1, most}, 70, 23); }),
         scene_of_boxes("far_1e6", "a million from the origin", [] { return far_out(1e6F); }),
         scene_of_boxes("far_1e9", "10^9 from the origin, where floats are 64 apart", [] { return far_out(1e9F); }),

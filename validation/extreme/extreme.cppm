@@ -145,9 +145,9 @@ inline constexpr std::array<std::string_view, 3> verdict_names = {"exact", "refu
 /// The results of one stage in one scene, over all frames.
 struct extreme_result {
     verdict outcome = verdict::exact;
-    std::string reason;                 ///< the message of the input_error, or the first error
-    std::uint64_t false_negatives = 0;  ///< false negatives
-    std::uint64_t false_positives = 0;  ///< false positives, including repeated pairs
+    std::string reason;  ///< the message of the input_error, or the first error
+    std::uint64_t false_negatives = 0;
+    std::uint64_t false_positives = 0;  ///< including repeated pairs
     differences classes;                ///< the same for triangles, by class; repeated pairs count once
     std::size_t bytes = 0;              ///< of the stage after the last frame
 };

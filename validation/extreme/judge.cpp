@@ -15,6 +15,7 @@ void make_wrong(extreme_result& result, const std::string& reason) {
     result.reason = reason;
 }
 
+/// Counts the differences of a result from the ground truth; the first one makes the result wrong.
 /// @param where "frame 2"
 void record_difference(extreme_result& result, const pair_comparison& difference, const std::string& where) {
     const auto text_of = [](const index_pair& pair) { return std::to_string(pair.a) + " " + std::to_string(pair.b); };
@@ -26,12 +27,6 @@ void record_difference(extreme_result& result, const pair_comparison& difference
         make_wrong(result, where + ": the pair " + text_of(difference.false_positives[0]) +
                                (difference.repeated ? " is reported more than once"
                                                     : " is reported, but is not in the ground truth"));
-}
-
-std::size_t bytes_in(const std::vector<part_bytes>& parts) {
-    std::size_t total = 0;
-    for (const part_bytes& part : parts) total += part.bytes;
-    return total;
 }
 
 /// Runs a broad phase over all frames, and compares each result with the ground truth.
@@ -55,6 +50,7 @@ struct judged_frame {
     std::string where;  ///< "frame 2"
 };
 
+/// Counts wrong pairs of triangles by class; a pair that is reported repeatedly counts once.
 void add_classes(const mesh_scene& scene, pair_comparison difference, index_pair objects, const pose& pose_a,
                  const pose& pose_b, extreme_result& result) {
     const auto repeated = std::ranges::unique(difference.false_positives);
@@ -80,7 +76,7 @@ void judge_all_pairs(const judged_frame& current, pipeline& stages, extreme_resu
     }
 }
 
-/// Checks the queries that do not list all pairs.
+/// Checks the queries that do not list all pairs: the count must be exact, and any true pair may come first.
 void judge_queries(const judged_frame& current, extreme_query query, const exact_objects& objects, local_stage& stage,
                    extreme_result& result) {
     const std::uint32_t a = current.scene.mesh_of[objects.a];
@@ -202,7 +198,7 @@ extreme_result result_of(const extreme_scene& scene, const std::function<std::un
         } else {
             const std::unique_ptr<Stage> stage = make();
             run_frames(*stage, result);
-            result.bytes = bytes_in(stage->bytes());
+            for (const part_bytes& part : stage->bytes()) result.bytes += part.bytes;
         }
         if (!scene.rejection.empty() && !scene.accepted_in_double && result.outcome == verdict::exact)
             make_wrong(result, "returns a result, but must reject the scene");

@@ -12,10 +12,10 @@ namespace aabb {
 
 // The parts of the list of extreme scenes.
 [[nodiscard]] std::vector<extreme_scene> box_scenes();
-[[nodiscard]] std::vector<extreme_scene> bad_box_scenes();
+[[nodiscard]] std::vector<extreme_scene> invalid_box_scenes();
 [[nodiscard]] std::vector<extreme_scene> mesh_scenes(extreme_size size);
 /// Includes valid poses close to the limit of rejection.
-[[nodiscard]] std::vector<extreme_scene> bad_mesh_scenes();
+[[nodiscard]] std::vector<extreme_scene> invalid_mesh_scenes();
 [[nodiscard]] std::vector<extreme_scene> other_arithmetic_scenes();
 
 using box_frames = std::vector<std::vector<box>>;
@@ -119,21 +119,22 @@ private:
 /// A sphere around the origin with `rings` rings; half of the triangles at the poles have zero area.
 [[nodiscard]] inline mesh ball(std::uint32_t rings, double radius) {
     mesh m;
-    const std::uint32_t around = 2 * rings;
+    const std::uint32_t segments = 2 * rings;
     for (std::uint32_t i = 0; i <= rings; ++i)
-        for (std::uint32_t j = 0; j < around; ++j) {
-            const double down = std::numbers::pi * i / rings;
-            const double turn = 2 * std::numbers::pi * j / around;
-            const double out = i == 0 || i == rings ? 0 : radius * std::sin(down);
-            m.vertices.push_back({static_cast<float>(out * std::cos(turn)), static_cast<float>(out * std::sin(turn)),
-                                  static_cast<float>(radius * std::cos(down))});
+        for (std::uint32_t j = 0; j < segments; ++j) {
+            const double polar_angle = std::numbers::pi * i / rings;
+            const double azimuth = 2 * std::numbers::pi * j / segments;
+            const double axis_distance = i == 0 || i == rings ? 0 : radius * std::sin(polar_angle);
+            m.vertices.push_back({static_cast<float>(axis_distance * std::cos(azimuth)),
+                                  static_cast<float>(axis_distance * std::sin(azimuth)),
+                                  static_cast<float>(radius * std::cos(polar_angle))});
         }
     for (std::uint32_t i = 0; i < rings; ++i)
-        for (std::uint32_t j = 0; j < around; ++j) {
-            const std::uint32_t p = i * around + j;
-            const std::uint32_t q = i * around + (j + 1) % around;
-            m.triangles.push_back({p, p + around, q});
-            m.triangles.push_back({q, p + around, q + around});
+        for (std::uint32_t j = 0; j < segments; ++j) {
+            const std::uint32_t p = i * segments + j;
+            const std::uint32_t q = i * segments + (j + 1) % segments;
+            m.triangles.push_back({p, p + segments, q});
+            m.triangles.push_back({q, p + segments, q + segments});
         }
     return m;
 }

@@ -73,7 +73,7 @@ std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name,
 
 }  // namespace
 
-std::vector<extreme_scene> bad_box_scenes() {
+std::vector<extreme_scene> invalid_box_scenes() {
     return {
         with_box("box_nan", "a NaN coordinate", {{0, not_a_number, 0}, {1, 1, 1}},
                  "box 7 has a coordinate that is not finite"),
@@ -83,7 +83,8 @@ std::vector<extreme_scene> bad_box_scenes() {
     };
 }
 
-std::vector<extreme_scene> bad_mesh_scenes() {
+/// Poses on both sides of the limit of rejection, and invalid meshes.
+std::vector<extreme_scene> invalid_mesh_scenes() {
     const std::string not_rigid = "object 1: the pose is not rigid: its rotation ";
     const std::string not_orthonormal = not_rigid + "is not orthonormal within 1e-6";
     extreme_scene beyond_float = with_pose("beyond_float", "seen from the other mesh, 1e39 away", shifted(1e39, 0, 0),
@@ -130,7 +131,7 @@ std::vector<extreme_scene> other_arithmetic_scenes() {
 std::vector<extreme_scene> extreme_scenes(extreme_size size) {
     std::vector<extreme_scene> scenes;
     for (const std::vector<extreme_scene>& part :
-         {box_scenes(), bad_box_scenes(), mesh_scenes(size), bad_mesh_scenes(), other_arithmetic_scenes()})
+         {box_scenes(), invalid_box_scenes(), mesh_scenes(size), invalid_mesh_scenes(), other_arithmetic_scenes()})
         scenes.insert(scenes.end(), part.begin(), part.end());
     return scenes;
 }

@@ -76,26 +76,24 @@ ground_truth::sphere ground_truth::sphere_around(const mesh& m) {
 
 /// Sweeps over the spheres, sorted by their least x, and tests those that overlap on x.
 std::vector<index_pair> ground_truth::overlapping_spheres(std::span<const pose> poses) const {
-    std::vector<sphere> world_spheres;
+    std::vector<sphere> spheres;
     for (std::size_t object = 0; object < poses.size(); ++object) {
         const pose& p = poses[object];
         const sphere& local = spheres_[meshes_->mesh_of[object]];
         sphere world{p.translation, local.radius + 1e-9 * length_of(p.translation)};
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) world.centre[i] += p.rotation[3 * i + j] * local.centre[j];
-        world_spheres.push_back(world);
+        spheres.push_back(world);
     }
-    const auto low = [&](std::uint32_t object) {
-        return world_spheres[object].centre[0] - world_spheres[object].radius;
-    };
-    std::vector<std::uint32_t> by_low(world_spheres.size());
+    const auto low = [&](std::uint32_t object) { return spheres[object].centre[0] - spheres[object].radius; };
+    std::vector<std::uint32_t> by_low(spheres.size());
     std::iota(by_low.begin(), by_low.end(), 0U);
     std::ranges::sort(by_low, {}, low);
     std::vector<index_pair> near;
     for (std::size_t i = 0; i < by_low.size(); ++i) {
-        const sphere& first = world_spheres[by_low[i]];
+        const sphere& first = spheres[by_low[i]];
         for (std::size_t j = i + 1; j < by_low.size() && low(by_low[j]) <= first.centre[0] + first.radius; ++j) {
-            const sphere& second = world_spheres[by_low[j]];
+            const sphere& second = spheres[by_low[j]];
             if (length_of(first.centre - second.centre) <= first.radius + second.radius)
                 near.push_back(ordered_pair(by_low[i], by_low[j]));
         }

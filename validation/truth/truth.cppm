@@ -15,7 +15,7 @@ struct set_difference {
         repeated = !false_positives.empty() && std::ranges::binary_search(exact, false_positives[0]);
     }
 
-    std::vector<T> false_negatives;  ///< false negatives
+    std::vector<T> false_negatives;
     std::vector<T> false_positives;  ///< false positives and repetitions
     bool repeated = false;           ///< whether the first of `false_positives` is a repetition
 };
@@ -32,7 +32,7 @@ enum class difference_class : std::uint8_t {
 inline constexpr std::array<std::string_view, 6> difference_class_names = {"degenerate", "pose_rounding", "coplanar",
                                                                            "touching",   "near",          "other"};
 
-/// False negatives (missing) and false positives (invented) of an engine, by class.
+/// False negatives and false positives of an engine, by class.
 struct differences {
     std::array<std::size_t, difference_class_names.size()> false_negatives{};
     std::array<std::size_t, difference_class_names.size()> false_positives{};

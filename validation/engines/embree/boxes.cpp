@@ -61,8 +61,8 @@ private:
     }
 
     /// Embree reports all pairs in overlapping leaves, in both orders.
-    static void collect(void* to, RTCCollision* collisions, unsigned count) {
-        pair_collector& collected = *static_cast<pair_collector*>(to);
+    static void collect(void* collector, RTCCollision* collisions, unsigned count) {
+        pair_collector& collected = *static_cast<pair_collector*>(collector);
         collected.append_safely([&] {
             for (const RTCCollision& c : std::span(collisions, count))
                 if (c.primID0 < c.primID1) collected.pairs.push_back({c.primID0, c.primID1});

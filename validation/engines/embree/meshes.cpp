@@ -116,8 +116,8 @@ private:
         collected.drop(known, [&](index_pair p) { return !test.intersects(of_a[p.a], of_b[p.b]); });
     }
 
-    static void collect(void* to, RTCCollision* collisions, unsigned count) {
-        pair_collector& collected = *static_cast<pair_collector*>(to);
+    static void collect(void* collector, RTCCollision* collisions, unsigned count) {
+        pair_collector& collected = *static_cast<pair_collector*>(collector);
         collected.append_safely([&] {
             for (const RTCCollision& c : std::span(collisions, count))
                 collected.pairs.push_back({c.primID0, c.primID1});

@@ -55,8 +55,8 @@ private:
     }
 
     void find_pairs(std::vector<index_pair>& pairs) override {
-        manager_.collide(&pairs, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* to) {
-            static_cast<std::vector<index_pair>*>(to)->push_back(
+        manager_.collide(&pairs, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* collector) {
+            static_cast<std::vector<index_pair>*>(collector)->push_back(
                 ordered_pair(static_cast<fcl_object*>(a)->id(), static_cast<fcl_object*>(b)->id()));
             return false;
         });

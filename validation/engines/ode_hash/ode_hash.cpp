@@ -107,8 +107,8 @@ private:
     }
 
     /// Must not throw, since ODE would stay locked.
-    static void collect(void* to, dGeomID a, dGeomID b) {
-        pair_collector& collected = *static_cast<pair_collector*>(to);
+    static void collect(void* collector, dGeomID a, dGeomID b) {
+        pair_collector& collected = *static_cast<pair_collector*>(collector);
         collected.append_safely([&] { collected.pairs.push_back(ordered_pair(data_of(a).id, data_of(b).id)); });
     }
 
