@@ -19,7 +19,7 @@ const aabblab::stiff_study& study_named(std::string_view name) {
 
 aabblab::stiff_result played(std::string_view name, const aabblab::candidate& tested) {
     const aabblab::stiff_study& study = study_named(name);
-    aabblab::stiff_result result = study.play({.quick = true, .tested = tested});
+    aabblab::stiff_result result = study.run({.quick = true, .tested = tested});
     for (const aabblab::stiff_point& p : result.points)
         CHECK(std::ranges::count(study.figures, p.figure, &aabblab::figure::name) == 1);
     return result;
