@@ -41,13 +41,13 @@ void add_point(std::vector<series>& to, const std::string& winner, double x, dou
 /// @param among empty, or text that names the restricted set of candidates
 figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners, double clouds,
               const std::string& among) {
-    figure f{
-        .name = fmt::format("map_{}{:g}", among.empty() ? "" : "classic_", clouds),
-        .caption = fmt::format("The fastest{} in a frame after the first, in {}: each point is a scene, of so many "
-                               "objects that move by so much a frame.",
-                               among, clouds > 1 ? fmt::format("{:g} clouds apart", clouds) : "one cloud"),
-        .x = {"objects", true},
-        .y = {"displacement a frame (mean extents)", true}};
+    figure f{.name = fmt::format("map_{}{:g}", among.empty() ? "" : "classic_", clouds),
+             .caption = fmt::format(
+                 "The fastest{} in frames after the first, in {}. Each point is a scene, placed by its number "
+                 "of objects and their displacement per frame.",
+                 among, clouds > 1 ? fmt::format("{:g} separate clouds", clouds) : "one cloud"),
+             .x = {"objects", true},
+             .y = {"displacement per frame (mean extents)", true}};
     std::map<std::pair<double, double>, figure_panel> panels;  // by density and ratio
     for (const atlas_scene& scene : atlas) {
         if (scene.scene.kind != kind_of_map || scene.number("clouds") != clouds || scene.number("moving") != 1)
@@ -69,10 +69,10 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
                       const std::string& among) {
     figure f{.name = among.empty() ? "map_inversions" : "map_classic_inversions",
              .caption = "The fastest" + among +
-                        " in a frame after the first, of all scenes in which anything moves: objects, and "
-                        "inversions an object and frame on the axis on which boxes overlap least.",
+                        " in frames after the first, in all scenes with motion. Each point is a scene, placed by its "
+                        "number of objects and by the inversions on the axis on which boxes overlap least.",
              .x = {"objects", true},
-             .y = {"inversions an object and frame", true},
+             .y = {"inversions per object and frame", true},
              .lines = empty_series(winners)};
     for (const atlas_scene& scene : atlas)
         if (scene.measures.motion && scene.measures.motion->inversions > 0)
@@ -87,8 +87,8 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t least_scenes = 2;
     figure f{.name = "regret",
              .caption =
-                 "Time of a frame over that of the fastest, scene by scene in ascending order: what it costs to "
-                 "use one composition or engine everywhere.",
+                 "Regret of using one composition or engine everywhere: its time per frame relative to that of "
+                 "the fastest, scene by scene in ascending order.",
              .x = {"share of the scenes", false},
              .y = {"regret", true}};
     for (const std::string& label : labels_of(atlas)) {
@@ -121,7 +121,7 @@ std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas) {
     std::vector<figure> figures;
     add_maps(figures, atlas, "");
     if (const auto others = without_columns(atlas); !others.empty())
-        add_maps(figures, others, " of those without columns");
+        add_maps(figures, others, " of the candidates without columns");
     figures.push_back(regret_figure(atlas));
     return figures;
 }

@@ -89,7 +89,7 @@ std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
 }
 
 table models_table(const std::vector<line_model>& models) {
-    table t = empty_table({"who"}, {"scenes", "off by", "worst", "unseen scenes", "off by there", "worst there"});
+    table t = empty_table({"candidate"}, {"scenes", "off by", "worst", "unseen scenes", "off by there", "worst there"});
     for (const line_model& m : models)
         t.rows.push_back({m.label, grouped(m.seen.observations), fmt::format("{:.2f}", m.seen.median),
                           fmt::format("{:.1f}", m.seen.worst), grouped(m.unseen.observations),
@@ -98,7 +98,7 @@ table models_table(const std::vector<line_model>& models) {
 }
 
 table costs_table(const std::vector<line_model>& models) {
-    table t{{{"who", false}}, {}};
+    table t{{{"candidate", false}}, {}};
     for (const term& cost : terms)
         for (const char* part : {"", " low", " high"}) t.columns.push_back({std::string(cost.name) + part});
     for (const line_model& m : models) {

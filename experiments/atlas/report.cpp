@@ -25,14 +25,14 @@ std::vector<atlas_scene> of_map(const std::vector<atlas_scene>& atlas, bool unse
 
 std::string models_text(const std::vector<atlas_scene>& atlas, const std::vector<line_model>& models) {
     std::string text =
-        "A frame's time as a sum of costs, of boxes, of pairs, of inversions and more as the scene's measures have "
-        "them, fitted to the map: how many times too long or too short it is, the median and the worst. Each cost has "
-        "its interval in costs.csv.";
+        "A linear model predicts the time per frame as a sum of costs per box, pair, inversion and so on, fitted to "
+        "the scenes of the map. \"off by\" is the factor by which a prediction is too long or too short: its median "
+        "and the worst. costs.csv has each cost with its interval.";
     std::vector<double> regrets = regrets_of_models(atlas, models);
     if (regrets.empty()) return text;
     return text + fmt::format(
-                      " Whoever it predicts to be the fastest, in the scenes that it was not fitted to, takes "
-                      "{:.2f} times as long as who is, a median; {:.2f} at worst.",
+                      " In the scenes that it was not fitted to, the candidate that it predicts to be the fastest "
+                      "takes {:.2f} times as long as the fastest (median), {:.2f} at worst.",
                       quartiles_of(regrets).median, *std::ranges::max_element(regrets));
 }
 
@@ -43,27 +43,29 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
     const std::vector<line_model> models = models_of(atlas);
     const std::vector<judged_statement> judged = judged_statements(atlas);
     std::vector<section> sections{
-        {"Who wins",
-         "Of a frame after the first. Shown: the interval of the ratio of the next fastest lies above 1. As fast: not "
-         "shown to be slower than the fastest.",
+        {"The fastest",
+         "By time per frame after the first. Shown: the interval of the ratio of the second fastest lies above 1. As "
+         "fast: not significantly slower than the fastest.",
          "winners", winners_table(atlas)},
-        {"Who wins without columns", "The same among those that have neither columns nor auto.", "winners_classic",
+        {"The fastest without columns", "The same among candidates without columns and auto.", "winners_classic",
          winners_table(classic)},
-        {"What it costs to use one everywhere",
-         "The time of a frame over that of the fastest of each scene; who was not repeated has one repeat.", "regrets",
-         regrets_table(atlas, span_of_time::frame)},
-        {"The same with the first frame and the making",
-         "Of all frames, as short as the scenes are; sorting by insertion takes quadratic time in the first.",
+        {"Regret of using one everywhere",
+         "The time per frame relative to that of the fastest of each scene. Candidates that early stopping "
+         "ended have a single repeat.",
+         "regrets", regrets_table(atlas, span_of_time::frame)},
+        {"The same with the first frame and the construction",
+         "By the time of all frames. Scenes are short, so the first frame matters: insertion sort takes quadratic time "
+         "in it.",
          "regrets_whole", regrets_table(atlas, span_of_time::whole)}};
     if (const auto unseen = of_map(atlas, true); !unseen.empty())
-        sections.push_back({"The same of a frame, in the scenes that the map does not hold", "", "regrets_unseen",
+        sections.push_back({"The same per frame, in the scenes outside the map", "", "regrets_unseen",
                             regrets_table(unseen, span_of_time::frame)});
     sections.push_back(
         {"Borders",
-         "Along one parameter, all others equal: where the fastest of one scene and that of the next take "
-         "the same time, on a line between the logarithms of their ratios; the geometric mean, with an "
-         "interval that widens where scenes disagree, the least and the greatest. Each border has its "
-         "interval in borders.csv.",
+         "A border is the value of one parameter, all others equal, at which the fastest of one scene and that of the "
+         "next take the same time; it is interpolated between the logarithms of their ratios. The table has the "
+         "geometric mean of the borders between the same two, with an interval that widens if scenes disagree, the "
+         "least and the greatest. borders.csv has each border with its interval.",
          "borders_summary", borders_summary(borders)});
     sections.push_back({"Borders without columns", "", "borders_classic_summary", borders_summary(classic_borders)});
     sections.push_back({"", "", "borders", borders_table(borders), false});
@@ -72,17 +74,17 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
     sections.push_back({"", "", "costs", costs_table(models), false});
     sections.push_back({"", "", "cells", cells_table(atlas), false});
     sections.push_back(
-        {"Statements of others",
-         "Judged as the paper's claims are: each ratio is a geometric mean over scenes, its interval widens "
-         "where they disagree, and all are decided together. Below 1 favours the statement.",
+        {"Published statements",
+         "Statements are judged by the rule of the paper's claims: each ratio is a geometric mean over scenes, its "
+         "interval widens if they disagree, and all are decided together. A ratio below 1 favours the statement.",
          "statements", statements_table(judged)});
-    sections.push_back({"Their ratios", "", "statement_ratios", ratios_table(judged)});
+    sections.push_back({"Ratios of the statements", "", "statement_ratios", ratios_table(judged)});
     return sections;
 }
 
 std::string heading_of(const std::vector<atlas_scene>& atlas) {
     const auto unseen = static_cast<std::size_t>(std::ranges::count_if(atlas, &atlas_scene::unseen));
-    return fmt::format("{} scenes of the map, {} others", grouped(atlas.size() - unseen), grouped(unseen));
+    return fmt::format("{} scenes of the map, {} other scenes", grouped(atlas.size() - unseen), grouped(unseen));
 }
 
 }  // namespace
@@ -92,7 +94,7 @@ void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_sc
     const std::vector<figure> figures = atlas_figures(atlas);
     std::filesystem::create_directories(folder);
     draw(folder / "figures", figures);
-    constexpr const char* title = "Atlas of global search";
+    constexpr const char* title = "Atlas of broad phases (global search)";
     page out(title);
     out.title(title);
     out.paragraph(heading_of(atlas) + ".");

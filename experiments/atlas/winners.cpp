@@ -27,7 +27,7 @@ bool is_slower(const atlas_line& line, const atlas_line& best) {
 }  // namespace
 
 table winners_table(const std::vector<atlas_scene>& atlas) {
-    table t{{{row_number}, {"who", false}, {"scenes"}, {"fastest in"}, {"shown in"}, {"as fast in"}}, {}};
+    table t{{{row_number}, {"candidate", false}, {"scenes"}, {"fastest in"}, {"shown in"}, {"as fast in"}}, {}};
     struct standing {
         std::string label;
         std::size_t scenes = 0, fastest = 0, shown = 0, as_fast = 0;
@@ -109,7 +109,13 @@ table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time of) {
         standings.push_back(std::move(entry));
     }
     std::ranges::stable_sort(standings, {}, [](const standing& entry) { return entry.of.median; });
-    table t{{{row_number}, {"used everywhere", false}, {"scenes"}, {"median"}, {"9 of 10"}, {"worst"}, {"over 1.3"}},
+    table t{{{row_number},
+             {"used everywhere", false},
+             {"scenes"},
+             {"median"},
+             {"90th percentile"},
+             {"worst"},
+             {"over 1.3"}},
             {}};
     for (const standing& entry : standings)
         t.rows.push_back({std::to_string(t.rows.size() + 1), entry.label, grouped(entry.regrets.size()),

@@ -49,7 +49,7 @@ public:
         static_cast<void>(detection.count_pairs(a_, poses_[0], b_, poses_[1]));
         if (detection.counters()[aabb::work::box_tests] != box_tests_ ||
             detection.counters()[aabb::work::triangle_tests] != triangles_.size())
-            throw std::logic_error("these are not the pairs that local detection tests");
+            throw std::logic_error("the recorded pairs differ from those that local detection tests");
     }
 
     [[nodiscard]] const aabb::model<walked_tree>& a() const noexcept { return a_; }
@@ -311,7 +311,7 @@ void time_leaf_test(benchmark::State& state) {
     const Test test{{walked()}};
     static const std::size_t false_negatives = false_negatives_of(test);
     if (false_negatives > 0 && !may_miss<Test>)
-        throw std::logic_error(std::string(Test::name) + " says no to triangles that intersect");
+        throw std::logic_error(std::string(Test::name) + " has false negatives");
     static const std::vector<reached_leaf> pairs = in_random_order(test.leaf.pairs());
     time_tests(state, pairs, test);
     // Reports the complement, as Google Benchmark computes a NaN spread for a counter that is always zero.

@@ -14,7 +14,7 @@ constexpr int bad_input = 2;
 
 /// Replaces the default handler, which prints the help and exits with 0 even on an invalid value.
 void reject_value() {
-    std::cerr << "aabblab: benchmark: an option does not take its value; see ./aabblab benchmark --help\n";
+    std::cerr << "aabblab: benchmark: the value of an option is invalid; see ./aabblab benchmark --help\n";
     std::exit(bad_input);
 }
 

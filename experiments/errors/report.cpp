@@ -97,13 +97,14 @@ std::vector<std::string> sets_in(std::span<const error_point> points) {
 
 figure figure_of(const std::string& name, const std::string& what, std::span<const error_point> points) {
     const std::vector<pooled> methods = pooled_over(points);
-    figure f{.name = name,
-             .caption = fmt::format("Share of wrong answers over the time a pair, {}: each method over its knob. What "
-                                    "gets nothing wrong stands on the line of one wrong answer in N = {} pairs; by the "
-                                    "rule of three its share is then below 3/N with 95 % certainty.",
-                                    what, grouped(methods.front().count)),
-             .x = {"time a pair (ns)", true},
-             .y = {"share of wrong answers", true}};
+    figure f{
+        .name = name,
+        .caption = fmt::format("Share of wrong results over the time per pair, {}: each method over its parameter. A "
+                               "method without errors is drawn on the line of one wrong result in N = {} pairs; "
+                               "by the rule of three, its share is below 3/N with 95 % confidence.",
+                               what, grouped(methods.front().count)),
+        .x = {"time per pair (ns)", true},
+        .y = {"share of wrong results", true}};
     const double floor = 1 / static_cast<double>(methods.front().count);
     const auto point_of = [&](const pooled& m) {
         const double share = std::max(floor, m.error());
@@ -114,13 +115,13 @@ figure figure_of(const std::string& name, const std::string& what, std::span<con
         if (line == f.lines.end()) line = f.lines.insert(f.lines.end(), {m.curve});
         line->points.push_back(point_of(m));
     }
-    series front{"not dominated"};
+    series front{"Pareto front"};
     std::vector<cost> costs;
     for (const pooled& m : methods) costs.push_back({m.ns(), m.error()});
     for (const std::size_t i : front_of(costs)) front.points.push_back(point_of(methods[i]));
     // Drawn first, below the curves.
     f.lines.insert(f.lines.begin(), front);
-    f.lines.push_back({"nothing wrong (1/N to 3/N)", series_style::level, {{1, floor, floor, 3 * floor}}});
+    f.lines.push_back({"no errors (1/N to 3/N)", series_style::level, {{1, floor, floor, 3 * floor}}});
     return f;
 }
 
@@ -157,7 +158,7 @@ public:
 
     [[nodiscard]] figure figure_of(std::span<const error_curve> curves) const {
         figure f{.name = "",
-                 .caption = fmt::format("{} over {} in {}: each method over its knob.", y_.name, x_.name, title()),
+                 .caption = fmt::format("{} over {} in {}: each method over its parameter.", y_.name, x_.name, title()),
                  .x = {label_of(x_), false},
                  .y = {label_of(y_), false}};
         std::vector<place> positions;
@@ -176,11 +177,11 @@ public:
         if (has_front()) {
             // Drawn first, below the curves.
             f.lines.insert(f.lines.begin(), front(positions));
-            f.caption += " What no other is better than in both is joined by a line.";
+            f.caption += " A line joins the Pareto front.";
         }
         if (has_floor()) {
-            f.lines.push_back({"nothing wrong (1/N)", series_style::level, {{1, least_share()}}});
-            f.caption += fmt::format(" What gets nothing wrong stands on the line of one wrong pair in N = {}.",
+            f.lines.push_back({"no errors (1/N)", series_style::level, {{1, least_share()}}});
+            f.caption += fmt::format(" A method without errors is drawn on the line of one wrong pair in N = {}.",
                                      grouped(exact_pairs()));
         }
         return f;
@@ -234,7 +235,7 @@ private:
     }
 
     [[nodiscard]] series front(std::span<const place> positions) const {
-        series line{"not dominated"};
+        series line{"Pareto front"};
         for (const std::size_t i : front_of(costs_of(positions))) line.points.push_back(point_of(positions[i]));
         return line;
     }
@@ -260,7 +261,7 @@ std::string_view title_of(pair_group group) {
 }
 
 table error_summary(std::span<const error_point> points, pair_group group) {
-    table t{{{"triangle", false}, {"ns a pair"}, {"wrong"}, {"missed"}, {"invented"}}, {}};
+    table t{{{"triangle", false}, {"ns per pair"}, {"wrong"}, {"false negatives"}, {"false positives"}}, {}};
     std::vector<pooled> methods = pooled_over(of_group(points, group));
     std::ranges::stable_sort(methods, {}, [](const pooled& m) { return std::pair(m.error(), m.ns()); });
     for (const pooled& m : methods)
@@ -308,11 +309,11 @@ std::string group_statement(std::span<const error_point> points, pair_group grou
     };
     const pooled& fastest = methods[front.front()];
     const pooled& best = methods[front.back()];
-    std::string text = fmt::format("Of {}, {} is the fastest, with {:.1f} ns a pair, and gets {}", title_of(group),
+    std::string text = fmt::format("In {}, {} is the fastest, with {:.1f} ns per pair, and gets {}", title_of(group),
                                    to_text(fastest.triangle), fastest.ns(), wrong(fastest));
     if (&fastest != &best)
-        text += fmt::format("; {} gets {}, in {:.1f} ns a pair, {:.2f} times the time", to_text(best.triangle),
-                            wrong(best), best.ns(), best.ns() / fastest.ns());
+        text += fmt::format("; {} gets {}, with {:.1f} ns per pair, and takes {:.2f} times as long",
+                            to_text(best.triangle), wrong(best), best.ns(), best.ns() / fastest.ns());
     return text + ".";
 }
 

@@ -47,7 +47,7 @@ std::string counts(std::uint64_t false_negatives, std::uint64_t false_positives)
     return text.empty() ? "-" : text;
 }
 
-/// Sums up candidates that must be exact: "312 exact", "312 refused", or "3 WRONG".
+/// Sums up candidates that must be exact: "312 exact", "312 rejected", or "3 WRONG".
 std::string sum_cell(const row_list& rows) {
     if (rows.empty()) return "-";
     std::set<std::string> candidates;
@@ -59,10 +59,10 @@ std::string sum_cell(const row_list& rows) {
         rejected = rejected && row->result.outcome == aabb::verdict::rejected;
     }
     if (!failed.empty()) return std::to_string(failed.size()) + " WRONG";
-    return std::to_string(candidates.size()) + (rejected ? " refused" : " exact");
+    return std::to_string(candidates.size()) + (rejected ? " rejected" : " exact");
 }
 
-/// The cell of one candidate: "exact", "refused", "WRONG", or its counts of errors if it may be inexact; "-" if it was
+/// The cell of one candidate: "exact", "rejected", "WRONG", or its counts of errors if it may be inexact; "-" if it was
 /// not run.
 std::string cell(const row_list& rows) {
     if (rows.empty()) return "-";
@@ -78,7 +78,7 @@ std::string cell(const row_list& rows) {
         wrong = wrong || row->result.outcome == aabb::verdict::wrong;
     }
     if (false_negatives + false_positives > 0) return counts(false_negatives, false_positives);
-    return rejected ? "refused" : wrong ? "wrong" : "exact";
+    return rejected ? "rejected" : wrong ? "wrong" : "exact";
 }
 
 /// One row per text: the first columns summarise its rows, then there is one column per name.
@@ -181,7 +181,7 @@ table inexact_scene_table(std::span<const extreme_row> rows) {
 }
 
 table class_table(std::span<const extreme_row> rows) {
-    table t{{{"may be inexact", false}}, {}};
+    table t{{{"candidate", false}}, {}};
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
     const auto shown =
         filtered(rows, [](const extreme_row& row) { return row.group == row_group::meshes && !row.must_be_exact; });
@@ -204,7 +204,7 @@ std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
         std::size_t most = 0;
         for (const extreme_row* row : of_scene) most = std::max(most, row->result.bytes);
         sentences.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions hold at most " + grouped(most) +
-                            " bytes, of " + grouped(of_scene.front()->stated_bytes) + " stated");
+                            " bytes; the stated bound is " + grouped(of_scene.front()->stated_bytes));
     }
     return sentences;
 }
@@ -236,7 +236,7 @@ std::vector<std::string> failures_in(std::span<const extreme_row> rows) {
     for (const extreme_row& row : rows)
         if (!row.as_expected)
             sentences.push_back(row.full_name() + " on " + row.scene + ": " +
-                                (row.result.outcome == aabb::verdict::rejected ? "refuses: " : "") + row.result.reason);
+                                (row.result.outcome == aabb::verdict::rejected ? "rejects: " : "") + row.result.reason);
     return sentences;
 }
 

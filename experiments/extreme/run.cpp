@@ -100,7 +100,7 @@ void check(bool result, bool truth, extreme_row& row) {
     if (result == truth) return;
     ++(truth ? row.result.false_negatives : row.result.false_positives);
     row.result.outcome = aabb::verdict::wrong;
-    row.result.reason = truth ? "says that they do not intersect" : "says that they intersect";
+    row.result.reason = truth ? "reports that they do not intersect" : "reports that they intersect";
     row.as_expected = !row.must_be_exact;
 }
 

@@ -34,7 +34,8 @@ aabb::extreme_scene scene_of(const pair_class_info& info) {
 
 /// Two copies of a mesh: first in the same place, then displaced by a hundredth of its extent.
 aabb::extreme_scene scene_of(const std::string& file) {
-    aabb::extreme_scene scene{.name = file, .summary = "a real mesh with zero-area triangles, against itself"};
+    aabb::extreme_scene scene{.name = file,
+                              .summary = "a real mesh with zero-area triangles, against a copy of itself"};
     scene.make_meshes = [file]() -> std::unique_ptr<aabb::mesh_scene> {
         aabb::mesh m = make_mesh(file).mesh;
         const aabb::box bounds = bounds_of(m);
@@ -52,16 +53,16 @@ aabb::extreme_scene scene_of(const std::string& file) {
 extreme_list all_extreme_scenes(aabb::extreme_size size) {
     extreme_list list{aabb::extreme_scenes(size), {}};
     for (const pair_class_info& info : pair_classes()) list.scenes.push_back(scene_of(info));
-    std::string false_negatives;
+    std::string absent;
     for (const std::string file : degenerate_meshes)
         if (is_mesh(file, {}))
             list.scenes.push_back(scene_of(file));
         else
-            false_negatives += (false_negatives.empty() ? "" : " and ") + file;
-    if (!false_negatives.empty())
-        list.notes.push_back("left out are " + false_negatives + ", which ./aabblab data fetches");
+            absent += (absent.empty() ? "" : " and ") + file;
+    if (!absent.empty()) list.notes.push_back("left out: " + absent + ", which ./aabblab data downloads");
     if (!aabb::can_flush_denormals())
-        list.notes.emplace_back("left out are threads that flush denormals, which are not known on this processor");
+        list.notes.emplace_back(
+            "left out: threads that flush denormals, because the program cannot make this processor do so");
     return list;
 }
 

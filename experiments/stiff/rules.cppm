@@ -18,7 +18,7 @@ void record_failure_of(stiff_result& result, std::string_view integrator, const 
     try {
         part();
     } catch (const aabb::input_error& error) {
-        result.add({error.what(), "gives up: " + std::string(integrator), 1, "never", stiff_verdict::fails});
+        result.add({error.what(), std::string(integrator) + " cannot go on", 1, "never", stiff_verdict::fails});
     }
 }
 

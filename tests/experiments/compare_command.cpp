@@ -227,7 +227,7 @@ TEST_CASE("compare lists what changed beyond noise, or all, and ends with status
     const program_result result = run_well({"compare", a, b});
     CHECK(result.err.empty());
     CHECK(result.out.starts_with("A: " + a + " (commit "));
-    CHECK(holds(result.out, "test: brownian, objects=10 frames=3; time over that of 'insertion'\n"));
+    CHECK(holds(result.out, "test: brownian, objects=10 frames=3; time relative to that of 'insertion'\n"));
     CHECK(holds(result.out, "\nstd "));
     CHECK_FALSE(holds(result.out, " same\n"));
     CHECK(holds(result.out, "\n2 ratios compared: 1 changed beyond noise, 1 unchanged (within 5 %), 0 undecided\n"));
@@ -239,13 +239,13 @@ TEST_CASE("compare lists what changed beyond noise, or all, and ends with status
     CHECK_FALSE(holds(all.out, "\nopen: "));
     const std::string noisy = write_results(folder / "noisy", rows_of({.noise = 0.3, .hour = 3}));
     CHECK(holds(run_program({"compare", a, noisy}).out,
-                " 2 undecided\nundecided: their intervals reach beyond 5 %, or show a change only without Holm's "
-                "correction for all ratios; --all lists them\n"));
+                " 2 undecided\nundecided: the interval extends beyond 5 %, or the change is significant only without "
+                "Holm's correction for all ratios; --all lists them\n"));
     const program_result itself = run_well({"compare", a, a});
     CHECK(holds(itself.out,
                 "\n2 ratios compared: 0 changed beyond noise, 2 unchanged (within 5 %), 0 undecided\n"
                 "9 counts and sizes compared: 0 changed\n"));
-    CHECK_FALSE(holds(itself.out, "left out"));
+    CHECK_FALSE(holds(itself.out, "not compared"));
 }
 
 TEST_CASE("compare ends with status 1 where answers differ, which it says first") {
@@ -258,9 +258,9 @@ TEST_CASE("compare ends with status 1 where answers differ, which it says first"
     INFO(result.out);
     REQUIRE(result.status == 1);
     CHECK(result.err.empty());
-    CHECK(holds(result.out, "the answers differ in 1 of 3 scenes\n"));
+    CHECK(holds(result.out, "the results differ in 1 of 3 scenes\n"));
     CHECK(holds(result.out, "seed=3  00000000000000a3  0123456789abcdef\n"));
-    CHECK(result.out.find("the answers differ") < result.out.find("ratios compared"));
+    CHECK(result.out.find("the results differ") < result.out.find("ratios compared"));
 }
 
 TEST_CASE("compare takes absolute times of one machine only, and warns of them") {
@@ -292,7 +292,8 @@ TEST_CASE("compare takes folders of several experiments, and leaves out what one
     CHECK(holds(result.out, "\nsecond: brownian, "));
     CHECK_FALSE(holds(result.out, "\nfirst: brownian, "));
     CHECK(holds(result.out, "\n2 ratios compared: "));
-    CHECK(holds(result.out, "left out is what only one of them has: 9 compositions in a scene of A, 0 of B\n"));
+    CHECK(
+        holds(result.out, "not compared, because the other run lacks them: 9 compositions in a scene of A, 0 of B\n"));
 }
 
 TEST_CASE("compare refuses what holds no results, with one sentence") {
@@ -316,7 +317,7 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
     write_results(folder / "twice/y", rows_of({}));
     const refusals rejected = {
         {{good}, "B is required"},
-        {{good, folder / "nowhere"}, "nowhere is not there; expected a folder of results"},
+        {{good, folder / "nowhere"}, "nowhere does not exist; expected a folder of results"},
         {{folder / "good/results.csv", good}, "results.csv is not a folder"},
         {{good, empty}, "there are no results in " + empty},
         {{none, good}, "there are no results in " + none},

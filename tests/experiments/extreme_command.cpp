@@ -37,7 +37,7 @@ TEST_CASE("Scenes that are not answered as they must be stand in the table, and 
     REQUIRE(meshes.rows.size() == 2);
     CHECK(meshes.rows[0][1].ends_with(" WRONG"));
     CHECK(meshes.rows[0][2] == "exact");
-    CHECK(meshes.rows[1][1].ends_with(" refused"));
+    CHECK(meshes.rows[1][1].ends_with(" rejected"));
     // One that may err must refuse all the same.
     CHECK(meshes.columns[4].name == "fcl");
     CHECK(meshes.rows[1][4] == "WRONG");
@@ -53,7 +53,7 @@ TEST_CASE("Scenes that are not answered as they must be stand in the table, and 
     const std::vector<std::string> memory = aabblab::memory_in(rows);
     REQUIRE(memory.size() == 1);
     CHECK(memory[0].starts_with("many_against_one, "));
-    CHECK(memory[0].ends_with(" bytes, of 1,000 stated"));
+    CHECK(memory[0].ends_with(" bytes; the stated bound is 1,000"));
 
     // All of that comes from rows as they are kept, too.
     const temporary_folder folder;
@@ -71,7 +71,7 @@ TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, 
     const std::filesystem::path out = folder / "results";
     const program_result ran = run_program({"validate", "extreme", "--quick", "--cases", file, "--out", out});
     CHECK(ran.status == 1);
-    CHECK(holds(ran.err, "aabblab: exact in double on lie: says that they intersect\n"));
+    CHECK(holds(ran.err, "aabblab: exact in double on lie: reports that they intersect\n"));
     CHECK(holds(ran.out, "answers are not what they must be.\n"));
     // Nothing but the lie is wrong.
     CHECK(holds(ran.out, "crossing      1      4 WRONG"));

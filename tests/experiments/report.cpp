@@ -70,7 +70,7 @@ TEST_CASE("Ratios are taken within a repeat") {
 }
 
 TEST_CASE("Repeats that are too few for an interval are said to be") {
-    const std::string said = "95 %: -, where repeats, seeds or processes are too few for an interval\n";
+    const std::string said = "95 %: - if there are too few repeats, seeds or processes for an interval\n";
     std::vector<row> rows;
     for (const auto& [repeat, slower] : {std::pair(0, 0.5), std::pair(1, 1.9), std::pair(2, 0.7), std::pair(3, 1.1)}) {
         rows.push_back(repeat_of("std", static_cast<std::uint64_t>(repeat), 1));
@@ -127,7 +127,7 @@ TEST_CASE("One seed that is inexact makes a line inexact, with what all seeds mi
     for (const auto& rows : {std::vector<row>{first, second}, std::vector<row>{second, first}}) {
         const auto scene = aabblab::summarise(rows)[0];
         CHECK(scene.lines[0].status == "inexact");
-        CHECK(column_of(aabblab::table_of(scene), "answer") == texts{"-2 +1"});
+        CHECK(column_of(aabblab::table_of(scene), "result") == texts{"-2 +1"});
     }
 }
 
@@ -142,7 +142,7 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
     const row engine = of_engine(1);
     const auto scene = aabblab::summarise(std::vector<row>{counted, engine, again})[0];
     REQUIRE(aabblab::to_csv(aabblab::counts_table_of(scene)) ==
-            "#,composition,comparisons,subset copies,copies an object,KiB projections\n"
+            "#,composition,comparisons,subset copies,copies per object,KiB projections\n"
             "1,std + one_axis,100,22.5,2.250,4.0\n");
     REQUIRE(aabblab::counts_table_of(aabblab::summarise(std::vector<row>{engine})[0]).columns.empty());
 }
@@ -173,15 +173,15 @@ TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those
     const auto t = aabblab::table_of(scene);
     CHECK(column_of(t, "sort") == texts{"fast", "slow", "wrong", "untimed"});
     CHECK(column_of(t, "ratio") == texts{"0.20", "1.00", "0.10", "-"});
-    CHECK(column_of(t, "answer") == texts{"exact", "exact", "-3 +5", "exact"});
+    CHECK(column_of(t, "result") == texts{"exact", "exact", "-3 +5", "exact"});
     CHECK(holds(aabblab::heading_of(scene),
-                "exact answers before inexact ones, each by ratio, the least first; ratio to slow\n"));
+                "exact results before inexact ones, each in ascending order of ratio; ratio to slow\n"));
     CHECK(holds(aabblab::heading_of(scene), "all lines: 1,234,567 pairs\n"));
-    CHECK(holds(aabblab::heading_of(scene), "an answer -3 +5 misses 3 of the exact answer and invents 5\n"));
+    CHECK(holds(aabblab::heading_of(scene), "a result -3 +5 has 3 false negatives and 5 false positives\n"));
     rows[1].false_negatives = 12;
     rows[1].false_positives = 0;
     CHECK(holds(aabblab::heading_of(aabblab::summarise(rows)[0]),
-                "an answer -12 +0 misses 12 of the exact answer and invents 0\n"));
+                "a result -12 +0 has 12 false negatives and 0 false positives\n"));
     CHECK(std::ranges::find(t.columns, "pairs", &aabblab::column::name) == t.columns.end());
 }
 
@@ -215,7 +215,7 @@ TEST_CASE("A table fits the width it is given: spare columns go, or long names, 
           "sort       tree                  ms  spare\n"
           "insertion  canonical              1      2\n"
           "std        compressed:build=sah   4      5\n"
-          "left out, for want of room: first\n");
+          "left out to fit the width: first\n");
     // Where that is not enough, numbers in place of long names make room for all else.
     CHECK(aabblab::to_text(t, 30) ==
           "#  ms  spare  first\n"
@@ -226,8 +226,8 @@ TEST_CASE("A table fits the width it is given: spare columns go, or long names, 
           "2  std +\n"
           "   compressed:build=sah\n");
     CHECK(aabblab::to_text(t, 13).starts_with("#  ms  spare\n"));
-    CHECK(aabblab::to_text(t, 13).ends_with("left out, for want of room: first\n"));
-    CHECK(aabblab::to_text(t, 10).ends_with("left out, for want of room: first, spare\n"));
+    CHECK(aabblab::to_text(t, 13).ends_with("left out to fit the width: first\n"));
+    CHECK(aabblab::to_text(t, 10).ends_with("left out to fit the width: first, spare\n"));
     // Numbers that are there are kept.
     aabblab::table ranked{{{aabblab::row_number}, {"sort", false}, {"ms"}}, {{"3", "a sort of many words", "1"}}};
     CHECK(aabblab::to_text(ranked, 20) == "#  ms\n3   1\n\n3  a sort of many words\n");
@@ -241,7 +241,7 @@ TEST_CASE("A table fits the width it is given: spare columns go, or long names, 
           "sort       tree  ms  spare\n"
           "insertion  t      1      2\n"
           "std        t      4      5\n"
-          "left out, for want of room: first\n");
+          "left out to fit the width: first\n");
     aabblab::table wide{{{"sort", false}}, {{"insertion"}, {"std"}}};
     for (int k = 0; k < 5; ++k) {
         wide.columns.push_back({"column " + std::to_string(k)});

@@ -4,7 +4,7 @@ TEST_CASE("validate stiff plays the studies that are named, and keeps each in it
     const temporary_folder folder;
     const std::string out = folder / "out";
     const program_result played = run_well({"validate", "stiff", "plate", "--quick", "--out", out});
-    REQUIRE(holds(played.out, "a step of 2 reaches, plain"));
+    REQUIRE(holds(played.out, "a step of 2 extents, plain"));
     REQUIRE(holds(played.out, "Everything is as expected."));
     const std::string csv = bytes_of_file(folder / "out" / "plate.csv");
     REQUIRE(csv.starts_with("subject,quantity,measured,expected,verdict\n"));

@@ -264,7 +264,7 @@ comparison compare(const run_results& a, const run_results& b, compared what) {
     compare_answers(of_a, of_b, report);
     if (report.answers_compared == 0)
         throw aabb::input_error(a.folder.string() + " and " + b.folder.string() +
-                                " have no scene in common: none of the same experiment, kind, parameters and seed");
+                                " have no scene in common: scenes must agree in experiment, kind, parameters and seed");
     report.only_in_a = count_missing(of_a, of_b);
     report.only_in_b = count_missing(of_b, of_a);
     std::vector<line> ratios;

@@ -34,7 +34,7 @@ std::string maker_of(const manifest_summary& m) {
 run_results read_results(const std::filesystem::path& folder) {
     if (!std::filesystem::is_directory(folder))
         throw aabb::input_error(folder.string() +
-                                (std::filesystem::exists(folder) ? " is not a folder" : " is not there") +
+                                (std::filesystem::exists(folder) ? " is not a folder" : " does not exist") +
                                 "; expected a folder of results");
     run_results run{folder, {}, {}};
     std::map<std::string, std::filesystem::path> folder_of;  // by experiment
@@ -51,7 +51,7 @@ run_results read_results(const std::filesystem::path& folder) {
     }
     if (run.rows.empty())
         throw aabb::input_error("there are no results in " + folder.string() +
-                                ": no results.csv with rows, neither there nor in its sub-folders");
+                                ": neither it nor a sub-folder has a results.csv with rows");
     return run;
 }
 
@@ -67,7 +67,8 @@ void require_one_machine(const run_results& a, const run_results& b) {
         for (const manifest_summary& of_b : b.manifests)
             if (of_a.cpu != of_b.cpu)
                 throw aabb::input_error(fmt::format(
-                    "--times compares runs of one machine only: {} is of {}, {} of {}; without it ratios are compared",
+                    "--times compares runs of one machine only: {} is from {}, {} from {}; without --times, ratios are "
+                    "compared",
                     a.folder.string(), maker_of(of_a), b.folder.string(), maker_of(of_b)));
 }
 

@@ -24,7 +24,7 @@ void print_answers(const comparison& report) {
             {}};
     for (const different_answer& d : report.answers)
         t.rows.push_back({d.experiment, d.scene.kind, parameters_text(d.scene), d.in_a, d.in_b});
-    print_block(fmt::format("the answers differ in {} of {} scenes", t.rows.size(), report.answers_compared), t);
+    print_block(fmt::format("the results differ in {} of {} scenes", t.rows.size(), report.answers_compared), t);
 }
 
 /// Lists the times that changed beyond noise, or all of them.
@@ -57,12 +57,12 @@ void print_compared(const comparison& report, std::vector<compared_time> compare
     }
     print(fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} undecided", count,
                       what, changed, same, 100 * equivalence_band, undecided));
-    if (too_few > 0) print(fmt::format(", {} of them for too few repeats", too_few));
+    if (too_few > 0) print(fmt::format(", {} of them because of too few repeats", too_few));
     print("\n");
     if (undecided > 0)
         print(
-            fmt::format("undecided: their intervals reach beyond {:.0f} %, or show a change only without Holm's "
-                        "correction for all {}{}\n",
+            fmt::format("undecided: the interval extends beyond {:.0f} %, or the change is significant only without "
+                        "Holm's correction for all {}{}\n",
                         100 * equivalence_band, what, list_all ? "" : "; --all lists them"));
 }
 
@@ -74,7 +74,7 @@ std::string percents(std::uint64_t before, std::uint64_t after) {
 void print_numbers(const comparison& report) {
     std::size_t changed = 0;
     for (const compared_scene& s : report.scenes) {
-        table t{{{"composition", false}, {"what", false}, {"in A"}, {"in B"}, {"%"}}, {}};
+        table t{{{"composition", false}, {"quantity", false}, {"in A"}, {"in B"}, {"%"}}, {}};
         for (const changed_number& n : s.changed)
             t.rows.push_back(
                 {n.label, n.what, std::to_string(n.in_a), std::to_string(n.in_b), percents(n.in_a, n.in_b)});
@@ -92,21 +92,22 @@ int print_comparison(const compare_request& request) {
     const run_results b = read_results(request.b);
     if (request.times) {
         require_one_machine(a, b);
-        note("times of runs at different hours differ by more than the noise within each; ratios tell more");
+        note(
+            "times of runs at different hours differ by more than the noise within each run; ratios are more reliable");
     }
     const comparison report = compare(a, b, request.times ? compared::ratios_and_times : compared::ratios);
     print(fmt::format("A: {} ({})\nB: {} ({})\n", visible(request.a), makers_of(a), visible(request.b), makers_of(b)));
     print_answers(report);
     print_compared(
         report, &compared_scene::ratios, "ratios", "ratio",
-        [](const compared_scene& s) { return "; time over that of '" + s.base + "'"; }, request.all);
+        [](const compared_scene& s) { return "; time relative to that of '" + s.base + "'"; }, request.all);
     if (request.times)
         print_compared(
             report, &compared_scene::times, "times", "ms",
-            [](const compared_scene&) { return "; milliseconds a frame"; }, request.all);
+            [](const compared_scene&) { return "; milliseconds per frame"; }, request.all);
     print_numbers(report);
     if (report.only_in_a + report.only_in_b > 0)
-        print(fmt::format("left out is what only one of them has: {} compositions in a scene of A, {} of B\n",
+        print(fmt::format("not compared, because the other run lacks them: {} compositions in a scene of A, {} of B\n",
                           report.only_in_a, report.only_in_b));
     return report.answers.empty() ? 0 : 1;
 }

@@ -95,18 +95,18 @@ number wrong_share(const row& r) {
 std::vector<metric> row_metrics() {
     using enum metric_group;
     const std::string cpu = "processor ";
-    const std::string to_update = "time a frame to take the boxes: to sort and to partition them";
-    const std::string to_search = "time a frame to find overlapping boxes";
-    const std::string to_detect = "time a frame to find intersecting triangles";
-    const std::string to_build = "time to make the stages and build the trees";
-    const std::string of_frame = "time a frame after frame 0, all of it; of frame 0 where there is no other";
-    const std::string of_whole = "time of all frames, frame 0 and the making of the stages with them";
+    const std::string to_update = "time per frame to update the boxes: sorting and partitioning";
+    const std::string to_search = "time per frame to find overlapping boxes";
+    const std::string to_detect = "time per frame to find intersecting triangles";
+    const std::string to_build = "time to construct the stages and build the trees";
+    const std::string of_frame = "time per frame after frame 0, of all stages; of frame 0 if it is the only one";
+    const std::string of_whole = "time of all frames, including frame 0 and the construction of the stages";
     return {
         time_of("frame_ms", of_frame, all_frames_after_first(wall)),
         time_of("update_ms", to_update, a_frame(wall.update)),
         time_of("search_ms", to_search, a_frame(wall.search)),
         time_of("detect_ms", to_detect, a_frame(wall.detect)),
-        {"global_share", "%", "share of global search in the processor time of the frames after frame 0", time,
+        {"global_share", "%", "share of the broad phase in the processor time of the frames after frame 0", time,
          better::neither, global_share},
         time_of("build_ms", to_build, &row::build_ms),
         time_of("first_ms", "time of frame 0", &row::first_ms),
@@ -114,22 +114,23 @@ std::vector<metric> row_metrics() {
         time_of("frame_cpu_ms", cpu + of_frame, all_frames_after_first(processor)),
         time_of("update_cpu_ms", cpu + to_update, a_frame(processor.update)),
         time_of("search_cpu_ms", cpu + to_search, a_frame(processor.search)),
-        time_of("global_cpu_ms", "processor time of global search a frame after frame 0", global_cpu_ms),
+        time_of("global_cpu_ms", "processor time of the broad phase per frame after frame 0", global_cpu_ms),
         time_of("detect_cpu_ms", cpu + to_detect, a_frame(processor.detect)),
         time_of("build_cpu_ms", cpu + to_build, &row::build_cpu_ms),
         time_of("whole_cpu_ms", cpu + of_whole, whole(processor)),
         {"waiting", "%", "share of the wall time of all frames in which the thread had no processor", time,
          better::less, waiting},
-        {"all_bytes", "bytes", "memory of all parts but the meshes, which every composition reads", bytes, better::less,
-         all_bytes},
-        {"tree_bytes", "bytes a triangle", "memory of the trees", bytes, better::less, tree_bytes},
-        error_of("missing", "pairs of the exact answer that are not found, over all frames", &row::false_negatives),
-        error_of("invented", "pairs that are found and not in the exact answer, over all frames",
+        {"all_bytes", "bytes", "memory of all parts except the meshes, which all compositions share", bytes,
+         better::less, all_bytes},
+        {"tree_bytes", "bytes per triangle", "memory of the trees", bytes, better::less, tree_bytes},
+        error_of("missing", "false negatives: pairs of the ground truth that are not reported, over all frames",
+                 &row::false_negatives),
+        error_of("invented", "false positives: reported pairs that are not in the ground truth, over all frames",
                  &row::false_positives),
         error_of("wrong_share",
-                 "pairs missing and invented, over those of the exact answer, or over one where it has none",
+                 "false negatives and false positives per pair of the ground truth; their number if it has no pair",
                  wrong_share),
-        error_of("box_inflation", "area of the boxes of a tree over that of the smallest ones, less 1",
+        error_of("box_inflation", "area of the boxes of a tree relative to that of the tightest boxes, minus 1",
                  &row::box_inflation),
     };
 }
@@ -147,7 +148,7 @@ std::vector<metric> work_metrics() {
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
         std::string spaced(aabb::work_names[i]);
         std::ranges::replace(spaced, '_', ' ');
-        list.push_back({std::string(aabb::work_names[i]), "", spaced + " a frame after frame 0", metric_group::counts,
+        list.push_back({std::string(aabb::work_names[i]), "", spaced + " per frame after frame 0", metric_group::counts,
                         describes(static_cast<aabb::work>(i)) ? better::neither : better::less,
                         [i](const row& r) -> std::optional<double> {
                             if (!r.counts[i]) return std::nullopt;

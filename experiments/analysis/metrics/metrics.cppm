@@ -14,10 +14,10 @@ struct metric_group_info {
     std::string_view summary;
 };
 inline constexpr std::array<metric_group_info, 4> metric_groups = {{
-    {"time", "wall time of build, update, search and triangle tests, apart"},
-    {"counts", "work done, counted in a pass of its own"},
+    {"time", "wall time of build, update, search and triangle tests, each on its own"},
+    {"counts", "work done, counted in a separate pass"},
     {"bytes", "memory allocated, by part"},
-    {"error", "pairs missed and invented against the exact answer"},
+    {"error", "false negatives and false positives, compared with the ground truth"},
 }};
 
 /// `neither` if a number describes the input.

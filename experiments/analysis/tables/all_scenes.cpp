@@ -90,7 +90,7 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     std::ranges::sort(standings, {}, [](const standing& s) { return std::tuple(!s.exact, s.ratio(), s.name); });
     const bool inexact = std::ranges::any_of(standings, [](const standing& entry) { return !entry.exact; });
     table t{name_columns_of(differing), {}};
-    if (inexact) t.columns.push_back({"answer"});
+    if (inexact) t.columns.push_back({"result"});
     t.columns.insert(t.columns.end(),
                      {{"ratio"}, {"least", true, 2}, {"greatest", true, 1}, {"scenes"}, {"fastest in"}});
     const bool regretted = std::ranges::all_of(standings, [](const standing& entry) { return !entry.regrets.empty(); });

@@ -22,7 +22,8 @@ std::string interval_text(const std::optional<interval>& around) {
     return around ? fmt::format("{:.2f}-{:.2f}", around->low, around->high) : "-";
 }
 
-std::string answer_of(const summary_line& line) {
+/// "exact", "inexact", or "-3 +5" for three false negatives and five false positives.
+std::string result_of(const summary_line& line) {
     if (line.status == "exact" || !line.false_negatives) return line.status;
     return fmt::format("-{} +{}", *line.false_negatives, *line.false_positives);
 }
@@ -56,21 +57,21 @@ struct shared_column {
 
 /// The columns of results, which are equal for all exact lines, and of bytes.
 std::vector<shared_column> shared_columns(std::span<const summary_line* const> ranking) {
-    shared_column answer{{"answer"}, "answer {}", {}};
+    shared_column result{{"result"}, "result {}", {}};
     shared_column pairs{{"pairs"}, "{} pairs", {}};
     shared_column contacts{{"contacts", true, 1}, "{} contacts", {}};
     shared_column bytes{{"KiB", true, 2}, "{} KiB", {}};
     bool meshes = false;
     bool sized = false;
     for (const summary_line* line : ranking) {
-        answer.cells.push_back(answer_of(*line));
+        result.cells.push_back(result_of(*line));
         pairs.cells.push_back(grouped(line->pairs));
         contacts.cells.push_back(line->contacts ? grouped(*line->contacts) : "-");
         bytes.cells.push_back(line->bytes ? kib_text(*line->bytes) : "-");
         meshes |= line->contacts.has_value();
         sized |= line->bytes.has_value();
     }
-    std::vector<shared_column> columns{std::move(answer), std::move(pairs)};
+    std::vector<shared_column> columns{std::move(result), std::move(pairs)};
     if (meshes) columns.push_back(std::move(contacts));
     if (sized) columns.push_back(std::move(bytes));
     return columns;
@@ -153,13 +154,13 @@ std::string heading_of(const scene_summary& scene) {
     for (const shared_column& c : shared_columns(ranking))
         if (c.is_constant()) same += (same.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
     if (!same.empty()) text += "all lines: " + same + "\n";
-    if (!scene.digest.empty()) text += "digest of the exact answer: " + scene.digest + "\n";
+    if (!scene.digest.empty()) text += "digest of the ground truth: " + scene.digest + "\n";
     const auto is_inexact = [](const summary_line& line) { return line.status != "exact"; };
     const bool inexact = std::ranges::any_of(scene.lines, is_inexact);
     const auto counted_line = std::ranges::find_if(
         ranking, [](const summary_line* line) { return line->status != "exact" && line->false_negatives.has_value(); });
     if (counted_line != ranking.end())
-        text += fmt::format("an answer {} misses {} of the exact answer and invents {}\n", answer_of(**counted_line),
+        text += fmt::format("a result {} has {} false negatives and {} false positives\n", result_of(**counted_line),
                             *(*counted_line)->false_negatives, *(*counted_line)->false_positives);
     std::size_t repeats = 0;
     for (const summary_line& line : scene.lines) repeats = std::max(repeats, line.repeats);
@@ -169,11 +170,11 @@ std::string heading_of(const scene_summary& scene) {
     if (!given_up.empty()) text += "repeated less often than others: " + given_up + "\n";
     const auto has_ratio = [](const summary_line& line) { return line.ratio.has_value(); };
     if (scene.lines.size() > 1 && std::ranges::any_of(scene.lines, has_ratio))
-        text += (inexact ? "exact answers before inexact ones, each by ratio, the least first; ratio to "
-                         : "ranked by ratio, the least first; ratio to ") +
+        text += (inexact ? "exact results before inexact ones, each in ascending order of ratio; ratio to "
+                         : "in ascending order of ratio; ratio to ") +
                 scene.lines[0].label + "\n";
     if (std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ratio && !l.ratio_interval; }))
-        text += "95 %: -, where repeats, seeds or processes are too few for an interval\n";
+        text += "95 %: - if there are too few repeats, seeds or processes for an interval\n";
     return text;
 }
 
@@ -186,7 +187,7 @@ table counts_table_of(const scene_summary& scene) {
         if (!is_used(scene, &summary_line::counts, i)) continue;
         works.push_back(i);
         t.columns.push_back({spaced(aabb::work_names[i])});
-        if (i == copies) t.columns.push_back({"copies an object"});
+        if (i == copies) t.columns.push_back({"copies per object"});
     }
     for (std::size_t i = 0; i < byte_columns.size(); ++i) {
         // The meshes are the same for all compositions.
@@ -200,7 +201,7 @@ table counts_table_of(const scene_summary& scene) {
         std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.bytes_a_triangle.has_value(); });
     const bool inflated =
         std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.box_inflation.value_or(0) > 0; });
-    if (trees) t.columns.push_back({"tree bytes a triangle"});
+    if (trees) t.columns.push_back({"tree bytes per triangle"});
     if (inflated) t.columns.push_back({"box inflation %"});
     std::size_t rank = 0;
     for (const summary_line* line : ranking_of(scene)) {

@@ -60,7 +60,7 @@ std::string leave_out(table& t, std::size_t width) {
         const auto k = static_cast<std::size_t>(spare - t.columns.begin());
         remove_columns(t, k, k + 1);
     }
-    return names.empty() ? "" : "left out, for want of room: " + names + "\n";
+    return names.empty() ? "" : "left out to fit the width: " + names + "\n";
 }
 
 /// "a + b + c" after a number, in lines of at most `width` characters unless a single part is longer.

@@ -104,15 +104,15 @@ stiff_result run_ball_bounces(const stiff_setting& setting) {
 stiff_study ball_bounces_study() {
     return {
         "ball_bounces",
-        "A ball of 1 kg meets a floor at 1 m/s, on a linear spring, without a dashpot and with one for a restitution "
-        "of 0.5, at dt·ω = 0.05 and stiffness 1e4 to 1e10 N/m",
+        "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring, without a dashpot and with one for a "
+        "restitution of 0.5, at dt·ω = 0.05 and stiffness 1e4 to 1e10 N/m",
         "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²))",
         &run_ball_bounces,
         {figure{.name = "ball_error_over_step",
-                .caption = "Error of the ball in contact over the step, of position and velocity together: each "
-                           "integrator falls with its order.",
+                .caption = "Error of the ball's position and velocity during contact over the step size. It falls "
+                           "with the order of each integrator.",
                 .x = {"step times angular frequency", true},
-                .y = {"greatest error over the ball's own motion", true}}}};
+                .y = {"greatest error (relative to the motion)", true}}}};
 }
 
 }  // namespace aabblab

@@ -86,13 +86,13 @@ stiff_result run_bouncing(const stiff_setting& setting) {
 stiff_study bouncing_study() {
     return {
         "bouncing",
-        "49 balls of 10 kg fall 5 m and bounce without loss for 20 s (4 with --quick) on springs of 2e5 N/m: energy "
-        "that must not creep; errors are relative to the energy at the beginning",
-        "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the error of ODE and "
+        "49 balls of 10 kg fall 5 m and bounce without loss for 20 s (4 with --quick) on springs of 2e5 N/m. Their "
+        "energy must not drift; errors are relative to the initial energy",
+        "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the errors of ODE and "
         "DART with impulses",
         &run_bouncing,
         {figure{.name = "bouncing_energy",
-                .caption = "Energy of 49 balls that bounce without loss, over what they began with.",
+                .caption = "Energy error of 49 balls that bounce without loss, relative to the initial energy.",
                 .x = {"time (s)", false},
                 .y = {"relative energy error", false}}}};
 }

@@ -228,27 +228,26 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
 }
 
 std::vector<figure> figures() {
-    std::vector<figure> list{
-        figure{.name = "error_over_time",
-               .caption = "Error of a trajectory over the time that detection takes for it: each integrator over its "
-                          "step, and a stale list over the frames from search to search, with steps of 1 ms.",
-               .x = {"detection (ms)", true},
-               .y = {"greatest distance from the right place (diameters)", true}}};
+    std::vector<figure> list{figure{
+        .name = "error_over_time",
+        .caption = "Error of a trajectory over the time of its collision detection: each integrator over its "
+                   "step size, and a stale Verlet list over the frames between its rebuilds, with steps of 1 ms.",
+        .x = {"detection (ms)", true},
+        .y = {"greatest error of a position (diameters)", true}}};
     const figure_axis time{"time (s)", false};
     for (const std::string size : sizes) {
         list.push_back(
             {figure_name("departure " + size),
              "How far balls of " + size +
-                 " are from where exact contacts take them, because of a triangle test, an engine or a stale "
-                 "list; what never departs is not drawn, and of others no more than nine.",
+                 " depart from their trajectory with exact contacts, because of a triangle test, an engine or a stale "
+                 "Verlet list. At most nine of the methods that depart are drawn.",
              time,
-             {"greatest distance over a ball's diameter", true}});
-        list.push_back(
-            {figure_name("depth " + size),
-             "How deep balls of " + size +
-                 " are in each other at most, with exact contacts and with those of the methods that depart.",
-             time,
-             {"greatest depth over a ball's diameter", false}});
+             {"greatest departure (diameters)", true}});
+        list.push_back({figure_name("depth " + size),
+                        "The greatest penetration of two balls of " + size +
+                            ", with exact contacts and with those of the methods that depart.",
+                        time,
+                        {"greatest depth (diameters)", false}});
     }
     return list;
 }
@@ -260,7 +259,7 @@ stiff_result run_dropped(const stiff_setting& setting) {
     const std::size_t side = setting.quick ? 3 : 6;
     const dropped_balls balls(side, 1);
     compare_steps(balls, setting, result);
-    // They publish the mean squared error over the run, J², of an energy of 34,454 J.
+    // The published value is the mean squared error over the run, J², of an energy of 34,454 J.
     result.add(reported("published: ODE, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(112.326) / 34454));
     result.add(
         reported("published: Bullet without ERP, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
@@ -272,9 +271,10 @@ stiff_result run_dropped(const stiff_setting& setting) {
 stiff_study dropped_study() {
     return {
         "dropped",
-        "216 balls of 80 triangles (27 with --quick) fall 5 diameters on a floor and on each other without loss, "
-        "pushed by a pressure on the surface inside the other: what a step and what each method does to the trajectory",
-        "the trajectory of exact contacts; energy errors that fall with the order of the integrator; SimBenchmark's "
+        "216 balls of 80 triangles (27 with --quick) fall 5 diameters on a floor and on each other, without loss. A "
+        "pressure on the surface inside the other ball separates them. The study shows how the step size and each "
+        "method change the trajectory",
+        "the trajectory with exact contacts; energy errors that fall with the order of the integrator; SimBenchmark's "
         "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv) for ODE and Bullet with impulses",
         &run_dropped, figures()};
 }

@@ -56,8 +56,9 @@ stiff_result run_overdamped(const stiff_setting& setting) {
 
 stiff_study overdamped_study() {
     return {"overdamped",
-            "A ball of 1 kg is let go on a floor whose dashpot is ten times the critical one, for a second: what "
-            "takes steps as long as the motion allows, and what takes them as short as the contact's stiffness asks",
+            "A ball of 1 kg is released for a second on a floor whose dashpot has ten times the critical damping. An "
+            "implicit integrator can take steps as long as the motion allows; for an explicit one, the stiffness of "
+            "the contact limits them",
             "closed form of the overdamped oscillator under gravity", &run_overdamped};
 }
 

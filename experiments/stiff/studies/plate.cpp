@@ -11,6 +11,7 @@ namespace {
 constexpr float thickness = 0.01F;                                 // of the plate, m
 constexpr float radius = 0.05F;                                    // of the body
 constexpr double extent = double{thickness} + 2 * double{radius};  // over which the body touches the plate
+constexpr auto tunnelled_share = "1 - extent / displacement";      // of shots, if steps are longer than that
 
 /// A body that flies down through a plate with a constant displacement per frame.
 class shot {
@@ -81,16 +82,16 @@ stiff_result run_plate(const stiff_setting& setting) {
     for (const double ratio : {0.5, 1.0, 1.25, 2.0, 4.0, 8.0, 16.0}) {
         shot fired(setting.tested, ratio * extent);
         const double expected = std::max(0.0, 1 - 1 / ratio);
-        result.plot("tunnelled", "1 - reach / way", ratio, expected);
+        result.plot("tunnelled", tunnelled_share, ratio, expected);
         for (const bool swept : {false, true}) {
             std::size_t unseen = 0;
             for (std::size_t s = 0; s < shots; ++s)
                 if (!fired.is_seen((static_cast<double>(s) + 0.5) / static_cast<double>(shots), swept)) ++unseen;
             const double share = static_cast<double>(unseen) / static_cast<double>(shots);
             result.plot("tunnelled", swept ? "swept boxes" : "plain boxes", ratio, share);
-            const std::string subject = "a step of " + short_number(ratio) + " reaches, " + (swept ? "swept" : "plain");
+            const std::string subject = "a step of " + short_number(ratio) + " extents, " + (swept ? "swept" : "plain");
             stiff_row row = reported(subject, "share tunnelled of " + std::to_string(shots), share);
-            row.rule = swept ? "0" : short_number(expected) + ", one shot more or less";
+            row.rule = swept ? "0" : short_number(expected) + " ± one shot";
             row.verdict =
                 verdict_if(std::abs(share - (swept ? 0 : expected)) <= (swept ? 0 : 1.01 / static_cast<double>(shots)));
             result.add(std::move(row));
@@ -102,18 +103,18 @@ stiff_result run_plate(const stiff_setting& setting) {
 stiff_study plate_study() {
     return {
         "plate",
-        "A body of 100 mm is shot through a mesh plate of 10 mm, from phases spread evenly over a step; plain boxes "
-        "stand where a step ends; swept ones reach from step to step, and where they meet the step is looked into in "
-        "parts that no body jumps over",
-        "1 - reach/way where a step's way is longer than body and plate together, their reach; none with swept boxes",
+        "A body of 100 mm is shot through a mesh plate of 10 mm, from phases spread evenly over a step. Plain boxes "
+        "bound the body at the end of a step. Swept boxes bound it from step to step; if they overlap, the step is "
+        "tested in parts that are too short for the body to tunnel",
+        "1 - extent/displacement if the displacement per step exceeds the extent of body and plate together; none with "
+        "swept boxes",
         &run_plate,
-        {figure{
-            .name = "tunnelled",
-            .caption = "Share of shots that go through a plate unseen, over the way of a step.",
-            .x = {"way of a step over body and plate", true},
-            .y = {"share tunnelled", false},
-            .lines = {
-                {"plain boxes", series_style::points}, {"swept boxes", series_style::points}, {"1 - reach / way"}}}}};
+        {figure{.name = "tunnelled",
+                .caption = "Share of shots that tunnel through a plate undetected, over the displacement per step.",
+                .x = {"displacement per step (extents of body and plate)", true},
+                .y = {"share tunnelled", false},
+                .lines = {
+                    {"plain boxes", series_style::points}, {"swept boxes", series_style::points}, {tunnelled_share}}}}};
 }
 
 }  // namespace aabblab

@@ -137,15 +137,15 @@ stiff_result run_sliding(const stiff_setting& setting) {
 stiff_study sliding_study() {
     return {"sliding",
             "A mesh of 64 teeth, each a triangle, slides on its tips along a flat mesh, over its vertices and edges, "
-            "as large as 1 m, 10 mm and 0.1 mm: each tip that is found to touch carries a 64th of the load; and a "
-            "100,000th of their size above it, where there is no load",
+            "in sizes of 1 m, 10 mm and 0.1 mm. Each tip whose contact is detected carries a 64th of the load. "
+            "A 100,000th of its size above the flat mesh, there is no load",
             "the load, to one in a thousand, without a jump; rounding of vertices to float allows 1e-4",
             &run_sliding,
             {figure{.name = "sliding_force",
                     .caption = "The force between two meshes of 10 mm that slide along each other, oblique and pressed "
-                               "by a 100,000th, over the one that 64 teeth share; what keeps it is not drawn.",
-                    .x = {"way over size", false},
-                    .y = {"force over the right one", false},
+                               "together by a 100,000th, relative to the load. Methods that keep it are not drawn.",
+                    .x = {"displacement (sizes)", false},
+                    .y = {"force (relative to the load)", false},
                     .lines = {{"exact", series_style::level, {{0, 1}}}}}}};
 }
 

@@ -137,16 +137,15 @@ stiff_result run_stability(const stiff_setting& setting) {
 stiff_study stability_study() {
     return {
         "stability",
-        "A ball of 1 kg swings on a floor about its depth at rest, in contact all the time, without a dashpot: energy "
-        "that drifts, and the step from which on it grows",
-        "central differences end at dt·ω = 2; the stability polynomial of Dormand and Prince (1980) leaves the unit "
-        "circle at 0.9972 on the imaginary axis; steps of 5 to 10 % of the contact time, dt·ω 0.157 to 0.314, are the "
-        "usual advice for discrete elements",
+        "A ball of 1 kg oscillates on a floor about its depth at rest, always in contact, without a dashpot. The study "
+        "measures the drift of its energy and the greatest stable step",
+        "central differences are stable up to dt·ω = 2; the stability polynomial of Dormand and Prince (1980) leaves "
+        "the unit circle at 0.9972 on the imaginary axis; the usual advice for discrete elements is a step of 5 to "
+        "10 % of the contact time, dt·ω 0.157 to 0.314",
         &run_stability,
         {figure{.name = "energy_drift",
                 .caption = "Relative drift of a ball's energy over 1000 periods (100 with --quick) in contact, without "
-                           "sign, over the step; marked are the usual advice and the steps from which on an "
-                           "oscillation grows.",
+                           "sign, over the step size. Marks show the usual advice and the greatest stable steps.",
                 .x = {"step times angular frequency", true},
                 .y = {"relative energy drift", true},
                 .marks = {{0.157, "5 %"}, {0.314, "10 % of the contact time"}}}},

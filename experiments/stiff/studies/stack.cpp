@@ -76,9 +76,10 @@ stiff_result run_stack(const stiff_setting& setting) {
 
 stiff_study stack_study() {
     return {"stack",
-            "Ten bodies on each other, light under heavy, on springs of 1e6 N/m and dashpots that are critical for the "
-            "slowest motion: how deep each is in the one below after 2 s",
-            "mg/k, where m is all mass above; after the scenes HighMassRatio1 of Box2D and HeavyOnLightTest of Jolt",
+            "Ten stacked bodies, heavy ones above light ones, on springs of 1e6 N/m and dashpots that are critical for "
+            "the slowest motion. The study measures how deep each is in the one below after 2 s",
+            "mg/k, where m is the total mass above; the scenes resemble HighMassRatio1 of Box2D and HeavyOnLightTest "
+            "of Jolt",
             &run_stack};
 }
 
