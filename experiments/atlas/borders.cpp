@@ -68,7 +68,7 @@ std::optional<border> border_between(const atlas_scene& from, const atlas_scene&
     if (!std::isfinite(first)) return std::nullopt;
     const estimate at_first = log_ratio_in(from, first_best, *after_at_first, span_of_time::frame);
     const estimate at_last = log_ratio_in(to, *before_at_last, last_best, span_of_time::frame);
-    if (!at_first.known() || !at_last.known()) return std::nullopt;
+    if (!at_first.is_known() || !at_last.is_known()) return std::nullopt;
     const auto [share, range] = crossing(at_first, at_last);
     return border{before,
                   after,

@@ -230,7 +230,7 @@ measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_rati
         const atlas_line* arm = scene.find(r.arm);
         const atlas_line* base = scene.find(r.base);
         if (!arm || !base) continue;
-        if (const estimate log = log_ratio_in(scene, *arm, *base, span_of_time::frame); log.known())
+        if (const estimate log = log_ratio_in(scene, *arm, *base, span_of_time::frame); log.is_known())
             logs.push_back(log);
     }
     return logs.empty() ? measured_ratio() : measured_ratio{logs.size(), mean_of(logs)};
@@ -262,7 +262,7 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
         entry.ratios.reserve(s.ratios.size());
         for (const stated_ratio& r : s.ratios) {
             const measured_ratio ratio = measured(atlas, r);
-            if (ratio.scenes == 0 || !ratio.log.known()) continue;
+            if (ratio.scenes == 0 || !ratio.log.is_known()) continue;
             const interval range = ratio.log.range();
             judged.push_back(&entry.ratios.emplace_back(r.where, what_of(r), ratio.scenes, std::exp(ratio.log.value),
                                                         interval{std::exp(range.low), std::exp(range.high)},
@@ -275,7 +275,7 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
         judged[i]->found = support_of(evidence[i].expected, evidence[i].p, levels[i]);
     for (judged_statement& s : verdicts) {
         std::vector<support> endpoints;
-        for (const judged_ratio& r : s.ratios) endpoints.push_back(r.found);
+        for (const judged_ratio& r : s.ratios) endpoints.push_back(r.verdict);
         s.verdict = verdict_of(endpoints);
     }
     return verdicts;
@@ -296,7 +296,7 @@ table ratios_table(const std::vector<judged_statement>& judged) {
     for (const judged_statement& s : judged)
         for (const judged_ratio& r : s.ratios)
             t.rows.push_back({s.id, r.where, r.what, grouped(r.scenes), fmt::format("{:.3g}", r.ratio),
-                              fmt::format("{:.3g}-{:.3g}", r.range.low, r.range.high), text_of(r.found)});
+                              fmt::format("{:.3g}-{:.3g}", r.range.low, r.range.high), text_of(r.verdict)});
     return t;
 }
 

@@ -86,7 +86,7 @@ public:
             [&](error_point& point) { count(point); });
     }
 
-    [[nodiscard]] std::vector<error_point> points() { return methods_.points(&error_point::ns_a_pair); }
+    [[nodiscard]] std::vector<error_point> points() { return methods_.points(&error_point::ns_per_pair); }
 
 private:
     void count(error_point& point) const {
@@ -167,7 +167,7 @@ std::vector<error_point> points_of(const error_study& study, const scene_choice&
 }
 
 constexpr std::size_t hits_in_batch = 1024;
-constexpr std::uint64_t most_pairs_a_hit = 1000;
+constexpr std::uint64_t most_pairs_per_hit = 1000;
 /// Library tests run on one batch in `library_share`: CGAL's takes a hundred times as long as ours.
 constexpr std::size_t library_share = 16;
 
@@ -212,7 +212,7 @@ public:
     }
 
     [[nodiscard]] std::vector<hit_point> points(std::uint64_t tried) {
-        std::vector<hit_point> points = tests_.points(&hit_point::ns_a_hit);
+        std::vector<hit_point> points = tests_.points(&hit_point::ns_per_hit);
         for (hit_point& p : points) p.tried = tried;
         return points;
     }
@@ -233,7 +233,7 @@ std::vector<hit_point> points_of(const pair_set& set, progress& shown, std::uint
         batch.clear();
         shown.at(done + hits);
     };
-    while (hits < set.count && tried / most_pairs_a_hit < set.count) {
+    while (hits < set.count && tried / most_pairs_per_hit < set.count) {
         aabb::triangle_pair<Real> p{};
         source.next({&p, 1});
         ++tried;
@@ -298,7 +298,7 @@ table hit_summary(std::span<const hit_point> points, bool in_double) {
         if (p.in_double != in_double) continue;
         t.rows.push_back({p.pairs, p.triangle, grouped(p.count), grouped(p.different), number_text(p.greatest.of_bound),
                           number_text(p.greatest.greatest), number_text(p.greatest.bound),
-                          fmt::format("{:.0f}", p.ns_a_hit.median)});
+                          fmt::format("{:.0f}", p.ns_per_hit.median)});
     }
     return t;
 }

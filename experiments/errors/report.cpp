@@ -57,7 +57,7 @@ std::vector<pooled> pooled_over(std::span<const error_point> points) {
         method->intersecting += p.intersecting;
         method->false_negatives += p.false_negatives;
         method->false_positives += p.false_positives;
-        method->ns_of_sets += p.ns_a_pair.median;
+        method->ns_of_sets += p.ns_per_pair.median;
         ++method->sets;
     }
     return methods;

@@ -30,9 +30,9 @@ constexpr auto columns_of_point = [](auto& p, auto field) {
     field("intersecting", p.intersecting);
     field("false_negatives", p.false_negatives);
     field("false_positives", p.false_positives);
-    field("ns", all_digits(p.ns_a_pair.median));
-    field("ns_low", all_digits(p.ns_a_pair.low));
-    field("ns_high", all_digits(p.ns_a_pair.high));
+    field("ns", all_digits(p.ns_per_pair.median));
+    field("ns_low", all_digits(p.ns_per_pair.low));
+    field("ns_high", all_digits(p.ns_per_pair.high));
 };
 
 constexpr auto columns_of_hit = [](auto& p, auto field) {
@@ -49,9 +49,9 @@ constexpr auto columns_of_hit = [](auto& p, auto field) {
     field("of_bound", all_digits(p.greatest.of_bound));
     field("error", all_digits(p.greatest.greatest));
     field("bound", all_digits(p.greatest.bound));
-    field("ns", all_digits(p.ns_a_hit.median));
-    field("ns_low", all_digits(p.ns_a_hit.low));
-    field("ns_high", all_digits(p.ns_a_hit.high));
+    field("ns", all_digits(p.ns_per_hit.median));
+    field("ns_low", all_digits(p.ns_per_hit.low));
+    field("ns_high", all_digits(p.ns_per_hit.high));
 };
 
 }  // namespace

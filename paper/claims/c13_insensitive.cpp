@@ -11,7 +11,7 @@ const selection smb{{kind::sort, "shell"}, {kind::partition, "axial_cut:axes=3"}
 endpoint cost_ratio(const condition& large, const condition& small, const std::string& factor, quantity what) {
     const bool is_time = what == quantity::time;
     const row_value a_box =
-        an_object(is_time ? measured("frame_cpu_ms") : bytes_of({"projections", "partition", "sweep"}));
+        per_object(is_time ? measured("frame_cpu_ms") : bytes_of({"projections", "partition", "sweep"}));
     endpoint ratio;
     ratio.where = large.of();
     ratio.where.emplace_back("quantity", is_time ? "time" : "memory");

@@ -98,7 +98,7 @@ draft c2_claim(const measurements& m) {
             if (conditions.size() < 2) continue;
             for (const condition* c : conditions) {
                 measured_sizes.log_n.push_back(std::log10(number_of(c->of(), "objects")));
-                measured_sizes.per_element.push_back(c->logs({{kind::sort, s.sort}}, an_object(work())));
+                measured_sizes.per_element.push_back(c->logs({{kind::sort, s.sort}}, per_object(work())));
             }
             endpoint c;
             c.where = {{"scene", "line"},
@@ -122,9 +122,9 @@ draft c2_claim(const measurements& m) {
                 "elements", "comparisons and moves per element"));
     std::vector<method> methods;
     for (const reported_sort& s : sorts) methods.push_back({s.sort, {{kind::sort, s.sort}}});
-    f.lines = series_of(methods, by_displacement["0.1"], "objects", an_object(work()));
+    f.lines = series_of(methods, by_displacement["0.1"], "objects", per_object(work()));
     f.lines.push_back(series_of("inversions", by_displacement["0.1"], "objects", {{kind::sort, "insertion"}},
-                                an_object(measured("inversions"))));
+                                per_object(measured("inversions"))));
     return c2;
 }
 

@@ -48,7 +48,7 @@ figure figure_of(const std::vector<condition>& conditions) {
             series s{gaps, series_style::points};
             for (const condition& c : conditions)
                 if (const endpoint ratio = over_insertion(c, gaps);
-                    is_brownian(c) == in_space && ratio.known() && disorder_of(c) > 0)
+                    is_brownian(c) == in_space && ratio.is_known() && disorder_of(c) > 0)
                     s.points.push_back(point_of(disorder_of(c), ratio));
             std::ranges::sort(s.points, {}, &figure_point::x);
             panel.lines.push_back(s);

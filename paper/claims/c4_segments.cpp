@@ -59,7 +59,7 @@ table automatic_table(const std::vector<condition>& conditions) {
             const endpoint ratio = endpoint_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), "frame_cpu_ms");
             const auto chosen = median_of(c, cut_into(axes, "auto"), measured("segments_got"));
             const auto limit = segments_got(c, axes, 256);
-            if (!ratio.known() || !chosen || !limit) continue;
+            if (!ratio.is_known() || !chosen || !limit) continue;
             std::vector<std::string>& cells =
                 t.rows.emplace_back(places[static_cast<std::size_t>(&c - conditions.data())]);
             cells.insert(cells.end(),

@@ -141,7 +141,7 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
             series s{value_of(c->of(), "scene")};
             for (const std::string& size : cell_sizes) {
                 const endpoint ratio = endpoint_of(*c, grid(size), cut, "frame_cpu_ms");
-                if (!ratio.known() || !is_grid(*c, size)) continue;
+                if (!ratio.is_known() || !is_grid(*c, size)) continue;
                 s.points.push_back(point_of(std::stod(size), ratio));
             }
             panel.lines.push_back(s);

@@ -139,7 +139,7 @@ std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double
     std::vector<endpoint*> primaries;
     for (std::size_t i = 0; i < drafts.size(); ++i) {
         for (const endpoint& e : drafts[i].endpoints)
-            if (e.known()) by_claim[i].push_back(decided_alone(e, band));
+            if (e.is_known()) by_claim[i].push_back(decided_alone(e, band));
         std::vector<endpoint*> others;
         for (endpoint& e : by_claim[i]) (e.is_primary ? primaries : others).push_back(&e);
         decide_family(others, band);

@@ -33,7 +33,7 @@ struct endpoint {
     std::string source{};  ///< the rows: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
 
     /// Whether all machines measured it.
-    [[nodiscard]] bool known() const {
+    [[nodiscard]] bool is_known() const {
         return !log_ratios.empty() && std::ranges::all_of(log_ratios, &estimate::known);
     }
     /// The mean over all machines.

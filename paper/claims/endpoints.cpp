@@ -51,7 +51,7 @@ std::optional<double> median_of(const condition& c, const selection& tested, con
 }
 
 std::optional<double> inversions_of(const condition& c) {
-    return median_of(c, {{kind::sort, "insertion"}}, an_object(measured("inversions")));
+    return median_of(c, {{kind::sort, "insertion"}}, per_object(measured("inversions")));
 }
 
 std::string digits_cell(const std::optional<double>& value) {

@@ -153,7 +153,7 @@ named_table null_control(const measurements& m) {
         for (const auto& [plain, written_out] : twins) {
             const endpoint ratio = endpoint_of(c, written_out, plain, "frame_cpu_ms",
                                                {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
-            if (ratio.known()) ratios.push_back(decided_alone(ratio));
+            if (ratio.is_known()) ratios.push_back(decided_alone(ratio));
         }
     const auto outcome_of = [](const endpoint& e) {
         return is_difference(e)                        ? std::string("a difference")

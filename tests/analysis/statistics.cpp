@@ -97,8 +97,8 @@ TEST_CASE("Where measurements are missing, the others decide") {
     cells all(processes, seeds);
     all.add(0, 0, 0.5);
     REQUIRE(bootstrap(all).value == 0.5);
-    REQUIRE(bootstrap(all).known());
-    REQUIRE_FALSE(bootstrap(cells(processes, seeds)).known());
+    REQUIRE(bootstrap(all).is_known());
+    REQUIRE_FALSE(bootstrap(cells(processes, seeds)).is_known());
     REQUIRE(cells(processes, seeds).empty());
     REQUIRE_FALSE(all.empty());
 }
@@ -112,7 +112,7 @@ TEST_CASE("An interval is Student's: three processes that differ have two degree
     // The standard error of 0, 1, 2 is 1 / sqrt(3); 4.303 is the table's value at 97.5 %.
     CHECK(std::abs(e.error - 0.577) < 0.03);
     CHECK(std::abs(e.range().high - (1 + 4.303 * e.error)) < 1e-3);
-    CHECK(std::abs(e.chance_below(1) - 0.5) < 1e-12);
+    CHECK(std::abs(e.p_if_below(1) - 0.5) < 1e-12);
 }
 
 TEST_CASE("The difference of two estimates has the noise of both") {

@@ -165,9 +165,9 @@ TEST_CASE("A single ratio of single repeats is as sure as the repeats of others 
     REQUIRE(ratios().size() == 1);
     CHECK(ratios()[0].range.low < 7.99);
     CHECK(ratios()[0].range.high > 8.01);
-    CHECK(ratios()[0].found == aabblab::support::contradicts);
+    CHECK(ratios()[0].verdict == aabblab::support::contradicts);
     lines.back().frame_ms = {1, 3, 9};
-    CHECK(ratios()[0].found == aabblab::support::undecided);
+    CHECK(ratios()[0].verdict == aabblab::support::undecided);
 }
 
 TEST_CASE("Whoever a statement speaks of plays in the map") {

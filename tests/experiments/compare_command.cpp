@@ -67,7 +67,7 @@ std::vector<outcome> outcomes_of(const measured& a, const measured& b) {
     const aabblab::comparison found = compare(run_of(a), run_of(b), aabblab::compared::ratios);
     REQUIRE(found.scenes.size() == 1);  // whatever the seeds
     std::vector<outcome> all;
-    for (const aabblab::compared_time& time : found.scenes[0].ratios) all.push_back(time.found);
+    for (const aabblab::compared_time& time : found.scenes[0].ratios) all.push_back(time.verdict);
     return all;
 }
 
@@ -100,13 +100,13 @@ TEST_CASE("What became slower against its base is found, though the machine is t
     REQUIRE(outcomes_of(b, {}) == std::vector{outcome::less, outcome::same});
     const auto scene = compare(run_of({}), run_of(b), aabblab::compared::ratios_and_times).scenes.at(0);
     REQUIRE(scene.scene == whatever_seed(brownian(1)));
-    REQUIRE(scene.base == "insertion");
+    REQUIRE(scene.baseline == "insertion");
     REQUIRE(scene.ratios[0].label == "std");
     CHECK(std::abs(scene.ratios[0].in_a - 2) < 0.02);
     CHECK(std::abs(scene.ratios[0].in_b - 2.4) < 0.02);
     CHECK(std::abs(scene.ratios[0].change - 1.2) < 0.02);
-    CHECK_BETWEEN(1.15, scene.ratios[0].around.low, 1.2);
-    CHECK_BETWEEN(1.2, scene.ratios[0].around.high, 1.25);
+    CHECK_BETWEEN(1.15, scene.ratios[0].change_range.low, 1.2);
+    CHECK_BETWEEN(1.2, scene.ratios[0].change_range.high, 1.25);
     REQUIRE(scene.times.size() == 3);
     for (const aabblab::compared_time& time : scene.times) CHECK(time.change > 1.9);
 }
@@ -123,11 +123,11 @@ TEST_CASE("Few noisy repeats leave it open, and so few that nothing could show i
     twice_as_slow.sorts[1].second = 4;
     const auto found = compare(run_of(once), run_of(twice_as_slow), aabblab::compared::ratios);
     for (const aabblab::compared_time& time : found.scenes.at(0).ratios) {
-        CHECK(time.found == outcome::undecided);
-        CHECK(time.too_few);
+        CHECK(time.verdict == outcome::undecided);
+        CHECK(time.lacks_repeats);
     }
     const auto enough = compare(run_of(a), run_of(slower), aabblab::compared::ratios);
-    CHECK_FALSE(enough.scenes.at(0).ratios.at(0).too_few);
+    CHECK_FALSE(enough.scenes.at(0).ratios.at(0).lacks_repeats);
 }
 
 TEST_CASE("One change among hundreds of lines is found") {
@@ -150,9 +150,9 @@ TEST_CASE("What is the same by its own interval is so among hundreds of lines, a
     const auto found = compare(run_of(a), run_of(b), aabblab::compared::ratios);
     std::size_t same = 0;
     for (const aabblab::compared_time& time : found.scenes.at(0).ratios) {
-        const bool within = time.around.low > 1 / 1.05 && time.around.high < 1.05;
-        CHECK((time.found == outcome::same) == within);
-        CHECK((time.found == outcome::same || time.found == outcome::undecided));
+        const bool within = time.change_range.low > 1 / 1.05 && time.change_range.high < 1.05;
+        CHECK((time.verdict == outcome::same) == within);
+        CHECK((time.verdict == outcome::same || time.verdict == outcome::undecided));
         same += within;
     }
     CHECK_BETWEEN(0, same, 302);
@@ -164,10 +164,10 @@ TEST_CASE("The base is the first in A that both have, and what only one has is c
         if (r.name[aabb::strategy_kind::sort] == "insertion") r.name[aabb::strategy_kind::sweep] = "all_axes";
     const measured b{.sorts = {{"shell", 0.5}, {"std", 2}, {"quick", 1}}, .seeds = 2, .hour = 2};
     const auto found = compare(a, run_of(b), aabblab::compared::ratios);
-    REQUIRE(found.scenes.at(0).base == "std");
+    REQUIRE(found.scenes.at(0).baseline == "std");
     REQUIRE(found.scenes[0].ratios.size() == 1);
     REQUIRE(found.scenes[0].ratios[0].label == "shell");  // what the two have differs in the sort only
-    REQUIRE(found.answers_compared == 2);
+    REQUIRE(found.results_compared == 2);
     REQUIRE(found.only_in_a == 3 + 2);  // all of the third seed, insertion in two
     REQUIRE(found.only_in_b == 2);
 }
@@ -181,11 +181,11 @@ TEST_CASE("Counts and bytes are compared one by one, and so are the answers of w
         else if (r.name[aabb::strategy_kind::sort] == "shell" && r.scene.seed != 3)
             r.counts[0] = 3000 - *r.counts[0];
     const auto changed = compare(a, b, aabblab::compared::ratios);
-    REQUIRE(changed.answers.empty());
+    REQUIRE(changed.different_results.empty());
     REQUIRE(changed.scenes.at(0).changed.size() == 2);
     const aabblab::changed_number& number = changed.scenes[0].changed[0];
     REQUIRE(number.label == "std");
-    REQUIRE(number.what == "comparisons");
+    REQUIRE(number.quantity == "comparisons");
     REQUIRE(number.in_a == 6000);
     REQUIRE(number.in_b == 6180);
     // A change that the sum over the seeds does not show.
@@ -198,12 +198,12 @@ TEST_CASE("Counts and bytes are compared one by one, and so are the answers of w
             r.digest = "0123456789abcdef";
             r.status = "inexact";
         }
-    REQUIRE(compare(a, b, aabblab::compared::ratios).answers.empty());
+    REQUIRE(compare(a, b, aabblab::compared::ratios).different_results.empty());
     for (row& r : b.rows) r.status = "exact";
     const auto different = compare(a, b, aabblab::compared::ratios);
-    REQUIRE(different.answers.size() == 1);
-    REQUIRE(different.answers[0].scene == brownian(2));
-    REQUIRE(different.answers[0].in_a == "00000000000000a2");
+    REQUIRE(different.different_results.size() == 1);
+    REQUIRE(different.different_results[0].scene == brownian(2));
+    REQUIRE(different.different_results[0].in_a == "00000000000000a2");
 }
 
 TEST_CASE("Ratios are to the first composition, though an engine stands before it") {
@@ -215,7 +215,7 @@ TEST_CASE("Ratios are to the first composition, though an engine stands before i
     }
     const aabblab::comparison found = compare({"a", rows, {}}, {"b", rows, {}}, aabblab::compared::ratios);
     REQUIRE(found.scenes.size() == 1);
-    CHECK(found.scenes[0].base == "std");
+    CHECK(found.scenes[0].baseline == "std");
 }
 
 TEST_CASE("compare lists what changed beyond noise, or all, and ends with status 0") {

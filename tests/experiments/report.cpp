@@ -111,7 +111,7 @@ TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean
     CHECK(line.pairs == 2 * 1234567);
     CHECK(line.contacts == 10);
     CHECK(line.repeats == 6);
-    CHECK(line.ms_a_frame->median == 2.5);
+    CHECK(line.ms_per_frame->median == 2.5);
 }
 
 TEST_CASE("One seed that is inexact makes a line inexact, with what all seeds miss and invent") {

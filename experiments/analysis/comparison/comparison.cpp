@@ -2,6 +2,7 @@ module aabblab.comparison;
 
 import aabb.base;
 import aabb.counters;
+import aabblab.fmt;
 import aabblab.metrics;
 import aabblab.tables;
 
@@ -37,14 +38,14 @@ private:
 
 /// A scene with the seeds and the names that occur in both runs, though not every seed has rows of every name.
 struct shared_scene {
-    const row* any;                     ///< a row of A
+    const row* first_row;               ///< of A
     std::vector<scene_key> seeds;       ///< differ in their seed only
     std::vector<candidate_name> names;  ///< in the order of A
 };
 
 template <class T>
-void add_once(std::vector<T>& to, const T& value) {
-    if (std::ranges::find(to, value) == to.end()) to.push_back(value);
+void add_once(std::vector<T>& list, const T& value) {
+    if (std::ranges::find(list, value) == list.end()) list.push_back(value);
 }
 
 std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_scene& b) {
@@ -61,7 +62,7 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_sc
     return scenes;
 }
 
-/// The labels that a table of these compositions would use.
+/// The labels that `table_of` would give to these compositions: the parts of their names in which they differ.
 std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     std::vector<row> rows;
     for (const candidate_name& name : names) {
@@ -76,10 +77,11 @@ std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     return labels;
 }
 
+/// The logarithm of a repeat's time per frame; empty if the row has no positive time.
 std::optional<double> log_ms(const row& r) {
-    static const row_value& frame = measured("frame_ms");
+    static const row_value& frame_ms = measured("frame_ms");
     if (!r.first_ms || !r.search_ms || !r.detect_ms) return std::nullopt;
-    const double ms = frame(r).value_or(0);
+    const double ms = frame_ms(r).value_or(0);
     return std::isfinite(ms) && ms > 0 ? std::optional(std::log(ms)) : std::nullopt;
 }
 
@@ -90,7 +92,7 @@ std::optional<double> log_ms_in(const rows_by_scene::repeats& rows, const row& s
     return std::nullopt;
 }
 
-std::size_t size_of(const cells& logs) {
+std::size_t count_values(const cells& logs) {
     std::size_t count = 0;
     for (std::size_t process = 0; process < logs.processes(); ++process)
         for (std::size_t seed = 0; seed < logs.seeds(); ++seed) count += logs.at(process, seed).size();
@@ -99,78 +101,74 @@ std::size_t size_of(const cells& logs) {
 
 /// The probability that n values all exceed m others of the same distribution, a lower bound for any p-value. The
 /// bootstrap of a few values falls below it because it underestimates their variance; of one value it sees none.
-double least_chance(std::size_t n, std::size_t m) {
+double least_p_value(std::size_t n, std::size_t m) {
     double chance = 1;
     for (std::size_t i = 1; i <= n; ++i) chance *= static_cast<double>(i) / static_cast<double>(m + i);
     return chance;
 }
 
-/// Logarithms of the milliseconds per frame, or of their ratios to the baseline's in the same repeat.
-cells log_times(const rows_by_scene& run, const shared_scene& in, const candidate_name& name,
-                const candidate_name* base) {
-    std::vector<std::uint64_t> processes;
-    for (const scene_key& seed : in.seeds)
-        for (const row* r : run.of(seed, name)) processes.push_back(r->process);
-    std::ranges::sort(processes);
-    const auto duplicates = std::ranges::unique(processes);
-    processes.erase(duplicates.begin(), duplicates.end());
-    cells logs(processes.size(), in.seeds.size());
-    for (std::size_t seed = 0; seed < in.seeds.size(); ++seed)
-        for (const row* r : run.of(in.seeds[seed], name)) {
-            const std::optional<double> own = log_ms(*r);
-            const std::optional<double> other = base ? log_ms_in(run.of(in.seeds[seed], *base), *r) : 0;
-            if (!own || !other) continue;
-            const auto process = std::ranges::lower_bound(processes, r->process) - processes.begin();
-            logs.add(static_cast<std::size_t>(process), seed, *own - *other);
+/// Logarithms of the milliseconds per frame, or, if there is a baseline, of their ratios to its in the same repeat.
+cells log_times(const rows_by_scene& run, const shared_scene& scene, const candidate_name& name,
+                const candidate_name* baseline) {
+    std::map<std::uint64_t, std::size_t> processes;  // with their indices in the cells
+    for (const scene_key& seed : scene.seeds)
+        for (const row* r : run.of(seed, name)) processes.emplace(r->process, 0);
+    std::size_t count = 0;
+    for (auto& [process, index] : processes) index = count++;
+    cells logs(count, scene.seeds.size());
+    for (std::size_t seed = 0; seed < scene.seeds.size(); ++seed)
+        for (const row* r : run.of(scene.seeds[seed], name)) {
+            const std::optional<double> ms = log_ms(*r);
+            const std::optional<double> base_ms = baseline ? log_ms_in(run.of(scene.seeds[seed], *baseline), *r) : 0;
+            if (ms && base_ms) logs.add(processes.at(r->process), seed, *ms - *base_ms);
         }
     return logs;
 }
 
 /// The first name that is timed in both runs; an engine is the baseline only if there is no composition.
-std::optional<candidate_name> base_of(const shared_scene& in, const rows_by_scene& a, const rows_by_scene& b) {
+std::optional<candidate_name> baseline_of(const shared_scene& scene, const rows_by_scene& a, const rows_by_scene& b) {
     for (const bool engine : {false, true})
-        for (const candidate_name& name : in.names)
-            if (name.engine.empty() != engine && !log_times(a, in, name, nullptr).empty() &&
-                !log_times(b, in, name, nullptr).empty())
+        for (const candidate_name& name : scene.names)
+            if (name.engine.empty() != engine && !log_times(a, scene, name, nullptr).empty() &&
+                !log_times(b, scene, name, nullptr).empty())
                 return name;
     return std::nullopt;
 }
 
 /// The logarithms of one composition or engine in a scene, in A and in B.
-struct line {
-    std::size_t scene;
+struct measured_line {
+    std::size_t scene;  ///< index in the report
     std::string label;
     cells a;
     cells b;
 };
 
 /// Decides all lines as one family of tests, and adds each to its scene.
-void add_judged(std::span<const line> lines, std::vector<compared_time> compared_scene::* to,
-                std::vector<compared_scene>& scenes) {
+void add_decided(std::span<const measured_line> lines, std::vector<compared_time> compared_scene::* times_of_scene,
+                 std::vector<compared_scene>& scenes) {
     std::vector<compared_time> times;
     std::vector<evidence> evidences;
-    for (const line& entry : lines) {
+    for (const measured_line& entry : lines) {
         const estimate a = bootstrap(entry.a);
         const estimate b = bootstrap(entry.b);
         const estimate change = difference_of(b, a);
-        const interval around = change.range();
-        const double least = least_chance(size_of(entry.a), size_of(entry.b));
-        evidence& shown = evidences.emplace_back(evidence_of(change));
-        shown.p = std::max(shown.p, least);
+        const double least = least_p_value(count_values(entry.a), count_values(entry.b));
+        evidence& entry_evidence = evidences.emplace_back(evidence_of(change));
+        entry_evidence.p = std::max(entry_evidence.p, least);
         compared_time& time = times.emplace_back();
         time.label = entry.label;
         time.in_a = std::exp(a.value);
         time.in_b = std::exp(b.value);
         time.change = std::exp(change.value);
-        time.around = {std::exp(around.low), std::exp(around.high)};
-        time.too_few = decide({outcome::more, least * static_cast<double>(lines.size())}) == outcome::undecided;
+        time.change_range = {std::exp(change.range().low), std::exp(change.range().high)};
+        time.lacks_repeats = decide({outcome::more, least * static_cast<double>(lines.size())}) == outcome::undecided;
     }
     const std::vector<outcome> outcomes = decide_together(evidences);
     for (std::size_t i = 0; i < times.size(); ++i) {
         // Only changes are corrected; otherwise hundreds of unchanged lines would all end up undecided.
-        times[i].found =
+        times[i].verdict =
             outcomes[i] == outcome::undecided && decide(evidences[i]) == outcome::same ? outcome::same : outcomes[i];
-        (scenes[lines[i].scene].*to).push_back(std::move(times[i]));
+        (scenes[lines[i].scene].*times_of_scene).push_back(std::move(times[i]));
     }
 }
 
@@ -195,36 +193,35 @@ std::set<std::string> exact_digests(const rows_by_scene::repeats_by_name& of_sce
     return digests;
 }
 
-std::string joined(const std::set<std::string>& texts) {
-    std::string list;
-    for (const std::string& text : texts) list += (list.empty() ? "" : " ") + text;
-    return list.empty() ? "-" : list;
+std::string text_of(const std::set<std::string>& digests) {
+    return digests.empty() ? "-" : fmt::format("{}", fmt::join(digests, " "));
 }
 
-void compare_answers(const rows_by_scene& a, const rows_by_scene& b, comparison& report) {
+/// Records each scene whose exact rows do not all have the same digest.
+void compare_results(const rows_by_scene& a, const rows_by_scene& b, comparison& report) {
     for (const auto& [scene, in_a] : a.scenes()) {
         const auto in_b = b.scenes().find(scene);
         if (in_b == b.scenes().end()) continue;
-        ++report.answers_compared;
-        const std::set<std::string> of_a = exact_digests(in_a);
-        const std::set<std::string> of_b = exact_digests(in_b->second);
-        std::set<std::string> both = of_a;
-        both.insert(of_b.begin(), of_b.end());
-        if (both.size() < 2) continue;
-        const row& any = *in_a.begin()->second.front();
-        report.answers.push_back({any.experiment, any.scene, joined(of_a), joined(of_b)});
+        ++report.results_compared;
+        const std::set<std::string> digests_a = exact_digests(in_a);
+        std::set<std::string> digests_b = exact_digests(in_b->second);
+        const row& first = *in_a.begin()->second.front();
+        different_result difference{first.experiment, first.scene, text_of(digests_a), text_of(digests_b)};
+        digests_b.insert(digests_a.begin(), digests_a.end());
+        if (digests_b.size() > 1) report.different_results.push_back(std::move(difference));
     }
 }
 
+/// Compares counts and bytes, which no noise disturbs: adds those that differ for any seed.
 /// @returns the number of values compared
-std::size_t compare_numbers(const shared_scene& in, const rows_by_scene& a, const rows_by_scene& b,
+std::size_t compare_numbers(const shared_scene& scene, const rows_by_scene& a, const rows_by_scene& b,
                             std::span<const std::string> labels, std::vector<changed_number>& changed) {
     std::size_t compared = 0;
-    for (std::size_t i = 0; i < in.names.size(); ++i) {
+    for (std::size_t i = 0; i < scene.names.size(); ++i) {
         std::vector<std::pair<std::vector<number>, std::vector<number>>> by_seed;  // of A and B
-        for (const scene_key& seed : in.seeds) {
-            const rows_by_scene::repeats& of_a = a.of(seed, in.names[i]);
-            const rows_by_scene::repeats& of_b = b.of(seed, in.names[i]);
+        for (const scene_key& seed : scene.seeds) {
+            const rows_by_scene::repeats& of_a = a.of(seed, scene.names[i]);
+            const rows_by_scene::repeats& of_b = b.of(seed, scene.names[i]);
             if (!of_a.empty() && !of_b.empty())
                 by_seed.emplace_back(numbers_of(*of_a.front()), numbers_of(*of_b.front()));
         }
@@ -248,51 +245,52 @@ std::size_t compare_numbers(const shared_scene& in, const rows_by_scene& a, cons
     return compared;
 }
 
-std::size_t count_missing(const rows_by_scene& from, const rows_by_scene& in) {
+/// The number of compositions and engines in the scenes of a run that the other run lacks.
+std::size_t count_only_in(const rows_by_scene& run, const rows_by_scene& other) {
     std::size_t count = 0;
-    for (const auto& [scene, by_name] : from.scenes())
-        for (const auto& [name, repeats] : by_name) count += in.of(scene, name).empty();
+    for (const auto& [scene, by_name] : run.scenes())
+        for (const auto& [name, repeats] : by_name) count += other.of(scene, name).empty();
     return count;
 }
 
 }  // namespace
 
-comparison compare(const run_results& a, const run_results& b, compared what) {
+comparison compare(const run_results& a, const run_results& b, compared quantities) {
     const rows_by_scene of_a(a.rows);
     const rows_by_scene of_b(b.rows);
     comparison report;
-    compare_answers(of_a, of_b, report);
-    if (report.answers_compared == 0)
+    compare_results(of_a, of_b, report);
+    if (report.results_compared == 0)
         throw aabb::input_error(a.folder.string() + " and " + b.folder.string() +
                                 " have no scene in common: scenes must agree in experiment, kind, parameters and seed");
-    report.only_in_a = count_missing(of_a, of_b);
-    report.only_in_b = count_missing(of_b, of_a);
-    std::vector<line> ratios;
-    std::vector<line> times;
+    report.only_in_a = count_only_in(of_a, of_b);
+    report.only_in_b = count_only_in(of_b, of_a);
+    std::vector<measured_line> ratios, times;
     for (const shared_scene& shared : scenes_shared(a.rows, of_b)) {
         const std::size_t place = report.scenes.size();
         const std::vector<std::string> labels = labels_of(shared.names);
         compared_scene& scene = report.scenes.emplace_back();
-        scene.experiment = shared.any->experiment;
-        scene.scene = whatever_seed(shared.any->scene);
+        scene.experiment = shared.first_row->experiment;
+        scene.scene = whatever_seed(shared.first_row->scene);
         report.numbers_compared += compare_numbers(shared, of_a, of_b, labels, scene.changed);
-        const std::optional<candidate_name> base = base_of(shared, of_a, of_b);
-        if (!base) continue;
+        const std::optional<candidate_name> baseline = baseline_of(shared, of_a, of_b);
+        if (!baseline) continue;
         for (std::size_t i = 0; i < labels.size(); ++i) {
             const candidate_name& name = shared.names[i];
-            const auto add = [&](std::vector<line>& to, const candidate_name* over) {
-                line entry{place, labels[i], log_times(of_a, shared, name, over), log_times(of_b, shared, name, over)};
-                if (!entry.a.empty() && !entry.b.empty()) to.push_back(std::move(entry));
+            const auto add = [&](std::vector<measured_line>& lines, const candidate_name* denominator) {
+                measured_line entry{place, labels[i], log_times(of_a, shared, name, denominator),
+                                    log_times(of_b, shared, name, denominator)};
+                if (!entry.a.empty() && !entry.b.empty()) lines.push_back(std::move(entry));
             };
-            if (what == compared::ratios_and_times) add(times, nullptr);
-            if (name == *base)
-                scene.base = labels[i];
+            if (quantities == compared::ratios_and_times) add(times, nullptr);
+            if (name == *baseline)
+                scene.baseline = labels[i];
             else
-                add(ratios, &*base);
+                add(ratios, &*baseline);
         }
     }
-    add_judged(ratios, &compared_scene::ratios, report.scenes);
-    add_judged(times, &compared_scene::times, report.scenes);
+    add_decided(ratios, &compared_scene::ratios, report.scenes);
+    add_decided(times, &compared_scene::times, report.scenes);
     return report;
 }
 

@@ -33,16 +33,16 @@ struct compared_time {
     std::string label;  ///< the parts of the name that differ within the scene
     double in_a = 0;    ///< means over the cells, as in aabblab.statistics
     double in_b = 0;
-    double change = 1;                   ///< the ratio of B to A
-    interval around{};                   ///< 95 % interval of the change, without correction
-    outcome found = outcome::undecided;  ///< changes are corrected by Holm's rule, `same` is not
-    bool too_few = false;                ///< with so few repeats even the largest change is insignificant
+    double change = 1;                     ///< the ratio of B to A
+    interval change_range{};               ///< 95 % interval of the change, without correction
+    outcome verdict = outcome::undecided;  ///< changes are corrected by Holm's rule, `same` is not
+    bool lacks_repeats = false;            ///< with so few repeats, even the largest change is insignificant
 };
 
 /// A count or a number of bytes that differs in B, summed over the scene's seeds.
 struct changed_number {
     std::string label;
-    std::string what;  ///< its column
+    std::string quantity;  ///< its column in results.csv
     std::uint64_t in_a = 0;
     std::uint64_t in_b = 0;
 };
@@ -50,15 +50,15 @@ struct changed_number {
 /// A scene with the seeds that A and B share.
 struct compared_scene {
     std::string experiment;
-    scene_choice scene;  ///< `whatever_seed`
-    std::string base;    ///< denominator of `ratios`: the first in A that is timed in both; empty if there is none
+    scene_choice scene;    ///< `whatever_seed`
+    std::string baseline;  ///< of `ratios`: the first in A that is timed in both; empty if there is none
     std::vector<compared_time> ratios;
     std::vector<compared_time> times;
     std::vector<changed_number> changed;
 };
 
 /// A scene whose exact compositions report different pairs in A and B, which is always an error.
-struct different_answer {
+struct different_result {
     std::string experiment;
     scene_choice scene;
     std::string in_a;  ///< digests
@@ -66,9 +66,9 @@ struct different_answer {
 };
 
 struct comparison {
-    std::vector<different_answer> answers;
+    std::vector<different_result> different_results;
     std::vector<compared_scene> scenes;  ///< in the order of A
-    std::size_t answers_compared = 0;    ///< scenes; each seed counts separately
+    std::size_t results_compared = 0;    ///< scenes; each seed counts separately
     std::size_t numbers_compared = 0;    ///< counts and bytes
     /// Compositions and engines in a scene that occur on one side only; each seed counts separately.
     std::size_t only_in_a = 0;
@@ -78,7 +78,7 @@ struct comparison {
 enum class compared { ratios, ratios_and_times };
 /// Scenes match if experiment, kind, parameters and seed are equal.
 /// @throws aabb::input_error if A and B have no scene in common.
-[[nodiscard]] comparison compare(const run_results& a, const run_results& b, compared what);
+[[nodiscard]] comparison compare(const run_results& a, const run_results& b, compared quantities);
 
 struct compare_request {
     std::string a, b;    ///< folders

@@ -19,51 +19,52 @@ void print_block(const std::string& heading, const table& t) {
     if (!t.rows.empty()) print("\n" + heading + "\n" + to_text(t, output_width()));
 }
 
-void print_answers(const comparison& report) {
+void print_different_results(const comparison& report) {
     table t{{{"experiment", false}, {"scene", false}, {"parameters", false}, {"digest in A", false}, {"in B", false}},
             {}};
-    for (const different_answer& d : report.answers)
+    for (const different_result& d : report.different_results)
         t.rows.push_back({d.experiment, d.scene.kind, parameters_text(d.scene), d.in_a, d.in_b});
-    print_block(fmt::format("the results differ in {} of {} scenes", t.rows.size(), report.answers_compared), t);
+    print_block(fmt::format("the results differ in {} of {} scenes", t.rows.size(), report.results_compared), t);
 }
 
 /// Lists the times that changed beyond noise, or all of them.
 table table_of(std::span<const compared_time> times, const std::string& unit, bool list_all) {
     table t{{{"composition", false}, {unit + " in A"}, {"in B"}, {"B/A"}, {"95 %"}, {"B is", false}}, {}};
     for (const compared_time& time : times)
-        if (list_all || time.found == outcome::less || time.found == outcome::more)
-            t.rows.push_back({time.label, fmt::format("{:.3f}", time.in_a), fmt::format("{:.3f}", time.in_b),
-                              fmt::format("{:.3f}", time.change),
-                              time.too_few ? "-" : fmt::format("{:.3f}-{:.3f}", time.around.low, time.around.high),
-                              std::string(outcome_names[static_cast<std::size_t>(time.found)])});
+        if (list_all || time.verdict == outcome::less || time.verdict == outcome::more)
+            t.rows.push_back(
+                {time.label, fmt::format("{:.3f}", time.in_a), fmt::format("{:.3f}", time.in_b),
+                 fmt::format("{:.3f}", time.change),
+                 time.lacks_repeats ? "-" : fmt::format("{:.3f}-{:.3f}", time.change_range.low, time.change_range.high),
+                 std::string(outcome_names[static_cast<std::size_t>(time.verdict)])});
     return t;
 }
 
 /// Prints a table per scene, then a line of totals: "24 ratios compared: 2 changed beyond noise, …".
 /// @param heading returns the text that follows the scene's name
 /// @param list_all includes unchanged and undecided ones
-void print_compared(const comparison& report, std::vector<compared_time> compared_scene::* times, std::string_view what,
-                    const std::string& unit, auto heading, bool list_all) {
+void print_compared(const comparison& report, std::vector<compared_time> compared_scene::* times,
+                    std::string_view quantity, const std::string& unit, auto heading, bool list_all) {
     std::size_t count = 0, changed = 0, same = 0, undecided = 0, too_few = 0;
     for (const compared_scene& s : report.scenes) {
         for (const compared_time& time : s.*times) {
             ++count;
-            changed += time.found == outcome::less || time.found == outcome::more;
-            same += time.found == outcome::same;
-            undecided += time.found == outcome::undecided;
-            too_few += time.found == outcome::undecided && time.too_few;
+            changed += time.verdict == outcome::less || time.verdict == outcome::more;
+            same += time.verdict == outcome::same;
+            undecided += time.verdict == outcome::undecided;
+            too_few += time.verdict == outcome::undecided && time.lacks_repeats;
         }
         print_block(heading_of(s) + heading(s), table_of(s.*times, unit, list_all));
     }
     print(fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} undecided", count,
-                      what, changed, same, 100 * equivalence_band, undecided));
+                      quantity, changed, same, 100 * equivalence_band, undecided));
     if (too_few > 0) print(fmt::format(", {} of them because of too few repeats", too_few));
     print("\n");
     if (undecided > 0)
         print(
             fmt::format("undecided: the interval extends beyond {:.0f} %, or the change is significant only without "
                         "Holm's correction for all {}{}\n",
-                        100 * equivalence_band, what, list_all ? "" : "; --all lists them"));
+                        100 * equivalence_band, quantity, list_all ? "" : "; --all lists them"));
 }
 
 std::string percents(std::uint64_t before, std::uint64_t after) {
@@ -77,7 +78,7 @@ void print_numbers(const comparison& report) {
         table t{{{"composition", false}, {"quantity", false}, {"in A"}, {"in B"}, {"%"}}, {}};
         for (const changed_number& n : s.changed)
             t.rows.push_back(
-                {n.label, n.what, std::to_string(n.in_a), std::to_string(n.in_b), percents(n.in_a, n.in_b)});
+                {n.label, n.quantity, std::to_string(n.in_a), std::to_string(n.in_b), percents(n.in_a, n.in_b)});
         changed += t.rows.size();
         print_block(heading_of(s) + "; sums over seeds", t);
     }
@@ -97,10 +98,10 @@ int print_comparison(const compare_request& request) {
     }
     const comparison report = compare(a, b, request.times ? compared::ratios_and_times : compared::ratios);
     print(fmt::format("A: {} ({})\nB: {} ({})\n", visible(request.a), makers_of(a), visible(request.b), makers_of(b)));
-    print_answers(report);
+    print_different_results(report);
     print_compared(
         report, &compared_scene::ratios, "ratios", "ratio",
-        [](const compared_scene& s) { return "; time relative to that of '" + s.base + "'"; }, request.all);
+        [](const compared_scene& s) { return "; time relative to that of '" + s.baseline + "'"; }, request.all);
     if (request.times)
         print_compared(
             report, &compared_scene::times, "times", "ms",
@@ -109,7 +110,7 @@ int print_comparison(const compare_request& request) {
     if (report.only_in_a + report.only_in_b > 0)
         print(fmt::format("not compared, because the other run lacks them: {} compositions in a scene of A, {} of B\n",
                           report.only_in_a, report.only_in_b));
-    return report.answers.empty() ? 0 : 1;
+    return report.different_results.empty() ? 0 : 1;
 }
 
 }  // namespace aabblab

@@ -7,12 +7,12 @@ namespace aabblab {
 
 namespace {
 
-using number = std::optional<double>;
-using member = number row::*;
+using optional_number = std::optional<double>;
+using time_column = optional_number row::*;
 
 /// The columns of one clock.
 struct times {
-    member build, first, update, search, detect;
+    time_column build, first, update, search, detect;
 };
 constexpr times wall{&row::build_ms, &row::first_ms, &row::update_ms, &row::search_ms, &row::detect_ms};
 constexpr times processor{&row::build_cpu_ms, &row::first_cpu_ms, &row::update_cpu_ms, &row::search_cpu_ms,
@@ -32,59 +32,59 @@ double frames_after_first(const row& r) {
 }
 
 /// The mean of a sum per frame after frame 0; empty if there is no such frame.
-row_value a_frame(std::optional<double> row::* sum) {
+row_value per_frame(std::optional<double> row::* sum) {
     return [sum](const row& r) -> std::optional<double> {
         return r.*sum && r.frames > 1 ? std::optional(*(r.*sum) / frames_after_first(r)) : std::nullopt;
     };
 }
 
 row_value all_frames_after_first(const times& by) {
-    return [by](const row& r) -> number {
+    return [by](const row& r) -> optional_number {
         if (!(r.*by.update) || r.frames == 1) return r.*by.first;
         return (*(r.*by.update) + *(r.*by.search) + *(r.*by.detect)) / frames_after_first(r);
     };
 }
 
 row_value whole(const times& by) {
-    return [by](const row& r) -> number {
+    return [by](const row& r) -> optional_number {
         if (!(r.*by.update)) return std::nullopt;
         return *(r.*by.build) + *(r.*by.first) + *(r.*by.update) + *(r.*by.search) + *(r.*by.detect);
     };
 }
 
-number global_cpu_ms(const row& r) {
+optional_number global_cpu_ms(const row& r) {
     if (!r.update_cpu_ms || r.frames == 1) return std::nullopt;
     return (*r.update_cpu_ms + *r.search_cpu_ms) / frames_after_first(r);
 }
 
-number global_share(const row& r) {
+optional_number global_share(const row& r) {
     if (!r.update_cpu_ms || !r.detect_cpu_ms || r.frames == 1) return std::nullopt;
     const double global = *r.update_cpu_ms + *r.search_cpu_ms;
     return 100 * global / (global + *r.detect_cpu_ms);
 }
 
-number waiting(const row& r) {
+optional_number waiting(const row& r) {
     if (!r.update_cpu_ms || !r.update_ms) return std::nullopt;
     const double wall_ms = *r.first_ms + *r.update_ms + *r.search_ms + *r.detect_ms;
     const double cpu_ms = *r.first_cpu_ms + *r.update_cpu_ms + *r.search_cpu_ms + *r.detect_cpu_ms;
-    return wall_ms > 0 ? number(100 * std::max(0.0, 1 - cpu_ms / wall_ms)) : std::nullopt;
+    return wall_ms > 0 ? optional_number(100 * std::max(0.0, 1 - cpu_ms / wall_ms)) : std::nullopt;
 }
 
-number all_bytes(const row& r) {
+optional_number all_bytes(const row& r) {
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < byte_columns.size(); ++i)
         if (byte_columns[i] != "triangles" && byte_columns[i] != "vertices") sum += r.bytes[i].value_or(0);
     // Engines need not report bytes.
-    return sum > 0 ? number(static_cast<double>(sum)) : std::nullopt;
+    return sum > 0 ? optional_number(static_cast<double>(sum)) : std::nullopt;
 }
 
 /// Empty for engines, because the share of the tree in their bytes is unknown.
-number tree_bytes(const row& r) {
-    static const row_value ours = a_triangle(bytes_of({"nodes", "indices"}));
+optional_number tree_bytes(const row& r) {
+    static const row_value ours = per_triangle(bytes_of({"nodes", "indices"}));
     return r.name.is_reference() ? std::nullopt : ours(r);
 }
 
-number wrong_share(const row& r) {
+optional_number wrong_share(const row& r) {
     if (!r.false_negatives) return std::nullopt;
     const auto reported = static_cast<double>(r.contacts ? *r.contacts : r.candidates);
     const auto false_negatives = static_cast<double>(*r.false_negatives);
@@ -103,19 +103,19 @@ std::vector<metric> row_metrics() {
     const std::string of_whole = "time of all frames, including frame 0 and the construction of the stages";
     return {
         time_of("frame_ms", of_frame, all_frames_after_first(wall)),
-        time_of("update_ms", to_update, a_frame(wall.update)),
-        time_of("search_ms", to_search, a_frame(wall.search)),
-        time_of("detect_ms", to_detect, a_frame(wall.detect)),
+        time_of("update_ms", to_update, per_frame(wall.update)),
+        time_of("search_ms", to_search, per_frame(wall.search)),
+        time_of("detect_ms", to_detect, per_frame(wall.detect)),
         {"global_share", "%", "share of the broad phase in the processor time of the frames after frame 0", time,
          better::neither, global_share},
         time_of("build_ms", to_build, &row::build_ms),
         time_of("first_ms", "time of frame 0", &row::first_ms),
         time_of("whole_ms", of_whole, whole(wall)),
         time_of("frame_cpu_ms", cpu + of_frame, all_frames_after_first(processor)),
-        time_of("update_cpu_ms", cpu + to_update, a_frame(processor.update)),
-        time_of("search_cpu_ms", cpu + to_search, a_frame(processor.search)),
+        time_of("update_cpu_ms", cpu + to_update, per_frame(processor.update)),
+        time_of("search_cpu_ms", cpu + to_search, per_frame(processor.search)),
         time_of("global_cpu_ms", "processor time of the broad phase per frame after frame 0", global_cpu_ms),
-        time_of("detect_cpu_ms", cpu + to_detect, a_frame(processor.detect)),
+        time_of("detect_cpu_ms", cpu + to_detect, per_frame(processor.detect)),
         time_of("build_cpu_ms", cpu + to_build, &row::build_cpu_ms),
         time_of("whole_cpu_ms", cpu + of_whole, whole(processor)),
         {"waiting", "%", "share of the wall time of all frames in which the thread had no processor", time,
@@ -136,7 +136,7 @@ std::vector<metric> row_metrics() {
 }
 
 // Counters that describe the input or its partition rather than work.
-bool describes(aabb::work counted) {
+bool describes_input(aabb::work counted) {
     using enum aabb::work;
     return counted == inversions || counted == subsets || counted == segments_wanted || counted == segments_got ||
            counted == pieces;
@@ -149,7 +149,7 @@ std::vector<metric> work_metrics() {
         std::string spaced(aabb::work_names[i]);
         std::ranges::replace(spaced, '_', ' ');
         list.push_back({std::string(aabb::work_names[i]), "", spaced + " per frame after frame 0", metric_group::counts,
-                        describes(static_cast<aabb::work>(i)) ? better::neither : better::less,
+                        describes_input(static_cast<aabb::work>(i)) ? better::neither : better::less,
                         [i](const row& r) -> std::optional<double> {
                             if (!r.counts[i]) return std::nullopt;
                             return static_cast<double>(*r.counts[i]) / frames_after_first(r);
@@ -209,14 +209,14 @@ row_value sum_of(const std::vector<std::string>& names) {
     };
 }
 
-row_value an_object(row_value of) {
+row_value per_object(row_value of) {
     return [of = std::move(of)](const row& r) -> std::optional<double> {
         const std::optional<double> value = of(r);
         return value ? std::optional(*value / static_cast<double>(r.objects)) : std::nullopt;
     };
 }
 
-row_value a_triangle(row_value of) {
+row_value per_triangle(row_value of) {
     return [of = std::move(of)](const row& r) -> std::optional<double> {
         const std::optional<double> value = of(r);
         return value && r.triangles.value_or(0) > 0 ? std::optional(*value / static_cast<double>(*r.triangles))

@@ -41,7 +41,7 @@ double median_of(std::span<double> values) {
 double variance_of(const sample_size& size, level drawn, const std::function<double(const resample&)>& statistic) {
     std::uint64_t state = 1;
     std::vector<double> values;
-    for (std::size_t i = 0; i < draws_of_a_level; ++i) {
+    for (std::size_t i = 0; i < draws_per_level; ++i) {
         const double value = statistic(resample(size.processes, size.seeds, drawn, next_random(state)));
         // A draw may consist of empty cells only if the results are incomplete.
         if (std::isfinite(value)) values.push_back(value);
@@ -93,12 +93,12 @@ interval estimate::range(double miss) const {
     return {value - radius, value + radius};
 }
 
-double estimate::chance_above(double limit) const {
+double estimate::p_if_above(double limit) const {
     if (!(error > 0)) return value >= limit ? 1 : 0;
     return cdf(complement(boost::math::students_t(degrees), (limit - value) / error));
 }
 
-double estimate::chance_below(double limit) const {
+double estimate::p_if_below(double limit) const {
     if (!(error > 0)) return value <= limit ? 1 : 0;
     return cdf(boost::math::students_t(degrees), (limit - value) / error);
 }

@@ -39,9 +39,9 @@ std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
 evidence evidence_of(const estimate& log_ratio) {
     const double high = std::log1p(equivalence_band);
     const double low = -high;
-    const evidence more{outcome::more, log_ratio.chance_below(high)};
-    const evidence same{outcome::same, std::max(log_ratio.chance_above(high), log_ratio.chance_below(low))};
-    const evidence less{outcome::less, log_ratio.chance_above(low)};
+    const evidence more{outcome::more, log_ratio.p_if_below(high)};
+    const evidence same{outcome::same, std::max(log_ratio.p_if_above(high), log_ratio.p_if_below(low))};
+    const evidence less{outcome::less, log_ratio.p_if_above(low)};
     const std::array<evidence, 3> outcomes{less, same, more};
     return *std::ranges::min_element(outcomes, {}, &evidence::p);
 }
@@ -61,8 +61,8 @@ std::vector<outcome> decide_together(std::span<const evidence> family) {
 tails tails_of(const estimate& log_ratio, double band) {
     const double high = std::log1p(band);
     // A zero-width interval would otherwise lie within a zero-width band.
-    const double same = band > 0 ? std::max(log_ratio.chance_above(high), log_ratio.chance_below(-high)) : 1;
-    return {log_ratio.chance_above(0), log_ratio.chance_below(0), same, log_ratio.chance_above(high),
+    const double same = band > 0 ? std::max(log_ratio.p_if_above(high), log_ratio.p_if_below(-high)) : 1;
+    return {log_ratio.p_if_above(0), log_ratio.p_if_below(0), same, log_ratio.p_if_above(high),
             std::abs(log_ratio.value) <= high};
 }
 

@@ -85,15 +85,15 @@ struct estimate {
     double degrees = 1;  ///< of freedom
 
     /// False if it was not measured.
-    [[nodiscard]] bool known() const { return std::isfinite(value); }
+    [[nodiscard]] bool is_known() const { return std::isfinite(value); }
     /// Interval by Student's t. @param miss the probability that the true value lies below it, and that it lies above
     [[nodiscard]] interval range(double miss = 0.025) const;
     /// One-sided p-values: the probability of this estimate if the true value were at or above the limit, or below.
-    [[nodiscard]] double chance_above(double limit) const;
-    [[nodiscard]] double chance_below(double limit) const;
+    [[nodiscard]] double p_if_above(double limit) const;
+    [[nodiscard]] double p_if_below(double limit) const;
 };
 
-inline constexpr std::size_t draws_of_a_level = 1000;
+inline constexpr std::size_t draws_per_level = 1000;
 
 /// Bootstraps level by level: resamples processes, then seeds, then repeats. The variance of a level beyond the noise
 /// of repeats has one degree of freedom less than there are processes or seeds; the degrees of the sum follow

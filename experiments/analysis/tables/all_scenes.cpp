@@ -56,7 +56,7 @@ std::vector<std::string> cells_of(const scene_summary& scene, const summary_line
     cells.insert(cells.end(), {line.name.engine, fmt::format("{}", rank), line.status, text_of(line.false_negatives),
                                text_of(line.false_positives), fmt::format("{}", line.pairs), text_of(line.contacts),
                                fmt::format("{}", line.repeats)});
-    const auto& ms = line.ms_a_frame;
+    const auto& ms = line.ms_per_frame;
     const auto& around = line.ratio_interval;
     for (const std::optional<double>& value :
          {ms ? std::optional(ms->median) : std::nullopt, ms ? std::optional(ms->low) : std::nullopt,

@@ -32,14 +32,14 @@ std::string result_of(const summary_line& line) {
 int decimals_of(const scene_summary& scene) {
     double least = 100;
     for (const summary_line& line : scene.lines)
-        if (line.ms_a_frame) least = std::min(least, line.ms_a_frame->median);
+        if (line.ms_per_frame) least = std::min(least, line.ms_per_frame->median);
     return least < 1 ? 4 : least < 10 ? 3 : 2;
 }
 
 /// The timing cells of a line; "-" if it was not timed.
 std::vector<std::string> time_cells(const summary_line& line, int decimals) {
-    if (!line.ms_a_frame) return {"-", "-", "-", "-"};
-    const auto [low, median, high] = *line.ms_a_frame;
+    if (!line.ms_per_frame) return {"-", "-", "-", "-"};
+    const auto [low, median, high] = *line.ms_per_frame;
     return {fmt::format("{:.{}f}", median, decimals), three_digits(low) + "-" + three_digits(high),
             text_or_dash(line.ratio, 2), interval_text(line.ratio_interval)};
 }
@@ -100,7 +100,7 @@ std::string count_text(double value) {
 
 table table_of(const scene_summary& scene, std::span<const std::string> shown) {
     const bool meshes = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.contacts.has_value(); });
-    const bool timed = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ms_a_frame.has_value(); });
+    const bool timed = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ms_per_frame.has_value(); });
     const int decimals = decimals_of(scene);
     const std::vector<const summary_line*> ranking = ranking_of(scene);
     table t{name_columns_of(scene.differing), {}};
@@ -198,7 +198,7 @@ table counts_table_of(const scene_summary& scene) {
     }
     if (works.empty() && parts.empty()) return {};
     const bool trees =
-        std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.bytes_a_triangle.has_value(); });
+        std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.bytes_per_triangle.has_value(); });
     const bool inflated =
         std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.box_inflation.value_or(0) > 0; });
     if (trees) t.columns.push_back({"tree bytes per triangle"});
@@ -214,7 +214,7 @@ table counts_table_of(const scene_summary& scene) {
             if (i == copies) cells.push_back(fmt::format("{:.3f}", each / static_cast<double>(scene.objects)));
         }
         for (const std::size_t i : parts) cells.push_back(kib_text(line->bytes_by_part[i].value_or(0)));
-        if (trees) cells.push_back(text_or_dash(line->bytes_a_triangle, 2));
+        if (trees) cells.push_back(text_or_dash(line->bytes_per_triangle, 2));
         if (inflated) cells.push_back(line->box_inflation ? fmt::format("{:.3f}", 100 * *line->box_inflation) : "-");
     }
     return t;

@@ -8,7 +8,7 @@ namespace {
 
 using repeats_of_line = std::vector<const row*>;
 
-std::optional<double> ms_a_frame(const row& r) {
+std::optional<double> ms_per_frame(const row& r) {
     static const row_value& frame = measured("frame_ms");
     return frame(r);
 }
@@ -28,7 +28,7 @@ void add_seed(const row& r, double share, summary_line& line) {
     const auto all_bytes = measured("all_bytes")(r);
     line.bytes = std::max(line.bytes, all_bytes ? std::optional(static_cast<std::uint64_t>(*all_bytes)) : std::nullopt);
     const auto of_trees = measured("tree_bytes")(r);
-    if (of_trees.value_or(0) > 0) line.bytes_a_triangle = std::max(line.bytes_a_triangle, of_trees);
+    if (of_trees.value_or(0) > 0) line.bytes_per_triangle = std::max(line.bytes_per_triangle, of_trees);
     if (r.box_inflation) add(line.box_inflation, std::optional(*r.box_inflation * share));
     const double frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
     for (std::size_t i = 0; i < r.counts.size(); ++i)
@@ -46,7 +46,7 @@ summary_line line_of(std::span<const row* const> repeats) {
     for (const auto& [seed, r] : seeds) add_seed(*r, 1 / static_cast<double>(seeds.size()), line);
     std::vector<double> times, builds;
     for (const row* r : repeats)
-        if (const std::optional<double> ms = ms_a_frame(*r)) {
+        if (const std::optional<double> ms = ms_per_frame(*r)) {
             times.push_back(*ms);
             builds.push_back(*r->build_ms);
         }
@@ -62,7 +62,7 @@ summary_line line_of(std::span<const row* const> repeats) {
                 : std::optional(quartiles_of(values).median));
     }
     if (times.empty()) return line;
-    line.ms_a_frame = quartiles_of(times);
+    line.ms_per_frame = quartiles_of(times);
     line.build_ms = quartiles_of(builds).median;
     return line;
 }
@@ -71,7 +71,7 @@ summary_line line_of(std::span<const row* const> repeats) {
 void set_ratio(summary_line& line, std::span<const row* const> repeats, std::span<const row* const> base) {
     std::map<std::pair<std::optional<std::uint64_t>, std::uint64_t>, double> base_ms;  // by seed and repeat
     for (const row* b : base)
-        if (ms_a_frame(*b).value_or(0) > 0) base_ms.emplace(std::pair(b->scene.seed, b->repeat), *ms_a_frame(*b));
+        if (ms_per_frame(*b).value_or(0) > 0) base_ms.emplace(std::pair(b->scene.seed, b->repeat), *ms_per_frame(*b));
     std::map<std::optional<std::uint64_t>, std::size_t> seeds;
     std::map<std::uint64_t, std::size_t> processes;
     for (const row* r : repeats) {
@@ -82,8 +82,8 @@ void set_ratio(summary_line& line, std::span<const row* const> repeats, std::spa
     std::size_t count = 0;
     for (const row* r : repeats) {
         const auto under = base_ms.find({r->scene.seed, r->repeat});
-        if (under == base_ms.end() || ms_a_frame(*r).value_or(0) <= 0) continue;
-        ratios.add(processes.at(r->process), seeds.at(r->scene.seed), std::log(*ms_a_frame(*r) / under->second));
+        if (under == base_ms.end() || ms_per_frame(*r).value_or(0) <= 0) continue;
+        ratios.add(processes.at(r->process), seeds.at(r->scene.seed), std::log(*ms_per_frame(*r) / under->second));
         ++count;
     }
     if (count == 0) return;
@@ -161,8 +161,8 @@ std::vector<const summary_line*> ranking_of(const scene_summary& scene) {
     std::vector<const summary_line*> lines;
     for (const summary_line& line : scene.lines) lines.push_back(&line);
     const auto key = [](const summary_line* line) {
-        const double ms = line->ms_a_frame ? line->ms_a_frame->median : 0;
-        return std::tuple(!line->ms_a_frame, line->status != "exact", !line->ratio, line->ratio.value_or(0), ms, line);
+        const double ms = line->ms_per_frame ? line->ms_per_frame->median : 0;
+        return std::tuple(!line->ms_per_frame, line->status != "exact", !line->ratio, line->ratio.value_or(0), ms, line);
     };
     std::ranges::sort(lines, {}, key);
     return lines;

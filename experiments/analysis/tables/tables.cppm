@@ -60,7 +60,7 @@ struct summary_line {
     std::optional<std::uint64_t> contacts;
     std::string status;  ///< "exact", or "inexact" if it is inexact for any seed
     std::optional<std::uint64_t> false_negatives, false_positives;
-    std::optional<quartiles> ms_a_frame;  ///< frames after frame 0, or frame 0 if there is no other
+    std::optional<quartiles> ms_per_frame;  ///< frames after frame 0, or frame 0 if there is no other
     /// Time over that of the first composition, the baseline, in the same repeat: the geometric mean over processes and
     /// seeds of the median over repeats.
     std::optional<double> ratio;
@@ -71,7 +71,7 @@ struct summary_line {
     /// Means per frame over the seeds. Like the bytes, empty for engines and if not recorded.
     std::array<std::optional<double>, aabb::work_names.size()> counts;
     std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes_by_part;  ///< the maximum over seeds
-    std::optional<double> bytes_a_triangle;  ///< of the trees; empty if there are none or their size is unknown
+    std::optional<double> bytes_per_triangle;  ///< of the trees; empty if there are none or their size is unknown
     std::optional<double> box_inflation;
     std::vector<std::optional<double>> metrics;  ///< medians over seeds and repeats; means for errors
 };
