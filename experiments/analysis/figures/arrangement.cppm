@@ -30,7 +30,7 @@ struct arrangement {
     /// The sample of a series beside its label: starts at `at` in a legend, is centred there at the end of a line.
     struct sample {
         place at;
-        const shown_label* of;
+        const shown_label* label;
         bool is_end;
     };
     std::vector<sample> samples;
@@ -102,7 +102,7 @@ std::pair<double, double> extent_of_labels(const scale& axis, std::size_t name_l
 
 /// The label at the end of a line.
 struct end_label {
-    const shown_label* of;
+    const shown_label* label;
     std::vector<std::string> lines;
     double wanted;      ///< preferred centre above the plot's lower edge
     double middle = 0;  ///< its actual centre
@@ -120,7 +120,7 @@ struct legend {
 
 /// The text beside the line of a mark, like a flag at its pole.
 struct flag {
-    double at;  ///< x of the line
+    double line_x;
     double begin;
     double end;
     std::size_t row = 0;  ///< counted from below
@@ -129,7 +129,9 @@ struct flag {
 /// Assigns rows to the texts so that no line of another mark crosses them.
 /// @returns the number of rows
 std::size_t assign_rows(std::vector<flag>& flags) {
-    const auto crosses = [](const flag& line, const flag& text) { return text.begin < line.at && line.at < text.end; };
+    const auto crosses = [](const flag& line, const flag& text) {
+        return text.begin < line.line_x && line.line_x < text.end;
+    };
     // Each round settles at least one row, except for texts that mutually cross each other's lines.
     for (std::size_t round = 0; round < flags.size(); ++round)
         for (flag& a : flags)
@@ -147,10 +149,11 @@ std::size_t assign_rows(std::vector<flag>& flags) {
     return rows;
 }
 
+/// Lays out from the outside to the inside: margins and the legend first, because they determine the size of plots.
 class arranger {
 public:
     explicit arranger(const drawing& d)
-        : d_(d),
+        : drawing_(d),
           panels_(d.panels.size()),
           columns_(std::min<std::size_t>(panels_, 2)),
           rows_((panels_ + columns_ - 1) / columns_) {}
@@ -165,35 +168,35 @@ public:
             flags.push_back(flags_of(i));
             flag_rows = std::max(flag_rows, assign_rows(flags.back()));
         }
-        const bool titled = std::ranges::any_of(d_.panels, [](const shown_panel& p) { return !p.title.empty(); });
+        const bool titled = std::ranges::any_of(drawing_.panels, [](const shown_panel& p) { return !p.title.empty(); });
         const double marks = line_height * static_cast<double>(flag_rows);
         const double row = plot_height_ + marks + (titled ? line_height + gap / 2 : 0);
 
         // The legend can take the free cell that an incomplete last row of panels leaves.
         legend labels;
-        bool is_free = false;
+        bool is_in_cell = false;
         if (ends.empty()) {
             labels = legend_of(plot_width());
-            is_free = panels_ % columns_ != 0 && labels.height() + below_plot <= row && !labels.has_long_entries;
-            if (!is_free) labels = legend_of(figure_width);
-            labels.left = is_free ? plot_left(panels_) + gap : std::min(labels.left, std::max(gap, left_));
+            is_in_cell = panels_ % columns_ != 0 && labels.height() + below_plot <= row && !labels.has_long_entries;
+            if (!is_in_cell) labels = legend_of(figure_width);
+            labels.left = is_in_cell ? plot_left(panels_) + gap : std::min(labels.left, std::max(gap, left_));
         }
 
-        const double low = (is_free ? 0 : labels.height()) + gap / 2;
+        const double low = (is_in_cell ? 0 : labels.height()) + gap / 2;
         const double bottom = add_x_label(low) + gap / 2 + below_plot;
         constexpr double row_gap = 1.2;
         const auto rows = static_cast<double>(rows_);
-        to_.width = figure_width;
-        to_.height = bottom + rows * row + (rows - 1) * row_gap + (titled ? gap / 2 : 1);
+        layout_.width = figure_width;
+        layout_.height = bottom + rows * row + (rows - 1) * row_gap + (titled ? gap / 2 : 1);
         for (std::size_t i = 0; i < panels_; ++i) {
             const std::size_t from_above = i / columns_;
             const auto from_below = static_cast<double>(rows_ - 1 - from_above);
             add_plot(i, bottom + from_below * (row + row_gap), marks, flags[i]);
         }
-        add_y_label((bottom + to_.plots.front().top) / 2);
+        add_y_label((bottom + layout_.plots.front().top) / 2);
         add_ends(ends, bottom);
-        add_legend(labels, is_free ? bottom + plot_height_ - labels.height() : gap / 2);
-        return std::move(to_);
+        add_legend(labels, is_in_cell ? bottom + plot_height_ - labels.height() : gap / 2);
+        return std::move(layout_);
     }
 
 private:
@@ -207,24 +210,25 @@ private:
 
     /// Sets the height of the plots, which grows with the number of names on the y axis, and the left margin.
     void place_left() {
-        const auto [width, height] = extent_of_labels(d_.y, y_name_length);
+        const auto [width, height] = extent_of_labels(drawing_.y, y_name_length);
         plot_height_ = panels_ == 1 ? 17 : 10;
-        if (d_.y.named) plot_height_ = std::max(plot_height_, (height + gap) * static_cast<double>(d_.y.ticks.size()));
-        y_label_ = lines_of(d_.f.y.label, length_in(plot_height_ * static_cast<double>(rows_) + 1.5));
+        if (drawing_.y.named)
+            plot_height_ = std::max(plot_height_, (height + gap) * static_cast<double>(drawing_.y.ticks.size()));
+        y_label_ = lines_of(drawing_.f.y.label, length_in(plot_height_ * static_cast<double>(rows_) + 1.5));
         left_ = gap / 2 + height_of(y_label_) + gap + width + tick_room;
     }
 
     /// Removes labels of ticks until no two overlap.
     void thin_x_ticks() {
         std::vector<tick*> labelled;
-        for (tick& t : to_.x_ticks)
+        for (tick& t : layout_.x_ticks)
             if (!t.label.empty()) labelled.push_back(&t);
         const auto fits = [&](std::size_t step) {
             for (std::size_t i = step; i < labelled.size(); i += step) {
                 const tick& previous = *labelled[i - step];
                 const tick& next = *labelled[i];
-                if ((d_.x.place(next.at) - d_.x.place(previous.at)) * plot_width() <
-                    (width_of(d_.x, previous, 0) + width_of(d_.x, next, 0)) / 2 + gap)
+                if ((drawing_.x.place(next.at) - drawing_.x.place(previous.at)) * plot_width() <
+                    (width_of(drawing_.x, previous, 0) + width_of(drawing_.x, next, 0)) / 2 + gap)
                     return false;
             }
             return true;
@@ -238,46 +242,48 @@ private:
     /// Places the labels of the x axis, and widens the right margin and the gap between plots for outer labels that
     /// protrude. @returns the height of the labels
     double place_x_ticks() {
-        to_.x_name_length = longest_name;
-        to_.x_ticks = d_.x.ticks;
+        layout_.x_name_length = longest_name;
+        layout_.x_ticks = drawing_.x.ticks;
         if (columns_ > 1) column_gap_ = 1.5;
         std::vector<tick> labelled;
-        std::ranges::copy_if(d_.x.ticks, std::back_inserter(labelled), [](const tick& t) { return !t.label.empty(); });
+        std::ranges::copy_if(drawing_.x.ticks, std::back_inserter(labelled),
+                             [](const tick& t) { return !t.label.empty(); });
         if (labelled.empty()) return 0;
         double nearest = 1;
         for (std::size_t i = 1; i < labelled.size(); ++i)
-            nearest = std::min(nearest, d_.x.place(labelled[i].at) - d_.x.place(labelled[i - 1].at));
+            nearest = std::min(nearest, drawing_.x.place(labelled[i].at) - drawing_.x.place(labelled[i - 1].at));
         const double plot = plot_width();
         const double slot = plot * nearest - gap;
-        if (d_.x.named) to_.x_name_length = length_in(slot);
-        const auto [width, height] = extent_of_labels(d_.x, to_.x_name_length);
-        if (!d_.x.named || (width <= slot && height <= 3 * line_height)) {
-            const auto beyond = [&](const tick& t, double to_edge) {
-                return width_of(d_.x, t, to_.x_name_length) / 2 - to_edge * plot;
+        if (drawing_.x.named) layout_.x_name_length = length_in(slot);
+        const auto [width, height] = extent_of_labels(drawing_.x, layout_.x_name_length);
+        if (!drawing_.x.named || (width <= slot && height <= 3 * line_height)) {
+            const auto overhang = [&](const tick& t, double to_edge) {
+                return width_of(drawing_.x, t, layout_.x_name_length) / 2 - to_edge * plot;
             };
-            const double before = beyond(labelled.front(), d_.x.place(labelled.front().at));
-            const double behind = beyond(labelled.back(), 1 - d_.x.place(labelled.back().at));
-            right_ = std::max(right_, behind + gap / 2);
-            if (columns_ > 1) column_gap_ = std::max(column_gap_, std::max(before, 0.) + std::max(behind, 0.) + gap);
-            if (!d_.x.named) thin_x_ticks();
+            const double left_overhang = overhang(labelled.front(), drawing_.x.place(labelled.front().at));
+            const double right_overhang = overhang(labelled.back(), 1 - drawing_.x.place(labelled.back().at));
+            right_ = std::max(right_, right_overhang + gap / 2);
+            if (columns_ > 1)
+                column_gap_ = std::max(column_gap_, std::max(left_overhang, 0.) + std::max(right_overhang, 0.) + gap);
+            if (!drawing_.x.named) thin_x_ticks();
             return height;
         }
         // Slanted labels end at their tick; vertical ones replace them if they overlap or narrow the plot too much.
         constexpr double slant = 30 * std::numbers::pi / 180;
         constexpr double widest_margin = 16;
-        to_.x_name_length = longest_name;
+        layout_.x_name_length = longest_name;
         double left = left_;
         double longest = 0;
         for (const tick& t : labelled) {
             longest = std::max(longest, width_of(t.label));
-            left = std::max(left, width_of(t.label) * std::cos(slant) - d_.x.place(t.at) * plot + gap);
+            left = std::max(left, width_of(t.label) * std::cos(slant) - drawing_.x.place(t.at) * plot + gap);
         }
         if (slot * std::sin(slant) >= 0.8 && left <= widest_margin) {
-            to_.x_name_angle = 30;
+            layout_.x_name_angle = 30;
             left_ = left;
             return longest * std::sin(slant) + 0.5;
         }
-        to_.x_name_angle = 90;
+        layout_.x_name_angle = 90;
         return longest;
     }
 
@@ -286,13 +292,13 @@ private:
         constexpr double near_edge = 0.9;
         std::vector<end_label> ends;
         if (panels_ > 1) return ends;
-        for (std::size_t i = 0; i < d_.labels.size(); ++i) {
-            if (d_.labels[i].text.empty()) continue;
-            const shown_series& s = d_.panels.front().lines[i];
+        for (std::size_t i = 0; i < drawing_.labels.size(); ++i) {
+            if (drawing_.labels[i].text.empty()) continue;
+            const shown_series& s = drawing_.panels.front().lines[i];
             const auto last = std::ranges::max_element(s.points, {}, &figure_point::x);
-            if (!s.is(series_style::level) && (!s.is_joined() || d_.x.place(last->x) < near_edge)) return {};
-            ends.push_back(
-                {&d_.labels[i], lines_of(d_.labels[i].text, end_label_length), d_.y.place(last->y) * plot_height_});
+            if (!s.is(series_style::level) && (!s.is_joined() || drawing_.x.place(last->x) < near_edge)) return {};
+            ends.push_back({&drawing_.labels[i], lines_of(drawing_.labels[i].text, end_label_length),
+                            drawing_.y.place(last->y) * plot_height_});
         }
         return ends;
     }
@@ -315,8 +321,8 @@ private:
             return (height_of(a.lines) + height_of(b.lines)) / 2 - (b.middle - a.middle);
         };
         // Relaxation: labels that overlap move apart by half of the overlap each, until none do.
-        constexpr int enough = 200;
-        for (int round = 0; round < enough; ++round)
+        constexpr int rounds = 200;
+        for (int round = 0; round < rounds; ++round)
             for (std::size_t i = 1; i < ends.size(); ++i) {
                 const double excess = std::max(overlap(i), 0.);
                 ends[i - 1].middle -= excess / 2;
@@ -334,7 +340,7 @@ private:
         const std::size_t most = length_in(width - legend_sample - gap);
         std::size_t lines = 0;
         double widest = 0;
-        for (const shown_label& label : d_.labels) {
+        for (const shown_label& label : drawing_.labels) {
             const auto& entry = result.entries.emplace_back(lines_of(with_breaks(label.text, most), most));
             lines += entry.size();
             result.has_long_entries |= entry.size() > 1;
@@ -354,8 +360,8 @@ private:
     /// The texts of a panel's marks, each on the side of its line where there is room.
     [[nodiscard]] std::vector<flag> flags_of(std::size_t panel) const {
         std::vector<flag> flags;
-        for (const figure_mark& m : d_.panels[panel].marks) {
-            const double at = plot_left(panel) + d_.x.place(m.x) * plot_width();
+        for (const figure_mark& m : drawing_.panels[panel].marks) {
+            const double at = plot_left(panel) + drawing_.x.place(m.x) * plot_width();
             const double length = width_of(m.label) + gap;
             const bool right = at + length <= figure_width;
             flags.push_back({at, right ? at : at - length, right ? at + length : at});
@@ -364,7 +370,7 @@ private:
     }
 
     void add(place at, const std::string& text, words::anchor end = words::anchor::left, int angle = 0) {
-        to_.texts.push_back({at, text, end, {}, angle});
+        layout_.texts.push_back({at, text, end, {}, angle});
     }
     void add(const std::vector<place>& at, const std::vector<std::string>& lines, words::anchor end) {
         for (std::size_t i = 0; i < lines.size(); ++i) add(at[i], lines[i], end);
@@ -374,7 +380,7 @@ private:
     double add_x_label(double bottom) {
         const double middle = (left_ + figure_width - right_) / 2;
         const double room = 2 * std::min(middle, figure_width - middle);
-        const std::vector<std::string> lines = lines_of(d_.f.x.label, length_in(room - gap));
+        const std::vector<std::string> lines = lines_of(drawing_.f.x.label, length_in(room - gap));
         const double top = bottom + height_of(lines);
         add(lines_below({middle, top}, lines.size()), lines, words::anchor::middle);
         return top;
@@ -391,28 +397,28 @@ private:
     void add_plot(std::size_t panel, double bottom, double marks, const std::vector<flag>& flags) {
         const double left = plot_left(panel);
         const double top = bottom + plot_height_;
-        arrangement::box& plot = to_.plots.emplace_back(left, left + plot_width(), bottom, top,
-                                                        panel + columns_ >= panels_, panel % columns_ == 0);
-        const shown_panel& shown = d_.panels[panel];
+        arrangement::box& plot = layout_.plots.emplace_back(left, left + plot_width(), bottom, top,
+                                                            panel + columns_ >= panels_, panel % columns_ == 0);
+        const shown_panel& shown = drawing_.panels[panel];
         if (!shown.title.empty()) add({left, top + marks + gap / 2 + line_height / 2}, shown.title);
         for (std::size_t i = 0; i < flags.size(); ++i) {
             const flag& f = flags[i];
             const double height = top + line_height * (static_cast<double>(f.row) + 0.5);
             plot.mark_tops.push_back(height + 0.4);
-            if (f.at == f.begin)
-                add({f.at + gap / 2, height}, shown.marks[i].label);
+            if (f.line_x == f.begin)
+                add({f.line_x + gap / 2, height}, shown.marks[i].label);
             else
-                add({f.at - gap / 2, height}, shown.marks[i].label, words::anchor::right);
+                add({f.line_x - gap / 2, height}, shown.marks[i].label, words::anchor::right);
         }
     }
 
     /// Adds the labels at the ends of lines, each after the sign of its line, because it may be slightly displaced.
     void add_ends(const std::vector<end_label>& ends, double bottom) {
-        const double left = to_.plots.front().right + 0.7;
+        const double left = layout_.plots.front().right + 0.7;
         for (const end_label& end : ends) {
             const double middle = bottom + end.middle;
-            const bool has_sign = end.of->style != series_style::level;
-            if (has_sign) to_.samples.push_back({{left, middle}, end.of, true});
+            const bool has_sign = end.label->style != series_style::level;
+            if (has_sign) layout_.samples.push_back({{left, middle}, end.label, true});
             const place top{left + (has_sign ? 0.8 : -0.2), middle + height_of(end.lines) / 2};
             add(lines_below(top, end.lines.size()), end.lines, words::anchor::left);
         }
@@ -426,14 +432,14 @@ private:
                 const auto from_below = static_cast<double>(labels.rows - 1 - entry % labels.rows);
                 const place at{labels.left + static_cast<double>(column) * labels.column,
                                bottom + (from_below + 0.5) * legend_row};
-                if (&text == labels.entries[i].data()) to_.samples.push_back({at, &d_.labels[i], false});
+                if (&text == labels.entries[i].data()) layout_.samples.push_back({at, &drawing_.labels[i], false});
                 add({at.x + legend_sample - 0.8, at.y}, text);
                 ++entry;
             }
     }
 
-    const drawing& d_;
-    arrangement to_{};
+    const drawing& drawing_;
+    arrangement layout_{};
     std::size_t panels_;
     std::size_t columns_;
     std::size_t rows_;

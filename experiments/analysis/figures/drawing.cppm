@@ -27,7 +27,7 @@ struct numbered_series {
     const figure_panel* panel;  ///< null if all panels share it
 };
 
-[[nodiscard]] std::vector<numbered_series> numbered(const figure& f) {
+[[nodiscard]] std::vector<numbered_series> numbered_series_of(const figure& f) {
     std::vector<numbered_series> list;
     for (const series& s : f.lines) list.push_back({&s, list.size() + 1, nullptr});
     for (const figure_panel& panel : f.panels)
@@ -109,8 +109,8 @@ struct extent {
     return marks;
 }
 
-[[nodiscard]] std::vector<shown_panel> shown(const figure& f) {
-    const std::vector<numbered_series> series_list = numbered(f);
+[[nodiscard]] std::vector<shown_panel> shown_panels_of(const figure& f) {
+    const std::vector<numbered_series> series_list = numbered_series_of(f);
     const std::vector<std::size_t> looks = looks_of(f, series_list);
     std::vector<shown_panel> panels;
     for (std::size_t i = 0; i < std::max<std::size_t>(f.panels.size(), 1); ++i) {
@@ -162,7 +162,7 @@ struct extent {
 
 /// A prepared figure; it refers to the original, which must outlive it.
 struct drawing {
-    explicit drawing(const figure& of) : f(of), panels(shown(of)), labels(labels_of(panels)) {
+    explicit drawing(const figure& source) : f(source), panels(shown_panels_of(source)), labels(labels_of(panels)) {
         extent x_values;
         extent y_values;
         for (const shown_panel& panel : panels) {

@@ -26,7 +26,7 @@ std::string csv_of(const figure& f) {
     if (!f.x.names.empty()) header.emplace_back("x_name");
     if (!f.y.names.empty()) header.emplace_back("y_name");
     std::string text = csv_line(header);
-    for (const numbered_series& s : numbered(f))
+    for (const numbered_series& s : numbered_series_of(f))
         for (const figure_point& p : points_of(*s.source)) {
             const bool level = s.source->style == series_style::level;
             std::vector<std::string> fields{fmt::format("{}", s.number), level ? "" : fifteen_digits(p.x)};

@@ -45,6 +45,7 @@ char code_of(char32_t character) {
     return '?';
 }
 
+/// Decodes UTF-8 to the codes of the font's characters.
 std::string encoded(std::string_view utf8) {
     std::string text;
     for (std::size_t i = 0; i < utf8.size();) {
@@ -80,7 +81,8 @@ std::string in_brackets(std::string_view encoded_text) {
     return text + ")";
 }
 
-std::string colour_of(std::string_view hexadecimal) {
+/// "#0072B2" as the operands of a PDF colour operator: "0.000 0.447 0.698 ".
+std::string operands_of(std::string_view hexadecimal) {
     std::string text;
     for (std::size_t i = 1; i < hexadecimal.size(); i += 2)
         text += fmt::format("{:.3f} ", std::stoi(std::string(hexadecimal.substr(i, 2)), nullptr, 16) / 255.0);
@@ -91,15 +93,15 @@ std::string operators_of(const strokes& s) {
     const bool is_area = s.width == 0;
     std::string text = "q ";
     if (is_area) {
-        text += colour_of(s.colour) + (s.faint ? "rg /Faint gs\n" : "rg\n");
+        text += operands_of(s.colour) + (s.faint ? "rg /Faint gs\n" : "rg\n");
     } else {
-        text += colour_of(s.colour) + "RG " + short_number(s.width * em) + " w " + (s.round ? "1 J [" : "0 J [");
+        text += operands_of(s.colour) + "RG " + short_number(s.width * em) + " w " + (s.round ? "1 J [" : "0 J [");
         for (const double length : s.dashes) text += short_number(length * em) + " ";
         text += "] 0 d\n";
     }
     for (const std::vector<place>& line : s.lines) {
-        const auto add = [&](const place& p, char by) {
-            text += short_number(p.x * em) + " " + short_number(p.y * em) + " " + by + "\n";
+        const auto add = [&](const place& p, char path_operator) {
+            text += short_number(p.x * em) + " " + short_number(p.y * em) + " " + path_operator + "\n";
         };
         for (const place& p : line) add(p, &p == line.data() ? 'm' : 'l');
         if (line.size() == 1) add(line.front(), 'l');
@@ -112,10 +114,10 @@ std::string operators_of(const words& w) {
     const std::string text = encoded(w.text);
     const std::string power = encoded(w.power);
     const double width = width_of(text) + power_size * width_of(power);
-    const double before = w.end == words::anchor::left ? 0 : w.end == words::anchor::middle ? width / 2 : width;
+    const double offset = w.end == words::anchor::left ? 0 : w.end == words::anchor::middle ? width / 2 : width;
     const double turn = w.angle * std::numbers::pi / 180;
-    const double x = w.at.x - before * std::cos(turn) + baseline * std::sin(turn);
-    const double y = w.at.y - before * std::sin(turn) - baseline * std::cos(turn);
+    const double x = w.at.x - offset * std::cos(turn) + baseline * std::sin(turn);
+    const double y = w.at.y - offset * std::sin(turn) - baseline * std::cos(turn);
     std::string ops = fmt::format("BT /F {} Tf {:.4f} {:.4f} {:.4f} {:.4f} {:.2f} {:.2f} Tm {} Tj", em, std::cos(turn),
                                   std::sin(turn), -std::sin(turn), std::cos(turn), x * em, y * em, in_brackets(text));
     if (!power.empty())

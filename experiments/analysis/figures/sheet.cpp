@@ -58,8 +58,8 @@ using places = std::vector<place>;
 /// Adds the outlines of a sign centred at a place.
 void add_sign(const sign& s, place at, std::vector<places>& to) {
     if (s.corners == is_disc) return to.push_back({at});
-    const auto corner = [&](int i, int of) {
-        const double angle = (s.turn + 360. * i / of) * std::numbers::pi / 180;
+    const auto corner = [&](int i, int count) {
+        const double angle = (s.turn + 360. * i / count) * std::numbers::pi / 180;
         return place{at.x + s.size * std::cos(angle), at.y + s.size * std::sin(angle)};
     };
     if (s.corners == is_cross) {
@@ -73,31 +73,32 @@ void add_sign(const sign& s, place at, std::vector<places>& to) {
 
 class painter {
 public:
-    explicit painter(const figure& f) : d_(f), r_(aabblab::arranged(d_)), to_{r_.width, r_.height, {}} {}
+    explicit painter(const figure& f)
+        : drawing_(f), layout_(aabblab::arranged(drawing_)), sheet_{layout_.width, layout_.height, {}} {}
 
     sheet painted() && {
-        for (std::size_t i = 0; i < d_.panels.size(); ++i) {
-            plot_ = &r_.plots[i];
-            panel_ = &d_.panels[i];
-            grid();
-            for (const shown_series& s : panel_->lines) band(s);
-            marks();
+        for (std::size_t i = 0; i < drawing_.panels.size(); ++i) {
+            plot_ = &layout_.plots[i];
+            panel_ = &drawing_.panels[i];
+            draw_grid();
+            for (const shown_series& s : panel_->lines) draw_band(s);
+            draw_marks();
             for (const shown_series& s : panel_->lines) {
-                bars(s);
-                line(s);
+                draw_bars(s);
+                draw_line(s);
             }
-            frame();
+            draw_frame();
         }
-        if (d_.empty()) write({{middle_x(), middle_y()}, "no data", words::anchor::middle});
-        for (const words& text : r_.texts) write(text);
-        for (const arrangement::sample& s : r_.samples) sample(s);
-        return std::move(to_);
+        if (drawing_.empty()) write({{middle_x(), middle_y()}, "no data", words::anchor::middle});
+        for (const words& text : layout_.texts) write(text);
+        for (const arrangement::sample& s : layout_.samples) draw_sample(s);
+        return std::move(sheet_);
     }
 
 private:
     void write(words w) {
         w.text = one_line(w.text);
-        to_.parts.emplace_back(std::move(w));
+        sheet_.parts.emplace_back(std::move(w));
     }
     void write(const std::vector<std::string>& lines, place top, words::anchor end, const std::string& power) {
         const places at = lines_below(top, lines.size());
@@ -105,7 +106,7 @@ private:
     }
     void stroke(std::vector<places> lines, std::string_view colour, double thickness,
                 std::vector<double> pattern = {}) {
-        to_.parts.emplace_back(strokes{std::move(lines), colour, thickness, std::move(pattern)});
+        sheet_.parts.emplace_back(strokes{std::move(lines), colour, thickness, std::move(pattern)});
     }
     void stroke_look(std::vector<places> lines, std::size_t look, bool dashed) {
         std::vector<double> lengths;
@@ -121,30 +122,30 @@ private:
         drawn.round = s.corners == is_disc;
         if (s.is_open) drawn.width = frame_width;
         if (drawn.round) drawn.width = 2 * s.size;
-        if (!at.empty()) to_.parts.emplace_back(std::move(drawn));
+        if (!at.empty()) sheet_.parts.emplace_back(std::move(drawn));
     }
     void fill(places outline, std::size_t look) {
-        to_.parts.emplace_back(
+        sheet_.parts.emplace_back(
             strokes{.lines = {std::move(outline)}, .colour = colour_of(look), .closed = true, .faint = true});
     }
     static std::string_view colour_of(std::size_t look) { return colours[look % colours.size()]; }
 
     [[nodiscard]] double x(double value) const {
-        return plot_->left + d_.x.place(value) * (plot_->right - plot_->left);
+        return plot_->left + drawing_.x.place(value) * (plot_->right - plot_->left);
     }
     [[nodiscard]] double y(double value) const {
-        return plot_->bottom + d_.y.place(value) * (plot_->top - plot_->bottom);
+        return plot_->bottom + drawing_.y.place(value) * (plot_->top - plot_->bottom);
     }
     [[nodiscard]] double middle_x() const { return (plot_->left + plot_->right) / 2; }
     [[nodiscard]] double middle_y() const { return (plot_->bottom + plot_->top) / 2; }
     /// The y of the lower quartile, clamped to the axis if it is logarithmic, where it may not be positive.
     [[nodiscard]] double low(const figure_point& p) const {
-        return y(d_.y.logarithmic ? std::max(p.low, d_.y.from) : p.low);
+        return y(drawing_.y.logarithmic ? std::max(p.low, drawing_.y.from) : p.low);
     }
 
     /// The horizontal shift that puts points of several series over one name side by side.
     [[nodiscard]] double shift_of(const shown_series& s) const {
-        if (!d_.x.named || d_.x.logarithmic || !s.is(series_style::points)) return 0;
+        if (!drawing_.x.named || drawing_.x.logarithmic || !s.is(series_style::points)) return 0;
         double count = 0;
         double before = 0;
         for (const shown_series& other : panel_->lines) {
@@ -152,19 +153,19 @@ private:
             if (&other < &s) ++before;
             ++count;
         }
-        return (before - (count - 1) / 2) * std::min(0.3, 1.4 / count) * half_gap(d_.f.x);
+        return (before - (count - 1) / 2) * std::min(0.3, 1.4 / count) * half_gap(drawing_.f.x);
     }
 
-    void grid() {
+    void draw_grid() {
         std::vector<places> lines;
-        for (const tick& t : r_.x_ticks)
+        for (const tick& t : layout_.x_ticks)
             if (!t.label.empty()) lines.push_back({{x(t.at), plot_->bottom}, {x(t.at), plot_->top}});
-        for (const tick& t : d_.y.ticks)
+        for (const tick& t : drawing_.y.ticks)
             if (!t.label.empty()) lines.push_back({{plot_->left, y(t.at)}, {plot_->right, y(t.at)}});
         stroke(std::move(lines), grid_colour, thin);
     }
 
-    void band(const shown_series& s) {
+    void draw_band(const shown_series& s) {
         if (!s.varies) return;
         if (s.is(series_style::level)) {
             const double bottom = low(s.points.front());
@@ -178,7 +179,7 @@ private:
         }
     }
 
-    void bars(const shown_series& s) {
+    void draw_bars(const shown_series& s) {
         if (!s.varies || s.is(series_style::level) || s.is_joined()) return;
         const double shift = shift_of(s);
         std::vector<places> lines;
@@ -187,7 +188,7 @@ private:
         stroke_look(std::move(lines), s.look, false);
     }
 
-    void line(const shown_series& s) {
+    void draw_line(const shown_series& s) {
         if (s.is(series_style::level)) {
             const double height = y(s.points.front().y);
             return stroke_look({{{plot_->left, height}, {plot_->right, height}}}, s.look, true);
@@ -204,7 +205,7 @@ private:
         put_signs(sparse, s.look);
     }
 
-    void marks() {
+    void draw_marks() {
         for (std::size_t i = 0; i < panel_->marks.size(); ++i) {
             const double at = x(panel_->marks[i].x);
             stroke({{{at, plot_->bottom}, {at, plot_->mark_tops[i]}}}, frame_colour, thin, {0.15, 0.25});
@@ -212,39 +213,39 @@ private:
     }
 
     /// Draws both axes with their ticks; inner panels share the tick labels of the outer ones.
-    void frame() {
+    void draw_frame() {
         const auto& [left, right, bottom, top, has_x, has_y, mark_tops] = *plot_;
         std::vector<places> lines{{{left, top}, {left, bottom}, {right, bottom}}};
         const auto length = [](const tick& t) { return t.label.empty() ? 0.2 : 0.4; };
-        for (const tick& t : r_.x_ticks) lines.push_back({{x(t.at), bottom}, {x(t.at), bottom - length(t)}});
-        for (const tick& t : d_.y.ticks) lines.push_back({{left, y(t.at)}, {left - length(t), y(t.at)}});
+        for (const tick& t : layout_.x_ticks) lines.push_back({{x(t.at), bottom}, {x(t.at), bottom - length(t)}});
+        for (const tick& t : drawing_.y.ticks) lines.push_back({{left, y(t.at)}, {left - length(t), y(t.at)}});
         stroke(std::move(lines), frame_colour, frame_width);
         constexpr double to_label = tick_room - 0.2;
-        for (const tick& t : r_.x_ticks)
-            if (has_x && r_.x_name_angle != 0)
-                write({{x(t.at), bottom - to_label}, t.label, words::anchor::right, {}, r_.x_name_angle});
+        for (const tick& t : layout_.x_ticks)
+            if (has_x && layout_.x_name_angle != 0)
+                write({{x(t.at), bottom - to_label}, t.label, words::anchor::right, {}, layout_.x_name_angle});
             else if (has_x && !t.label.empty())
-                write(lines_of(d_.x, t, r_.x_name_length), {x(t.at), bottom - to_label}, words::anchor::middle,
-                      t.power);
-        for (const tick& t : d_.y.ticks) {
+                write(lines_of(drawing_.x, t, layout_.x_name_length), {x(t.at), bottom - to_label},
+                      words::anchor::middle, t.power);
+        for (const tick& t : drawing_.y.ticks) {
             if (!has_y || t.label.empty()) continue;
-            const std::vector<std::string> texts = lines_of(d_.y, t, y_name_length);
+            const std::vector<std::string> texts = lines_of(drawing_.y, t, y_name_length);
             const double half = line_height * static_cast<double>(texts.size()) / 2;
             write(texts, {left - to_label, y(t.at) + half}, words::anchor::right, t.power);
         }
     }
 
-    void sample(const arrangement::sample& s) {
-        if (s.is_end) return put_signs({s.at}, s.of->look);
+    void draw_sample(const arrangement::sample& s) {
+        if (s.is_end) return put_signs({s.at}, s.label->look);
         constexpr double length = 4.4;
         const auto [x, y] = s.at;
-        if (s.of->style != series_style::points) stroke_look({{{x, y}, {x + length, y}}}, s.of->look, true);
-        if (s.of->style != series_style::level) put_signs({{x + length / 2, y}}, s.of->look);
+        if (s.label->style != series_style::points) stroke_look({{{x, y}, {x + length, y}}}, s.label->look, true);
+        if (s.label->style != series_style::level) put_signs({{x + length / 2, y}}, s.label->look);
     }
 
-    drawing d_;
-    arrangement r_;
-    sheet to_;
+    drawing drawing_;
+    arrangement layout_;
+    sheet sheet_;
     const arrangement::box* plot_ = nullptr;
     const shown_panel* panel_ = nullptr;
 };

@@ -112,20 +112,21 @@ estimate bootstrap(const sample_size& size, const std::function<double(const res
     };
     const double noise = variance(level::repeats, size.repeats);
     // The variance between processes, and between seeds, includes the noise of repeats.
-    const double of_processes = variance(level::processes, size.processes);
-    const double of_seeds = variance(level::seeds, size.seeds);
-    const double by_process = std::max(0.0, of_processes - noise);
-    const double by_seed = std::max(0.0, of_seeds - noise);
-    const double sum = by_process + by_seed + noise;
+    const double seen_of_processes = variance(level::processes, size.processes);
+    const double seen_of_seeds = variance(level::seeds, size.seeds);
+    const double of_processes = std::max(0.0, seen_of_processes - noise);
+    const double of_seeds = std::max(0.0, seen_of_seeds - noise);
+    const double sum = of_processes + of_seeds + noise;
     if (!(sum > 0)) return result;
     // Subtracting the noise adds no information, so the degrees of freedom follow the observed variance.
-    const auto share = [](double part, double seen, std::size_t degrees) {
+    const auto term = [](double part, double seen, std::size_t degrees) {
         return degrees > 0 && part > 0 ? seen * seen / static_cast<double>(degrees) : 0;
     };
     result.error = std::sqrt(sum);
-    result.degrees = sum * sum /
-                     (share(by_process, of_processes, size.processes - 1) + share(by_seed, of_seeds, size.seeds - 1) +
-                      share(noise, noise, size.processes * size.seeds * (size.repeats - 1)));
+    result.degrees =
+        sum * sum /
+        (term(of_processes, seen_of_processes, size.processes - 1) + term(of_seeds, seen_of_seeds, size.seeds - 1) +
+         term(noise, noise, size.processes * size.seeds * (size.repeats - 1)));
     return result;
 }
 
@@ -133,12 +134,12 @@ estimate bootstrap(const cells& measured) {
     return bootstrap(measured.size(), [&](const resample& d) { return d.mean_of(measured); });
 }
 
-estimate mean_of(std::span<const estimate> machines) {
-    if (machines.size() == 1) return machines.front();
-    const auto count = static_cast<double>(machines.size());
+estimate mean_of(std::span<const estimate> estimates) {
+    if (estimates.size() == 1) return estimates.front();
+    const auto count = static_cast<double>(estimates.size());
     double mean = 0, within = 0, degrees = 0, between = 0;
-    for (const estimate& e : machines) mean += e.value / count;
-    for (const estimate& e : machines) {
+    for (const estimate& e : estimates) mean += e.value / count;
+    for (const estimate& e : estimates) {
         const double variance = e.error * e.error / (count * count);
         within += variance;
         degrees += variance * variance / e.degrees;
@@ -151,22 +152,22 @@ estimate mean_of(std::span<const estimate> machines) {
 }
 
 estimate difference_of(const estimate& a, const estimate& b) {
-    const double of_a = a.error * a.error;
-    const double of_b = b.error * b.error;
-    const double sum = of_a + of_b;
+    const double var_a = a.error * a.error;
+    const double var_b = b.error * b.error;
+    const double sum = var_a + var_b;
     if (!(sum > 0)) return {a.value - b.value, 0, 1};
-    return {a.value - b.value, std::sqrt(sum), sum * sum / (of_a * of_a / a.degrees + of_b * of_b / b.degrees)};
+    return {a.value - b.value, std::sqrt(sum), sum * sum / (var_a * var_a / a.degrees + var_b * var_b / b.degrees)};
 }
 
 quartiles quartiles_of(std::vector<double> values) {
     std::ranges::sort(values);
-    const auto at = [&](double share) {
+    const auto quantile_at = [&](double share) {
         const double place = share * static_cast<double>(values.size() - 1);
         const auto below = static_cast<std::size_t>(place);
         const std::size_t above = std::min(below + 1, values.size() - 1);
         return values[below] + (values[above] - values[below]) * (place - static_cast<double>(below));
     };
-    return {at(0.25), at(0.5), at(0.75)};
+    return {quantile_at(0.25), quantile_at(0.5), quantile_at(0.75)};
 }
 
 fitted_line line_through(std::span<const double> x, std::span<const double> y) {

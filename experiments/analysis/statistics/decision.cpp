@@ -4,16 +4,16 @@ namespace aabblab {
 
 namespace {
 
-bool any_is(std::span<const support> endpoints, support what) {
-    return std::ranges::find(endpoints, what) != endpoints.end();
+bool any_is(std::span<const support> endpoints, support wanted) {
+    return std::ranges::find(endpoints, wanted) != endpoints.end();
 }
 
-bool all_are(std::span<const support> endpoints, support what) {
-    return std::ranges::all_of(endpoints, [=](support endpoint) { return endpoint == what; });
+bool all_are(std::span<const support> endpoints, support wanted) {
+    return std::ranges::all_of(endpoints, [=](support endpoint) { return endpoint == wanted; });
 }
 
 /// The smallest p-value among the outcomes.
-double least(const tested& t) {
+double least_p_value(const tested& t) {
     const double direction = std::min(t.p.less, t.p.more);
     return std::min(direction, t.expected == expectation::not_more ? t.p.not_more : t.p.same);
 }
@@ -26,10 +26,10 @@ std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(std::invoke(p_of, family[i]), i); });
     std::vector<double> levels(family.size(), 0);
-    for (std::size_t done = 0; done < order.size(); ++done) {
-        const double level = one_sided / static_cast<double>(order.size() - done);
-        if (std::invoke(p_of, family[order[done]]) > level) break;
-        levels[order[done]] = level;
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        const double level = one_sided / static_cast<double>(order.size() - rank);
+        if (std::invoke(p_of, family[order[rank]]) > level) break;
+        levels[order[rank]] = level;
     }
     return levels;
 }
@@ -77,7 +77,7 @@ support support_of(expectation expected, const tails& p, double level) {
     if (expected == expectation::not_more && p.not_more <= level) return support::favours;
     const outcome direction = direction_of(p, level);
     // This holds for any width of the interval: with more repeats the ratio would be shown to be the same.
-    if (direction != outcome::undecided && p.within) return support::no_difference;
+    if (direction != outcome::undecided && p.is_within_band) return support::no_difference;
     switch (direction) {
         case outcome::less: return support::favours;
         case outcome::same: return support::no_difference;
@@ -88,7 +88,7 @@ support support_of(expectation expected, const tails& p, double level) {
 }
 
 std::vector<double> levels_together(std::span<const tested> family) {
-    return holm_levels(family, least);
+    return holm_levels(family, least_p_value);
 }
 
 verdict_kind verdict_of(std::span<const support> primary) {

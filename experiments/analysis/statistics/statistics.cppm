@@ -103,11 +103,11 @@ inline constexpr std::size_t draws_per_level = 1000;
 /// Estimates the mean of one condition.
 [[nodiscard]] estimate bootstrap(const cells& measured);
 
-/// The mean of independent estimates of several machines. As in the bootstrap, machines that disagree widen the
-/// interval, with one degree of freedom less than there are machines.
-[[nodiscard]] estimate mean_of(std::span<const estimate> machines);
+/// The mean of independent estimates, of several machines or scenes. As in the bootstrap, estimates that disagree widen
+/// the interval, with one degree of freedom less than there are estimates.
+[[nodiscard]] estimate mean_of(std::span<const estimate> estimates);
 
-/// a - b of two independent estimates.
+/// a - b of two independent estimates, with the degrees of freedom of Satterthwaite (1946).
 [[nodiscard]] estimate difference_of(const estimate& a, const estimate& b);
 
 /// The ratio that a claim expects.
@@ -139,11 +139,11 @@ enum class support : unsigned char { favours, no_difference, contradicts, undeci
 
 /// One-sided p-values of the statements about a ratio: the probability of the measurement if the statement were false.
 struct tails {
-    double less;          ///< it is below 1
-    double more;          ///< it is above 1
-    double same;          ///< it is within the band
-    double not_more;      ///< it is not above the band
-    bool within = false;  ///< the ratio itself lies within the band, whatever its interval
+    double less;                  ///< it is below 1
+    double more;                  ///< it is above 1
+    double same;                  ///< it is within the band
+    double not_more;              ///< it is not above the band
+    bool is_within_band = false;  ///< of the ratio itself, whatever its interval
 };
 /// @param log_ratio the estimate of the logarithm of a ratio
 /// @param band 0.05 for 1/1.05 to 1.05; with 0, no ratio counts as the same
