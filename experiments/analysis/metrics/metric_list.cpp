@@ -18,12 +18,12 @@ constexpr times wall{&row::build_ms, &row::first_ms, &row::update_ms, &row::sear
 constexpr times processor{&row::build_cpu_ms, &row::first_cpu_ms, &row::update_cpu_ms, &row::search_cpu_ms,
                           &row::detect_cpu_ms};
 
-metric time_of(std::string name, std::string summary, row_value of) {
-    return {std::move(name), "ms", std::move(summary), metric_group::time, better::less, std::move(of)};
+metric time_metric(std::string name, std::string summary, row_value ms) {
+    return {std::move(name), "ms", std::move(summary), metric_group::time, better::less, std::move(ms)};
 }
 
-metric error_of(std::string name, std::string summary, row_value of) {
-    return {std::move(name), "", std::move(summary), metric_group::error, better::less, std::move(of)};
+metric error_metric(std::string name, std::string summary, row_value error) {
+    return {std::move(name), "", std::move(summary), metric_group::error, better::less, std::move(error)};
 }
 
 /// The number of frames after frame 0; 1 if there is only that one.
@@ -32,23 +32,25 @@ double frames_after_first(const row& r) {
 }
 
 /// The mean of a sum per frame after frame 0; empty if there is no such frame.
-row_value per_frame(std::optional<double> row::* sum) {
-    return [sum](const row& r) -> std::optional<double> {
-        return r.*sum && r.frames > 1 ? std::optional(*(r.*sum) / frames_after_first(r)) : std::nullopt;
+row_value per_frame(time_column sum) {
+    return [sum](const row& r) -> optional_number {
+        return r.*sum && r.frames > 1 ? optional_number(*(r.*sum) / frames_after_first(r)) : std::nullopt;
     };
 }
 
-row_value all_frames_after_first(const times& by) {
-    return [by](const row& r) -> optional_number {
-        if (!(r.*by.update) || r.frames == 1) return r.*by.first;
-        return (*(r.*by.update) + *(r.*by.search) + *(r.*by.detect)) / frames_after_first(r);
+/// The time of all stages per frame after frame 0; that of frame 0 if it is the only one.
+row_value frame_time(const times& t) {
+    return [t](const row& r) -> optional_number {
+        if (!(r.*t.update) || r.frames == 1) return r.*t.first;
+        return (*(r.*t.update) + *(r.*t.search) + *(r.*t.detect)) / frames_after_first(r);
     };
 }
 
-row_value whole(const times& by) {
-    return [by](const row& r) -> optional_number {
-        if (!(r.*by.update)) return std::nullopt;
-        return *(r.*by.build) + *(r.*by.first) + *(r.*by.update) + *(r.*by.search) + *(r.*by.detect);
+/// The time of all frames, including frame 0 and the construction of the stages.
+row_value whole_time(const times& t) {
+    return [t](const row& r) -> optional_number {
+        if (!(r.*t.update)) return std::nullopt;
+        return *(r.*t.build) + *(r.*t.first) + *(r.*t.update) + *(r.*t.search) + *(r.*t.detect);
     };
 }
 
@@ -63,6 +65,7 @@ optional_number global_share(const row& r) {
     return 100 * global / (global + *r.detect_cpu_ms);
 }
 
+/// The share of the wall time in which the thread did not run.
 optional_number waiting(const row& r) {
     if (!r.update_cpu_ms || !r.update_ms) return std::nullopt;
     const double wall_ms = *r.first_ms + *r.update_ms + *r.search_ms + *r.detect_ms;
@@ -80,10 +83,11 @@ optional_number all_bytes(const row& r) {
 
 /// Empty for engines, because the share of the tree in their bytes is unknown.
 optional_number tree_bytes(const row& r) {
-    static const row_value ours = per_triangle(bytes_of({"nodes", "indices"}));
-    return r.name.is_reference() ? std::nullopt : ours(r);
+    static const row_value bytes_per_triangle = per_triangle(bytes_of({"nodes", "indices"}));
+    return r.name.is_reference() ? std::nullopt : bytes_per_triangle(r);
 }
 
+/// The errors relative to the number of pairs of the ground truth, or to one if it has none.
 optional_number wrong_share(const row& r) {
     if (!r.false_negatives) return std::nullopt;
     const auto reported = static_cast<double>(r.contacts ? *r.contacts : r.candidates);
@@ -102,36 +106,36 @@ std::vector<metric> row_metrics() {
     const std::string of_frame = "time per frame after frame 0, of all stages; of frame 0 if it is the only one";
     const std::string of_whole = "time of all frames, including frame 0 and the construction of the stages";
     return {
-        time_of("frame_ms", of_frame, all_frames_after_first(wall)),
-        time_of("update_ms", to_update, per_frame(wall.update)),
-        time_of("search_ms", to_search, per_frame(wall.search)),
-        time_of("detect_ms", to_detect, per_frame(wall.detect)),
+        time_metric("frame_ms", of_frame, frame_time(wall)),
+        time_metric("update_ms", to_update, per_frame(wall.update)),
+        time_metric("search_ms", to_search, per_frame(wall.search)),
+        time_metric("detect_ms", to_detect, per_frame(wall.detect)),
         {"global_share", "%", "share of the broad phase in the processor time of the frames after frame 0", time,
          better::neither, global_share},
-        time_of("build_ms", to_build, &row::build_ms),
-        time_of("first_ms", "time of frame 0", &row::first_ms),
-        time_of("whole_ms", of_whole, whole(wall)),
-        time_of("frame_cpu_ms", cpu + of_frame, all_frames_after_first(processor)),
-        time_of("update_cpu_ms", cpu + to_update, per_frame(processor.update)),
-        time_of("search_cpu_ms", cpu + to_search, per_frame(processor.search)),
-        time_of("global_cpu_ms", "processor time of the broad phase per frame after frame 0", global_cpu_ms),
-        time_of("detect_cpu_ms", cpu + to_detect, per_frame(processor.detect)),
-        time_of("build_cpu_ms", cpu + to_build, &row::build_cpu_ms),
-        time_of("whole_cpu_ms", cpu + of_whole, whole(processor)),
+        time_metric("build_ms", to_build, &row::build_ms),
+        time_metric("first_ms", "time of frame 0", &row::first_ms),
+        time_metric("whole_ms", of_whole, whole_time(wall)),
+        time_metric("frame_cpu_ms", cpu + of_frame, frame_time(processor)),
+        time_metric("update_cpu_ms", cpu + to_update, per_frame(processor.update)),
+        time_metric("search_cpu_ms", cpu + to_search, per_frame(processor.search)),
+        time_metric("global_cpu_ms", "processor time of the broad phase per frame after frame 0", global_cpu_ms),
+        time_metric("detect_cpu_ms", cpu + to_detect, per_frame(processor.detect)),
+        time_metric("build_cpu_ms", cpu + to_build, &row::build_cpu_ms),
+        time_metric("whole_cpu_ms", cpu + of_whole, whole_time(processor)),
         {"waiting", "%", "share of the wall time of all frames in which the thread had no processor", time,
          better::less, waiting},
         {"all_bytes", "bytes", "memory of all parts except the meshes, which all compositions share", bytes,
          better::less, all_bytes},
         {"tree_bytes", "bytes per triangle", "memory of the trees", bytes, better::less, tree_bytes},
-        error_of("missing", "false negatives: pairs of the ground truth that are not reported, over all frames",
-                 &row::false_negatives),
-        error_of("invented", "false positives: reported pairs that are not in the ground truth, over all frames",
-                 &row::false_positives),
-        error_of("wrong_share",
-                 "false negatives and false positives per pair of the ground truth; their number if it has no pair",
-                 wrong_share),
-        error_of("box_inflation", "area of the boxes of a tree relative to that of the tightest boxes, minus 1",
-                 &row::box_inflation),
+        error_metric("missing", "false negatives: pairs of the ground truth that are not reported, over all frames",
+                     &row::false_negatives),
+        error_metric("invented", "false positives: reported pairs that are not in the ground truth, over all frames",
+                     &row::false_positives),
+        error_metric("wrong_share",
+                     "false negatives and false positives per pair of the ground truth; their number if it has no pair",
+                     wrong_share),
+        error_metric("box_inflation", "area of the boxes of a tree relative to that of the tightest boxes, minus 1",
+                     &row::box_inflation),
     };
 }
 
@@ -182,7 +186,7 @@ const metric& metric_named(std::string_view name) {
 }
 
 const row_value& measured(std::string_view name) {
-    return metric_named(name).of;
+    return metric_named(name).value;
 }
 
 row_value bytes_of(std::vector<std::string> parts) {
@@ -209,18 +213,18 @@ row_value sum_of(const std::vector<std::string>& names) {
     };
 }
 
-row_value per_object(row_value of) {
-    return [of = std::move(of)](const row& r) -> std::optional<double> {
-        const std::optional<double> value = of(r);
-        return value ? std::optional(*value / static_cast<double>(r.objects)) : std::nullopt;
+row_value per_object(row_value total) {
+    return [total = std::move(total)](const row& r) -> optional_number {
+        const optional_number value = total(r);
+        return value ? optional_number(*value / static_cast<double>(r.objects)) : std::nullopt;
     };
 }
 
-row_value per_triangle(row_value of) {
-    return [of = std::move(of)](const row& r) -> std::optional<double> {
-        const std::optional<double> value = of(r);
-        return value && r.triangles.value_or(0) > 0 ? std::optional(*value / static_cast<double>(*r.triangles))
-                                                    : std::nullopt;
+row_value per_triangle(row_value total) {
+    return [total = std::move(total)](const row& r) -> optional_number {
+        const optional_number value = total(r);
+        const std::uint64_t triangles = r.triangles.value_or(0);
+        return value && triangles > 0 ? optional_number(*value / static_cast<double>(triangles)) : std::nullopt;
     };
 }
 

@@ -32,7 +32,7 @@ struct metric {
     std::string summary;
     metric_group group;
     better direction;
-    row_value of;
+    row_value value;
 };
 
 /// All metrics in the order of that list, then the work counters.
@@ -52,7 +52,7 @@ struct metric {
 /// The sum of the named metrics: empty if the first is missing from a row; other missing ones count as 0.
 [[nodiscard]] row_value sum_of(const std::vector<std::string>& names);
 /// The value divided by the number of objects, or by the number of triangles of the scene's meshes.
-[[nodiscard]] row_value per_object(row_value of);
-[[nodiscard]] row_value per_triangle(row_value of);
+[[nodiscard]] row_value per_object(row_value total);
+[[nodiscard]] row_value per_triangle(row_value total);
 
 }  // namespace aabblab

@@ -7,6 +7,7 @@ namespace aabblab {
 
 namespace {
 
+/// The ratio of the fastest exact line; empty if no exact line was timed.
 std::optional<double> least_ratio_of(const scene_summary& scene) {
     std::optional<double> least;
     for (const summary_line& line : scene.lines)
@@ -22,12 +23,13 @@ struct standing {
     std::vector<double> ratios;
     std::vector<double> regrets;  ///< ratios relative to the fastest exact line
 
-    void add(const summary_line& line, bool wins_here, std::optional<double> least_ratio) {
+    void add(const summary_line& line, bool is_fastest, std::optional<double> least_ratio) {
         if (least_ratio) regrets.push_back(*line.ratio / *least_ratio);
-        wins += wins_here ? 1 : 0;
+        wins += is_fastest ? 1 : 0;
         exact = exact && line.status == "exact";
         ratios.push_back(*line.ratio);
     }
+    /// The geometric mean over the scenes.
     [[nodiscard]] double ratio() const {
         double log_sum = 0;
         for (const double value : ratios) log_sum += std::log(value);
@@ -57,11 +59,11 @@ std::vector<std::string> cells_of(const scene_summary& scene, const summary_line
                                text_of(line.false_positives), fmt::format("{}", line.pairs), text_of(line.contacts),
                                fmt::format("{}", line.repeats)});
     const auto& ms = line.ms_per_frame;
-    const auto& around = line.ratio_interval;
+    const auto& range = line.ratio_interval;
     for (const std::optional<double>& value :
          {ms ? std::optional(ms->median) : std::nullopt, ms ? std::optional(ms->low) : std::nullopt,
-          ms ? std::optional(ms->high) : std::nullopt, line.ratio, around ? std::optional(around->low) : std::nullopt,
-          around ? std::optional(around->high) : std::nullopt, line.build_ms})
+          ms ? std::optional(ms->high) : std::nullopt, line.ratio, range ? std::optional(range->low) : std::nullopt,
+          range ? std::optional(range->high) : std::nullopt, line.build_ms})
         cells.push_back(value ? fmt::format("{:.6f}", *value) : "");
     cells.push_back(text_of(line.bytes));
     for (std::size_t i = 0; i < metrics().size(); ++i)
@@ -93,8 +95,9 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     if (inexact) t.columns.push_back({"result"});
     t.columns.insert(t.columns.end(),
                      {{"ratio"}, {"least", true, 2}, {"greatest", true, 1}, {"scenes"}, {"fastest in"}});
-    const bool regretted = std::ranges::all_of(standings, [](const standing& entry) { return !entry.regrets.empty(); });
-    if (regretted) t.columns.insert(t.columns.end(), {{"regret"}, {"worst"}});
+    const bool has_regrets =
+        std::ranges::all_of(standings, [](const standing& entry) { return !entry.regrets.empty(); });
+    if (has_regrets) t.columns.insert(t.columns.end(), {{"regret"}, {"worst"}});
     for (const standing& entry : standings) {
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, entry.name, t.rows.size() + 1));
         if (inexact) cells.emplace_back(entry.exact ? "exact" : "inexact");
@@ -102,7 +105,7 @@ table overall_table_of(std::span<const scene_summary> scenes) {
         for (const double ratio : {entry.ratio(), least, greatest}) cells.push_back(fmt::format("{:.2f}", ratio));
         cells.push_back(grouped(entry.ratios.size()));
         cells.push_back(grouped(entry.wins));
-        if (!regretted) continue;
+        if (!has_regrets) continue;
         cells.push_back(fmt::format("{:.2f}", quartiles_of(entry.regrets).median));
         cells.push_back(fmt::format("{:.2f}", std::ranges::max(entry.regrets)));
     }

@@ -18,8 +18,14 @@ std::string text_or_dash(const std::optional<double>& value, int decimals) {
 }
 
 /// "0.98-1.02", or "-" if there is none.
-std::string interval_text(const std::optional<interval>& around) {
-    return around ? fmt::format("{:.2f}-{:.2f}", around->low, around->high) : "-";
+std::string interval_text(const std::optional<interval>& range) {
+    return range ? fmt::format("{:.2f}-{:.2f}", range->low, range->high) : "-";
+}
+
+/// True if any line of the scene has a value of the member.
+template <class Value>
+bool any_has(const scene_summary& scene, std::optional<Value> summary_line::* member) {
+    return std::ranges::any_of(scene.lines, [&](const summary_line& line) { return (line.*member).has_value(); });
 }
 
 /// "exact", "inexact", or "-3 +5" for three false negatives and five false positives.
@@ -56,35 +62,32 @@ struct shared_column {
 };
 
 /// The columns of results, which are equal for all exact lines, and of bytes.
-std::vector<shared_column> shared_columns(std::span<const summary_line* const> ranking) {
+std::vector<shared_column> shared_columns(const scene_summary& scene, std::span<const summary_line* const> ranking) {
     shared_column result{{"result"}, "result {}", {}};
     shared_column pairs{{"pairs"}, "{} pairs", {}};
     shared_column contacts{{"contacts", true, 1}, "{} contacts", {}};
     shared_column bytes{{"KiB", true, 2}, "{} KiB", {}};
-    bool meshes = false;
-    bool sized = false;
     for (const summary_line* line : ranking) {
         result.cells.push_back(result_of(*line));
         pairs.cells.push_back(grouped(line->pairs));
         contacts.cells.push_back(line->contacts ? grouped(*line->contacts) : "-");
         bytes.cells.push_back(line->bytes ? kib_text(*line->bytes) : "-");
-        meshes |= line->contacts.has_value();
-        sized |= line->bytes.has_value();
     }
     std::vector<shared_column> columns{std::move(result), std::move(pairs)};
-    if (meshes) columns.push_back(std::move(contacts));
-    if (sized) columns.push_back(std::move(bytes));
+    if (any_has(scene, &summary_line::contacts)) columns.push_back(std::move(contacts));
+    if (any_has(scene, &summary_line::bytes)) columns.push_back(std::move(bytes));
     return columns;
 }
 
 /// True if any composition has a value other than 0 at this index.
 template <class Numbers>
-bool is_used(const scene_summary& scene, Numbers summary_line::* numbers, std::size_t place) {
+bool is_used(const scene_summary& scene, Numbers summary_line::* numbers, std::size_t index) {
     return std::ranges::any_of(scene.lines, [&](const summary_line& line) {
-        return !line.name.is_reference() && (line.*numbers)[place].value_or(0) > 0;
+        return !line.name.is_reference() && (line.*numbers)[index].value_or(0) > 0;
     });
 }
 
+/// "box_tests" as "box tests".
 std::string spaced(std::string_view name) {
     std::string text(name);
     std::ranges::replace(text, '_', ' ');
@@ -99,24 +102,23 @@ std::string count_text(double value) {
 }  // namespace
 
 table table_of(const scene_summary& scene, std::span<const std::string> shown) {
-    const bool meshes = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.contacts.has_value(); });
-    const bool timed = std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ms_per_frame.has_value(); });
+    const bool has_meshes = any_has(scene, &summary_line::contacts);
     const int decimals = decimals_of(scene);
     const std::vector<const summary_line*> ranking = ranking_of(scene);
     table t{name_columns_of(scene.differing), {}};
     for (const summary_line* line : ranking)
         t.rows.push_back(name_cells_of(scene.differing, line->name, t.rows.size() + 1));
-    if (timed) {
+    if (any_has(scene, &summary_line::ms_per_frame)) {
         t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles", true, 4}, {"ratio"}, {"95 %"}});
-        if (meshes) t.columns.push_back({"build ms", true, 3});
+        if (has_meshes) t.columns.push_back({"build ms", true, 3});
         std::size_t i = 0;
         for (const summary_line* line : ranking) {
             std::vector<std::string>& cells = t.rows[i++];
             for (std::string& cell : time_cells(*line, decimals)) cells.push_back(std::move(cell));
-            if (meshes) cells.push_back(text_or_dash(line->build_ms, 2));
+            if (has_meshes) cells.push_back(text_or_dash(line->build_ms, 2));
         }
     }
-    for (const shared_column& c : shared_columns(ranking)) {
+    for (const shared_column& c : shared_columns(scene, ranking)) {
         if (c.is_constant()) continue;
         t.columns.push_back(c.shown);
         for (std::size_t i = 0; i < t.rows.size(); ++i) t.rows[i].push_back(c.cells[i]);
@@ -141,19 +143,18 @@ std::string heading_of(const scene_summary& scene) {
     text += parameters + "\n";
     if (scene.seeds.size() > 1)
         text += fmt::format("pooled over {} seeds: pairs and contacts are sums\n", scene.seeds.size());
-    const auto any_of = [&](auto is) {
-        return std::ranges::any_of(scene.lines, [&](const summary_line& line) { return (line.name.*is)(); });
-    };
+    const auto is_automatic = [](const summary_line& line) { return line.name.is_automatic(); };
     if (!scene.common.empty())
-        text += (scene.differing.empty()                 ? "this composition: "
-                 : any_of(&candidate_name::is_automatic) ? "all compositions but auto: "
-                                                         : "all compositions: ") +
+        text += (scene.differing.empty()                          ? "this composition: "
+                 : std::ranges::any_of(scene.lines, is_automatic) ? "all compositions but auto: "
+                                                                  : "all compositions: ") +
                 scene.common + "\n";
-    std::string same;
+    std::string constant;
     const std::vector<const summary_line*> ranking = ranking_of(scene);
-    for (const shared_column& c : shared_columns(ranking))
-        if (c.is_constant()) same += (same.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
-    if (!same.empty()) text += "all lines: " + same + "\n";
+    for (const shared_column& c : shared_columns(scene, ranking))
+        if (c.is_constant())
+            constant += (constant.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
+    if (!constant.empty()) text += "all lines: " + constant + "\n";
     if (!scene.digest.empty()) text += "digest of the ground truth: " + scene.digest + "\n";
     const auto is_inexact = [](const summary_line& line) { return line.status != "exact"; };
     const bool inexact = std::ranges::any_of(scene.lines, is_inexact);
@@ -164,12 +165,11 @@ std::string heading_of(const scene_summary& scene) {
                             *(*counted_line)->false_negatives, *(*counted_line)->false_positives);
     std::size_t repeats = 0;
     for (const summary_line& line : scene.lines) repeats = std::max(repeats, line.repeats);
-    std::string given_up;
+    std::string stopped;
     for (const summary_line& line : scene.lines)
-        if (line.repeats < repeats) given_up += (given_up.empty() ? "" : ", ") + line.label;
-    if (!given_up.empty()) text += "repeated less often than others: " + given_up + "\n";
-    const auto has_ratio = [](const summary_line& line) { return line.ratio.has_value(); };
-    if (scene.lines.size() > 1 && std::ranges::any_of(scene.lines, has_ratio))
+        if (line.repeats < repeats) stopped += (stopped.empty() ? "" : ", ") + line.label;
+    if (!stopped.empty()) text += "repeated less often than others: " + stopped + "\n";
+    if (scene.lines.size() > 1 && any_has(scene, &summary_line::ratio))
         text += (inexact ? "exact results before inexact ones, each in ascending order of ratio; ratio to "
                          : "in ascending order of ratio; ratio to ") +
                 scene.lines[0].label + "\n";
@@ -181,8 +181,7 @@ std::string heading_of(const scene_summary& scene) {
 table counts_table_of(const scene_summary& scene) {
     constexpr auto copies = static_cast<std::size_t>(aabb::work::subset_copies);
     table t{name_columns_of(scene.differing), {}};
-    std::vector<std::size_t> works;
-    std::vector<std::size_t> parts;
+    std::vector<std::size_t> works, parts;  // indices of the columns with values
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
         if (!is_used(scene, &summary_line::counts, i)) continue;
         works.push_back(i);
@@ -197,8 +196,7 @@ table counts_table_of(const scene_summary& scene) {
         t.columns.push_back({"KiB " + spaced(byte_columns[i])});
     }
     if (works.empty() && parts.empty()) return {};
-    const bool trees =
-        std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.bytes_per_triangle.has_value(); });
+    const bool trees = any_has(scene, &summary_line::bytes_per_triangle);
     const bool inflated =
         std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.box_inflation.value_or(0) > 0; });
     if (trees) t.columns.push_back({"tree bytes per triangle"});
@@ -209,9 +207,9 @@ table counts_table_of(const scene_summary& scene) {
         if (line->name.is_reference()) continue;
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene.differing, line->name, rank));
         for (const std::size_t i : works) {
-            const double each = line->counts[i].value_or(0);
-            cells.push_back(count_text(each));
-            if (i == copies) cells.push_back(fmt::format("{:.3f}", each / static_cast<double>(scene.objects)));
+            const double count = line->counts[i].value_or(0);
+            cells.push_back(count_text(count));
+            if (i == copies) cells.push_back(fmt::format("{:.3f}", count / static_cast<double>(scene.objects)));
         }
         for (const std::size_t i : parts) cells.push_back(kib_text(line->bytes_by_part[i].value_or(0)));
         if (trees) cells.push_back(text_or_dash(line->bytes_per_triangle, 2));

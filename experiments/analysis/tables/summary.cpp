@@ -13,12 +13,14 @@ std::optional<double> ms_per_frame(const row& r) {
     return frame(r);
 }
 
+/// Adds a value to a sum, which stays empty if all its values are.
 template <class Number>
-void add(std::optional<Number>& sum, const std::optional<Number>& more) {
-    if (more) sum = sum.value_or(0) + *more;
+void add(std::optional<Number>& sum, const std::optional<Number>& value) {
+    if (value) sum = sum.value_or(0) + *value;
 }
 
 /// Adds the values that do not vary between the repeats of a seed.
+/// @param share the weight of the seed in means over the seeds
 void add_seed(const row& r, double share, summary_line& line) {
     line.pairs += r.candidates;
     add(line.contacts, r.contacts);
@@ -27,8 +29,8 @@ void add_seed(const row& r, double share, summary_line& line) {
     if (line.status != "inexact") line.status = r.status;
     const auto all_bytes = measured("all_bytes")(r);
     line.bytes = std::max(line.bytes, all_bytes ? std::optional(static_cast<std::uint64_t>(*all_bytes)) : std::nullopt);
-    const auto of_trees = measured("tree_bytes")(r);
-    if (of_trees.value_or(0) > 0) line.bytes_per_triangle = std::max(line.bytes_per_triangle, of_trees);
+    const auto tree_bytes = measured("tree_bytes")(r);
+    if (tree_bytes.value_or(0) > 0) line.bytes_per_triangle = std::max(line.bytes_per_triangle, tree_bytes);
     if (r.box_inflation) add(line.box_inflation, std::optional(*r.box_inflation * share));
     const double frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
     for (std::size_t i = 0; i < r.counts.size(); ++i)
@@ -37,6 +39,7 @@ void add_seed(const row& r, double share, summary_line& line) {
         line.bytes_by_part[i] = std::max(line.bytes_by_part[i], r.bytes[i]);
 }
 
+/// Summarises all repeats of one composition or engine in one scene, except its ratio to the baseline.
 summary_line line_of(std::span<const row* const> repeats) {
     summary_line line;
     line.name = repeats[0]->name;
@@ -53,7 +56,7 @@ summary_line line_of(std::span<const row* const> repeats) {
     for (const metric& m : metrics()) {
         std::vector<double> values;
         for (const row* r : repeats)
-            if (const std::optional<double> value = m.of(*r)) values.push_back(*value);
+            if (const std::optional<double> value = m.value(*r)) values.push_back(*value);
         // A median over seeds would hide errors that occur in a single seed.
         line.metrics.push_back(
             values.empty() ? std::nullopt
@@ -81,9 +84,10 @@ void set_ratio(summary_line& line, std::span<const row* const> repeats, std::spa
     cells ratios(processes.size(), seeds.size());
     std::size_t count = 0;
     for (const row* r : repeats) {
-        const auto under = base_ms.find({r->scene.seed, r->repeat});
-        if (under == base_ms.end() || ms_per_frame(*r).value_or(0) <= 0) continue;
-        ratios.add(processes.at(r->process), seeds.at(r->scene.seed), std::log(*ms_per_frame(*r) / under->second));
+        const auto denominator = base_ms.find({r->scene.seed, r->repeat});
+        if (denominator == base_ms.end() || ms_per_frame(*r).value_or(0) <= 0) continue;
+        ratios.add(processes.at(r->process), seeds.at(r->scene.seed),
+                   std::log(*ms_per_frame(*r) / denominator->second));
         ++count;
     }
     if (count == 0) return;
@@ -162,7 +166,8 @@ std::vector<const summary_line*> ranking_of(const scene_summary& scene) {
     for (const summary_line& line : scene.lines) lines.push_back(&line);
     const auto key = [](const summary_line* line) {
         const double ms = line->ms_per_frame ? line->ms_per_frame->median : 0;
-        return std::tuple(!line->ms_per_frame, line->status != "exact", !line->ratio, line->ratio.value_or(0), ms, line);
+        return std::tuple(!line->ms_per_frame, line->status != "exact", !line->ratio, line->ratio.value_or(0), ms,
+                          line);
     };
     std::ranges::sort(lines, {}, key);
     return lines;
