@@ -8,6 +8,7 @@ namespace aabblab {
 
 namespace {
 
+/// The name of an engine, or the strategies of a composition other than `none`.
 std::string label_of(candidate_name name) {
     std::ranges::replace(name.choices.all, "none", "");
     return name.engine.empty() ? text_in_line(name.choices) : name.engine;
@@ -20,16 +21,17 @@ const atlas_line* atlas_scene::find(std::string_view label) const {
     return line != lines.end() ? &*line : nullptr;
 }
 
-const atlas_line& atlas_scene::fastest(span_of_time of) const {
-    const atlas_line* best = nullptr;
+const atlas_line* atlas_scene::fastest_if(span_of_time span,
+                                          const std::function<bool(const atlas_line&)>& matches) const {
+    const atlas_line* fastest = nullptr;
     for (const atlas_line& line : lines)
-        if (!line.automatic && (!best || line.ms(of) < best->ms(of))) best = &line;
-    return *best;
+        if (!line.automatic && matches(line) && (!fastest || line.ms(span) < fastest->ms(span))) fastest = &line;
+    return fastest;
 }
 
-double atlas_scene::least_ms(span_of_time of) const {
-    double least = fastest(of).ms(of);
-    for (const atlas_line& line : lines) least = std::min(least, line.ms(of));
+double atlas_scene::least_ms(span_of_time span) const {
+    double least = fastest(span).ms(span);
+    for (const atlas_line& line : lines) least = std::min(least, line.ms(span));
     return least;
 }
 
@@ -50,23 +52,21 @@ std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas) {
     return atlas;
 }
 
-estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time of) {
+estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time span) {
     cells ratios(1, 1);
-    const std::vector<double>& above = arm.times(of);
-    const std::vector<double>& below = base.times(of);
-    for (std::size_t repeat = 0; repeat < std::min(above.size(), below.size()); ++repeat)
-        ratios.add(0, 0, std::log(above[repeat] / below[repeat]));
+    const std::vector<double>& arm_ms = arm.times(span);
+    const std::vector<double>& base_ms = base.times(span);
+    for (std::size_t repeat = 0; repeat < std::min(arm_ms.size(), base_ms.size()); ++repeat)
+        ratios.add(0, 0, std::log(arm_ms[repeat] / base_ms[repeat]));
     return bootstrap(ratios);
 }
 
 std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool unseen) {
-    const row_value& frame = measured("frame_ms");
-    const row_value& whole = measured("whole_ms");
     std::vector<atlas_scene> atlas;
     std::map<scene_choice, std::size_t> places;
     for (const row& r : verified_rows(folder)) {
-        const std::optional<double> frame_ms = frame(r);
-        const std::optional<double> whole_ms = whole(r);
+        const std::optional<double> frame_ms = measured("frame_ms")(r);
+        const std::optional<double> whole_ms = measured("whole_ms")(r);
         if (r.status != "exact" || frame_ms.value_or(0) <= 0 || whole_ms.value_or(0) <= 0) continue;
         const auto [place, is_new] = places.emplace(r.scene, atlas.size());
         if (is_new) atlas.push_back({r.scene, unseen, measure_scene(r.scene), {}});

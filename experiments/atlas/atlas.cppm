@@ -26,11 +26,11 @@ struct atlas_line {
     std::vector<double> frame_ms;
     std::vector<double> whole_ms;
 
-    [[nodiscard]] const std::vector<double>& times(span_of_time of) const {
-        return of == span_of_time::frame ? frame_ms : whole_ms;
+    [[nodiscard]] const std::vector<double>& times(span_of_time span) const {
+        return span == span_of_time::frame ? frame_ms : whole_ms;
     }
     /// The median over repeats.
-    [[nodiscard]] double ms(span_of_time of) const { return quartiles_of(times(of)).median; }
+    [[nodiscard]] double ms(span_of_time span) const { return quartiles_of(times(span)).median; }
 };
 
 struct atlas_scene {
@@ -41,10 +41,14 @@ struct atlas_scene {
 
     /// Null if the scene has no such line.
     [[nodiscard]] const atlas_line* find(std::string_view label) const;
-    /// The fastest line, except `auto`.
-    [[nodiscard]] const atlas_line& fastest(span_of_time of) const;
+    /// The fastest of the lines that match, except `auto`, which is no fixed composition; null if none matches.
+    [[nodiscard]] const atlas_line* fastest_if(span_of_time span,
+                                               const std::function<bool(const atlas_line&)>& matches) const;
+    [[nodiscard]] const atlas_line& fastest(span_of_time span) const {
+        return *fastest_if(span, [](const atlas_line&) { return true; });
+    }
     /// The time of the fastest line, including `auto`.
-    [[nodiscard]] double least_ms(span_of_time of) const;
+    [[nodiscard]] double least_ms(span_of_time span) const;
     /// A parameter of the scene as a number, by default its default value; NaN if the scene has no such parameter.
     [[nodiscard]] double number(std::string_view parameter) const;
 };
@@ -54,7 +58,7 @@ struct atlas_scene {
 [[nodiscard]] std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas);
 
 /// The logarithm of the ratio of two lines' times, over the repeats that both have.
-[[nodiscard]] estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time of);
+[[nodiscard]] estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time span);
 
 /// Reads the scenes of an experiment from its results folder. Each scene is generated again to compute its measures.
 /// @param unseen whether the scenes are held out from the map
@@ -65,7 +69,7 @@ struct atlas_scene {
 /// One row per scene: its measures, the fastest, the lead over the second, and the ratio of `auto` to the fastest.
 [[nodiscard]] table cells_table(const std::vector<atlas_scene>& atlas);
 /// The regret of using one of them everywhere, relative to the fastest of each scene, including `auto`.
-[[nodiscard]] table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time of);
+[[nodiscard]] table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time span);
 
 /// The value of one parameter, all others equal, at which the fastest of one scene and of the next swap places. Lines
 /// that differ only in parameters, such as the skin of a Verlet list, count as one, represented by the fastest.
@@ -84,12 +88,12 @@ struct border {
 
 /// One ratio on which the verdict on a statement depends.
 struct judged_ratio {
-    std::string where;
-    std::string what;  ///< "bullet_sap over bullet_dbvt"
+    std::string where;  ///< the scenes: "10,000 boxes, a tenth moves"
+    std::string lines;  ///< "bullet_sap over bullet_dbvt"
     std::size_t scenes = 0;
     double ratio = 0;
     interval range{};
-    support found = support::undecided;
+    support verdict = support::undecided;
 };
 struct judged_statement {
     std::string id;

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::array<std::string_view, 5> parameters{"objects", "displacement", "density", "ratio", "moving"};
 
-std::string without(const scene_choice& scene, std::string_view parameter) {
+/// The settings of a scene without one parameter: scenes in which these agree differ in that parameter only.
+std::string settings_without(const scene_choice& scene, std::string_view parameter) {
     scene_choice others = scene;
     std::erase_if(others.settings, [&](const aabb::setting& s) { return s.name == parameter || s.name == "frames"; });
     return settings_text(others);
@@ -46,36 +47,32 @@ std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
 
 /// The fastest line of a family; null if the scene has none.
 const atlas_line* fastest_of(const atlas_scene& scene, const std::string& family) {
-    const atlas_line* best = nullptr;
-    for (const atlas_line& line : scene.lines)
-        if (!line.automatic && family_of(line.label) == family &&
-            (!best || line.ms(span_of_time::frame) < best->ms(span_of_time::frame)))
-            best = &line;
-    return best;
+    return scene.fastest_if(per_frame, [&](const atlas_line& line) { return family_of(line.label) == family; });
 }
 
+/// The border between two scenes that differ in one parameter; empty if the same family is the fastest in both.
 std::optional<border> border_between(const atlas_scene& from, const atlas_scene& to, std::string_view parameter) {
-    const atlas_line& first_best = from.fastest(span_of_time::frame);
-    const atlas_line& last_best = to.fastest(span_of_time::frame);
+    const atlas_line& first_best = from.fastest(per_frame);
+    const atlas_line& last_best = to.fastest(per_frame);
     const std::string before = family_of(first_best.label);
     const std::string after = family_of(last_best.label);
     if (before == after) return std::nullopt;
     const atlas_line* after_at_first = fastest_of(from, after);
     const atlas_line* before_at_last = fastest_of(to, before);
     if (!after_at_first || !before_at_last) return std::nullopt;
-    const double first = std::log(from.number(parameter));
-    const double length = std::log(to.number(parameter)) - first;
-    if (!std::isfinite(first)) return std::nullopt;
-    const estimate at_first = log_ratio_in(from, first_best, *after_at_first, span_of_time::frame);
-    const estimate at_last = log_ratio_in(to, *before_at_last, last_best, span_of_time::frame);
+    const double log_from = std::log(from.number(parameter));
+    const double log_length = std::log(to.number(parameter)) - log_from;
+    if (!std::isfinite(log_from)) return std::nullopt;
+    const estimate at_first = log_ratio_in(from, first_best, *after_at_first, per_frame);
+    const estimate at_last = log_ratio_in(to, *before_at_last, last_best, per_frame);
     if (!at_first.is_known() || !at_last.is_known()) return std::nullopt;
     const auto [share, range] = crossing(at_first, at_last);
     return border{before,
                   after,
                   std::string(parameter),
-                  from.scene.kind + " " + without(from.scene, parameter),
-                  std::exp(first + share * length),
-                  {std::exp(first + range.low * length), std::exp(first + range.high * length)}};
+                  from.scene.kind + " " + settings_without(from.scene, parameter),
+                  std::exp(log_from + share * log_length),
+                  {std::exp(log_from + range.low * log_length), std::exp(log_from + range.high * log_length)}};
 }
 
 /// The logarithm of the position of a border, and its error.
@@ -93,7 +90,7 @@ std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
         std::map<std::string, std::vector<const atlas_scene*>> lines;
         for (const atlas_scene& scene : atlas)
             if (!scene.unseen && !std::isnan(scene.number(parameter)))
-                lines[without(scene.scene, parameter)].push_back(&scene);
+                lines[settings_without(scene.scene, parameter)].push_back(&scene);
         for (auto& [others, scenes] : lines) {
             std::ranges::stable_sort(scenes, {}, [&](const atlas_scene* s) { return s->number(parameter); });
             for (std::size_t i = 1; i < scenes.size(); ++i)
@@ -112,10 +109,10 @@ table borders_table(const std::vector<border>& borders) {
 }
 
 table borders_summary(const std::vector<border>& borders) {
-    std::map<std::tuple<std::string, std::string, std::string>, std::vector<const border*>> alike;
-    for (const border& b : borders) alike[{b.parameter, b.before, b.after}].push_back(&b);
+    std::map<std::tuple<std::string, std::string, std::string>, std::vector<const border*>> by_lines;
+    for (const border& b : borders) by_lines[{b.parameter, b.before, b.after}].push_back(&b);
     std::vector<std::vector<const border*>> groups;
-    for (const auto& [what, group] : alike) groups.push_back(group);
+    for (const auto& [key, group] : by_lines) groups.push_back(group);
     std::ranges::stable_sort(groups, [](const auto& a, const auto& b) { return a.size() > b.size(); });
     table t = empty_table({"along", "fastest before", "fastest after"}, {"borders", "at", "95 %", "from", "to"});
     for (const std::vector<const border*>& group : groups) {
@@ -123,8 +120,8 @@ table borders_summary(const std::vector<border>& borders) {
         for (const border* b : group) places.push_back(log_place_of(*b));
         const auto [low, high] = std::ranges::minmax(group, {}, &border::at);
         const estimate mean = mean_of(places);
-        const border& any = *group.front();
-        t.rows.push_back({any.parameter, any.before, any.after, grouped(group.size()),
+        const border& first = *group.front();
+        t.rows.push_back({first.parameter, first.before, first.after, grouped(group.size()),
                           fmt::format("{:.3g}", std::exp(mean.value)),
                           fmt::format("{:.3g}-{:.3g}", std::exp(mean.range().low), std::exp(mean.range().high)),
                           fmt::format("{:.3g}", low->at), fmt::format("{:.3g}", high->at)});

@@ -7,8 +7,6 @@ namespace aabblab {
 
 namespace {
 
-constexpr span_of_time frame = span_of_time::frame;
-
 /// The kind of the scenes in the map.
 constexpr const char* kind_of_map = "cloud";
 
@@ -16,7 +14,7 @@ constexpr const char* kind_of_map = "cloud";
 std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most = 7;
     std::map<std::string, std::size_t> wins;
-    for (const atlas_scene& scene : atlas) ++wins[family_of(scene.fastest(frame).label)];
+    for (const atlas_scene& scene : atlas) ++wins[family_of(scene.fastest(per_frame).label)];
     std::vector<std::string> labels;
     for (const auto& [label, count] : wins) labels.push_back(label);
     std::ranges::stable_sort(labels, [&](const auto& a, const auto& b) { return wins[a] > wins[b]; });
@@ -57,7 +55,7 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
         if (is_new)
             place->second = {fmt::format("density {:g}, sizes 1 to {:g}", key.first, key.second),
                              empty_series(winners)};
-        add_point(place->second.lines, family_of(scene.fastest(frame).label), scene.number("objects"),
+        add_point(place->second.lines, family_of(scene.fastest(per_frame).label), scene.number("objects"),
                   scene.number("displacement"));
     }
     for (auto& [key, panel] : panels) f.panels.push_back(std::move(panel));
@@ -76,7 +74,7 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
              .lines = empty_series(winners)};
     for (const atlas_scene& scene : atlas)
         if (scene.measures.motion && scene.measures.motion->inversions > 0)
-            add_point(f.lines, family_of(scene.fastest(frame).label), static_cast<double>(scene.measures.objects),
+            add_point(f.lines, family_of(scene.fastest(per_frame).label), static_cast<double>(scene.measures.objects),
                       scene.measures.motion->inversions);
     return f;
 }
@@ -92,7 +90,7 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
              .x = {"share of the scenes", false},
              .y = {"regret", true}};
     for (const std::string& label : labels_of(atlas)) {
-        const std::vector<double> regrets = regrets_of(atlas, label, frame);
+        const std::vector<double> regrets = regrets_of(atlas, label, per_frame);
         if (regrets.size() < std::max(least_scenes, atlas.size() / 2)) continue;
         series curve{label};
         for (std::size_t i = 0; i < regrets.size(); ++i)

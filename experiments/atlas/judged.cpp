@@ -17,11 +17,11 @@ struct stated_ratio {
     std::string where;
     std::string arm;
     std::string base;
-    scene_filter in;
+    scene_filter scenes;
     expectation expected = expectation::less;
     double band = equivalence_band;
     /// If set, the ratio is divided by the same ratio in these scenes.
-    scene_filter over = nullptr;
+    scene_filter reference_scenes = nullptr;
 };
 
 struct statement {
@@ -35,13 +35,13 @@ struct statement {
 const std::string columns = "bucket + columns + simd";
 const std::string verlet_list = "neighbour_list:margin=0.1 + bucket + columns + simd";
 const std::string incremental = "insertion + incremental";
-const std::string in_regions = "insertion + subdivided";
+const std::string subdivided = "insertion + subdivided";
 const std::string one_axis = "insertion + one_axis";
 const std::string simd_sweep = "insertion + simd";
 const std::string two_axis = "insertion + two_axis";
-const std::string grid = "std + uniform_grid + simd";
+const std::string uniform_grid = "std + uniform_grid + simd";
 const std::string kd_tree = "radix + kd_tree + simd";
-const std::string grids = "ode_hash";
+const std::string hierarchical_grid = "ode_hash";
 const std::string dynamic_tree = "bullet_dbvt";
 const std::string bullet_sap = "bullet_sap";
 
@@ -50,6 +50,9 @@ struct setting_is {
     std::string_view parameter;
     double value;
 };
+
+/// Scenes of the map with these values.
+/// @param all_move excludes scenes in which some boxes rest
 scene_filter map_with(std::vector<setting_is> settings, bool all_move = true) {
     return [settings = std::move(settings), all_move](const atlas_scene& s) {
         if (s.scene.kind != "cloud" || (all_move && s.number("moving") != 1)) return false;
@@ -73,13 +76,15 @@ scene_filter sizes_to(double ratio, double objects) {
 }
 
 /// The ratio in some scenes relative to the ratio in others.
-stated_ratio compared(std::string where, std::string arm, std::string base, scene_filter in, scene_filter over) {
-    stated_ratio ratio{std::move(where), std::move(arm), std::move(base), std::move(in)};
-    ratio.over = std::move(over);
+stated_ratio relative(std::string where, std::string arm, std::string base, scene_filter scenes,
+                      scene_filter reference_scenes) {
+    stated_ratio ratio{std::move(where), std::move(arm), std::move(base), std::move(scenes)};
+    ratio.reference_scenes = std::move(reference_scenes);
     return ratio;
 }
 
-scene_filter resting(double objects, double moving) {
+/// Only a share of the boxes moves.
+scene_filter partly_moving(double objects, double moving) {
     return map_with({{"objects", objects}, {"moving", moving}}, false);
 }
 
@@ -88,8 +93,8 @@ scene_filter kind_is(std::string kind) {
 }
 
 /// One ratio for each pair of number of boxes and displacement.
-std::vector<stated_ratio> moves(const std::string& arm, const std::string& base,
-                                std::initializer_list<std::pair<double, double>> cases) {
+std::vector<stated_ratio> by_motion(const std::string& arm, const std::string& base,
+                                    std::initializer_list<std::pair<double, double>> cases) {
     std::vector<stated_ratio> ratios;
     for (const auto& [objects, displacement] : cases)
         ratios.push_back({fmt::format("{} boxes, by {:g}", grouped(static_cast<std::uint64_t>(objects)), displacement),
@@ -98,7 +103,7 @@ std::vector<stated_ratio> moves(const std::string& arm, const std::string& base,
 }
 
 /// One ratio for each number of boxes.
-std::vector<stated_ratio> of_sizes(const std::string& arm, const std::string& base, std::initializer_list<double> sizes,
+std::vector<stated_ratio> by_count(const std::string& arm, const std::string& base, std::initializer_list<double> sizes,
                                    expectation expected = expectation::less, double band = equivalence_band) {
     std::vector<stated_ratio> ratios;
     for (const double objects : sizes)
@@ -112,44 +117,44 @@ const std::vector<statement>& statements() {
         {"B1",
          "Bullet's manual and wiki, \"Broadphase\"",
          "Sweep and prune is fastest if most objects rest, the dynamic tree if many move.",
-         {{"10,000 boxes, a hundredth move", bullet_sap, dynamic_tree, resting(10000, 0.01)},
-          {"10,000 boxes, a tenth moves", bullet_sap, dynamic_tree, resting(10000, 0.1)},
+         {{"10,000 boxes, a hundredth move", bullet_sap, dynamic_tree, partly_moving(10000, 0.01)},
+          {"10,000 boxes, a tenth moves", bullet_sap, dynamic_tree, partly_moving(10000, 0.1)},
           {"1,000 boxes, all move by 1", dynamic_tree, bullet_sap, moved(1000, 1)},
           {"10,000 boxes, all move by 1", dynamic_tree, bullet_sap, moved(10000, 1)}}},
         {"B2",
          "P. Terdiman, PhysX issue 96, and PhysX's manual, PxBroadPhaseType",
          "If everything is at rest, nothing beats incremental sweep and prune; if everything moves, box pruning is "
          "much faster.",
-         {{"1,000 boxes at rest", incremental, columns, resting(1000, 0)},
-          {"10,000 boxes at rest", incremental, columns, resting(10000, 0)},
-          {"10,000 boxes at rest", incremental, verlet_list, resting(10000, 0)},
+         {{"1,000 boxes at rest", incremental, columns, partly_moving(1000, 0)},
+          {"10,000 boxes at rest", incremental, columns, partly_moving(10000, 0)},
+          {"10,000 boxes at rest", incremental, verlet_list, partly_moving(10000, 0)},
           {"1,000 boxes, all move by 1", columns, incremental, moved(1000, 1)},
           {"10,000 boxes, all move by 1", columns, incremental, moved(10000, 1)}}},
         {"B3", "D. Tracy, S. Buss, B. Woods, IEEE VR 2009, abstract",
          "Subdivided sweep and prune is faster than earlier sweep and prune.",
-         moves(in_regions, incremental,
-               {{1000, 0.001}, {10000, 0.001}, {1000, 0.1}, {10000, 0.1}, {1000, 1}, {10000, 1}})},
+         by_motion(subdivided, incremental,
+                   {{1000, 0.001}, {10000, 0.001}, {1000, 0.1}, {10000, 0.1}, {1000, 1}, {10000, 1}})},
         {"B4",
          "D. Tracy, S. Buss, B. Woods, IEEE VR 2009, abstract (of octrees)",
          "With coherence, subdivided sweep and prune beats hierarchies.",
-         {{"1,000 boxes, by 0.01", in_regions, dynamic_tree, moved(1000, 0.01)},
-          {"10,000 boxes, by 0.01", in_regions, dynamic_tree, moved(10000, 0.01)},
-          {"10,000 boxes, by 0.01", in_regions, "embree_refit", moved(10000, 0.01)},
-          {"10,000 boxes, a hundredth moves", in_regions, dynamic_tree, resting(10000, 0.01)}}},
+         {{"1,000 boxes, by 0.01", subdivided, dynamic_tree, moved(1000, 0.01)},
+          {"10,000 boxes, by 0.01", subdivided, dynamic_tree, moved(10000, 0.01)},
+          {"10,000 boxes, by 0.01", subdivided, "embree_refit", moved(10000, 0.01)},
+          {"10,000 boxes, a hundredth moves", subdivided, dynamic_tree, partly_moving(10000, 0.01)}}},
         {"B5",
          "C. Ericson, Real-Time Collision Detection, 7.1 and 7.2",
-         "A uniform grid suits boxes of similar size but not boxes of very different sizes, which a hierarchy of grids "
-         "suits.",
-         {{"10,000 boxes of one size", grid, grids, sizes_to(1, 10000)},
-          {"10,000 boxes, sizes 1 to 100", grids, grid, sizes_to(100, 10000)},
-          compared("the lead of the hierarchy, sizes 1 to 100 over one size", grids, grid, sizes_to(100, 10000),
-                   sizes_to(1, 10000))}},
+         "A uniform grid suits boxes of similar size but not boxes of very different sizes, which a hierarchy of "
+         "grids suits.",
+         {{"10,000 boxes of one size", uniform_grid, hierarchical_grid, sizes_to(1, 10000)},
+          {"10,000 boxes, sizes 1 to 100", hierarchical_grid, uniform_grid, sizes_to(100, 10000)},
+          relative("the lead of the hierarchy, sizes 1 to 100 over one size", hierarchical_grid, uniform_grid,
+                   sizes_to(100, 10000), sizes_to(1, 10000))}},
         {"B6",
          "C. Ericson, Real-Time Collision Detection, 7.5; the manual of BEPUphysics",
          "Sweep and prune suffers from clustered boxes; a hierarchy does not.",
-         {compared("1,000 boxes, 20 clouds over one", dynamic_tree, one_axis,
+         {relative("1,000 boxes, 20 clouds over one", dynamic_tree, one_axis,
                    map_with({{"objects", 1000}, {"clouds", 20}}), map_with({{"objects", 1000}, {"clouds", 1}})),
-          compared("10,000 boxes, 20 clouds over one", dynamic_tree, one_axis,
+          relative("10,000 boxes, 20 clouds over one", dynamic_tree, one_axis,
                    map_with({{"objects", 10000}, {"clouds", 20}}), map_with({{"objects", 10000}, {"clouds", 1}}))}},
         {"B7",
          "Benchmark of BEPUphysics 0.16, 2011",
@@ -162,56 +167,56 @@ const std::vector<statement>& statements() {
         {"B8",
          "The manual of Nape; comments of Box2D 2.0, b2BroadPhase",
          "Sweep and prune is poor at fast motion and with many sizes; a dynamic tree suffers from neither.",
-         {compared("1,000 boxes, by 1 over by 0.001", dynamic_tree, incremental, moved(1000, 1), moved(1000, 0.001)),
-          compared("10,000 boxes, by 1 over by 0.001", dynamic_tree, incremental, moved(10000, 1), moved(10000, 0.001)),
-          compared("10,000 boxes, sizes 1 to 100 over one size", dynamic_tree, incremental, sizes_to(100, 10000),
+         {relative("1,000 boxes, by 1 over by 0.001", dynamic_tree, incremental, moved(1000, 1), moved(1000, 0.001)),
+          relative("10,000 boxes, by 1 over by 0.001", dynamic_tree, incremental, moved(10000, 1), moved(10000, 0.001)),
+          relative("10,000 boxes, sizes 1 to 100 over one size", dynamic_tree, incremental, sizes_to(100, 10000),
                    sizes_to(1, 10000))}},
         {"B9", "F. Chitalu, C. Dubach, T. Komura, Computer Graphics Forum 2020, abstract (of a tree on a GPU)",
          "Rebuilding a hierarchy in every frame is faster than refitting it.",
-         moves("embree", "embree_refit",
-               {{1000, 0.001}, {1000, 0.1}, {1000, 1}, {10000, 0.001}, {10000, 0.1}, {10000, 1}})},
+         by_motion("embree", "embree_refit",
+                   {{1000, 0.001}, {1000, 0.1}, {1000, 1}, {10000, 0.001}, {10000, 0.1}, {10000, 1}})},
         {"B10", "The manual of dyn4j",
          "A sweep along one axis and a dynamic tree take about the same time: the slower one, the tree, takes at "
          "most twice as long.",
-         of_sizes(dynamic_tree, one_axis, {100, 1000, 10000}, expectation::not_more, 1.0)},
+         by_count(dynamic_tree, one_axis, {100, 1000, 10000}, expectation::not_more, 1.0)},
         {"B11",
          "The manual of Unity, Physics, broadphase type",
          "In large flat worlds sweep and prune finds many false overlaps, and a grid over it helps.",
          {{"flat", columns, simd_sweep, kind_is("flat")},
-          compared("flat over cubic", columns, simd_sweep, kind_is("flat"), kind_is("brownian"))}},
+          relative("flat over cubic", columns, simd_sweep, kind_is("flat"), kind_is("brownian"))}},
         {"B12",
          "Y. Serpa, M. Rodrigues, Computer Graphics Forum 38, 2019, title",
          "A kd-tree that exploits temporal coherence is fast and scales.",
          {{"10,000 boxes", kd_tree, simd_sweep, boxes(10000)},
-          {"10,000 boxes", kd_tree, grid, boxes(10000)},
+          {"10,000 boxes", kd_tree, uniform_grid, boxes(10000)},
           {"10,000 boxes", kd_tree, dynamic_tree, boxes(10000)},
-          compared("its lead over a sweep, 10,000 boxes over 1,000", kd_tree, simd_sweep, boxes(10000), boxes(1000))}},
+          relative("its lead over a sweep, 10,000 boxes over 1,000", kd_tree, simd_sweep, boxes(10000), boxes(1000))}},
         {"B13", "README of Broadmark (Y. Serpa, M. Rodrigues), \"Best variants\" (which are parallel, too)",
-         "The best sweep is the vectorised one.", of_sizes(simd_sweep, one_axis, {100, 1000, 10000})},
+         "The best sweep is the vectorised one.", by_count(simd_sweep, one_axis, {100, 1000, 10000})},
         {"B14",
          "G. Capannini, T. Larsson, SCCG 2016 and IEEE TVCG 2018, titles (the latter on several threads)",
          "A sweep of two axes is efficient, also in massive scenes.",
          {{"1,000 boxes", two_axis, one_axis, boxes(1000)},
           {"30,000 boxes", two_axis, one_axis, boxes(30000)},
-          compared("30,000 boxes over 1,000", two_axis, one_axis, boxes(30000), boxes(1000))}},
+          relative("30,000 boxes over 1,000", two_axis, one_axis, boxes(30000), boxes(1000))}},
         {"B15",
          "G. Capannini, T. Larsson, SIGRAD 2016, abstract (of a variant for boxes of one size only)",
          "A sweep of two axes gains if all boxes have one size.",
-         {compared("1,000 boxes, one size over sizes 1 to 100", two_axis, one_axis, sizes_to(1, 1000),
+         {relative("1,000 boxes, one size over sizes 1 to 100", two_axis, one_axis, sizes_to(1, 1000),
                    sizes_to(100, 1000)),
-          compared("10,000 boxes, one size over sizes 1 to 100", two_axis, one_axis, sizes_to(1, 10000),
+          relative("10,000 boxes, one size over sizes 1 to 100", two_axis, one_axis, sizes_to(1, 10000),
                    sizes_to(100, 10000))}},
         {"B16",
          "D. Tracy, S. Buss, B. Woods, IEEE VR 2009, abstract",
          "Subdivided sweep and prune suits large environments in which few objects move at a time.",
-         {{"10,000 boxes, a hundredth moves", in_regions, incremental, resting(10000, 0.01)},
-          {"10,000 boxes, a tenth moves", in_regions, incremental, resting(10000, 0.1)},
-          {"10,000 boxes, a hundredth moves", in_regions, one_axis, resting(10000, 0.01)},
-          compared("its lead, 10,000 boxes over 1,000, a tenth moves", in_regions, incremental, resting(10000, 0.1),
-                   resting(1000, 0.1))}},
+         {{"10,000 boxes, a hundredth moves", subdivided, incremental, partly_moving(10000, 0.01)},
+          {"10,000 boxes, a tenth moves", subdivided, incremental, partly_moving(10000, 0.1)},
+          {"10,000 boxes, a hundredth moves", subdivided, one_axis, partly_moving(10000, 0.01)},
+          relative("its lead, 10,000 boxes over 1,000, a tenth moves", subdivided, incremental,
+                   partly_moving(10000, 0.1), partly_moving(1000, 0.1))}},
         {"B17", "README of Broadmark (Y. Serpa, M. Rodrigues), \"Best variants\" (which are parallel, too)",
          "Among grids with a sweep in their cells, one over three axes is better than one over two.",
-         of_sizes(grid, columns, {1000, 10000, 30000})}};
+         by_count(uniform_grid, columns, {1000, 10000, 30000})}};
     return published;
 }
 
@@ -223,29 +228,24 @@ struct measured_ratio {
 };
 
 /// The mean over the scenes that have both lines; scenes are independent estimates.
-measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_ratio& r, const scene_filter& in) {
+measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_ratio& r, const scene_filter& matches) {
     std::vector<estimate> logs;
     for (const atlas_scene& scene : atlas) {
-        if (!in(scene)) continue;
+        if (!matches(scene)) continue;
         const atlas_line* arm = scene.find(r.arm);
         const atlas_line* base = scene.find(r.base);
         if (!arm || !base) continue;
-        if (const estimate log = log_ratio_in(scene, *arm, *base, span_of_time::frame); log.is_known())
-            logs.push_back(log);
+        if (const estimate log = log_ratio_in(scene, *arm, *base, per_frame); log.is_known()) logs.push_back(log);
     }
     return logs.empty() ? measured_ratio() : measured_ratio{logs.size(), mean_of(logs)};
 }
 
-measured_ratio measured(const std::vector<atlas_scene>& atlas, const stated_ratio& r) {
-    measured_ratio here = ratio_in(atlas, r, r.in);
-    if (!r.over || here.scenes == 0) return here;
-    const measured_ratio there = ratio_in(atlas, r, r.over);
-    if (there.scenes == 0) return {};
-    return {here.scenes + there.scenes, difference_of(here.log, there.log)};
-}
-
-std::string what_of(const stated_ratio& r) {
-    return r.arm + " over " + r.base;
+measured_ratio measure(const std::vector<atlas_scene>& atlas, const stated_ratio& r) {
+    measured_ratio ratio = ratio_in(atlas, r, r.scenes);
+    if (!r.reference_scenes || ratio.scenes == 0) return ratio;
+    const measured_ratio reference = ratio_in(atlas, r, r.reference_scenes);
+    if (reference.scenes == 0) return {};
+    return {ratio.scenes + reference.scenes, difference_of(ratio.log, reference.log)};
 }
 
 }  // namespace
@@ -261,12 +261,12 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
             verdicts.emplace_back(s.id, s.source, s.says, verdict_kind::undecided, std::vector<judged_ratio>());
         entry.ratios.reserve(s.ratios.size());
         for (const stated_ratio& r : s.ratios) {
-            const measured_ratio ratio = measured(atlas, r);
+            const measured_ratio ratio = measure(atlas, r);
             if (ratio.scenes == 0 || !ratio.log.is_known()) continue;
             const interval range = ratio.log.range();
-            judged.push_back(&entry.ratios.emplace_back(r.where, what_of(r), ratio.scenes, std::exp(ratio.log.value),
-                                                        interval{std::exp(range.low), std::exp(range.high)},
-                                                        support::undecided));
+            judged.push_back(
+                &entry.ratios.emplace_back(r.where, r.arm + " over " + r.base, ratio.scenes, std::exp(ratio.log.value),
+                                           interval{std::exp(range.low), std::exp(range.high)}, support::undecided));
             evidence.push_back({r.expected, tails_of(ratio.log, r.band)});
         }
     }
@@ -295,7 +295,7 @@ table ratios_table(const std::vector<judged_statement>& judged) {
     table t = empty_table({"statement", "where", "time of a frame"}, {"scenes", "ratio", "95 %"}, {"found"});
     for (const judged_statement& s : judged)
         for (const judged_ratio& r : s.ratios)
-            t.rows.push_back({s.id, r.where, r.what, grouped(r.scenes), fmt::format("{:.3g}", r.ratio),
+            t.rows.push_back({s.id, r.where, r.lines, grouped(r.scenes), fmt::format("{:.3g}", r.ratio),
                               fmt::format("{:.3g}-{:.3g}", r.range.low, r.range.high), text_of(r.verdict)});
     return t;
 }

@@ -7,6 +7,8 @@ import aabblab.statistics;
 
 namespace aabblab {
 
+inline constexpr span_of_time per_frame = span_of_time::frame;
+
 /// All labels, in the order of their first appearance.
 [[nodiscard]] inline std::vector<std::string> labels_of(const std::vector<atlas_scene>& atlas) {
     std::vector<std::string> labels;
@@ -28,10 +30,10 @@ namespace aabblab {
 
 /// Times relative to the fastest, one per scene that has the label, in ascending order.
 [[nodiscard]] inline std::vector<double> regrets_of(const std::vector<atlas_scene>& atlas, const std::string& label,
-                                                    span_of_time of) {
+                                                    span_of_time span) {
     std::vector<double> regrets;
     for (const atlas_scene& scene : atlas)
-        if (const atlas_line* line = scene.find(label)) regrets.push_back(line->ms(of) / scene.least_ms(of));
+        if (const atlas_line* line = scene.find(label)) regrets.push_back(line->ms(span) / scene.least_ms(span));
     std::ranges::sort(regrets);
     return regrets;
 }
@@ -39,13 +41,13 @@ namespace aabblab {
 /// The logarithm of the ratio of two lines. If their own repeats give no error, it is pooled from the repeats of all
 /// lines of the scene; without any repeats the result is unknown.
 [[nodiscard]] inline estimate log_ratio_in(const atlas_scene& scene, const atlas_line& arm, const atlas_line& base,
-                                           span_of_time of) {
-    const estimate own = log_ratio(arm, base, of);
+                                           span_of_time span) {
+    const estimate own = log_ratio(arm, base, span);
     if (own.error > 0) return own;
     double squares = 0;
     double degrees = 0;
     for (const atlas_line& line : scene.lines) {
-        const std::vector<double>& times = line.times(of);
+        const std::vector<double>& times = line.times(span);
         const auto count = static_cast<double>(times.size());
         double mean = 0;
         for (const double ms : times) mean += std::log(ms) / count;

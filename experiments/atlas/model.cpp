@@ -9,12 +9,10 @@ namespace aabblab {
 
 namespace {
 
-constexpr span_of_time frame = span_of_time::frame;
-
 /// A term of the cost model: a count per frame, computed from a scene's measures.
 struct term {
     std::string_view name;
-    double (*of)(const scene_measures& m);
+    double (*count)(const scene_measures& m);
 };
 
 double objects(const scene_measures& m) {
@@ -45,23 +43,26 @@ constexpr std::array<term, 9> terms{{
 
 std::vector<double> work_of(const scene_measures& m) {
     std::vector<double> work;
-    for (const term& t : terms) work.push_back(t.of(m));
+    for (const term& t : terms) work.push_back(t.count(m));
     return work;
 }
 
-std::vector<timed_work> seen_by(const std::vector<atlas_scene>& atlas, const std::string& label, bool unseen) {
+/// The measured times and the work of one line in the scenes of the map, or in those held out.
+std::vector<timed_work> observations_of(const std::vector<atlas_scene>& atlas, const std::string& label, bool unseen) {
     std::vector<timed_work> observations;
     for (const atlas_scene& scene : atlas) {
         const atlas_line* line = scene.find(label);
         if (!line || scene.unseen != unseen) continue;
         // One observation per scene gives each the same weight, whatever its repeats.
-        observations.push_back(
-            {scene.scene.kind + " " + settings_text(scene.scene), work_of(scene.measures), {1e6 * line->ms(frame)}});
+        observations.push_back({scene.scene.kind + " " + settings_text(scene.scene),
+                                work_of(scene.measures),
+                                {1e6 * line->ms(per_frame)}});
     }
     return observations;
 }
 
-double predicted(const std::vector<estimate>& costs, const scene_measures& m) {
+/// The time per frame that a cost model predicts, in ns.
+double predicted_ns(const std::vector<estimate>& costs, const scene_measures& m) {
     double ns = 0;
     const std::vector<double> work = work_of(m);
     for (std::size_t i = 0; i < work.size(); ++i) ns += costs[i].value * work[i];
@@ -77,11 +78,11 @@ std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
     for (std::size_t i = 0; i < labels.size(); ++i) {
         const std::string& label = labels[i];
         shown.at(i);
-        const std::vector<timed_work> seen = seen_by(atlas, label, false);
+        const std::vector<timed_work> seen = observations_of(atlas, label, false);
         if (seen.size() <= terms.size()) continue;
         line_model m{label, fit_costs(seen), {}, {}};
         m.seen = accuracy_of(seen, m.costs);
-        if (const std::vector<timed_work> unseen = seen_by(atlas, label, true); !unseen.empty())
+        if (const std::vector<timed_work> unseen = observations_of(atlas, label, true); !unseen.empty())
             m.unseen = accuracy_of(unseen, m.costs);
         models.push_back(std::move(m));
     }
@@ -118,12 +119,12 @@ std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas, con
         double least = std::numeric_limits<double>::infinity();
         for (const line_model& m : models) {
             const atlas_line* line = scene.find(m.label);
-            const double ns = predicted(m.costs, scene.measures);
+            const double ns = predicted_ns(m.costs, scene.measures);
             if (!line || line->automatic || ns >= least) continue;
             chosen = line;
             least = ns;
         }
-        if (chosen) regrets.push_back(chosen->ms(frame) / scene.fastest(frame).ms(frame));
+        if (chosen) regrets.push_back(chosen->ms(per_frame) / scene.fastest(per_frame).ms(per_frame));
     }
     return regrets;
 }

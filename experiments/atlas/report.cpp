@@ -17,12 +17,6 @@ struct section {
     bool shown = true;  ///< in the page; otherwise only in its file
 };
 
-std::vector<atlas_scene> of_map(const std::vector<atlas_scene>& atlas, bool unseen) {
-    std::vector<atlas_scene> selected;
-    std::ranges::copy_if(atlas, std::back_inserter(selected), [&](const atlas_scene& s) { return s.unseen == unseen; });
-    return selected;
-}
-
 std::string models_text(const std::vector<atlas_scene>& atlas, const std::vector<line_model>& models) {
     std::string text =
         "A linear model predicts the time per frame as a sum of costs per box, pair, inversion and so on, fitted to "
@@ -57,7 +51,9 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
          "By the time of all frames. Scenes are short, so the first frame matters: insertion sort takes quadratic time "
          "in it.",
          "regrets_whole", regrets_table(atlas, span_of_time::whole)}};
-    if (const auto unseen = of_map(atlas, true); !unseen.empty())
+    std::vector<atlas_scene> unseen;
+    std::ranges::copy_if(atlas, std::back_inserter(unseen), &atlas_scene::unseen);
+    if (!unseen.empty())
         sections.push_back({"The same per frame, in the scenes outside the map", "", "regrets_unseen",
                             regrets_table(unseen, span_of_time::frame)});
     sections.push_back(

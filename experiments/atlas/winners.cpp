@@ -8,20 +8,15 @@ namespace aabblab {
 
 namespace {
 
-constexpr span_of_time frame = span_of_time::frame;
-
 /// The second fastest line; null if there is none.
 const atlas_line* second_of(const atlas_scene& scene) {
-    const atlas_line& best = scene.fastest(frame);
-    const atlas_line* second = nullptr;
-    for (const atlas_line& line : scene.lines)
-        if (&line != &best && !line.automatic && (!second || line.ms(frame) < second->ms(frame))) second = &line;
-    return second;
+    const atlas_line& best = scene.fastest(per_frame);
+    return scene.fastest_if(per_frame, [&](const atlas_line& line) { return &line != &best; });
 }
 
 /// True if the interval of the ratio to the fastest lies above 1.
 bool is_slower(const atlas_line& line, const atlas_line& best) {
-    return log_ratio(line, best, frame).range().low > 0;
+    return log_ratio(line, best, per_frame).range().low > 0;
 }
 
 }  // namespace
@@ -40,7 +35,7 @@ table winners_table(const std::vector<atlas_scene>& atlas) {
             const atlas_line* line = scene.find(label);
             if (!line) continue;
             ++entry.scenes;
-            const atlas_line& best = scene.fastest(frame);
+            const atlas_line& best = scene.fastest(per_frame);
             if (line != &best) {
                 if (!is_slower(*line, best)) ++entry.as_fast;
                 continue;
@@ -66,7 +61,7 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
         t.columns.end(),
         {{"frame_ms"}, {"second", false}, {"second_ratio"}, {"second_low"}, {"second_high"}, {"auto_ratio"}});
     for (const atlas_scene& scene : atlas) {
-        const atlas_line& best = scene.fastest(frame);
+        const atlas_line& best = scene.fastest(per_frame);
         const atlas_line* second = second_of(scene);
         const auto automatic = std::ranges::find_if(scene.lines, &atlas_line::automatic);
         const scene_measures& m = scene.measures;
@@ -79,36 +74,33 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
                                        text(m.clustering),
                                        m.boxes.size_ratio ? text(*m.boxes.size_ratio) : "",
                                        best.label,
-                                       text(best.ms(frame)),
+                                       text(best.ms(per_frame)),
                                        second ? second->label : ""};
         if (second) {
-            const estimate ratio = log_ratio(*second, best, frame);
+            const estimate ratio = log_ratio(*second, best, per_frame);
             for (const double log : {ratio.value, ratio.range().low, ratio.range().high})
                 cells.push_back(text(std::exp(log)));
         } else {
             cells.resize(cells.size() + 3);
         }
-        cells.push_back(automatic != scene.lines.end() ? text(automatic->ms(frame) / best.ms(frame)) : "");
+        cells.push_back(automatic != scene.lines.end() ? text(automatic->ms(per_frame) / best.ms(per_frame)) : "");
         t.rows.push_back(std::move(cells));
     }
     return t;
 }
 
-table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time of) {
+table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time span) {
     struct standing {
         std::string label;
         std::vector<double> regrets;
-        std::size_t beyond = 0;
-        quartiles of{};
+        double median = 0;
     };
     std::vector<standing> standings;
     for (const std::string& label : labels_of(atlas)) {
-        standing entry{label, regrets_of(atlas, label, of), 0, {}};
-        entry.beyond = static_cast<std::size_t>(std::ranges::count_if(entry.regrets, [](double r) { return r > 1.3; }));
-        entry.of = quartiles_of(entry.regrets);
-        standings.push_back(std::move(entry));
+        standing& entry = standings.emplace_back(label, regrets_of(atlas, label, span));
+        entry.median = quartiles_of(entry.regrets).median;
     }
-    std::ranges::stable_sort(standings, {}, [](const standing& entry) { return entry.of.median; });
+    std::ranges::stable_sort(standings, {}, &standing::median);
     table t{{{row_number},
              {"used everywhere", false},
              {"scenes"},
@@ -117,11 +109,13 @@ table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time of) {
              {"worst"},
              {"over 1.3"}},
             {}};
-    for (const standing& entry : standings)
+    for (const standing& entry : standings) {
+        const auto above = std::ranges::count_if(entry.regrets, [](double r) { return r > 1.3; });
         t.rows.push_back({std::to_string(t.rows.size() + 1), entry.label, grouped(entry.regrets.size()),
-                          fmt::format("{:.2f}", entry.of.median),
+                          fmt::format("{:.2f}", entry.median),
                           fmt::format("{:.2f}", entry.regrets[entry.regrets.size() * 9 / 10]),
-                          fmt::format("{:.2f}", entry.regrets.back()), grouped(entry.beyond)});
+                          fmt::format("{:.2f}", entry.regrets.back()), grouped(static_cast<std::uint64_t>(above))});
+    }
     return t;
 }
 

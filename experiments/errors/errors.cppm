@@ -23,7 +23,7 @@ struct error_point {
     std::uint64_t intersecting = 0;     ///< the ground truth, by CGAL's exact predicates
     std::uint64_t false_negatives = 0;  ///< intersecting pairs that it rejects
     std::uint64_t false_positives = 0;  ///< disjoint pairs that it reports
-    quartiles ns_per_pair{};              ///< over batches; the methods alternate within each
+    quartiles ns_per_pair{};            ///< over batches; the methods alternate within each
 
     [[nodiscard]] std::uint64_t wrong() const { return false_negatives + false_positives; }
 };
@@ -83,7 +83,7 @@ struct hit_point {
     std::uint64_t different = 0;           ///< hits with a wrong kind or number of corners
     std::uint64_t outside = 0;             ///< hits with a coordinate error above the stated bound
     aabb::corner_errors greatest{};        ///< the maximum over the hits
-    quartiles ns_per_hit{};                  ///< over batches; the tests alternate within each
+    quartiles ns_per_hit{};                ///< over batches; the tests alternate within each
 
     [[nodiscard]] bool is_right() const { return different + outside == 0; }
 };

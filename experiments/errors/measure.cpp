@@ -19,7 +19,7 @@ namespace {
 /// inherits the cache state of the same predecessor.
 /// @tparam Point the result of a test
 template <class Point>
-class tests_in_turn {
+class alternating_tests {
 public:
     struct entry {
         Point point;
@@ -35,11 +35,11 @@ public:
     /// @param judge compares the result with the ground truth, untimed
     template <class Work, class Judge>
     void run_batch(std::size_t pairs, Work work, Judge judge) {
-        run_round(entries_, batches_, [&](entry& turn) {
-            if (batches_ % turn.share != 0) return;
-            const double ms = milliseconds_of([&] { work(*turn.test); });
-            turn.ns.push_back(ms * 1e6 / static_cast<double>(pairs));
-            judge(turn.point);
+        run_round(entries_, batches_, [&](entry& e) {
+            if (batches_ % e.share != 0) return;
+            const double ms = milliseconds_of([&] { work(*e.test); });
+            e.ns.push_back(ms * 1e6 / static_cast<double>(pairs));
+            judge(e.point);
         });
         ++batches_;
     }
@@ -63,9 +63,9 @@ private:
 constexpr std::size_t pairs_in_batch = 4096;
 
 /// Runs the methods of a study on one set of pairs.
-class set_run {
+class error_run {
 public:
-    set_run(const error_study& study, const std::string& name, bool in_double) {
+    error_run(const error_study& study, const std::string& name, bool in_double) {
         for (const error_curve& curve : study.curves)
             for (const aabb::strategy_choice& choice : curve.triangles) {
                 std::unique_ptr<aabb::triangle_test> test = triangle_test_named(choice);
@@ -98,14 +98,14 @@ private:
         }
     }
 
-    tests_in_turn<error_point> methods_;
+    alternating_tests<error_point> methods_;
     std::vector<std::uint8_t> truth_;
     std::vector<std::uint8_t> results_;
 };
 
 template <class Real>
-std::vector<error_point> points_of(const error_study& study, const pair_set& set, progress& shown, std::size_t& done) {
-    set_run run(study, set.pair_class, set.in_double);
+std::vector<error_point> run_pairs(const error_study& study, const pair_set& set, progress& shown, std::size_t& done) {
+    error_run run(study, set.pair_class, set.in_double);
     pair_source<Real> source(set.pair_class, set.seed);
     std::vector<aabb::triangle_pair<Real>> batch;
     for (std::uint64_t left = set.count; left > 0; left -= batch.size()) {
@@ -124,11 +124,11 @@ void add_candidates(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::m
     const aabb::relative_pose to_a(pose_a, pose_b, bounds_b);
     if (!aabb::overlaps(aabb::bounds_of(a), to_a(bounds_b))) return;
     std::vector<aabb::box> boxes;
-    std::vector<aabb::triangle3f> carried;
+    std::vector<aabb::triangle3f> images;  // of the triangles of B, in the frame of A
     for (std::uint32_t t = 0; t < a.triangle_count(); ++t) boxes.push_back(aabb::bounds_of(a.triangle(t)));
     for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
-        carried.push_back(to_a(b.triangle(t)));
-        boxes.push_back(aabb::bounds_of(carried.back()));
+        images.push_back(to_a(b.triangle(t)));
+        boxes.push_back(aabb::bounds_of(images.back()));
     }
     const auto search = aabb::compose_global_search({}, aabb::instrumentation::none);
     for (std::uint32_t id = 0; id < boxes.size(); ++id) search->insert(id);
@@ -137,7 +137,7 @@ void add_candidates(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::m
     search->search(pairs);
     for (const aabb::index_pair p : pairs)
         if (p.a < a.triangle_count() && p.b >= a.triangle_count())
-            candidates.push_back({a.triangle(p.a), carried[p.b - a.triangle_count()]});
+            candidates.push_back({a.triangle(p.a), images[p.b - a.triangle_count()]});
 }
 
 /// The pairs of triangles with overlapping boxes, of objects with overlapping boxes, over all frames. The second
@@ -153,16 +153,16 @@ std::vector<aabb::triangle_pair<float>> candidate_triangles(const scene_choice& 
     return candidates;
 }
 
-std::vector<error_point> points_of(const error_study& study, const scene_choice& scene) {
-    set_run run(study, scene.kind + " " + parameters_text(scene), false);
+std::vector<error_point> run_scene(const error_study& study, const scene_choice& scene) {
+    error_run run(study, scene.kind + " " + parameters_text(scene), false);
     std::vector<aabb::triangle_pair<float>> pairs = candidate_triangles(scene);
     if (pairs.empty())
         throw aabb::input_error(scene.kind + " " + parameters_text(scene) + " has no triangles whose boxes overlap");
     // A tree traversal yields pairs in an unpredictable order; this search yields them row by row.
     std::ranges::shuffle(pairs, std::mt19937_64(1));  // NOLINT(*-msc51-cpp): the same order in every run
-    const std::span<const aabb::triangle_pair<float>> rest(pairs);
-    for (std::size_t at = 0; at < pairs.size(); at += pairs_in_batch)
-        run.run_batch(rest.subspan(at, std::min(pairs_in_batch, pairs.size() - at)));
+    const std::span<const aabb::triangle_pair<float>> shuffled(pairs);
+    for (std::size_t begin = 0; begin < pairs.size(); begin += pairs_in_batch)
+        run.run_batch(shuffled.subspan(begin, std::min(pairs_in_batch, pairs.size() - begin)));
     return run.points();
 }
 
@@ -171,7 +171,8 @@ constexpr std::uint64_t most_pairs_per_hit = 1000;
 /// Library tests run on one batch in `library_share`: CGAL's takes a hundred times as long as ours.
 constexpr std::size_t library_share = 16;
 
-void take(aabb::corner_errors& greatest, const aabb::corner_errors& errors) {
+/// Raises the greatest errors so far to those of one hit.
+void raise_to(aabb::corner_errors& greatest, const aabb::corner_errors& errors) {
     greatest.of_bound = std::max(greatest.of_bound, errors.of_bound);
     if (errors.greatest <= greatest.greatest) return;
     greatest.greatest = errors.greatest;
@@ -179,9 +180,9 @@ void take(aabb::corner_errors& greatest, const aabb::corner_errors& errors) {
 }
 
 /// Runs the constructing tests on the hits of one class.
-class class_run {
+class hit_run {
 public:
-    explicit class_run(const pair_set& set) {
+    explicit hit_run(const pair_set& set) {
         const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);
         for (const std::string& name : constructing_tests()) {
             const bool of_library = std::ranges::find(strategies, name) == strategies.end();
@@ -206,7 +207,7 @@ public:
                 ++point.kinds[static_cast<std::size_t>(exact[k].kind())];
                 point.different += static_cast<std::uint64_t>(!errors.same);
                 point.outside += static_cast<std::uint64_t>(errors.same && !errors.within);
-                take(point.greatest, errors);
+                raise_to(point.greatest, errors);
             }
         });
     }
@@ -218,12 +219,12 @@ public:
     }
 
 private:
-    tests_in_turn<hit_point> tests_;
+    alternating_tests<hit_point> tests_;
 };
 
 template <class Real>
-std::vector<hit_point> points_of(const pair_set& set, progress& shown, std::uint64_t done) {
-    class_run run(set);
+std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint64_t done) {
+    hit_run run(set);
     pair_source<Real> source(set.pair_class, set.seed);
     std::vector<aabb::triangle_pair<double>> batch;
     std::uint64_t tried = 0;
@@ -266,11 +267,11 @@ std::vector<error_point> measure_errors(const error_study& study,
         progress shown("pairs of triangles", count);
         std::size_t done = 0;
         for (const pair_set& set : study.pairs)
-            add(set.in_double ? points_of<double>(study, set, shown, done) : points_of<float>(study, set, shown, done));
+            add(set.in_double ? run_pairs<double>(study, set, shown, done) : run_pairs<float>(study, set, shown, done));
     }
     progress shown("scenes", study.scenes.size());
     for (std::size_t i = 0; i < study.scenes.size(); ++i) {
-        add(points_of(study, study.scenes[i]));
+        add(run_scene(study, study.scenes[i]));
         shown.at(i + 1);
     }
     return points;
@@ -284,7 +285,7 @@ std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
     std::vector<hit_point> points;
     std::uint64_t done = 0;
     for (const pair_set& set : sets) {
-        for (hit_point& p : set.in_double ? points_of<double>(set, shown, done) : points_of<float>(set, shown, done))
+        for (hit_point& p : set.in_double ? run_hits<double>(set, shown, done) : run_hits<float>(set, shown, done))
             points.push_back(std::move(p));
         if (finished) finished(points);
         shown.at(done += set.count);

@@ -14,15 +14,17 @@ namespace {
 /// Two numbers of a method; less is better in both.
 using cost = std::array<double, 2>;
 
-/// The Pareto front: the indices of the costs that no other cost dominates, in ascending order of the first number; of
-/// equal costs only one.
-std::vector<std::size_t> front_of(std::span<const cost> costs) {
-    std::vector<std::size_t> order(costs.size());
+/// The Pareto front: the indices of the methods whose cost no other cost dominates, in ascending order of the first
+/// number; of equal costs only one.
+template <class Method, class CostOf>
+std::vector<std::size_t> front_of(const std::vector<Method>& methods, CostOf cost_of) {
+    std::vector<std::size_t> order(methods.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(order, {}, [&](std::size_t i) { return costs[i]; });
+    const auto cost_at = [&](std::size_t i) -> cost { return cost_of(methods[i]); };
+    std::ranges::sort(order, {}, cost_at);
     std::vector<std::size_t> front;
     for (const std::size_t i : order)
-        if (front.empty() || costs[i][1] < costs[front.back()][1]) front.push_back(i);
+        if (front.empty() || cost_at(i)[1] < cost_at(front.back())[1]) front.push_back(i);
     return front;
 }
 
@@ -33,6 +35,12 @@ std::string file_name(std::string text) {
     return text.substr(0, 100);
 }
 
+/// Appends to a name until no figure has it.
+std::string unused_name(std::string name, std::span<const figure> figures) {
+    while (std::ranges::find(figures, name, &figure::name) != figures.end()) name += "-again";
+    return name;
+}
+
 /// The results of a method summed over several sets of pairs.
 struct pooled : error_point {
     double ns_of_sets = 0;  ///< sum of medians
@@ -41,6 +49,10 @@ struct pooled : error_point {
     [[nodiscard]] double error() const { return static_cast<double>(wrong()) / static_cast<double>(count); }
     [[nodiscard]] double ns() const { return ns_of_sets / static_cast<double>(sets); }
 };
+
+cost cost_of(const pooled& method) {
+    return {method.ns(), method.error()};
+}
 
 /// One entry per method, in order of appearance.
 std::vector<pooled> pooled_over(std::span<const error_point> points) {
@@ -77,10 +89,9 @@ std::vector<error_point> of_group(std::span<const error_point> points, pair_grou
 }
 
 /// "0", "1.2e-05", "0.31": a share of the pairs.
-std::string share_text(std::uint64_t wrong, std::uint64_t of) {
-    if (of == 0) return "-";
-    if (wrong == 0) return "0";
-    return fmt::format("{:.2g}", static_cast<double>(wrong) / static_cast<double>(of));
+std::string share_text(std::uint64_t wrong, std::uint64_t pairs) {
+    if (pairs == 0) return "-";
+    return wrong == 0 ? "0" : fmt::format("{:.2g}", static_cast<double>(wrong) / static_cast<double>(pairs));
 }
 
 std::string name_of(pair_group group) {
@@ -95,19 +106,21 @@ std::vector<std::string> sets_in(std::span<const error_point> points) {
     return names;
 }
 
-figure figure_of(const std::string& name, const std::string& what, std::span<const error_point> points) {
+/// Error over run time in some sets of pairs: one curve per method over its parameter, and the Pareto front.
+/// @param sets their description in the caption
+figure figure_of(const std::string& name, const std::string& sets, std::span<const error_point> points) {
     const std::vector<pooled> methods = pooled_over(points);
     figure f{
         .name = name,
         .caption = fmt::format("Share of wrong results over the time per pair, {}: each method over its parameter. A "
                                "method without errors is drawn on the line of one wrong result in N = {} pairs; "
                                "by the rule of three, its share is below 3/N with 95 % confidence.",
-                               what, grouped(methods.front().count)),
+                               sets, grouped(methods.front().count)),
         .x = {"time per pair (ns)", true},
         .y = {"share of wrong results", true}};
-    const double floor = 1 / static_cast<double>(methods.front().count);
+    const double least_share = 1 / static_cast<double>(methods.front().count);
     const auto point_of = [&](const pooled& m) {
-        const double share = std::max(floor, m.error());
+        const double share = std::max(least_share, m.error());
         return figure_point{m.ns(), share};
     };
     for (const pooled& m : methods) {
@@ -116,12 +129,11 @@ figure figure_of(const std::string& name, const std::string& what, std::span<con
         line->points.push_back(point_of(m));
     }
     series front{"Pareto front"};
-    std::vector<cost> costs;
-    for (const pooled& m : methods) costs.push_back({m.ns(), m.error()});
-    for (const std::size_t i : front_of(costs)) front.points.push_back(point_of(methods[i]));
+    for (const std::size_t i : front_of(methods, cost_of)) front.points.push_back(point_of(methods[i]));
     // Drawn first, below the curves.
     f.lines.insert(f.lines.begin(), front);
-    f.lines.push_back({"no errors (1/N to 3/N)", series_style::level, {{1, floor, floor, 3 * floor}}});
+    f.lines.push_back(
+        {"no errors (1/N to 3/N)", series_style::level, {{1, least_share, least_share, 3 * least_share}}});
     return f;
 }
 
@@ -132,22 +144,23 @@ struct place {
     double y;
 };
 
+/// A plot of two metrics of the compositions that ran in one scene.
 class plotted_scene {
 public:
     plotted_scene(const scene_summary& scene, const metric_plot& plot)
         : scene_(scene), x_(metric_named(plot.x)), y_(metric_named(plot.y)) {}
 
-    /// Empty if there is no trade-off.
+    /// A sentence about the compositions at both ends of the Pareto front; empty if there is no trade-off.
     [[nodiscard]] std::string statement_of(std::span<const error_curve> curves) const {
         std::vector<place> positions;
         for (const error_curve& curve : curves)
             for (const aabb::composition& c : curve.compositions)
-                if (std::optional<place> at = place_of(c)) {
+                if (std::optional<place> position = place_of(c)) {
                     // A curve with a single composition keeps its label in the config.
-                    if (curve.compositions.size() == 1) at->label = curve.label;
-                    positions.push_back(*std::move(at));
+                    if (curve.compositions.size() == 1) position->label = curve.label;
+                    positions.push_back(*std::move(position));
                 }
-        const std::vector<std::size_t> front = front_of(costs_of(positions));
+        const std::vector<std::size_t> front = front_of(positions);
         if (front.size() < 2 || !has_front()) return {};
         const place& first = positions[front.front()];
         const place& last = positions[front.back()];
@@ -156,8 +169,8 @@ public:
                            last.label, y_.name, value_text(y_, last.y), x_.name, value_text(x_, last.x));
     }
 
-    [[nodiscard]] figure figure_of(std::span<const error_curve> curves) const {
-        figure f{.name = "",
+    [[nodiscard]] figure figure_of(const std::string& name, std::span<const error_curve> curves) const {
+        figure f{.name = name,
                  .caption = fmt::format("{} over {} in {}: each method over its parameter.", y_.name, x_.name, title()),
                  .x = {label_of(x_), false},
                  .y = {label_of(y_), false}};
@@ -165,18 +178,18 @@ public:
         for (const error_curve& curve : curves) {
             series line{curve.label};
             for (const aabb::composition& c : curve.compositions)
-                if (const std::optional<place> at = place_of(c)) {
-                    line.points.push_back(point_of(*at));
-                    positions.push_back(*at);
+                if (const std::optional<place> position = place_of(c)) {
+                    line.points.push_back(point_of(*position));
+                    positions.push_back(*position);
                 }
             f.lines.push_back(std::move(line));
         }
         // A logarithmic axis cannot show zero.
-        f.x.logarithmic = std::ranges::all_of(positions, [](const place& at) { return at.x > 0; });
-        f.y.logarithmic = has_floor() || std::ranges::all_of(positions, [](const place& at) { return at.y > 0; });
+        f.x.logarithmic = std::ranges::all_of(positions, [](const place& p) { return p.x > 0; });
+        f.y.logarithmic = has_floor() || std::ranges::all_of(positions, [](const place& p) { return p.y > 0; });
         if (has_front()) {
             // Drawn first, below the curves.
-            f.lines.insert(f.lines.begin(), front(positions));
+            f.lines.insert(f.lines.begin(), front_line(positions));
             f.caption += " A line joins the Pareto front.";
         }
         if (has_floor()) {
@@ -222,21 +235,22 @@ private:
     }
     [[nodiscard]] double least_share() const { return 1 / static_cast<double>(exact_pairs()); }
 
-    [[nodiscard]] figure_point point_of(const place& at) const {
-        const double y = has_floor() ? std::max(at.y, least_share()) : at.y;
-        return {at.x, y};
+    [[nodiscard]] figure_point point_of(const place& p) const {
+        const double y = has_floor() ? std::max(p.y, least_share()) : p.y;
+        return {p.x, y};
     }
 
-    [[nodiscard]] std::vector<cost> costs_of(std::span<const place> positions) const {
-        const auto cost_of = [](const metric& m, double value) { return m.direction == better::more ? -value : value; };
-        std::vector<cost> costs;
-        for (const place& at : positions) costs.push_back({cost_of(x_, at.x), cost_of(y_, at.y)});
-        return costs;
+    [[nodiscard]] std::vector<std::size_t> front_of(const std::vector<place>& positions) const {
+        const auto signed_by = [](const metric& m, double value) {
+            return m.direction == better::more ? -value : value;
+        };
+        return aabblab::front_of(positions,
+                                 [&](const place& p) { return cost{signed_by(x_, p.x), signed_by(y_, p.y)}; });
     }
 
-    [[nodiscard]] series front(std::span<const place> positions) const {
+    [[nodiscard]] series front_line(const std::vector<place>& positions) const {
         series line{"Pareto front"};
-        for (const std::size_t i : front_of(costs_of(positions))) line.points.push_back(point_of(positions[i]));
+        for (const std::size_t i : front_of(positions)) line.points.push_back(point_of(positions[i]));
         return line;
     }
 
@@ -301,9 +315,7 @@ figure group_figure(std::span<const error_point> points, pair_group group) {
 
 std::string group_statement(std::span<const error_point> points, pair_group group) {
     const std::vector<pooled> methods = pooled_over(of_group(points, group));
-    std::vector<cost> costs;
-    for (const pooled& m : methods) costs.push_back({m.ns(), m.error()});
-    const std::vector<std::size_t> front = front_of(costs);
+    const std::vector<std::size_t> front = front_of(methods, cost_of);
     const auto wrong = [](const pooled& m) {
         return (m.wrong() == 0 ? "none" : grouped(m.wrong())) + " of " + grouped(m.count) + " pairs wrong";
     };
@@ -323,11 +335,10 @@ std::vector<figure> error_figures(std::span<const error_point> points) {
         figures.push_back(group_figure(points, group));
         const std::vector<error_point> subset = of_group(points, group);
         for (const std::string& set : sets_in(subset)) {
-            std::vector<error_point> own;
-            std::ranges::copy_if(subset, std::back_inserter(own), [&](const error_point& p) { return p.pairs == set; });
-            std::string name = "errors_" + name_of(group) + "_" + file_name(set);
-            while (std::ranges::find(figures, name, &figure::name) != figures.end()) name += "-again";
-            figures.push_back(figure_of(name, fmt::format("{}, {}", set, title_of(group)), own));
+            std::vector<error_point> of_set = subset;
+            std::erase_if(of_set, [&](const error_point& p) { return p.pairs != set; });
+            const std::string name = unused_name("errors_" + name_of(group) + "_" + file_name(set), figures);
+            figures.push_back(figure_of(name, fmt::format("{}, {}", set, title_of(group)), of_set));
         }
     }
     return figures;
@@ -338,10 +349,8 @@ std::vector<figure> metric_figures(const error_study& study, std::span<const sce
     for (const scene_summary& scene : scenes)
         for (const metric_plot& plot : study.plots) {
             const plotted_scene plotted(scene, plot);
-            figures.push_back(plotted.figure_of(study.curves));
-            std::string name = plot.y + "_over_" + plot.x + "_" + file_name(plotted.title());
-            while (std::ranges::find(figures, name, &figure::name) != figures.end()) name += "-again";
-            figures.back().name = name;
+            const std::string name = plot.y + "_over_" + plot.x + "_" + file_name(plotted.title());
+            figures.push_back(plotted.figure_of(unused_name(name, figures), study.curves));
         }
     return figures;
 }
