@@ -23,8 +23,7 @@ enum class span_of_time : unsigned char {
 struct atlas_line {
     std::string label;  ///< its strategies other than `none`: "bucket + columns + simd"
     bool automatic = false;
-    std::vector<double> frame_ms;
-    std::vector<double> whole_ms;
+    std::vector<double> frame_ms, whole_ms;
 
     [[nodiscard]] const std::vector<double>& times(span_of_time span) const {
         return span == span_of_time::frame ? frame_ms : whole_ms;
@@ -74,9 +73,7 @@ struct atlas_scene {
 /// The value of one parameter, all others equal, at which the fastest of one scene and of the next swap places. Lines
 /// that differ only in parameters, such as the skin of a Verlet list, count as one, represented by the fastest.
 struct border {
-    std::string before;
-    std::string after;
-    std::string parameter;
+    std::string before, after, parameter;
     std::string others;  ///< the other settings of the scene
     double at = 0;
     interval range{};  ///< 95 %, clamped to the two scenes
@@ -96,9 +93,7 @@ struct judged_ratio {
     support verdict = support::undecided;
 };
 struct judged_statement {
-    std::string id;
-    std::string source;
-    std::string says;
+    std::string id, source, says;
     verdict_kind verdict = verdict_kind::undecided;
     std::vector<judged_ratio> ratios;
 };

@@ -8,15 +8,11 @@ namespace aabblab {
 
 namespace {
 
-// The statements as published.
-
 using scene_filter = std::function<bool(const atlas_scene&)>;
 
 /// A ratio of times over a set of scenes.
 struct stated_ratio {
-    std::string where;
-    std::string arm;
-    std::string base;
+    std::string where, arm, base;
     scene_filter scenes;
     expectation expected = expectation::less;
     double band = equivalence_band;
@@ -25,9 +21,7 @@ struct stated_ratio {
 };
 
 struct statement {
-    std::string id;
-    std::string source;
-    std::string says;
+    std::string id, source, says;
     std::vector<stated_ratio> ratios;
 };
 
@@ -219,8 +213,6 @@ const std::vector<statement>& statements() {
          by_count(uniform_grid, columns, {1000, 10000, 30000})}};
     return published;
 }
-
-// The measured ratios.
 
 struct measured_ratio {
     std::size_t scenes = 0;

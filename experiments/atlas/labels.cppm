@@ -44,8 +44,7 @@ inline constexpr span_of_time per_frame = span_of_time::frame;
                                            span_of_time span) {
     const estimate own = log_ratio(arm, base, span);
     if (own.error > 0) return own;
-    double squares = 0;
-    double degrees = 0;
+    double squares = 0, degrees = 0;
     for (const atlas_line& line : scene.lines) {
         const std::vector<double>& times = line.times(span);
         const auto count = static_cast<double>(times.size());

@@ -10,8 +10,7 @@ namespace aabblab {
 namespace {
 
 struct section {
-    std::string title;
-    std::string text;
+    std::string title, text;
     std::string file;  ///< stem of the CSV file
     table content;
     bool shown = true;  ///< in the page; otherwise only in its file

@@ -101,14 +101,8 @@ table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time span) {
         entry.median = quartiles_of(entry.regrets).median;
     }
     std::ranges::stable_sort(standings, {}, &standing::median);
-    table t{{{row_number},
-             {"used everywhere", false},
-             {"scenes"},
-             {"median"},
-             {"90th percentile"},
-             {"worst"},
-             {"over 1.3"}},
-            {}};
+    table t = empty_table({"used everywhere"}, {"scenes", "median", "90th percentile", "worst", "over 1.3"});
+    t.columns.insert(t.columns.begin(), {row_number});
     for (const standing& entry : standings) {
         const auto above = std::ranges::count_if(entry.regrets, [](double r) { return r > 1.3; });
         t.rows.push_back({std::to_string(t.rows.size() + 1), entry.label, grouped(entry.regrets.size()),

@@ -33,8 +33,7 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
     };
     // Warm-up: starts the threads. TBB determines the available processors on its first use.
     build(by_two);
-    std::vector<double> two_threads;
-    std::vector<double> two_builds;
+    std::vector<double> two_threads, two_builds;
     for (auto _ : state) {
         double total = 0;
         for (int turn = 0; turn < turns; ++turn) {

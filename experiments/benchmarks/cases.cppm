@@ -55,7 +55,7 @@ template <aabb::Strategy S>
 }
 
 template <aabb::Strategy S>
-[[nodiscard]] S made(const aabb::strategy_choice& choice) {
+[[nodiscard]] S make_configured(const aabb::strategy_choice& choice) {
     return aabb::make_strategy<S>(aabb::configured<S>(choice.settings));
 }
 

@@ -19,8 +19,6 @@ auto* add_case(std::string_view stage, const aabb::strategy_choice& choice, std:
         ->Unit(benchmark::kMicrosecond);
 }
 
-// Sorts.
-
 using list_of_frame = std::vector<aabb::projection>;
 
 /// The lists of one axis, one per frame: the keys of the frame in the order of the previous frame. With fewer frames,
@@ -49,6 +47,7 @@ const std::vector<list_of_frame>& lists_of(std::uint32_t objects, std::string_vi
     return lists;
 }
 
+/// Counts the work of a sort in a separate pass, so that counting does not slow down the timed one.
 template <class Sort>
 void count_work(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
     aabb::work_counters counted;
@@ -60,7 +59,7 @@ void count_work(benchmark::State& state, Sort sort, std::span<const list_of_fram
         sort.sort(std::span(sorted), counted);
     }
     const auto elements = static_cast<double>(lists.size() * lists.front().size());
-    const auto per_element = [&](aabb::work what) { return static_cast<double>(counted[what]) / elements; };
+    const auto per_element = [&](aabb::work kind) { return static_cast<double>(counted[kind]) / elements; };
     state.counters["inversions/n"] = per_element(aabb::work::inversions);
     state.counters["comparisons/n"] = per_element(aabb::work::comparisons);
     // Library sorts do not count moves.
@@ -83,8 +82,6 @@ void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame
                                1000);
     }
 }
-
-// Partitions.
 
 constexpr aabb::axis_set swept = 0b001;
 
@@ -130,9 +127,7 @@ void time_column_search(benchmark::State& state, Partition partition, std::uint3
     state.counters["bytes"] = static_cast<double>(search.partition_bytes());
 }
 
-// Sweeps.
-
-void report(benchmark::State& state, const aabb::work_counters& counted, std::size_t pairs, double objects) {
+void report_work(benchmark::State& state, const aabb::work_counters& counted, std::size_t pairs, double objects) {
     state.counters["box_tests/n"] = static_cast<double>(counted[aabb::work::box_tests]) / objects;
     state.counters["pairs/n"] = static_cast<double>(pairs) / objects;
 }
@@ -142,11 +137,11 @@ template <aabb::ListSweep Sweep>
     return sweep.axes(frame.boxes(), frame.objects());
 }
 
-/// Whether a sweep uses a single list. A sweep of several lists may visit every pair that overlaps on any axis, and
+/// True if a sweep uses a single list. A sweep of several lists may visit every pair that overlaps on any axis, and
 /// all_axes does so for each block of its bits, which takes too long for a micro-benchmark of the largest scene.
 template <aabb::ListSweep Sweep>
-[[nodiscard]] bool takes_one_list(const aabb::strategy_choice& choice) {
-    Sweep sweep = made<Sweep>(choice);
+[[nodiscard]] bool uses_one_list(const aabb::strategy_choice& choice) {
+    Sweep sweep = make_configured<Sweep>(choice);
     return std::popcount(swept_axes(sweep, sorted_frame(sizes.front()))) == 1;
 }
 
@@ -157,7 +152,7 @@ void time_sweep(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
     sweep.sweep(whole, pairs, counted);  // also grows the buffers
-    report(state, counted, pairs.size(), objects);
+    report_work(state, counted, pairs.size(), objects);
     aabb::no_counters none;
     for (auto _ : state) {
         pairs.clear();
@@ -181,7 +176,7 @@ void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
     sweep.sweep(columns.block(), pairs, no_limit, counted);
-    report(state, counted, pairs.size(), objects);
+    report_work(state, counted, pairs.size(), objects);
     for (auto _ : state) {
         pairs.clear();
         benchmark::DoNotOptimize(sweep.sweep(columns.block(), pairs, no_limit, none));
@@ -189,6 +184,7 @@ void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     }
 }
 
+/// The first of the sorts that the sweep does not reject.
 template <aabb::CoherentSweep Sweep, class Sort, class... Sorts>
 [[nodiscard]] auto sort_for(aabb::type_list<Sort, Sorts...>) {
     if constexpr (aabb::rejection<Sort, Sweep>().empty())
@@ -227,6 +223,7 @@ private:
     std::size_t step_ = 0;
 };
 
+/// Times the frames of a scene in motion, for sweeps that keep their pairs from frame to frame.
 template <aabb::CoherentSweep Sweep>
 void time_steps(benchmark::State& state, Sweep sweep, std::uint32_t objects, std::string_view displacement) {
     constexpr std::uint32_t last_frame = 16;
@@ -237,7 +234,7 @@ void time_steps(benchmark::State& state, Sweep sweep, std::uint32_t objects, std
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
     for (std::size_t i = 0; i < moving.period(); ++i) moving.step(pairs, counted);  // also grows the buffers
-    report(state, counted, pairs.size(), static_cast<double>(objects * moving.period()));
+    report_work(state, counted, pairs.size(), static_cast<double>(objects * moving.period()));
     aabb::no_counters none;
     for (auto _ : state) {
         pairs.clear();
@@ -248,23 +245,24 @@ void time_steps(benchmark::State& state, Sweep sweep, std::uint32_t objects, std
 }
 
 template <aabb::ListSweep Sweep>
-void add(const aabb::strategy_choice& choice) {
-    const std::size_t cases = takes_one_list<Sweep>(choice) ? sizes.size() : sizes.size() - 1;
+void add_sweep(const aabb::strategy_choice& choice) {
+    const std::size_t cases = uses_one_list<Sweep>(choice) ? sizes.size() : sizes.size() - 1;
     for (const std::uint32_t objects : std::span(sizes).first(cases))
         add_case("sweep", choice, objects, {},
-                 [=](benchmark::State& state) { time_sweep(state, made<Sweep>(choice), objects); });
+                 [=](benchmark::State& state) { time_sweep(state, make_configured<Sweep>(choice), objects); });
     if constexpr (aabb::ColumnSweep<Sweep>)
         for (const std::uint32_t objects : sizes)
             add_case("sweep_columns", choice, objects, {},
-                     [=](benchmark::State& state) { time_columns(state, made<Sweep>(choice), objects); });
+                     [=](benchmark::State& state) { time_columns(state, make_configured<Sweep>(choice), objects); });
 }
 
 template <aabb::CoherentSweep Sweep>
-void add(const aabb::strategy_choice& choice) {
+void add_sweep(const aabb::strategy_choice& choice) {
     for (const std::uint32_t objects : std::span(sizes).first(sizes.size() - 1))
         for (const std::string_view displacement : displacements)
-            add_case("sweep", choice, objects, displacement,
-                     [=](benchmark::State& state) { time_steps(state, made<Sweep>(choice), objects, displacement); });
+            add_case("sweep", choice, objects, displacement, [=](benchmark::State& state) {
+                time_steps(state, make_configured<Sweep>(choice), objects, displacement);
+            });
 }
 
 }  // namespace
@@ -276,8 +274,8 @@ void add_sort_benchmarks() {
                 for (const std::string_view displacement : displacements)
                     add_case("sort", choice, objects, displacement, [=](benchmark::State& state) {
                         const auto& lists = lists_of(objects, displacement);
-                        time_sort(state, made<Sort>(choice), lists);
-                        count_work(state, made<Sort>(choice), lists);
+                        time_sort(state, make_configured<Sort>(choice), lists);
+                        count_work(state, make_configured<Sort>(choice), lists);
                     })->UseManualTime();
     });
 }
@@ -288,18 +286,19 @@ void add_partition_benchmarks() {
             for (const std::uint32_t objects : sizes) {
                 if constexpr (aabb::ColumnPartition<Partition>)
                     add_case("partition", choice, objects, {}, [=](benchmark::State& state) {
-                        time_column_search(state, made<Partition>(choice), objects);
+                        time_column_search(state, make_configured<Partition>(choice), objects);
                     });
                 if constexpr (aabb::CuttingPartition<Partition>)
-                    add_case("partition", choice, objects, {},
-                             [=](benchmark::State& state) { time_partition(state, made<Partition>(choice), objects); });
+                    add_case("partition", choice, objects, {}, [=](benchmark::State& state) {
+                        time_partition(state, make_configured<Partition>(choice), objects);
+                    });
             }
     });
 }
 
 void add_sweep_benchmarks() {
     for_each_strategy(aabb::sweeps{}, []<class Sweep>(aabb::type_list<Sweep>) {
-        for (const aabb::strategy_choice& choice : choices_of<Sweep>()) add<Sweep>(choice);
+        for (const aabb::strategy_choice& choice : choices_of<Sweep>()) add_sweep<Sweep>(choice);
     });
 }
 

@@ -44,7 +44,7 @@ class walked_pairs {
 public:
     /// @throws std::logic_error if local_detection no longer tests these pairs
     walked_pairs() {
-        walk();
+        traverse();
         aabb::local_detection<walked_tree, aabb::exact_triangle, aabb::work_counters> detection;
         static_cast<void>(detection.count_pairs(a_, poses_[0], b_, poses_[1]));
         if (detection.counters()[aabb::work::box_tests] != box_tests_ ||
@@ -78,30 +78,31 @@ private:
         return poses;
     }
 
-    void walk() {
+    void traverse() {
         test({a_.root(), b_.root(), to_a_(b_.bounds())});
         while (!open_.empty()) {
-            const node_pair at = open_.back();
+            const node_pair nodes = open_.back();
             open_.pop_back();
-            const bool a_is_leaf = a_.tree().is_leaf(at.a);
-            const bool b_is_leaf = b_.tree().is_leaf(at.b);
+            const bool a_is_leaf = a_.tree().is_leaf(nodes.a);
+            const bool b_is_leaf = b_.tree().is_leaf(nodes.b);
             if (a_is_leaf && b_is_leaf)
-                meet(a_.tree().triangle(at.a), b_.tree().triangle(at.b));
-            else if (b_is_leaf || (!a_is_leaf && length(a_.tree().bounds(at.a)) >= length(at.b_bounds)))
-                for (const cursor child : a_.tree().children(at.a, a_.triangles())) reach_a({child, at.b, at.b_bounds});
+                record_triangles(a_.tree().triangle(nodes.a), b_.tree().triangle(nodes.b));
+            else if (b_is_leaf || (!a_is_leaf && length(a_.tree().bounds(nodes.a)) >= length(nodes.b_bounds)))
+                for (const cursor child : a_.tree().children(nodes.a, a_.triangles()))
+                    reach_child_of_a({child, nodes.b, nodes.b_bounds});
             else
-                for (const cursor child : b_.tree().children(at.b, b_.triangles()))
-                    reach_b({at.a, child, to_a_(b_.tree().bounds(child))});
+                for (const cursor child : b_.tree().children(nodes.b, b_.triangles()))
+                    reach_child_of_b({nodes.a, child, to_a_(b_.tree().bounds(child))});
         }
     }
 
-    void reach_a(const node_pair& next) {
+    void reach_child_of_a(const node_pair& next) {
         if (a_.tree().is_leaf(next.a))
             leaves_of_a_.push_back({next.a, next.b, a_.tree().triangle(next.a), next.b_bounds});
         test(next);
     }
 
-    void reach_b(const node_pair& next) {
+    void reach_child_of_b(const node_pair& next) {
         if (b_.tree().is_leaf(next.b))
             leaves_of_b_.push_back({next.a, next.b, b_.tree().triangle(next.b), a_.tree().bounds(next.a)});
         test(next);
@@ -112,7 +113,9 @@ private:
         if (overlaps(a_.tree().bounds(next.a), next.b_bounds)) open_.push_back(next);
     }
 
-    void meet(std::uint32_t a, std::uint32_t b) { triangles_.push_back({a, b, to_a_(b_.triangles().triangle(b))}); }
+    void record_triangles(std::uint32_t a, std::uint32_t b) {
+        triangles_.push_back({a, b, to_a_(b_.triangles().triangle(b))});
+    }
 
     /// The traversal opens the node with the longer box.
     [[nodiscard]] static float length(const aabb::box& b) noexcept {
@@ -130,8 +133,7 @@ private:
     aabb::relative_pose to_a_{poses_[0], poses_[1], b_.bounds()};
     rotated_boxes rotated_{poses_[0], poses_[1], b_.bounds()};
     std::vector<node_pair> open_;
-    std::vector<reached_leaf> leaves_of_a_;
-    std::vector<reached_leaf> leaves_of_b_;
+    std::vector<reached_leaf> leaves_of_a_, leaves_of_b_;
     std::vector<leaf_pair> triangles_;
     std::size_t box_tests_ = 0;
 };
@@ -141,8 +143,6 @@ const walked_pairs& walked() {
     static const walked_pairs pairs;
     return pairs;
 }
-
-// Timing.
 
 /// Repeats the pairs in different random orders, 65,536 in total. In a fixed order, the branch predictor memorises the
 /// outcomes of 5,000 tests, and then a box test takes a third of its time.
@@ -165,8 +165,7 @@ std::vector<Pair> in_random_order(std::vector<Pair> pairs) {
 /// out-of-line function
 template <class Pair, class Test>
 void time_tests(benchmark::State& state, const std::vector<Pair>& pairs, const Test& test) {
-    std::size_t hits = 0;
-    std::size_t next = 0;
+    std::size_t hits = 0, next = 0;
     for (auto _ : state) {
         if (test(pairs[next])) benchmark::DoNotOptimize(++hits);
         if (++next == pairs.size()) next = 0;
@@ -179,24 +178,24 @@ void time_tests(benchmark::State& state, const std::vector<Pair>& pairs, const T
 /// AABB of its image, and the corners of the triangle are transformed.
 struct leaf_of_b {
     static constexpr std::string_view suffix;
-    const walked_pairs& at;
+    const walked_pairs& walk;
 
-    [[nodiscard]] const std::vector<reached_leaf>& pairs() const { return at.leaves_of_b(); }
-    [[nodiscard]] aabb::box box(const reached_leaf& p) const { return at.to_a()(at.b().tree().bounds(p.b)); }
+    [[nodiscard]] const std::vector<reached_leaf>& pairs() const { return walk.leaves_of_b(); }
+    [[nodiscard]] aabb::box box(const reached_leaf& p) const { return walk.to_a()(walk.b().tree().bounds(p.b)); }
     [[nodiscard]] aabb::triangle3f triangle(const reached_leaf& p) const {
-        return at.to_a()(at.b().triangles().triangle(p.triangle));
+        return walk.to_a()(walk.b().triangles().triangle(p.triangle));
     }
 };
 
 /// The operand is a leaf of A. Its box or triangle is read, and needs no transform.
 struct leaf_of_a {
     static constexpr std::string_view suffix = "/frame:a";
-    const walked_pairs& at;
+    const walked_pairs& walk;
 
-    [[nodiscard]] const std::vector<reached_leaf>& pairs() const { return at.leaves_of_a(); }
-    [[nodiscard]] const aabb::box& box(const reached_leaf& p) const { return at.a().tree().bounds(p.a); }
+    [[nodiscard]] const std::vector<reached_leaf>& pairs() const { return walk.leaves_of_a(); }
+    [[nodiscard]] const aabb::box& box(const reached_leaf& p) const { return walk.a().tree().bounds(p.a); }
     [[nodiscard]] aabb::triangle3f triangle(const reached_leaf& p) const {
-        return at.a().triangles().triangle(p.triangle);
+        return walk.a().triangles().triangle(p.triangle);
     }
 };
 
@@ -253,8 +252,9 @@ struct rotated_box_6_test {
     Leaf leaf;
 
     [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
-        const walked_pairs& at = leaf.at;
-        return at.rotated().meet_by_faces(at.rotated().pair_of(at.a().tree().bounds(p.a), at.b().tree().bounds(p.b)));
+        const walked_pairs& walk = leaf.walk;
+        return walk.rotated().meet_by_faces(
+            walk.rotated().pair_of(walk.a().tree().bounds(p.a), walk.b().tree().bounds(p.b)));
     }
 };
 
@@ -265,9 +265,9 @@ struct rotated_box_15_test {
     Leaf leaf;
 
     [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
-        const walked_pairs& at = leaf.at;
-        const box_pair boxes = at.rotated().pair_of(at.a().tree().bounds(p.a), at.b().tree().bounds(p.b));
-        return at.rotated().meet_by_faces(boxes) && at.rotated().meet_by_edges(boxes);
+        const walked_pairs& walk = leaf.walk;
+        const box_pair boxes = walk.rotated().pair_of(walk.a().tree().bounds(p.a), walk.b().tree().bounds(p.b));
+        return walk.rotated().meet_by_faces(boxes) && walk.rotated().meet_by_edges(boxes);
     }
 };
 
@@ -275,21 +275,22 @@ struct rotated_box_15_test {
     std::vector<std::uint32_t> triangles;
     std::vector<walked_tree::cursor> open{node};
     while (!open.empty()) {
-        const walked_tree::cursor at = open.back();
+        const walked_tree::cursor node = open.back();
         open.pop_back();
-        if (m.tree().is_leaf(at))
-            triangles.push_back(m.tree().triangle(at));
+        if (m.tree().is_leaf(node))
+            triangles.push_back(m.tree().triangle(node));
         else
-            for (const walked_tree::cursor child : m.tree().children(at, m.triangles())) open.push_back(child);
+            for (const walked_tree::cursor child : m.tree().children(node, m.triangles())) open.push_back(child);
     }
     return triangles;
 }
 
-[[nodiscard]] bool any_intersect(const walked_pairs& at, const reached_leaf& p) {
-    for (const std::uint32_t of_b : triangles_below(at.b(), p.b)) {
-        const aabb::triangle3f image = at.to_a()(at.b().triangles().triangle(of_b));
-        for (const std::uint32_t of_a : triangles_below(at.a(), p.a))
-            if (aabb::exact_triangle::intersects(at.a().triangles().triangle(of_a), image)) return true;
+/// True if any two triangles below the pair of nodes intersect.
+[[nodiscard]] bool any_intersect(const walked_pairs& walk, const reached_leaf& p) {
+    for (const std::uint32_t of_b : triangles_below(walk.b(), p.b)) {
+        const aabb::triangle3f image = walk.to_a()(walk.b().triangles().triangle(of_b));
+        for (const std::uint32_t of_a : triangles_below(walk.a(), p.a))
+            if (aabb::exact_triangle::intersects(walk.a().triangles().triangle(of_a), image)) return true;
     }
     return false;
 }
@@ -298,9 +299,10 @@ struct rotated_box_15_test {
 template <class Test>
 [[nodiscard]] std::size_t false_negatives_of(const Test& test) {
     return static_cast<std::size_t>(std::ranges::count_if(
-        test.leaf.pairs(), [&](const reached_leaf& p) { return !test(p) && any_intersect(test.leaf.at, p); }));
+        test.leaf.pairs(), [&](const reached_leaf& p) { return !test(p) && any_intersect(test.leaf.walk, p); }));
 }
 
+/// True if a test may have false negatives, because it says `exact = false`.
 template <class Test>
 constexpr bool may_miss = requires { requires !Test::exact; };
 
@@ -340,10 +342,10 @@ void add_all() {
 template <class Triangle>
 struct transformed_test {
     Triangle triangle;
-    const walked_pairs& at;
+    const walked_pairs& walk;
 
     [[nodiscard, gnu::always_inline]] bool operator()(const leaf_pair& p) const {
-        return triangle.intersects(at.a().triangles().triangle(p.a), at.to_a()(at.b().triangles().triangle(p.b)));
+        return triangle.intersects(walk.a().triangles().triangle(p.a), walk.to_a()(walk.b().triangles().triangle(p.b)));
     }
 };
 
@@ -351,10 +353,10 @@ struct transformed_test {
 template <class Triangle>
 struct cached_test {
     Triangle triangle;
-    const walked_pairs& at;
+    const walked_pairs& walk;
 
     [[nodiscard, gnu::always_inline]] bool operator()(const leaf_pair& p) const {
-        return triangle.intersects(at.a().triangles().triangle(p.a), p.b_image);
+        return triangle.intersects(walk.a().triangles().triangle(p.a), p.b_image);
     }
 };
 
@@ -362,7 +364,7 @@ template <class Test>
 void add(const std::string& name, const aabb::strategy_choice& choice) {
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
         static const std::vector<leaf_pair> pairs = in_random_order(walked().triangles());
-        time_tests(state, pairs, Test{made<decltype(Test::triangle)>(choice), walked()});
+        time_tests(state, pairs, Test{make_configured<decltype(Test::triangle)>(choice), walked()});
     });
 }
 

@@ -99,8 +99,7 @@ private:
     }
 
     alternating_tests<error_point> methods_;
-    std::vector<std::uint8_t> truth_;
-    std::vector<std::uint8_t> results_;
+    std::vector<std::uint8_t> truth_, results_;
 };
 
 template <class Real>
@@ -227,8 +226,7 @@ std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint6
     hit_run run(set);
     pair_source<Real> source(set.pair_class, set.seed);
     std::vector<aabb::triangle_pair<double>> batch;
-    std::uint64_t tried = 0;
-    std::uint64_t hits = 0;
+    std::uint64_t tried = 0, hits = 0;
     const auto flush = [&] {
         run.run_batch(batch);
         batch.clear();

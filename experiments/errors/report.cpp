@@ -140,8 +140,7 @@ figure figure_of(const std::string& name, const std::string& sets, std::span<con
 /// The position of a composition in a plot.
 struct place {
     std::string label;
-    double x;
-    double y;
+    double x, y;
 };
 
 /// A plot of two metrics of the compositions that ran in one scene.
@@ -214,12 +213,8 @@ private:
         const candidate_name name = candidate_of(c, has_meshes(scene_.scene)).name;
         const auto line = std::ranges::find(scene_.lines, name, &summary_line::name);
         if (line == scene_.lines.end()) return std::nullopt;
-        const auto value_of = [&](const metric& m) {
-            const auto ms = metrics();
-            return line->metrics[static_cast<std::size_t>(std::ranges::find(ms, m.name, &metric::name) - ms.begin())];
-        };
-        const std::optional<double> x = value_of(x_);
-        const std::optional<double> y = value_of(y_);
+        const std::optional<double>& x = line->metrics[static_cast<std::size_t>(&x_ - metrics().data())];
+        const std::optional<double>& y = line->metrics[static_cast<std::size_t>(&y_ - metrics().data())];
         return x && y ? std::optional(place{line->label, *x, *y}) : std::nullopt;
     }
 

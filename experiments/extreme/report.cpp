@@ -14,7 +14,7 @@ using row_list = std::vector<const extreme_row*>;
 
 /// Groups rows by a text, in order of first appearance.
 template <class Text>
-std::vector<std::pair<std::string, row_list>> by(std::span<const extreme_row> rows, Text text) {
+std::vector<std::pair<std::string, row_list>> grouped_by(std::span<const extreme_row> rows, Text text) {
     std::vector<std::pair<std::string, row_list>> groups;
     for (const extreme_row& row : rows) {
         auto group = std::ranges::find(groups, std::invoke(text, row), &std::pair<std::string, row_list>::first);
@@ -26,7 +26,7 @@ std::vector<std::pair<std::string, row_list>> by(std::span<const extreme_row> ro
 
 /// The rows in which the member has this value.
 template <class Value>
-row_list with(const row_list& rows, Value extreme_row::* member, const Value& value) {
+row_list rows_with(const row_list& rows, Value extreme_row::* member, const Value& value) {
     row_list selected = rows;
     std::erase_if(selected, [&](const extreme_row* row) { return row->*member != value; });
     return selected;
@@ -35,7 +35,7 @@ row_list with(const row_list& rows, Value extreme_row::* member, const Value& va
 /// The distinct names with this role.
 std::vector<std::string> candidates_in(std::span<const extreme_row> rows, candidate_role role) {
     std::vector<std::string> names;
-    for (const auto& [name, of_candidate] : by(rows, &extreme_row::candidate))
+    for (const auto& [name, of_candidate] : grouped_by(rows, &extreme_row::candidate))
         if (of_candidate.front()->role == role) names.push_back(name);
     return names;
 }
@@ -50,8 +50,7 @@ std::string counts(std::uint64_t false_negatives, std::uint64_t false_positives)
 /// Sums up candidates that must be exact: "312 exact", "312 rejected", or "3 WRONG".
 std::string sum_cell(const row_list& rows) {
     if (rows.empty()) return "-";
-    std::set<std::string> candidates;
-    std::set<std::string> failed;
+    std::set<std::string> candidates, failed;
     bool rejected = true;
     for (const extreme_row* row : rows) {
         candidates.insert(row->candidate);
@@ -64,12 +63,10 @@ std::string sum_cell(const row_list& rows) {
 
 /// The cell of one candidate: "exact", "rejected", "WRONG", or its counts of errors if it may be inexact; "-" if it was
 /// not run.
-std::string cell(const row_list& rows) {
+std::string cell_of(const row_list& rows) {
     if (rows.empty()) return "-";
-    std::uint64_t false_negatives = 0;
-    std::uint64_t false_positives = 0;
-    bool rejected = false;
-    bool wrong = false;
+    std::uint64_t false_negatives = 0, false_positives = 0;
+    bool rejected = false, wrong = false;
     for (const extreme_row* row : rows) {
         if (!row->as_expected) return "WRONG";
         false_negatives += row->result.false_negatives;
@@ -81,16 +78,17 @@ std::string cell(const row_list& rows) {
     return rejected ? "rejected" : wrong ? "wrong" : "exact";
 }
 
-/// One row per text: the first columns summarise its rows, then there is one column per name.
-template <class First>
+/// One row per scene or class: the first columns summarise its rows, then there is one column per candidate.
+/// @param text the scene or the class of a row
+template <class Summary>
 table candidate_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* text,
-                      const std::vector<std::string>& names, First first) {
+                      const std::vector<std::string>& names, Summary summary_cells) {
     table t{std::move(columns), {}};
     for (const std::string& name : names) t.columns.push_back({name});
-    for (const auto& [value, same] : by(rows, text)) {
+    for (const auto& [value, group] : grouped_by(rows, text)) {
         std::vector<std::string>& cells = t.rows.emplace_back(1, value);
-        std::ranges::move(first(same), std::back_inserter(cells));
-        for (const std::string& name : names) cells.push_back(cell(with(same, &extreme_row::candidate, name)));
+        std::ranges::move(summary_cells(group), std::back_inserter(cells));
+        for (const std::string& name : names) cells.push_back(cell_of(rows_with(group, &extreme_row::candidate, name)));
     }
     return t;
 }
@@ -102,7 +100,7 @@ std::vector<extreme_row> filtered(std::span<const extreme_row> rows, Wanted want
     return selected;
 }
 
-/// Omits rows without errors.
+/// The errors of triangle tests; scenes or classes without errors are omitted.
 table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* text) {
     std::set<std::string> wrong;
     for (const extreme_row& row : rows)
@@ -114,7 +112,6 @@ table wrong_table(const std::string& title, std::span<const extreme_row> rows, s
 
 constexpr std::array<std::string_view, 3> group_names = {"boxes", "meshes", "cases"};
 constexpr std::array<std::string_view, 3> role_names = {"composition", "engine", "triangle_test"};
-
 constexpr std::array<std::string_view, 2> yes_no = {"no", "yes"};
 
 constexpr auto columns_of_row = [](auto& r, auto field) {
@@ -143,12 +140,12 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
 
 table case_table(std::span<const extreme_row> rows) {
     const auto shown = filtered(rows, [](const extreme_row& row) { return row.group == row_group::cases; });
-    const auto sums_of = [](const row_list& same) {
+    const auto sums_of = [](const row_list& group) {
         std::set<std::string> cases;
-        for (const extreme_row* row : same) cases.insert(row->scene);
-        const row_list tests = with(same, &extreme_row::role, candidate_role::triangle_test);
-        return std::vector{std::to_string(cases.size()), sum_cell(with(tests, &extreme_row::must_be_exact, true)),
-                           sum_cell(with(same, &extreme_row::role, candidate_role::composition))};
+        for (const extreme_row* row : group) cases.insert(row->scene);
+        const row_list tests = rows_with(group, &extreme_row::role, candidate_role::triangle_test);
+        return std::vector{std::to_string(cases.size()), sum_cell(rows_with(tests, &extreme_row::must_be_exact, true)),
+                           sum_cell(rows_with(group, &extreme_row::role, candidate_role::composition))};
     };
     return candidate_table({{"class", false}, {"cases"}, {"exact tests"}, {"compositions"}}, shown, &extreme_row::kind,
                            candidates_in(shown, candidate_role::engine), sums_of);
@@ -168,8 +165,8 @@ table scene_table(std::span<const extreme_row> rows, row_group group) {
         rows, [&](const extreme_row& row) { return row.group == group && row.role != candidate_role::triangle_test; });
     return candidate_table(
         {{"scene", false}, {"compositions"}}, shown, &extreme_row::scene, candidates_in(shown, candidate_role::engine),
-        [](const row_list& same) {
-            return std::vector{sum_cell(with(same, &extreme_row::role, candidate_role::composition))};
+        [](const row_list& group) {
+            return std::vector{sum_cell(rows_with(group, &extreme_row::role, candidate_role::composition))};
         });
 }
 
@@ -185,7 +182,7 @@ table class_table(std::span<const extreme_row> rows) {
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
     const auto shown =
         filtered(rows, [](const extreme_row& row) { return row.group == row_group::meshes && !row.must_be_exact; });
-    for (const auto& [name, of_candidate] : by(shown, &extreme_row::candidate)) {
+    for (const auto& [name, of_candidate] : grouped_by(shown, &extreme_row::candidate)) {
         aabb::differences sum;
         for (const extreme_row* row : of_candidate) sum += row->result.classes;
         std::vector<std::string> cells{name};
@@ -200,7 +197,7 @@ std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto limited = filtered(
         rows, [](const extreme_row& row) { return row.stated_bytes > 0 && row.role == candidate_role::composition; });
-    for (const auto& [scene, of_scene] : by(limited, &extreme_row::scene)) {
+    for (const auto& [scene, of_scene] : grouped_by(limited, &extreme_row::scene)) {
         std::size_t most = 0;
         for (const extreme_row* row : of_scene) most = std::max(most, row->result.bytes);
         sentences.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions hold at most " + grouped(most) +
@@ -222,9 +219,10 @@ std::vector<std::string> rejections_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto rejected =
         filtered(rows, [](const extreme_row& row) { return row.result.outcome == aabb::verdict::rejected; });
-    for (const auto& [sentence, same] : by(rejected, [](const extreme_row& row) { return row.result.reason; })) {
+    for (const auto& [sentence, group] :
+         grouped_by(rejected, [](const extreme_row& row) { return row.result.reason; })) {
         std::vector<std::string> scenes;
-        for (const extreme_row* row : same)
+        for (const extreme_row* row : group)
             if (std::ranges::find(scenes, row->scene) == scenes.end()) scenes.push_back(row->scene);
         sentences.push_back(fmt::format("{}: {}", fmt::join(scenes, ", "), sentence));
     }

@@ -17,19 +17,15 @@ std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, c
     for (const aabb::parameter_info& parameter : info->parameters) {
         const auto* const named = std::get_if<aabb::name_values>(&parameter.values);
         if (!named) continue;
-        std::vector<aabb::strategy_choice> more;
-        for (const std::string& value : named->names) {
-            if (value == parameter.fallback) continue;
-            for (aabb::strategy_choice choice : choices) {
-                choice.settings.push_back({parameter.name, value});
-                more.push_back(std::move(choice));
-            }
-        }
-        choices.insert(choices.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
+        const std::size_t count = choices.size();
+        for (const std::string& value : named->names)
+            for (std::size_t i = 0; i < count && value != parameter.fallback; ++i)
+                choices.emplace_back(choices[i]).settings.push_back({parameter.name, value});
     }
     return choices;
 }
 
+/// The composition with each combination of its strategies' named values.
 std::vector<aabb::composition> with_named_values(const aabb::composition& c, aabb::stage stage) {
     std::vector<aabb::composition> compositions{c};
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -45,13 +41,10 @@ std::vector<aabb::composition> with_named_values(const aabb::composition& c, aab
 
 /// The valid, exact compositions of a stage, on request with every combination of named parameter values.
 std::vector<aabb::composition> exact_compositions(aabb::stage stage, bool named_values) {
-    std::vector<aabb::composition> compositions = aabb::every_composition(stage);
-    if (named_values) {
-        std::vector<aabb::composition> more;
-        for (const aabb::composition& c : compositions)
-            std::ranges::move(with_named_values(c, stage), std::back_inserter(more));
-        compositions = std::move(more);
-    }
+    std::vector<aabb::composition> compositions;
+    for (const aabb::composition& c : aabb::every_composition(stage))
+        std::ranges::move(named_values ? with_named_values(c, stage) : std::vector{c},
+                          std::back_inserter(compositions));
     // Broad phases run on scenes of boxes here, so those that need meshes are excluded.
     std::erase_if(compositions, [&](const aabb::composition& c) {
         return !is_exact(c, stage) || !rejection_of(c, stage).empty() || !needs_meshes(c).empty();
@@ -77,7 +70,7 @@ struct named_test {
 };
 
 /// Strategies with each combination of named values of their parameters, then tests of libraries.
-std::vector<named_test> all_triangle_tests() {
+std::vector<named_test> named_triangle_tests() {
     std::vector<named_test> tests;
     for (const aabb::strategy_info& info : aabb::strategies(aabb::strategy_kind::triangle))
         for (const aabb::strategy_choice& choice : with_named_values(aabb::strategy_kind::triangle, info.name)) {
@@ -91,12 +84,12 @@ std::vector<named_test> all_triangle_tests() {
     return tests;
 }
 
-extreme_row row_of(const aabb::triangle_case& of, const std::string& name, candidate_role role, bool must_be_exact) {
-    return {row_group::cases, of.name, of.about, of.kind, name, {}, role, must_be_exact};
+extreme_row row_of(const aabb::triangle_case& c, const std::string& name, candidate_role role, bool must_be_exact) {
+    return {row_group::cases, c.name, c.about, c.kind, name, {}, role, must_be_exact};
 }
 
 /// Compares a result with the ground truth, and counts errors.
-void check(bool result, bool truth, extreme_row& row) {
+void count_error(bool result, bool truth, extreme_row& row) {
     if (result == truth) return;
     ++(truth ? row.result.false_negatives : row.result.false_positives);
     row.result.outcome = aabb::verdict::wrong;
@@ -105,16 +98,16 @@ void check(bool result, bool truth, extreme_row& row) {
 }
 
 template <class Real>
-extreme_row row_of_test(const aabb::triangle_case& of, const named_test& test, bool truth, const char* precision) {
-    extreme_row row = row_of(of, test.name, candidate_role::triangle_test, test.exact);
+extreme_row row_of_test(const aabb::triangle_case& c, const named_test& test, bool truth, const char* precision) {
+    extreme_row row = row_of(c, test.name, candidate_role::triangle_test, test.exact);
     row.precision = precision;
-    for (const aabb::triangle_pair<Real>& pair : aabb::every_order<Real>(of))
-        check(test.test->intersects(pair.a, pair.b), truth, row);
+    for (const aabb::triangle_pair<Real>& pair : aabb::every_order<Real>(c))
+        count_error(test.test->intersects(pair.a, pair.b), truth, row);
     return row;
 }
 
 void run_tests(std::span<const aabb::triangle_case> cases, std::vector<extreme_row>& rows) {
-    for (const named_test& test : all_triangle_tests())
+    for (const named_test& test : named_triangle_tests())
         for (const aabb::triangle_case& c : cases) {
             rows.push_back(row_of_test<float>(c, test, c.intersect, "float"));
             if (test.test->takes_double()) rows.push_back(row_of_test<double>(c, test, c.intersect_double, "double"));
@@ -159,23 +152,24 @@ std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
 
 /// Tests the two triangles in both orders, with every query.
 void run_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes,
-               const named_candidate& of, std::vector<extreme_row>& rows) {
-    const std::unique_ptr<aabb::local_stage> stage = of.implementation.make_local(uncounted);
+               const named_candidate& tested, std::vector<extreme_row>& rows) {
+    const std::unique_ptr<aabb::local_stage> stage = tested.implementation.make_local(uncounted);
     for (const aabb::mesh& m : meshes) stage->add_model(m);
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        extreme_row row = row_of(cases[i], of.name, of.role, of.implementation.exact);
+        extreme_row row = row_of(cases[i], tested.name, tested.role, tested.implementation.exact);
         const auto first = static_cast<std::uint32_t>(2 * i);
         for (const auto [a, b] : {std::array{first, first + 1}, std::array{first + 1, first}}) {
             std::vector<aabb::index_pair> pairs;
             stage->all_pairs(a, {}, b, {}, pairs);
-            check(!pairs.empty(), cases[i].intersect, row);
-            check(stage->first_pair(a, {}, b, {}).has_value(), cases[i].intersect, row);
-            check(stage->count_pairs(a, {}, b, {}) == 1, cases[i].intersect, row);
+            count_error(!pairs.empty(), cases[i].intersect, row);
+            count_error(stage->first_pair(a, {}, b, {}).has_value(), cases[i].intersect, row);
+            count_error(stage->count_pairs(a, {}, b, {}) == 1, cases[i].intersect, row);
         }
         rows.push_back(std::move(row));
     }
 }
 
+/// Runs the candidates on one scene, and decides whether each result is as expected.
 void run_candidates(const aabb::extreme_judge& judge, std::span<const named_candidate> list,
                     std::vector<extreme_row>& rows) {
     const aabb::extreme_scene& scene = judge.scene();
@@ -209,15 +203,19 @@ std::vector<extreme_row> run_triangle_cases(std::span<const aabb::triangle_case>
 
 std::vector<extreme_row> run_extreme_scenes(std::span<const aabb::extreme_scene> scenes, aabb::extreme_size size) {
     const bool named_values = size == aabb::extreme_size::full;
-    const auto of_boxes = candidates(aabb::stage::global_search, named_values);
-    const auto of_meshes = candidates(aabb::stage::local_detection, named_values);
-    // Parameters would add minutes but no insight in scenes with so large meshes.
-    const auto of_many = candidates(aabb::stage::local_detection, false);
+    const auto for_boxes = candidates(aabb::stage::global_search, named_values);
+    const auto for_meshes = candidates(aabb::stage::local_detection, named_values);
+    // Parameters would add minutes but no insight in scenes with large meshes.
+    const auto for_large_meshes = candidates(aabb::stage::local_detection, false);
     std::vector<extreme_row> rows;
     progress shown("extreme scenes", scenes.size());
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const aabb::extreme_judge judge(scenes[i]);
-        run_candidates(judge, scenes[i].make_boxes ? of_boxes : scenes[i].most_bytes > 0 ? of_many : of_meshes, rows);
+        run_candidates(judge,
+                       scenes[i].make_boxes       ? for_boxes
+                       : scenes[i].most_bytes > 0 ? for_large_meshes
+                                                  : for_meshes,
+                       rows);
         shown.at(i + 1);
     }
     return rows;

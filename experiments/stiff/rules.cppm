@@ -14,7 +14,7 @@ namespace aabblab {
 }
 
 /// Runs one part of a study. If an integrator fails, it adds a row that does not hold.
-void record_failure_of(stiff_result& result, std::string_view integrator, const std::function<void()>& part) {
+void run_or_record_failure(stiff_result& result, std::string_view integrator, const std::function<void()>& part) {
     try {
         part();
     } catch (const aabb::input_error& error) {

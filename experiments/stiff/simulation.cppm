@@ -17,7 +17,7 @@ public:
         position_ = world.start().position;
     }
 
-    void look_at(std::span<const double> position) { position_.assign(position.begin(), position.end()); }
+    void move_to(std::span<const double> position) { position_.assign(position.begin(), position.end()); }
 
     [[nodiscard]] std::size_t frames() const override { return std::numeric_limits<std::size_t>::max(); }
     bool next(std::vector<aabb::pose>& poses) override {
@@ -46,7 +46,7 @@ public:
           ignored_(state_.position.size()) {
         acceleration_ = [this](const std::vector<double>& position, const std::vector<double>& velocity,
                                std::vector<double>& acceleration) {
-            dynamics_.accelerate(position, velocity, find(position), acceleration);
+            dynamics_.accelerate(position, velocity, detect_at(position), acceleration);
         };
     }
 
@@ -58,8 +58,8 @@ public:
 
     /// The sorted contacts at the current positions; detects them only if the integrator did not evaluate these last.
     [[nodiscard]] std::span<const aabb::contact> contacts() {
-        return looked_at_ == state_.position ? std::span<const aabb::contact>(runner_.sorted_contacts())
-                                             : find(state_.position);
+        return detected_position_ == state_.position ? std::span<const aabb::contact>(runner_.sorted_contacts())
+                                                     : detect_at(state_.position);
     }
     /// Kinetic, potential and spring energy, J; without the energy of a shared volume.
     [[nodiscard]] double energy() {
@@ -68,9 +68,9 @@ public:
     }
 
 private:
-    std::span<const aabb::contact> find(std::span<const double> position) {
-        poses_->look_at(position);
-        looked_at_.assign(position.begin(), position.end());
+    std::span<const aabb::contact> detect_at(std::span<const double> position) {
+        poses_->move_to(position);
+        detected_position_.assign(position.begin(), position.end());
         frames_.next();
         detection_ms_ += milliseconds_of([&] {
             runner_.update();
@@ -89,7 +89,7 @@ private:
     acceleration_of acceleration_;
     motion_state state_;
     std::vector<double> ignored_;
-    std::vector<double> looked_at_;  // the last position
+    std::vector<double> detected_position_;  // of the last detection
     std::uint64_t detections_ = 0;
     double detection_ms_ = 0;
 };

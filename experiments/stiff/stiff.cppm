@@ -27,8 +27,7 @@ struct stiff_row {
 struct stiff_point {
     std::string figure;  ///< its name
     std::string line;    ///< its label
-    double x = 0;
-    double y = 0;
+    double x = 0, y = 0;
 };
 
 struct stiff_result {

@@ -64,11 +64,10 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_sc
 
 /// The labels that `table_of` would give to these compositions: the parts of their names in which they differ.
 std::vector<std::string> labels_of(std::span<const candidate_name> names) {
-    std::vector<row> rows;
-    for (const candidate_name& name : names) {
-        row& r = rows.emplace_back();
-        r.name = name;
-        r.status = "exact";
+    std::vector<row> rows(names.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i].name = names[i];
+        rows[i].status = "exact";
     }
     const scene_summary scene = summarise(rows).at(0);
     if (names.size() == 1 && !scene.common.empty()) return {scene.common};
@@ -99,8 +98,8 @@ std::size_t count_values(const cells& logs) {
     return count;
 }
 
-/// The probability that n values all exceed m others of the same distribution, a lower bound for any p-value. The
-/// bootstrap of a few values falls below it because it underestimates their variance; of one value it sees none.
+/// The probability n! m! / (n + m)! that n values all exceed m others of the same distribution, a lower bound for any
+/// p-value. The bootstrap of a few values falls below it because it underestimates their variance.
 double least_p_value(std::size_t n, std::size_t m) {
     double chance = 1;
     for (std::size_t i = 1; i <= n; ++i) chance *= static_cast<double>(i) / static_cast<double>(m + i);
@@ -227,8 +226,7 @@ std::size_t compare_numbers(const shared_scene& scene, const rows_by_scene& a, c
         }
         for (std::size_t k = 0; !by_seed.empty() && k < by_seed[0].first.size(); ++k) {
             changed_number sums{labels[i], by_seed[0].first[k].first};
-            bool is_compared = false;
-            bool differs = false;
+            bool is_compared = false, differs = false;
             for (const auto& [of_a, of_b] : by_seed) {
                 const std::optional<std::uint64_t>& before = of_a[k].second;
                 const std::optional<std::uint64_t>& after = of_b[k].second;

@@ -43,8 +43,7 @@ struct compared_time {
 struct changed_number {
     std::string label;
     std::string quantity;  ///< its column in results.csv
-    std::uint64_t in_a = 0;
-    std::uint64_t in_b = 0;
+    std::uint64_t in_a = 0, in_b = 0;
 };
 
 /// A scene with the seeds that A and B share.
@@ -52,8 +51,7 @@ struct compared_scene {
     std::string experiment;
     scene_choice scene;    ///< `whatever_seed`
     std::string baseline;  ///< of `ratios`: the first in A that is timed in both; empty if there is none
-    std::vector<compared_time> ratios;
-    std::vector<compared_time> times;
+    std::vector<compared_time> ratios, times;
     std::vector<changed_number> changed;
 };
 
@@ -71,8 +69,7 @@ struct comparison {
     std::size_t results_compared = 0;    ///< scenes; each seed counts separately
     std::size_t numbers_compared = 0;    ///< counts and bytes
     /// Compositions and engines in a scene that occur on one side only; each seed counts separately.
-    std::size_t only_in_a = 0;
-    std::size_t only_in_b = 0;
+    std::size_t only_in_a = 0, only_in_b = 0;
 };
 
 enum class compared { ratios, ratios_and_times };

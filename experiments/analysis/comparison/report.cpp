@@ -41,10 +41,11 @@ table table_of(std::span<const compared_time> times, const std::string& unit, bo
 }
 
 /// Prints a table per scene, then a line of totals: "24 ratios compared: 2 changed beyond noise, …".
-/// @param heading returns the text that follows the scene's name
+/// @param times either the ratios or the milliseconds of a scene
 /// @param list_all includes unchanged and undecided ones
-void print_compared(const comparison& report, std::vector<compared_time> compared_scene::* times,
-                    std::string_view quantity, const std::string& unit, auto heading, bool list_all) {
+void print_compared(const comparison& report, std::vector<compared_time> compared_scene::* times, bool list_all) {
+    const bool are_ratios = times == &compared_scene::ratios;
+    const char* const quantity = are_ratios ? "ratios" : "times";
     std::size_t count = 0, changed = 0, same = 0, undecided = 0, too_few = 0;
     for (const compared_scene& s : report.scenes) {
         for (const compared_time& time : s.*times) {
@@ -54,17 +55,19 @@ void print_compared(const comparison& report, std::vector<compared_time> compare
             undecided += time.verdict == outcome::undecided;
             too_few += time.verdict == outcome::undecided && time.lacks_repeats;
         }
-        print_block(heading_of(s) + heading(s), table_of(s.*times, unit, list_all));
+        const std::string unit =
+            are_ratios ? "; time relative to that of '" + s.baseline + "'" : "; milliseconds per frame";
+        print_block(heading_of(s) + unit, table_of(s.*times, are_ratios ? "ratio" : "ms", list_all));
     }
     print(fmt::format("\n{} {} compared: {} changed beyond noise, {} unchanged (within {:.0f} %), {} undecided", count,
                       quantity, changed, same, 100 * equivalence_band, undecided));
     if (too_few > 0) print(fmt::format(", {} of them because of too few repeats", too_few));
     print("\n");
-    if (undecided > 0)
-        print(
-            fmt::format("undecided: the interval extends beyond {:.0f} %, or the change is significant only without "
-                        "Holm's correction for all {}{}\n",
-                        100 * equivalence_band, quantity, list_all ? "" : "; --all lists them"));
+    if (undecided == 0) return;
+    print(
+        fmt::format("undecided: the interval extends beyond {:.0f} %, or the change is significant only without "
+                    "Holm's correction for all {}{}\n",
+                    100 * equivalence_band, quantity, list_all ? "" : "; --all lists them"));
 }
 
 std::string percents(std::uint64_t before, std::uint64_t after) {
@@ -93,19 +96,13 @@ int print_comparison(const compare_request& request) {
     const run_results b = read_results(request.b);
     if (request.times) {
         require_one_machine(a, b);
-        note(
-            "times of runs at different hours differ by more than the noise within each run; ratios are more reliable");
+        note("times of runs at different hours differ by more than the noise within each; ratios are more reliable");
     }
     const comparison report = compare(a, b, request.times ? compared::ratios_and_times : compared::ratios);
     print(fmt::format("A: {} ({})\nB: {} ({})\n", visible(request.a), makers_of(a), visible(request.b), makers_of(b)));
     print_different_results(report);
-    print_compared(
-        report, &compared_scene::ratios, "ratios", "ratio",
-        [](const compared_scene& s) { return "; time relative to that of '" + s.baseline + "'"; }, request.all);
-    if (request.times)
-        print_compared(
-            report, &compared_scene::times, "times", "ms",
-            [](const compared_scene&) { return "; milliseconds per frame"; }, request.all);
+    print_compared(report, &compared_scene::ratios, request.all);
+    if (request.times) print_compared(report, &compared_scene::times, request.all);
     print_numbers(report);
     if (report.only_in_a + report.only_in_b > 0)
         print(fmt::format("not compared, because the other run lacks them: {} compositions in a scene of A, {} of B\n",

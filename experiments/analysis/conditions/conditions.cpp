@@ -8,13 +8,20 @@ namespace {
 
 /// The factors of a scene, except its seed and its number of frames, on which times per frame do not depend.
 factors factors_of(const scene_choice& scene) {
-    factors of_scene{{"scene", scene.kind}};
+    factors scene_factors{{"scene", scene.kind}};
     for (const aabb::setting& s : scene.settings)
-        if (s.name != "frames") of_scene.emplace_back(s.name, s.value);
+        if (s.name != "frames") scene_factors.emplace_back(s.name, s.value);
     std::string meshes;
     for (const std::string& mesh : scene.meshes) meshes += (meshes.empty() ? "" : "+") + mesh;
-    if (!meshes.empty()) of_scene.emplace_back("meshes", meshes);
-    return of_scene;
+    if (!meshes.empty()) scene_factors.emplace_back("meshes", meshes);
+    return scene_factors;
+}
+
+std::vector<double> values_in(std::span<const row* const> rows, const row_value& quantity) {
+    std::vector<double> values;
+    for (const row* r : rows)
+        if (const std::optional<double> value = quantity(*r)) values.push_back(*value);
+    return values;
 }
 
 }  // namespace
@@ -57,7 +64,7 @@ std::string text_of(const selection& s) {
     return text;
 }
 
-condition::condition(factors of, std::vector<const row*> rows) : of_(std::move(of)), rows_(std::move(rows)) {
+condition::condition(factors scene, std::vector<const row*> rows) : factors_(std::move(scene)), rows_(std::move(rows)) {
     for (const row* r : rows_) {
         if (std::ranges::find(seeds_, r->scene.seed) == seeds_.end()) seeds_.push_back(r->scene.seed);
         if (std::ranges::find(processes_, r->process) == processes_.end()) processes_.push_back(r->process);
@@ -66,9 +73,9 @@ condition::condition(factors of, std::vector<const row*> rows) : of_(std::move(o
     std::ranges::sort(processes_);
 }
 
-std::optional<double> condition::value(const selection& composition, const row_value& of) const {
+std::optional<double> condition::value(const selection& composition, const row_value& quantity) const {
     const std::vector<const row*> rows = rows_of(composition);
-    return rows.empty() ? std::nullopt : of(*rows.front());
+    return rows.empty() ? std::nullopt : quantity(*rows.front());
 }
 
 void condition::add(cells& to, const row& r, double value) const {
@@ -84,41 +91,38 @@ std::vector<const row*> condition::rows_of(const selection& composition) const {
     return rows;
 }
 
-cells condition::log_ratios(const selection& arm, const selection& base, const row_value& of) const {
+cells condition::log_ratios(const selection& arm, const selection& base, const row_value& quantity) const {
     cells ratios(processes(), seeds());
     const std::vector<const row*> base_rows = rows_of(base);
     for (const row* r : rows_of(arm)) {
-        const double value = of(*r).value_or(0);
+        const double value = quantity(*r).value_or(0);
         if (!(value > 0)) continue;
         for (const row* b : base_rows) {
             if (b->repeat != r->repeat || b->scene != r->scene) continue;
-            if (const double other = of(*b).value_or(0); other > 0) add(ratios, *r, std::log(value / other));
+            if (const double other = quantity(*b).value_or(0); other > 0) add(ratios, *r, std::log(value / other));
         }
     }
     return ratios;
 }
 
-cells condition::logs(const selection& composition, const row_value& of) const {
+cells condition::logs(const selection& composition, const row_value& quantity) const {
     cells logarithms(processes(), seeds());
     for (const row* r : rows_of(composition))
-        if (const double value = of(*r).value_or(0); value > 0) add(logarithms, *r, std::log(value));
+        if (const double value = quantity(*r).value_or(0); value > 0) add(logarithms, *r, std::log(value));
     return logarithms;
 }
 
-std::vector<double> condition::values(const row_value& of) const {
-    std::vector<double> numbers;
-    for (const row* r : rows_)
-        if (const std::optional<double> value = of(*r)) numbers.push_back(*value);
-    return numbers;
+std::vector<double> condition::values(const row_value& quantity) const {
+    return values_in(rows_, quantity);
 }
 
-std::vector<double> condition::differences(const row_value& of) const {
+std::vector<double> condition::differences(const row_value& quantity) const {
     std::map<std::pair<candidate_name, std::optional<std::uint64_t>>, const row*> before;
     std::vector<double> shares;
     for (const row* r : rows_) {
         const row*& last = before[{r->name, r->scene.seed}];
         if (last) {
-            const double a = of(*last).value_or(0), b = of(*r).value_or(0);
+            const double a = quantity(*last).value_or(0), b = quantity(*r).value_or(0);
             if (a + b > 0) shares.push_back(2 * std::abs(a - b) / (a + b));
         }
         last = r;
@@ -126,15 +130,13 @@ std::vector<double> condition::differences(const row_value& of) const {
     return shares;
 }
 
-std::optional<quartiles> condition::spread(const selection& composition, const row_value& of) const {
-    std::vector<double> values;
-    for (const row* r : rows_of(composition))
-        if (const std::optional<double> value = of(*r)) values.push_back(*value);
+std::optional<quartiles> condition::spread(const selection& composition, const row_value& quantity) const {
+    const std::vector<double> values = values_in(rows_of(composition), quantity);
     return values.empty() ? std::nullopt : std::optional(quartiles_of(values));
 }
 
-std::optional<figure_point> condition::point(double x, const selection& composition, const row_value& of) const {
-    const std::optional<quartiles> q = spread(composition, of);
+std::optional<figure_point> condition::point(double x, const selection& composition, const row_value& quantity) const {
+    const std::optional<quartiles> q = spread(composition, quantity);
     if (!q) return std::nullopt;
     return figure_point{x, q->median, q->low, q->high};
 }

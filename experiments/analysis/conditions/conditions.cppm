@@ -46,12 +46,12 @@ private:
 /// A scene with all its seeds: a condition under which ratios are measured.
 class condition {
 public:
-    condition(factors of, std::vector<const row*> rows);
+    condition(factors scene, std::vector<const row*> rows);
 
     /// The experiment of the condition.
     [[nodiscard]] std::string experiment() const { return rows_.empty() ? "" : rows_.front()->experiment; }
     /// The scene and its parameters, without the seed.
-    [[nodiscard]] const factors& of() const { return of_; }
+    [[nodiscard]] const factors& of() const { return factors_; }
     [[nodiscard]] std::size_t processes() const { return std::max<std::size_t>(1, processes_.size()); }
     [[nodiscard]] std::size_t seeds() const { return seeds_.size(); }
     /// The triangles of its meshes, each counted once; 0 in a scene of boxes.
@@ -59,27 +59,28 @@ public:
         return rows_.empty() ? 0 : static_cast<double>(rows_.front()->triangles.value_or(0));
     }
     /// A value that is equal in all repeats and seeds of a composition; empty if it has no exact row.
-    [[nodiscard]] std::optional<double> value(const selection& composition, const row_value& of) const;
+    [[nodiscard]] std::optional<double> value(const selection& composition, const row_value& quantity) const;
 
     /// Logarithms of the ratios of two compositions in the same repeat.
-    [[nodiscard]] cells log_ratios(const selection& arm, const selection& base, const row_value& of) const;
+    [[nodiscard]] cells log_ratios(const selection& arm, const selection& base, const row_value& quantity) const;
     /// Logarithms of one composition's values: for counts and bytes, which do not depend on the machine.
-    [[nodiscard]] cells logs(const selection& composition, const row_value& of) const;
+    [[nodiscard]] cells logs(const selection& composition, const row_value& quantity) const;
     /// The values of all repeats of all compositions that have one.
-    [[nodiscard]] std::vector<double> values(const row_value& of) const;
+    [[nodiscard]] std::vector<double> values(const row_value& quantity) const;
     /// The differences of successive repeats of a composition with one seed, relative to their mean.
-    [[nodiscard]] std::vector<double> differences(const row_value& of) const;
+    [[nodiscard]] std::vector<double> differences(const row_value& quantity) const;
     /// Median and quartiles over all repeats; empty if there are none.
-    [[nodiscard]] std::optional<quartiles> spread(const selection& composition, const row_value& of) const;
+    [[nodiscard]] std::optional<quartiles> spread(const selection& composition, const row_value& quantity) const;
     /// The spread as a point of a figure.
-    [[nodiscard]] std::optional<figure_point> point(double x, const selection& composition, const row_value& of) const;
+    [[nodiscard]] std::optional<figure_point> point(double x, const selection& composition,
+                                                    const row_value& quantity) const;
 
 private:
     [[nodiscard]] std::vector<const row*> rows_of(const selection& composition) const;
     /// Adds to the cell of the row's process and seed.
     void add(cells& to, const row& r, double value) const;
 
-    factors of_;
+    factors factors_;
     std::vector<const row*> rows_;
     std::vector<std::optional<std::uint64_t>> seeds_;
     std::vector<std::uint64_t> processes_;

@@ -13,12 +13,8 @@ struct arrangement {
 
     /// The edges of a plot, measured from the left and lower edges of the figure.
     struct box {
-        double left;
-        double right;
-        double bottom;
-        double top;
-        bool has_x_ticks;
-        bool has_y_ticks;
+        double left, right, bottom, top;
+        bool has_x_ticks, has_y_ticks;
         std::vector<double> mark_tops;  ///< the upper ends of the lines of its marks
     };
     std::vector<box> plots;  ///< one per panel
@@ -90,8 +86,7 @@ double width_of(const scale& axis, const tick& t, std::size_t name_length) {
 
 /// The maximum width and height of the labels of an axis.
 std::pair<double, double> extent_of_labels(const scale& axis, std::size_t name_length) {
-    double width = 0;
-    double height = 0;
+    double width = 0, height = 0;
     for (const tick& t : axis.ticks) {
         if (t.label.empty()) continue;
         width = std::max(width, width_of(axis, t, name_length));
@@ -120,9 +115,7 @@ struct legend {
 
 /// The text beside the line of a mark, like a flag at its pole.
 struct flag {
-    double line_x;
-    double begin;
-    double end;
+    double line_x, begin, end;
     std::size_t row = 0;  ///< counted from below
 };
 
@@ -440,13 +433,10 @@ private:
 
     const drawing& drawing_;
     arrangement layout_{};
-    std::size_t panels_;
-    std::size_t columns_;
-    std::size_t rows_;
+    std::size_t panels_, columns_, rows_;
     double left_ = 0;
     double right_ = 1.5;
-    double column_gap_ = 0;
-    double plot_height_ = 0;
+    double column_gap_ = 0, plot_height_ = 0;
     std::vector<std::string> y_label_;
 };
 

@@ -8,8 +8,7 @@ export namespace aabblab {
 /// A measured value with its quartiles, which equal the value if it does not vary. Values that are not finite are
 /// omitted, as are non-positive values on a logarithmic axis.
 struct figure_point {
-    double x;
-    double y;
+    double x, y;
     double low = y;
     double high = y;
 };

@@ -146,8 +146,7 @@ private:
     /// The horizontal shift that puts points of several series over one name side by side.
     [[nodiscard]] double shift_of(const shown_series& s) const {
         if (!drawing_.x.named || drawing_.x.logarithmic || !s.is(series_style::points)) return 0;
-        double count = 0;
-        double before = 0;
+        double count = 0, before = 0;
         for (const shown_series& other : panel_->lines) {
             if (!other.is(series_style::points)) continue;
             if (&other < &s) ++before;

@@ -37,8 +37,7 @@ inline constexpr double power_rise = 0.4;
 inline constexpr double baseline = 0.35;  ///< below the middle of a line
 
 struct sheet {
-    double width;
-    double height;
+    double width, height;
     std::vector<std::variant<strokes, words>> parts;  ///< in painting order
 };
 

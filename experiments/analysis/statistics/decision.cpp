@@ -4,14 +4,6 @@ namespace aabblab {
 
 namespace {
 
-bool any_is(std::span<const support> endpoints, support wanted) {
-    return std::ranges::find(endpoints, wanted) != endpoints.end();
-}
-
-bool all_are(std::span<const support> endpoints, support wanted) {
-    return std::ranges::all_of(endpoints, [=](support endpoint) { return endpoint == wanted; });
-}
-
 /// The smallest p-value among the outcomes.
 double least_p_value(const tested& t) {
     const double direction = std::min(t.p.less, t.p.more);
@@ -92,11 +84,13 @@ std::vector<double> levels_together(std::span<const tested> family) {
 }
 
 verdict_kind verdict_of(std::span<const support> primary) {
-    const bool otherwise = any_is(primary, support::contradicts) || any_is(primary, support::no_difference);
-    if (any_is(primary, support::favours) && otherwise) return verdict_kind::in_part;
-    if (primary.empty() || any_is(primary, support::undecided)) return verdict_kind::undecided;
-    if (all_are(primary, support::favours)) return verdict_kind::holds;
-    return all_are(primary, support::no_difference) ? verdict_kind::no_difference : verdict_kind::does_not_hold;
+    const auto any_is = [&](support s) { return std::ranges::find(primary, s) != primary.end(); };
+    const bool any_otherwise = any_is(support::contradicts) || any_is(support::no_difference);
+    if (any_is(support::favours) && any_otherwise) return verdict_kind::in_part;
+    if (primary.empty() || any_is(support::undecided)) return verdict_kind::undecided;
+    if (!any_otherwise) return verdict_kind::holds;
+    // None favours the claim.
+    return any_is(support::contradicts) ? verdict_kind::does_not_hold : verdict_kind::no_difference;
 }
 
 std::string text_of(support verdict) {

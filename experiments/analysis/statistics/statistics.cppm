@@ -7,30 +7,24 @@ import aabb.std;
 export namespace aabblab {
 
 struct quartiles {
-    double low;
-    double median;
-    double high;
+    double low, median, high;
 };
 /// Interpolates between the two nearest values; `values` must not be empty.
 [[nodiscard]] quartiles quartiles_of(std::vector<double> values);
 
 /// A straight line through points, by least squares.
 struct fitted_line {
-    double slope;
-    double mean_y;
+    double slope, mean_y;
 };
 [[nodiscard]] fitted_line line_through(std::span<const double> x, std::span<const double> y);
 
 struct interval {
-    double low;
-    double high;
+    double low, high;
 };
 
 /// The number of processes, of seeds, and of repeats per process and seed.
 struct sample_size {
-    std::size_t processes;
-    std::size_t seeds;
-    std::size_t repeats;
+    std::size_t processes, seeds, repeats;
 };
 
 /// Logarithms of ratios in cells, one per process and seed: repeats within a cell differ by noise only. Every process
@@ -53,8 +47,7 @@ public:
     [[nodiscard]] sample_size size() const;
 
 private:
-    std::size_t processes_;
-    std::size_t seeds_;
+    std::size_t processes_, seeds_;
     std::vector<std::vector<double>> values_;
 };
 
@@ -72,8 +65,7 @@ public:
     [[nodiscard]] double mean_of(const cells& measured) const;
 
 private:
-    std::vector<std::size_t> processes_;
-    std::vector<std::size_t> seeds_;
+    std::vector<std::size_t> processes_, seeds_;
     level drawn_;
     std::uint64_t random_;
 };

@@ -81,8 +81,7 @@ struct scene_summary {
     std::string experiment;
     scene_choice scene;                ///< `whatever_seed`
     std::vector<std::uint64_t> seeds;  ///< in the order of the rows
-    std::uint64_t objects = 0;
-    std::uint64_t frames = 0;
+    std::uint64_t objects = 0, frames = 0;
     std::string digest;                          ///< of the ground truth, if there is one seed and an exact line
     std::vector<aabb::strategy_kind> differing;  ///< kinds in which the compositions differ
     std::string common;               ///< the strategies that all compositions share, "sweep one_axis, triangle exact"

@@ -22,8 +22,7 @@ std::size_t longest_cell(const table& t, std::size_t column) {
 
 /// `P{share}` is a column type of paper/tex/layout.tex.
 std::string columns_of(const table& t) {
-    double sum = 0;
-    double letters = 0;
+    double sum = 0, letters = 0;
     const auto weight = [&](std::size_t k) {
         const std::size_t longest = longest_cell(t, k);
         if (t.columns[k].is_number || longest <= longest_unbroken) return 0.0;

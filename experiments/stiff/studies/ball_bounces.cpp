@@ -15,10 +15,10 @@ constexpr double tolerance = 1e-9;  // of adaptive integrators
 /// A single contact, from touching to separating.
 struct bounce {
     double error = 0;  // the greatest error of position and velocity, relative to the undamped ball
-    double contact_time = 0;
-    double restitution = 0;
+    double contact_time = 0, restitution = 0;
 };
 
+/// Runs a ball until it separates from the floor, and compares it with the closed form in each step.
 bounce bounce_of(const oscillator& contact, const candidate& tested, const integrator_info& stepping, double step,
                  double adaptive_tolerance) {
     const stepped_world world = ball_on_floor(contact, speed);
@@ -43,10 +43,6 @@ bounce bounce_of(const oscillator& contact, const candidate& tested, const integ
     return result;
 }
 
-std::string subject_of(const integrator_info& i, double scaled, const std::string& more = {}) {
-    return std::string(i.name) + ", dt·ω " + short_number(scaled) + more;
-}
-
 /// The slope of log error over log step.
 double order_of(std::span<const double> steps, std::span<const double> errors) {
     std::vector<double> x, y;
@@ -55,18 +51,20 @@ double order_of(std::span<const double> steps, std::span<const double> errors) {
     return line_through(x, y).slope;
 }
 
-void convergence(const stiff_setting& setting, stiff_result& result) {
+/// Adds the error and the order of convergence of each integrator, without a dashpot.
+void add_convergence(const stiff_setting& setting, stiff_result& result) {
     const oscillator contact{1e3, 0};
     constexpr std::array steps = {0.4, 0.2, 0.1, 0.05};
     for (const integrator_info& i : integrators()) {
         std::vector<double> errors;
-        record_failure_of(result, i.name, [&] {
-            for (const double scaled : steps)
-                errors.push_back(bounce_of(contact, setting.tested, i, scaled / contact.frequency, tolerance).error);
+        run_or_record_failure(result, i.name, [&] {
+            for (const double scaled_step : steps)
+                errors.push_back(
+                    bounce_of(contact, setting.tested, i, scaled_step / contact.frequency, tolerance).error);
         });
         if (errors.size() < steps.size()) continue;
         for (std::size_t s = 0; s < steps.size(); ++s) result.plot("ball_error_over_step", i.name, steps[s], errors[s]);
-        const std::string subject = subject_of(i, steps.back());
+        const std::string subject = std::string(i.name) + ", dt·ω " + short_number(steps.back());
         // The error of a first-order integrator is at most one step.
         result.add(at_most(subject, "trajectory error", errors.back(), i.order == 1 ? steps.back() : 1e-3));
         if (!i.adaptive)
@@ -74,13 +72,14 @@ void convergence(const stiff_setting& setting, stiff_result& result) {
     }
 }
 
-void stiffness(const stiff_setting& setting, stiff_result& result) {
+/// Adds the contact time and restitution at several stiffnesses, with a dashpot.
+void add_contacts(const stiff_setting& setting, stiff_result& result) {
     const double damped = oscillator::damping_for(0.5);
     for (const double k : {1e4, 1e6, 1e8, 1e10}) {
         const oscillator contact{std::sqrt(k), damped};
         for (const integrator_info& i : integrators()) {
             if (i.order == 1) continue;
-            record_failure_of(result, i.name, [&] {
+            run_or_record_failure(result, i.name, [&] {
                 const bounce measured = bounce_of(contact, setting.tested, i, 0.05 / contact.frequency, tolerance);
                 const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";
                 // Boost's central differences apply the dashpot a step late, which shortens contacts by ζ dt·ω.
@@ -96,8 +95,8 @@ void stiffness(const stiff_setting& setting, stiff_result& result) {
 
 stiff_result run_ball_bounces(const stiff_setting& setting) {
     stiff_result result;
-    convergence(setting, result);
-    stiffness(setting, result);
+    add_convergence(setting, result);
+    add_contacts(setting, result);
     return result;
 }
 

@@ -29,34 +29,30 @@ stepped_world bouncing_balls() {
 }
 
 /// Published results of two simulators for this test: the mean squared energy error over 20 s, J².
-struct published {
-    double step;
-    double ode;
-    double dart;
+struct published_errors {
+    double step, ode, dart;
 };
-constexpr published results[] = {{1e-3, 185.027, 72274.4}, {1e-4, 1.85055, 483.166}};
+constexpr published_errors published[] = {{1e-3, 185.027, 72274.4}, {1e-4, 1.85055, 483.166}};
 
 }  // namespace
 
 stiff_result run_bouncing(const stiff_setting& setting) {
     stiff_result result;
     const stepped_world world = bouncing_balls();
-    const double began = 49 * mass * gravity * height;
+    const double initial_energy = 49 * mass * gravity * height;
     const double seconds = setting.quick ? 4 : duration;
-    for (const published& other : results) {
-        if (setting.quick && other.step < 1e-3) break;
+    for (const published_errors& reference : published) {
+        if (setting.quick && reference.step < 1e-3) break;
         for (const integrator_info& i : integrators()) {
             if (i.adaptive || i.order == 5) continue;
-            record_failure_of(result, i.name, [&] {
+            run_or_record_failure(result, i.name, [&] {
                 simulation balls(world, setting.tested, i);
-                const auto steps = static_cast<std::size_t>(std::llround(seconds / other.step));
-                double squares = 0;
-                double first = 0;
-                double last = 0;
-                const std::string subject = std::string(i.name) + ", " + short_number(other.step) + " s";
+                const auto steps = static_cast<std::size_t>(std::llround(seconds / reference.step));
+                double squares = 0, first = 0, last = 0;
+                const std::string subject = std::string(i.name) + ", " + short_number(reference.step) + " s";
                 for (std::size_t s = 0; s < steps; ++s) {
-                    balls.advance(other.step);
-                    const double error = balls.energy() / began - 1;
+                    balls.advance(reference.step);
+                    const double error = balls.energy() / initial_energy - 1;
                     squares += error * error / static_cast<double>(steps);
                     if (s < steps / 4) first += 4 * error / static_cast<double>(steps);
                     if (s >= steps - steps / 4) last += 4 * error / static_cast<double>(steps);
@@ -65,7 +61,7 @@ stiff_result run_bouncing(const stiff_setting& setting) {
                 }
                 if (i.order == 2) {
                     // Second order: the square of the step relative to the time scale of the contact, 1/ω.
-                    const double limit = other.step * other.step * stiffness / mass;
+                    const double limit = reference.step * reference.step * stiffness / mass;
                     result.add(at_most(subject, "energy error, RMS", std::sqrt(squares), limit));
                     result.add(
                         at_most(subject, "energy creep, first quarter to last", std::abs(last - first), limit / 4));
@@ -75,10 +71,10 @@ stiff_result run_bouncing(const stiff_setting& setting) {
                 }
             });
         }
-        result.add(reported("published: ODE, " + short_number(other.step) + " s, over 20 s", "energy error, RMS",
-                            std::sqrt(other.ode) / began));
-        result.add(reported("published: DART, " + short_number(other.step) + " s, over 20 s", "energy error, RMS",
-                            std::sqrt(other.dart) / began));
+        result.add(reported("published: ODE, " + short_number(reference.step) + " s, over 20 s", "energy error, RMS",
+                            std::sqrt(reference.ode) / initial_energy));
+        result.add(reported("published: DART, " + short_number(reference.step) + " s, over 20 s", "energy error, RMS",
+                            std::sqrt(reference.dart) / initial_energy));
     }
     return result;
 }

@@ -13,9 +13,8 @@ namespace {
 struct trajectory {
     std::vector<std::vector<double>> positions;  ///< of all bodies, by sampled step
     double detection_ms = 0;
-    double energy_error = 0;  ///< the root mean square of twenty samples, relative to the initial energy
-    /// The greatest overlap of two balls, treated as spheres, in diameters, at twenty samples.
-    std::vector<double> times, depths;
+    double energy_error = 0;            ///< the root mean square of twenty samples, relative to the initial energy
+    std::vector<double> times, depths;  ///< twenty samples of `greatest_depth`
 };
 
 /// A lattice of balls that fall on a floor.
@@ -36,16 +35,16 @@ public:
     [[nodiscard]] double seconds(double for_1_m) const { return for_1_m * std::sqrt(diameter_); }
 
     /// Ends early if bodies leave the range of valid poses.
-    /// @param kept stores the positions of every `kept`-th step
+    /// @param stored_every stores the positions of every so many steps
     /// @throws aabb::input_error if it ends before the first of its twenty samples.
     [[nodiscard]] trajectory run(const candidate& tested, const integrator_info& stepping, double step,
-                                 std::size_t kept, bool with_energy) const {
+                                 std::size_t stored_every, bool with_energy) const {
         trajectory t;
         simulation balls(world_, tested, stepping);
-        const double began = dynamics(world_).mechanical_energy(balls.state());
+        const double initial_energy = dynamics(world_).mechanical_energy(balls.state());
         const auto steps = static_cast<std::size_t>(std::llround(seconds(end) / step));
         std::vector<double> squares;
-        const std::size_t looks = std::max<std::size_t>(steps / 20, 1);
+        const std::size_t sample_interval = std::max<std::size_t>(steps / 20, 1);
         for (std::size_t s = 1; s <= steps; ++s) {
             try {
                 balls.advance(step);
@@ -53,11 +52,11 @@ public:
                 if (t.depths.empty()) throw;
                 break;
             }
-            if (s % kept == 0) t.positions.push_back(balls.state().position);
-            if (s % looks != 0) continue;
+            if (s % stored_every == 0) t.positions.push_back(balls.state().position);
+            if (s % sample_interval != 0) continue;
             t.times.push_back(balls.state().time);
             t.depths.push_back(greatest_depth(balls.state().position));
-            if (with_energy) squares.push_back(std::pow(energy_of(balls) / began - 1, 2));
+            if (with_energy) squares.push_back(std::pow(energy_of(balls) / initial_energy - 1, 2));
         }
         if (with_energy)
             t.energy_error =
@@ -89,6 +88,7 @@ private:
         return ball;
     }
 
+    /// Kinetic, potential and contact energy, J; that of a contact is proportional to the overlap volume of two bodies.
     [[nodiscard]] double energy_of(simulation& balls) const {
         double sum = dynamics(world_).mechanical_energy(balls.state());
         std::vector<aabb::pose> poses;
@@ -105,6 +105,7 @@ private:
         return sum;
     }
 
+    /// The greatest overlap of two balls, treated as spheres, in diameters.
     [[nodiscard]] double greatest_depth(const std::vector<double>& p) const {
         double least = diameter_;
         for (std::size_t i = 1; 3 * i < p.size(); ++i)
@@ -118,7 +119,7 @@ private:
     stepped_world world_;
 };
 
-std::vector<method> all_methods() {
+std::vector<method> compared_methods() {
     std::vector<method> methods = triangle_methods();
     std::erase_if(methods, [](const method& m) { return m.label == "exact"; });  // the reference of the others
     std::ranges::move(tree_and_list_methods(), std::back_inserter(methods));
@@ -140,8 +141,8 @@ void plot_depths(const std::string& size, const std::string& label, const trajec
 }
 
 /// The trajectory of each method, with one thread per processor, since these runs are not timed.
-std::vector<trajectory> run_by(const std::vector<method>& methods, const dropped_balls& balls, double step,
-                               const stiff_setting& setting) {
+std::vector<trajectory> trajectories_of(const std::vector<method>& methods, const dropped_balls& balls, double step,
+                                        const stiff_setting& setting) {
     std::vector<trajectory> trajectories(methods.size());
     std::atomic<std::size_t> begun = 0;
     const auto run = [&](const std::function<void(double)>& progress) {
@@ -158,13 +159,13 @@ std::vector<trajectory> run_by(const std::vector<method>& methods, const dropped
     return trajectories;
 }
 
-/// Compares the trajectory of each method with the exact one, for one step size.
+/// Compares the trajectory of each method with that of exact contacts, for one step size.
 void compare_methods(const dropped_balls& balls, const std::string& size, const stiff_setting& setting,
                      stiff_result& result) {
     const double step = balls.seconds(1e-3);
     const trajectory reference = balls.run(setting.tested, *integrator_named("velocity_verlet"), step, 1, true);
-    const std::vector<method> methods = all_methods();
-    const std::vector<trajectory> trajectories = run_by(methods, balls, step, setting);
+    const std::vector<method> methods = compared_methods();
+    const std::vector<trajectory> trajectories = trajectories_of(methods, balls, step, setting);
     constexpr std::size_t most_drawn = 9;
     std::size_t drawn = 0;
     const std::string departure = figure_name("departure " + size);
@@ -198,16 +199,16 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
 void compare_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
     const std::vector<double> steps =
         setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};
-    const auto kept = [&](double dt) { return static_cast<std::size_t>(std::llround(steps.front() / dt)); };
+    const auto stored_every = [&](double dt) { return static_cast<std::size_t>(std::llround(steps.front() / dt)); };
     const integrator_info& verlet = *integrator_named("velocity_verlet");
     const double finest = steps.back() / 16;
-    const trajectory reference = balls.run(setting.tested, verlet, finest, kept(finest), false);
+    const trajectory reference = balls.run(setting.tested, verlet, finest, stored_every(finest), false);
     const auto error_of = [&](const trajectory& t) { return balls.departures(t, reference).back(); };
     for (const integrator_info& i : integrators()) {
         if (i.adaptive || i.order == 5) continue;
         std::vector<double> energy_errors;
         for (const double dt : steps) {
-            const trajectory t = balls.run(setting.tested, i, dt, kept(dt), true);
+            const trajectory t = balls.run(setting.tested, i, dt, stored_every(dt), true);
             const double error = error_of(t);
             result.plot("error_over_time", i.name, t.detection_ms, error);
             const std::string subject = std::string(i.name) + ", " + short_number(dt) + " s";
@@ -222,7 +223,7 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
     }
     for (const char* const every : {"8", "16", "32", "64"}) {
         const method m = composed(std::string("prepare neighbour_list:margin=0,every=") + every);
-        const trajectory t = balls.run(m.tested, verlet, 1e-3, kept(1e-3), false);
+        const trajectory t = balls.run(m.tested, verlet, 1e-3, stored_every(1e-3), false);
         result.plot("error_over_time", "velocity_verlet, neighbour_list:margin=0", t.detection_ms, error_of(t));
     }
 }

@@ -33,7 +33,7 @@ stiff_result run_overdamped(const stiff_setting& setting) {
             if (!i.adaptive) continue;
             // Other adaptive integrators need as many steps as an explicit one, too many for stiff contacts.
             if (i.name != "bdf" && explicit_steps > (setting.quick ? 1e4 : 1e6)) continue;
-            record_failure_of(result, i.name, [&] {
+            run_or_record_failure(result, i.name, [&] {
                 const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";
                 simulation ball(world, setting.tested, i, 1e-6 * gravity / k);
                 const double sinking = 1 / (frequency * (damping - std::sqrt(damping * damping - 1)));

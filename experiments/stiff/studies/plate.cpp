@@ -27,9 +27,9 @@ public:
         local_->add_model(body_);
     }
 
-    /// @param phase offset of the start, in steps
+    /// Shoots the body once. @param phase offset of the start, in steps
     /// @param swept whether boxes cover the motion between frames, in which case positions in between are tested too
-    [[nodiscard]] bool is_seen(double phase, bool swept) {
+    [[nodiscard]] bool is_detected(double phase, bool swept) {
         const double above = double{thickness} + step_;
         for (double z = above - phase * step_; z > -above - 2 * double{radius}; z -= step_) {
             if (!swept) {
@@ -62,9 +62,9 @@ private:
     }
 
     [[nodiscard]] bool meshes_meet(double z) {
-        aabb::pose at;
-        at.translation[2] = z;
-        return local_->first_pair(0, {}, 1, at).has_value();
+        aabb::pose pose;
+        pose.translation[2] = z;
+        return local_->first_pair(0, {}, 1, pose).has_value();
     }
 
     aabb::mesh plate_;
@@ -80,14 +80,15 @@ stiff_result run_plate(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t shots = setting.quick ? 200 : 2000;
     for (const double ratio : {0.5, 1.0, 1.25, 2.0, 4.0, 8.0, 16.0}) {
-        shot fired(setting.tested, ratio * extent);
+        shot moving_body(setting.tested, ratio * extent);
         const double expected = std::max(0.0, 1 - 1 / ratio);
         result.plot("tunnelled", tunnelled_share, ratio, expected);
         for (const bool swept : {false, true}) {
-            std::size_t unseen = 0;
+            std::size_t missed = 0;
             for (std::size_t s = 0; s < shots; ++s)
-                if (!fired.is_seen((static_cast<double>(s) + 0.5) / static_cast<double>(shots), swept)) ++unseen;
-            const double share = static_cast<double>(unseen) / static_cast<double>(shots);
+                if (!moving_body.is_detected((static_cast<double>(s) + 0.5) / static_cast<double>(shots), swept))
+                    ++missed;
+            const double share = static_cast<double>(missed) / static_cast<double>(shots);
             result.plot("tunnelled", swept ? "swept boxes" : "plain boxes", ratio, share);
             const std::string subject = "a step of " + short_number(ratio) + " extents, " + (swept ? "swept" : "plain");
             stiff_row row = reported(subject, "share tunnelled of " + std::to_string(shots), share);

@@ -17,7 +17,7 @@ constexpr int positions = 257;
 constexpr double displacement = 1.0 / 128;  // between positions
 
 /// Teeth that stand on their tips. Each is a single triangle, so that only pairs at its tip detect it.
-aabb::mesh comb() {
+aabb::mesh comb_mesh() {
     aabb::mesh teeth;
     for (std::uint32_t i = 0; i < tips * tips; ++i) {
         const std::uint32_t row = i / tips;
@@ -32,7 +32,7 @@ aabb::mesh comb() {
 }
 
 /// The placement of both meshes, which determines which coordinates are rounded.
-struct lie {
+struct placement {
     std::string name;
     aabb::pose frame;  // of both meshes
     double size;       // m
@@ -49,41 +49,41 @@ aabb::pose oblique() {
     return {{a, b, c, c, a, b, b, c, a}, {0, 0, 0}};
 }
 
-aabb::vec3d turned(const aabb::pose& p, const aabb::vec3d& v) {
+aabb::vec3d rotated(const aabb::pose& frame, const aabb::vec3d& v) {
     aabb::vec3d w{};
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) w[i] += p.rotation[static_cast<std::size_t>(3 * i + j)] * v[j];
+        for (int j = 0; j < 3; ++j) w[i] += frame.rotation[static_cast<std::size_t>(3 * i + j)] * v[j];
     return w;
 }
 
-aabb::mesh lying(aabb::mesh m, const lie& l) {
+aabb::mesh placed(aabb::mesh m, const placement& p) {
     for (aabb::vec3f& v : m.vertices) {
-        const aabb::vec3d w = turned(l.frame, {v[0] * l.size, v[1] * l.size, v[2] * l.size});
+        const aabb::vec3d w = rotated(p.frame, {v[0] * p.size, v[1] * p.size, v[2] * p.size});
         for (int k = 0; k < 3; ++k) v[k] = static_cast<float>(w[k]);
     }
     return m;
 }
 
 /// The normal force at each position, relative to the force if all tips are detected at their depth.
-std::vector<double> forces_of(const candidate& tested, const lie& l) {
-    const aabb::mesh lower = lying(floor_of(8, 16), l);
-    const aabb::mesh upper = lying(comb(), l);
+std::vector<double> forces_of(const candidate& tested, const placement& p) {
+    const aabb::mesh lower = placed(floor_of(8, 16), p);
+    const aabb::mesh upper = placed(comb_mesh(), p);
     const auto stage = tested.make_local(aabb::instrumentation::none);
     stage->add_model(lower);
     stage->add_model(upper);
-    const contact_law law{contact_geometry::each_vertex, 1, 0, rest * l.size};
-    const aabb::vec3d normal = turned(l.frame, {0, 0, 1});
+    const contact_law law{contact_geometry::each_vertex, 1, 0, rest * p.size};
+    const aabb::vec3d normal = rotated(p.frame, {0, 0, 1});
     std::vector<double> forces;
     for (int i = 0; i < positions; ++i) {
-        aabb::pose at;
-        at.translation = turned(l.frame, {displacement * i * l.size, 0, -l.pressed * l.size});
+        aabb::pose pose;
+        pose.translation = rotated(p.frame, {displacement * i * p.size, 0, -p.pressed * p.size});
         std::vector<aabb::index_pair> pairs;
-        stage->all_pairs(0, {}, 1, at, pairs);
+        stage->all_pairs(0, {}, 1, pose, pairs);
         std::ranges::sort(pairs);
         std::vector<aabb::contact> contacts;
-        for (const aabb::index_pair& p : pairs) contacts.push_back({0, 1, p.a, p.b});
-        const contact_force contact = force_of(law, contacts, {&lower, {}}, {&upper, at}, {0, 0, 0});
-        forces.push_back(dot(contact.force, normal) / (tips * tips * (rest + l.pressed) * l.size));
+        for (const auto& [s, t] : pairs) contacts.push_back({0, 1, s, t});
+        const contact_force contact = force_of(law, contacts, {&lower, {}}, {&upper, pose}, {0, 0, 0});
+        forces.push_back(dot(contact.force, normal) / (tips * tips * (rest + p.pressed) * p.size));
     }
     return forces;
 }
@@ -98,26 +98,25 @@ double greatest_jump(const std::vector<double>& forces) {
 
 stiff_result run_sliding(const stiff_setting& setting) {
     stiff_result result;
-    const std::vector<lie> lies = {{"lattice", {}, 1, 0},
-                                   {"oblique, 1 m", oblique(), 1, 1e-5},
-                                   {"oblique, 10 mm", oblique(), 0.01, 1e-5},
-                                   {"oblique, 0.1 mm", oblique(), 1e-4, 1e-5},
-                                   {"above, 1 m", oblique(), 1, -1e-5},
-                                   {"above, 10 mm", oblique(), 0.01, -1e-5},
-                                   {"above, 0.1 mm", oblique(), 1e-4, -1e-5}};
+    const std::vector<placement> placements = {{"lattice", {}, 1, 0},
+                                               {"oblique, 1 m", oblique(), 1, 1e-5},
+                                               {"oblique, 10 mm", oblique(), 0.01, 1e-5},
+                                               {"oblique, 0.1 mm", oblique(), 1e-4, 1e-5},
+                                               {"above, 1 m", oblique(), 1, -1e-5},
+                                               {"above, 10 mm", oblique(), 0.01, -1e-5},
+                                               {"above, 0.1 mm", oblique(), 1e-4, -1e-5}};
     const std::vector<method> methods = triangle_methods();
     constexpr std::size_t most_drawn = 9;
-    std::size_t drawn = 0;
-    std::size_t done = 0;
-    for (const lie& l : lies)
+    std::size_t drawn = 0, done = 0;
+    for (const placement& p : placements)
         for (const method& m : methods) {
-            setting.progress(static_cast<double>(done++) / static_cast<double>(lies.size() * methods.size()));
-            const std::vector<double> forces = forces_of(m.tested, l);
+            setting.progress(static_cast<double>(done++) / static_cast<double>(placements.size() * methods.size()));
+            const std::vector<double> forces = forces_of(m.tested, p);
             const double jump = greatest_jump(forces);
-            const std::string subject = m.label + ", " + l.name;
+            const std::string subject = m.label + ", " + p.name;
             const double least = std::ranges::min(forces);
             const double greatest = std::ranges::max(forces);
-            if (l.pressed < 0) {
+            if (p.pressed < 0) {
                 const std::string quantity = "greatest force before they touch";
                 result.add(m.tested.exact ? at_most(subject, quantity, greatest, 0)
                                           : reported(subject, quantity, greatest));
@@ -127,7 +126,7 @@ stiff_result run_sliding(const stiff_setting& setting) {
             const std::string lost = "least force";
             result.add(m.tested.exact ? at_most(subject, jumps, jump, 1e-3) : reported(subject, jumps, jump));
             result.add(m.tested.exact ? within(subject, lost, least, 1, 1e-3) : reported(subject, lost, least));
-            if (l.size == 0.01 && least < 0.999 && drawn++ < most_drawn)
+            if (p.size == 0.01 && least < 0.999 && drawn++ < most_drawn)
                 for (int i = 0; i < positions; ++i)
                     result.plot("sliding_force", m.label, displacement * i, forces[static_cast<std::size_t>(i)]);
         }

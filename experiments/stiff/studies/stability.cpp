@@ -17,9 +17,9 @@ constexpr auto greatest_step = "greatest stable dt·ω";
 constexpr double at_rest = gravity / (frequency * frequency);  // the depth of equilibrium, m
 
 /// A ball that oscillates about its equilibrium and never leaves contact.
-class swinging_ball {
+class oscillating_ball {
 public:
-    swinging_ball(const candidate& tested, const integrator_info& stepping, double amplitude, double tolerance)
+    oscillating_ball(const candidate& tested, const integrator_info& stepping, double amplitude, double tolerance)
         : world_(world_with(amplitude)), ball_(world_, tested, stepping, tolerance) {}
 
     void advance(double step) { ball_.advance(step); }
@@ -42,14 +42,13 @@ private:
 
 /// The relative change of the greatest energy from the first to the last tenth of the periods, which ignores bounded
 /// oscillations of the energy.
-double drift_of(const candidate& tested, const integrator_info& stepping, double scaled, std::size_t periods,
+double drift_of(const candidate& tested, const integrator_info& stepping, double scaled_step, std::size_t periods,
                 double tolerance) {
-    swinging_ball ball(tested, stepping, at_rest / 100, tolerance);
-    const auto steps = static_cast<std::size_t>(static_cast<double>(periods) * 2 * std::numbers::pi / scaled);
-    double first = 0;
-    double last = 0;
+    oscillating_ball ball(tested, stepping, at_rest / 100, tolerance);
+    const auto steps = static_cast<std::size_t>(static_cast<double>(periods) * 2 * std::numbers::pi / scaled_step);
+    double first = 0, last = 0;
     for (std::size_t i = 0; i < steps; ++i) {
-        ball.advance(scaled / frequency);
+        ball.advance(scaled_step / frequency);
         if (i < steps / 10) first = std::max(first, ball.energy());
         if (i >= steps - steps / 10) last = std::max(last, ball.energy());
     }
@@ -57,23 +56,22 @@ double drift_of(const candidate& tested, const integrator_info& stepping, double
 }
 
 /// The factor by which a step changes the energy, from the stability polynomial of Dormand and Prince (1980).
-double kept_by_dormand_prince(double scaled) {
-    const std::complex<double> z(0, scaled);
+double energy_factor_of_dormand_prince(double scaled_step) {
+    const std::complex<double> z(0, scaled_step);
     const auto growth =
         1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0 * (1.0 + z / 5.0 * (1.0 + z / 5.0)))));
     return std::norm(growth);
 }
 
-/// Whether the energy does not grow. Symplectic integrators conserve a modified energy, so that the real one
+/// True if the energy does not grow. Symplectic integrators conserve a modified energy, so that the real one
 /// oscillates, more so near their limit.
-bool is_stable(const candidate& tested, const integrator_info& stepping, double scaled) {
+bool is_stable(const candidate& tested, const integrator_info& stepping, double scaled_step) {
     // The amplitude is so small that the ball stays in contact even if it grows.
-    swinging_ball ball(tested, stepping, at_rest * 1e-6, 0);
-    double before = 0;
-    double after = 0;
+    oscillating_ball ball(tested, stepping, at_rest * 1e-6, 0);
+    double before = 0, after = 0;
     constexpr int steps = 20000;
     for (int i = 0; i < steps; ++i) {
-        ball.advance(scaled / frequency);
+        ball.advance(scaled_step / frequency);
         const double energy = ball.energy();
         // The ball left contact, or its energy is NaN.
         if (!(energy < frequency * frequency * at_rest * at_rest / 2)) return false;
@@ -83,6 +81,7 @@ bool is_stable(const candidate& tested, const integrator_info& stepping, double 
     return after <= 1.01 * before;
 }
 
+/// The greatest stable dt·ω, by bisection.
 double limit_of(const candidate& tested, const integrator_info& stepping) {
     double stable = 0.1;
     double unstable = 4;
@@ -107,26 +106,27 @@ stiff_result run_stability(const stiff_setting& setting) {
     for (const integrator_info& i : integrators()) {
         std::vector<double> steps = {0.05, 0.1, 0.157, 0.314, 0.8};
         if (!i.adaptive && i.stable_below > 1.5) steps.insert(steps.end(), {1.6, 1.9});
-        record_failure_of(result, i.name, [&] {
-            for (const double scaled : steps) {
-                const double drift = drift_of(setting.tested, i, scaled, periods, 1e-6 * at_rest / 100);
-                result.plot("energy_drift", i.name, scaled, std::abs(drift));
-                const std::string subject = std::string(i.name) + ", dt·ω " + short_number(scaled);
+        run_or_record_failure(result, i.name, [&] {
+            for (const double scaled_step : steps) {
+                const double drift = drift_of(setting.tested, i, scaled_step, periods, 1e-6 * at_rest / 100);
+                result.plot("energy_drift", i.name, scaled_step, std::abs(drift));
+                const std::string subject = std::string(i.name) + ", dt·ω " + short_number(scaled_step);
                 if (i.adaptive) {
                     result.add(reported(subject, "energy drift", drift));
                 } else if (i.order < 5) {
                     result.add(
                         at_most(subject, "energy drift, without sign", std::abs(drift), setting.quick ? 0.05 : 1e-3));
                 } else {
-                    const double lost = std::pow(kept_by_dormand_prince(scaled),
-                                                 0.9 * static_cast<double>(periods) * 2 * std::numbers::pi / scaled) -
-                                        1;
+                    const double lost =
+                        std::pow(energy_factor_of_dormand_prince(scaled_step),
+                                 0.9 * static_cast<double>(periods) * 2 * std::numbers::pi / scaled_step) -
+                        1;
                     result.add(within(subject, "energy drift", drift, lost, 0.01));
                 }
             }
         });
         if (i.adaptive) continue;
-        record_failure_of(result, i.name, [&] {
+        run_or_record_failure(result, i.name, [&] {
             const double limit = limit_of(setting.tested, i);
             result.add(within(std::string(i.name), greatest_step, limit, i.stable_below, 0.005));
         });

@@ -49,7 +49,7 @@ stiff_result run_stack(const stiff_setting& setting) {
             // The dashpot limits explicit integrators to steps of a quarter of m/c.
             const double step = i.name == "velocity_verlet" ? 0.25 / world.law.damping : 0.05;
             if (i.name != "bdf" && (i.name != "velocity_verlet" || ratio > (setting.quick ? 1 : 10))) continue;
-            record_failure_of(result, i.name, [&] {
+            run_or_record_failure(result, i.name, [&] {
                 simulation stack(world, setting.tested, i, 1e-9);
                 double greatest = 0;
                 const double end = 2;
@@ -58,8 +58,7 @@ stiff_result run_stack(const stiff_setting& setting) {
                     greatest = std::max(greatest, depth_of(stack.state(), 1));
                     setting.progress(stack.state().time / end);
                 }
-                double worst = 0;
-                double above = 0;
+                double worst = 0, above = 0;
                 for (std::size_t b = bodies; b > 0; --b) {
                     above += world.bodies[b].mass;
                     worst = std::max(worst, std::abs(depth_of(stack.state(), b) * stiffness / (above * gravity) - 1));
