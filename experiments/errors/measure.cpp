@@ -292,7 +292,7 @@ std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
 }
 
 table hit_summary(std::span<const hit_point> points, bool in_double) {
-    table t = empty_table({"pairs", "triangle"}, {"hits", "differ", "error/bound", "error", "bound", "ns per hit"});
+    table t = empty_table({"pairs", "triangle"}, {"hits", "differ", "error/bound", "error", "bound", "ns/hit"});
     for (const hit_point& p : points) {
         if (p.in_double != in_double) continue;
         t.rows.push_back({p.pairs, p.triangle, grouped(p.count), grouped(p.different), number_text(p.greatest.of_bound),

@@ -270,7 +270,7 @@ std::string_view title_of(pair_group group) {
 }
 
 table error_summary(std::span<const error_point> points, pair_group group) {
-    table t{{{"triangle", false}, {"ns per pair"}, {"wrong"}, {"false negatives"}, {"false positives"}}, {}};
+    table t{{{"triangle", false}, {"ns/pair"}, {"wrong"}, {"FN"}, {"FP"}}, {}};
     std::vector<pooled> methods = pooled_over(of_group(points, group));
     std::ranges::stable_sort(methods, {}, [](const pooled& m) { return std::pair(m.error(), m.ns()); });
     for (const pooled& m : methods)
