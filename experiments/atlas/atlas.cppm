@@ -75,7 +75,7 @@ struct atlas_scene {
 struct border {
     std::string before, after, parameter;
     std::string others;  ///< the other settings of the scene
-    double at = 0;
+    double position = 0;
     interval range{};  ///< 95 %, clamped to the two scenes
 };
 [[nodiscard]] std::vector<border> borders_of(const std::vector<atlas_scene>& atlas);

@@ -76,10 +76,10 @@ std::optional<border> border_between(const atlas_scene& from, const atlas_scene&
 }
 
 /// The logarithm of the position of a border, and its error.
-estimate log_place_of(const border& b) {
+estimate log_position_of(const border& b) {
     constexpr double errors_in_interval = 2 * 1.96;
     constexpr double many_degrees = 1000;
-    return {std::log(b.at), std::log(b.range.high / b.range.low) / errors_in_interval, many_degrees};
+    return {std::log(b.position), std::log(b.range.high / b.range.low) / errors_in_interval, many_degrees};
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
 table borders_table(const std::vector<border>& borders) {
     table t{{{"before", false}, {"after", false}, {"along", false}, {"at"}, {"low"}, {"high"}, {"others", false}}, {}};
     for (const border& b : borders)
-        t.rows.push_back({b.before, b.after, b.parameter, fmt::format("{:.4g}", b.at),
+        t.rows.push_back({b.before, b.after, b.parameter, fmt::format("{:.4g}", b.position),
                           fmt::format("{:.4g}", b.range.low), fmt::format("{:.4g}", b.range.high), b.others});
     return t;
 }
@@ -117,14 +117,14 @@ table borders_summary(const std::vector<border>& borders) {
     table t = empty_table({"along", "fastest before", "fastest after"}, {"borders", "at", "95 %", "from", "to"});
     for (const std::vector<const border*>& group : groups) {
         std::vector<estimate> places;
-        for (const border* b : group) places.push_back(log_place_of(*b));
-        const auto [low, high] = std::ranges::minmax(group, {}, &border::at);
+        for (const border* b : group) places.push_back(log_position_of(*b));
+        const auto [low, high] = std::ranges::minmax(group, {}, &border::position);
         const estimate mean = mean_of(places);
         const border& first = *group.front();
         t.rows.push_back({first.parameter, first.before, first.after, grouped(group.size()),
                           fmt::format("{:.3g}", std::exp(mean.value)),
                           fmt::format("{:.3g}-{:.3g}", std::exp(mean.range().low), std::exp(mean.range().high)),
-                          fmt::format("{:.3g}", low->at), fmt::format("{:.3g}", high->at)});
+                          fmt::format("{:.3g}", low->position), fmt::format("{:.3g}", high->position)});
     }
     return t;
 }

@@ -106,6 +106,7 @@ std::vector<stated_ratio> by_count(const std::string& arm, const std::string& ba
     return ratios;
 }
 
+/// The statements as published, with the ratios that decide them.
 const std::vector<statement>& statements() {
     static const std::vector<statement> published{
         {"B1",

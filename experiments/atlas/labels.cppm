@@ -21,9 +21,9 @@ inline constexpr span_of_time per_frame = span_of_time::frame;
 /// The strategies of a line without their parameters: "neighbour_list + bucket + columns + simd".
 [[nodiscard]] inline std::string family_of(std::string_view label) {
     std::string family;
-    for (std::size_t at = 0; at < label.size(); ++at) {
-        if (label[at] == ':') at = std::min(label.find(' ', at), label.size());
-        if (at < label.size()) family += label[at];
+    for (std::size_t i = 0; i < label.size(); ++i) {
+        if (label[i] == ':') i = std::min(label.find(' ', i), label.size());
+        if (i < label.size()) family += label[i];
     }
     return family;
 }
@@ -42,8 +42,8 @@ inline constexpr span_of_time per_frame = span_of_time::frame;
 /// lines of the scene; without any repeats the result is unknown.
 [[nodiscard]] inline estimate log_ratio_in(const atlas_scene& scene, const atlas_line& arm, const atlas_line& base,
                                            span_of_time span) {
-    const estimate own = log_ratio(arm, base, span);
-    if (own.error > 0) return own;
+    const estimate of_repeats = log_ratio(arm, base, span);
+    if (of_repeats.error > 0) return of_repeats;
     double squares = 0, degrees = 0;
     for (const atlas_line& line : scene.lines) {
         const std::vector<double>& times = line.times(span);
@@ -54,7 +54,7 @@ inline constexpr span_of_time per_frame = span_of_time::frame;
         degrees += count - 1;
     }
     if (degrees == 0) return {std::nan(""), 0, 1};
-    return {own.value, std::sqrt(2 * squares / degrees), degrees};
+    return {of_repeats.value, std::sqrt(2 * squares / degrees), degrees};
 }
 
 }  // namespace aabblab

@@ -22,6 +22,7 @@ constexpr std::array<std::string_view, 2> built_meshes = {"noise_sphere:triangle
 
 constexpr int turns = 5;
 
+/// Times a build by one thread, by two threads, and two builds at once, in turn.
 template <class Build>
 void time_build(benchmark::State& state, const aabb::mesh& m) {
     Build by_one;

@@ -66,6 +66,7 @@ void count_work(benchmark::State& state, Sort sort, std::span<const list_of_fram
     if (counted[aabb::work::moves] > 0) state.counters["moves/n"] = per_element(aabb::work::moves);
 }
 
+/// Times the sort of the lists of successive frames; copying them is not timed.
 template <class Sort>
 void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
     aabb::no_counters none;
@@ -85,6 +86,7 @@ void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame
 
 constexpr aabb::axis_set swept = 0b001;
 
+/// Times a partition that distributes sorted lists: the choice of axes, the fit and the distribution.
 template <class Partition>
 void time_partition(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);

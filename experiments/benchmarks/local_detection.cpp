@@ -78,6 +78,7 @@ private:
         return poses;
     }
 
+    /// Opens nodes in the order of `local_detection`, and records the tests.
     void traverse() {
         test({a_.root(), b_.root(), to_a_(b_.bounds())});
         while (!open_.empty()) {
@@ -271,6 +272,7 @@ struct rotated_box_15_test {
     }
 };
 
+/// The triangles in the leaves below a node.
 [[nodiscard]] std::vector<std::uint32_t> triangles_below(const aabb::model<walked_tree>& m, walked_tree::cursor node) {
     std::vector<std::uint32_t> triangles;
     std::vector<walked_tree::cursor> open{node};

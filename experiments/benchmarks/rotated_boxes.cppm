@@ -93,10 +93,10 @@ private:
         constexpr std::size_t last = (J + 2) % 3;
         const three& axis = b_axes_[J];
         const three& size = b_magnitudes_[J];
-        const three at = yzx(axis) * zxy(p.between) - zxy(axis) * yzx(p.between);
+        const three distance = yzx(axis) * zxy(p.between) - zxy(axis) * yzx(p.between);
         const three radius_a = yzx(size) * zxy(p.half_a) + zxy(size) * yzx(p.half_a);
         const three radius_b = b_magnitudes_[next] * p.half_b[last] + b_magnitudes_[last] * p.half_b[next];
-        return any_beyond(at, radius_a + radius_b + margin_);
+        return any_beyond(distance, radius_a + radius_b + margin_);
     }
 
     std::array<three, 3> b_axes_{};  // in A's frame

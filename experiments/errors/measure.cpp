@@ -102,6 +102,7 @@ private:
     std::vector<std::uint8_t> truth_, results_;
 };
 
+/// Runs the methods on generated pairs, batch by batch.
 template <class Real>
 std::vector<error_point> run_pairs(const error_study& study, const pair_set& set, progress& shown, std::size_t& done) {
     error_run run(study, set.pair_class, set.in_double);
@@ -221,6 +222,7 @@ private:
     alternating_tests<hit_point> tests_;
 };
 
+/// Generates pairs until there are enough hits, and runs the constructing tests on these.
 template <class Real>
 std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint64_t done) {
     hit_run run(set);

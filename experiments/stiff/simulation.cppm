@@ -68,6 +68,7 @@ public:
     }
 
 private:
+    /// Detects the contacts of the bodies at these positions, and times it.
     std::span<const aabb::contact> detect_at(std::span<const double> position) {
         poses_->move_to(position);
         detected_position_.assign(position.begin(), position.end());

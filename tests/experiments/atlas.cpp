@@ -72,7 +72,7 @@ TEST_CASE("A border lies where two take the same time, between two scenes that d
     CHECK(borders[0].parameter == "displacement");
     CHECK(borders[0].before == "a");
     CHECK(borders[0].after == "b");
-    CHECK(std::abs(borders[0].at - 0.1) < 1e-3);
+    CHECK(std::abs(borders[0].position - 0.1) < 1e-3);
     CHECK(borders[0].range.low < 0.1);
     CHECK_BETWEEN(0.1, borders[0].range.high, 0.2);
     const aabblab::table summary = borders_summary(borders);
@@ -96,7 +96,7 @@ TEST_CASE("Lists of several margins have one border, that of the fastest of them
     REQUIRE(borders.size() == 1);
     CHECK(borders[0].before == "neighbour_list + radix");
     CHECK(borders[0].after == "radix");
-    CHECK(std::abs(borders[0].at - std::sqrt(0.1)) < 1e-3);
+    CHECK(std::abs(borders[0].position - std::sqrt(0.1)) < 1e-3);
 }
 
 TEST_CASE("A border between single repeats is as sure as the repeats of others make it") {

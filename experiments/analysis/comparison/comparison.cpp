@@ -48,6 +48,7 @@ void add_once(std::vector<T>& list, const T& value) {
     if (std::ranges::find(list, value) == list.end()) list.push_back(value);
 }
 
+/// The scenes of A that occur in B, too.
 std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_scene& b) {
     std::vector<shared_scene> scenes;
     std::map<scene_key, std::size_t> places;  // keyed without the seed

@@ -26,13 +26,13 @@ std::vector<double> values_in(std::span<const row* const> rows, const row_value&
 
 }  // namespace
 
-std::string value_of(const factors& of, std::string_view name) {
-    const auto factor = std::ranges::find(of, name, &std::pair<std::string, std::string>::first);
-    return factor != of.end() ? factor->second : "";
+std::string value_of(const factors& scene, std::string_view name) {
+    const auto factor = std::ranges::find(scene, name, &std::pair<std::string, std::string>::first);
+    return factor != scene.end() ? factor->second : "";
 }
 
-double number_of(const factors& of, std::string_view name) {
-    return number_or_nan(value_of(of, name));
+double number_of(const factors& scene, std::string_view name) {
+    return number_or_nan(value_of(scene, name));
 }
 
 selection selection::with(aabb::strategy_kind kind, std::string choice) const {
@@ -149,12 +149,12 @@ const measurements::experiment_results& measurements::read(const std::string& ex
     results->rows = verified_rows(folder_ / experiment);
     std::vector<std::pair<factors, std::vector<const row*>>> groups;
     for (const row& r : results->rows) {
-        const factors of = factors_of(r.scene);
-        auto group = std::ranges::find(groups, of, &std::pair<factors, std::vector<const row*>>::first);
-        if (group == groups.end()) group = groups.insert(group, {of, {}});
+        const factors scene = factors_of(r.scene);
+        auto group = std::ranges::find(groups, scene, &std::pair<factors, std::vector<const row*>>::first);
+        if (group == groups.end()) group = groups.insert(group, {scene, {}});
         group->second.push_back(&r);
     }
-    for (auto& [of, rows] : groups) results->conditions.emplace_back(of, std::move(rows));
+    for (auto& [scene, rows] : groups) results->conditions.emplace_back(scene, std::move(rows));
     return *results;
 }
 
@@ -168,9 +168,9 @@ std::vector<std::string> measurements::experiments() const {
 
 extent_of_results measurements::extent(const std::string& experiment) const {
     const std::vector<row>& rows = read(experiment).rows;
-    const auto distinct = [&](auto of) {
-        std::set<std::remove_cvref_t<decltype(std::invoke(of, rows.front()))>> values;
-        for (const row& r : rows) values.insert(std::invoke(of, r));
+    const auto distinct = [&](auto value) {
+        std::set<std::remove_cvref_t<decltype(std::invoke(value, rows.front()))>> values;
+        for (const row& r : rows) values.insert(std::invoke(value, r));
         return values.size();
     };
     const auto seed = [](const row& r) { return r.scene.seed; };

@@ -15,9 +15,9 @@ export namespace aabblab {
 using factors = std::vector<std::pair<std::string, std::string>>;
 
 /// The value of a factor; empty if no factor has that name.
-[[nodiscard]] std::string value_of(const factors& of, std::string_view name);
+[[nodiscard]] std::string value_of(const factors& scene, std::string_view name);
 /// The value as a number; NaN if it is not a number.
-[[nodiscard]] double number_of(const factors& of, std::string_view name);
+[[nodiscard]] double number_of(const factors& scene, std::string_view name);
 
 /// A short alias for the tables of claims.
 using kind = aabb::strategy_kind;

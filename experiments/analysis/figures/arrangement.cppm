@@ -354,19 +354,19 @@ private:
     [[nodiscard]] std::vector<flag> flags_of(std::size_t panel) const {
         std::vector<flag> flags;
         for (const figure_mark& m : drawing_.panels[panel].marks) {
-            const double at = plot_left(panel) + drawing_.x.place(m.x) * plot_width();
+            const double line_x = plot_left(panel) + drawing_.x.place(m.x) * plot_width();
             const double length = width_of(m.label) + gap;
-            const bool right = at + length <= figure_width;
-            flags.push_back({at, right ? at : at - length, right ? at + length : at});
+            const bool right = line_x + length <= figure_width;
+            flags.push_back({line_x, right ? line_x : line_x - length, right ? line_x + length : line_x});
         }
         return flags;
     }
 
-    void add(place at, const std::string& text, words::anchor end = words::anchor::left, int angle = 0) {
-        layout_.texts.push_back({at, text, end, {}, angle});
+    void add(place position, const std::string& text, words::anchor end = words::anchor::left, int angle = 0) {
+        layout_.texts.push_back({position, text, end, {}, angle});
     }
-    void add(const std::vector<place>& at, const std::vector<std::string>& lines, words::anchor end) {
-        for (std::size_t i = 0; i < lines.size(); ++i) add(at[i], lines[i], end);
+    void add(const std::vector<place>& centres, const std::vector<std::string>& lines, words::anchor end) {
+        for (std::size_t i = 0; i < lines.size(); ++i) add(centres[i], lines[i], end);
     }
 
     /// @returns the upper edge of the label

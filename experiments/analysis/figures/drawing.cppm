@@ -92,11 +92,11 @@ struct extent {
     std::vector<std::size_t> looks;
     std::vector<const series*> first;
     for (const numbered_series& s : lines) {
-        const auto same = std::ranges::find_if(first, [&](const series* other) {
+        const auto known = std::ranges::find_if(first, [&](const series* other) {
             return !f.panels.empty() && !other->label.empty() && other->label == s.source->label;
         });
-        looks.push_back(static_cast<std::size_t>(same - first.begin()));
-        if (same == first.end()) first.push_back(s.source);
+        looks.push_back(static_cast<std::size_t>(known - first.begin()));
+        if (known == first.end()) first.push_back(s.source);
     }
     return looks;
 }
@@ -146,6 +146,7 @@ struct extent {
     return labels;
 }
 
+/// Scales an axis to its values or, if it has names, to their positions with half a gap on either side.
 [[nodiscard]] scale axis_scale(const figure_axis& axis, extent values, scale_end end) {
     std::vector<tick> names;
     const double half = half_gap(axis);

@@ -89,6 +89,7 @@ std::string operands_of(std::string_view hexadecimal) {
     return text;
 }
 
+/// The PDF operators that draw lines or fill areas.
 std::string operators_of(const strokes& s) {
     const bool is_area = s.width == 0;
     std::string text = "q ";
@@ -110,6 +111,7 @@ std::string operators_of(const strokes& s) {
     return text + (is_area ? "f Q\n" : "S Q\n");
 }
 
+/// The PDF operators that write a text with its superscript, turned about its anchor.
 std::string operators_of(const words& w) {
     const std::string text = encoded(w.text);
     const std::string power = encoded(w.power);

@@ -56,21 +56,22 @@ constexpr double thin = 0.06;
 using places = std::vector<place>;
 
 /// Adds the outlines of a sign centred at a place.
-void add_sign(const sign& s, place at, std::vector<places>& to) {
-    if (s.corners == is_disc) return to.push_back({at});
+void add_sign(const sign& s, place centre, std::vector<places>& outlines) {
+    if (s.corners == is_disc) return outlines.push_back({centre});
     const auto corner = [&](int i, int count) {
         const double angle = (s.turn + 360. * i / count) * std::numbers::pi / 180;
-        return place{at.x + s.size * std::cos(angle), at.y + s.size * std::sin(angle)};
+        return place{centre.x + s.size * std::cos(angle), centre.y + s.size * std::sin(angle)};
     };
     if (s.corners == is_cross) {
-        to.push_back({corner(0, 4), corner(2, 4)});
-        to.push_back({corner(1, 4), corner(3, 4)});
+        outlines.push_back({corner(0, 4), corner(2, 4)});
+        outlines.push_back({corner(1, 4), corner(3, 4)});
         return;
     }
-    places& outline = to.emplace_back();
+    places& outline = outlines.emplace_back();
     for (int i = 0; i < s.corners; ++i) outline.push_back(corner(i, s.corners));
 }
 
+/// Turns the laid-out parts of a figure into lines, areas and texts.
 class painter {
 public:
     explicit painter(const figure& f)
@@ -101,8 +102,8 @@ private:
         sheet_.parts.emplace_back(std::move(w));
     }
     void write(const std::vector<std::string>& lines, place top, words::anchor end, const std::string& power) {
-        const places at = lines_below(top, lines.size());
-        for (std::size_t i = 0; i < lines.size(); ++i) write({at[i], lines[i], end, power});
+        const places centres = lines_below(top, lines.size());
+        for (std::size_t i = 0; i < lines.size(); ++i) write({centres[i], lines[i], end, power});
     }
     void stroke(std::vector<places> lines, std::string_view colour, double thickness,
                 std::vector<double> pattern = {}) {
@@ -114,15 +115,15 @@ private:
             for (const double tenths : dashes[look % dashes.size()]) lengths.push_back(tenths / 10);
         stroke(std::move(lines), colour_of(look), line_width, std::move(lengths));
     }
-    void put_signs(const places& at, std::size_t look) {
+    void put_signs(const places& centres, std::size_t look) {
         const sign& s = signs[look % signs.size()];
         strokes drawn{{}, colour_of(look)};
-        for (const place& p : at) add_sign(s, p, drawn.lines);
+        for (const place& p : centres) add_sign(s, p, drawn.lines);
         drawn.closed = s.corners > is_cross;
         drawn.round = s.corners == is_disc;
         if (s.is_open) drawn.width = frame_width;
         if (drawn.round) drawn.width = 2 * s.size;
-        if (!at.empty()) sheet_.parts.emplace_back(std::move(drawn));
+        if (!centres.empty()) sheet_.parts.emplace_back(std::move(drawn));
     }
     void fill(places outline, std::size_t look) {
         sheet_.parts.emplace_back(
@@ -164,6 +165,7 @@ private:
         stroke(std::move(lines), grid_colour, thin);
     }
 
+    /// Fills the area between the quartiles of a line or level.
     void draw_band(const shown_series& s) {
         if (!s.varies) return;
         if (s.is(series_style::level)) {
@@ -187,6 +189,7 @@ private:
         stroke_look(std::move(lines), s.look, false);
     }
 
+    /// Draws the line of a series and the signs of its points.
     void draw_line(const shown_series& s) {
         if (s.is(series_style::level)) {
             const double height = y(s.points.front().y);
@@ -206,8 +209,8 @@ private:
 
     void draw_marks() {
         for (std::size_t i = 0; i < panel_->marks.size(); ++i) {
-            const double at = x(panel_->marks[i].x);
-            stroke({{{at, plot_->bottom}, {at, plot_->mark_tops[i]}}}, frame_colour, thin, {0.15, 0.25});
+            const double mark_x = x(panel_->marks[i].x);
+            stroke({{{mark_x, plot_->bottom}, {mark_x, plot_->mark_tops[i]}}}, frame_colour, thin, {0.15, 0.25});
         }
     }
 

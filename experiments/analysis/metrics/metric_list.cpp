@@ -96,6 +96,7 @@ optional_number wrong_share(const row& r) {
     return (false_negatives + false_positives) / std::max(reported - false_positives + false_negatives, 1.0);
 }
 
+/// The metrics that do not count work.
 std::vector<metric> row_metrics() {
     using enum metric_group;
     const std::string cpu = "processor ";

@@ -43,10 +43,11 @@ std::string text_of(const std::optional<std::uint64_t>& value) {
 
 /// Metrics that the table shows with more than a median, in columns of their own.
 bool has_own_column(const metric& m) {
-    constexpr std::array<std::string_view, 5> own{"frame_ms", "build_ms", "all_bytes", "missing", "invented"};
-    return std::ranges::find(own, m.name) != own.end();
+    constexpr std::array<std::string_view, 5> names{"frame_ms", "build_ms", "all_bytes", "missing", "invented"};
+    return std::ranges::find(names, m.name) != names.end();
 }
 
+/// The cells of a line in the columns of `full_table_of`.
 std::vector<std::string> cells_of(const scene_summary& scene, const summary_line& line, std::size_t rank) {
     std::vector<std::string> cells{scene.experiment,
                                    scene.scene.kind,

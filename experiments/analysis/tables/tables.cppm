@@ -56,7 +56,7 @@ struct summary_line {
     candidate_name name;
     std::string label;        ///< the parts of the name that differ within the scene
     std::size_t repeats = 0;  ///< over all seeds
-    std::uint64_t pairs = 0;  ///< summed over the seeds, as are contacts, missing and invented
+    std::uint64_t pairs = 0;  ///< summed over the seeds, as are contacts and errors
     std::optional<std::uint64_t> contacts;
     std::string status;  ///< "exact", or "inexact" if it is inexact for any seed
     std::optional<std::uint64_t> false_negatives, false_positives;

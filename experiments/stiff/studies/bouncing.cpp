@@ -15,6 +15,7 @@ constexpr double gravity = 9.81;  // m/s²
 constexpr double stiffness = 2e5;  // N/m
 constexpr double duration = 20;    // s
 
+/// Seven by seven balls above a floor, too far from each other to touch.
 stepped_world bouncing_balls() {
     stepped_world world;
     world.meshes = {floor_of(8), octahedron(0.1F)};

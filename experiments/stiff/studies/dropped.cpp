@@ -35,7 +35,7 @@ public:
     [[nodiscard]] double seconds(double for_1_m) const { return for_1_m * std::sqrt(diameter_); }
 
     /// Ends early if bodies leave the range of valid poses.
-    /// @param stored_every stores the positions of every so many steps
+    /// @param stored_every the interval of the stored positions, in steps
     /// @throws aabb::input_error if it ends before the first of its twenty samples.
     [[nodiscard]] trajectory run(const candidate& tested, const integrator_info& stepping, double step,
                                  std::size_t stored_every, bool with_energy) const {

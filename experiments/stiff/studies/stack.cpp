@@ -21,11 +21,11 @@ stepped_world stack_of(double ratio) {
     world.bodies = {{}};
     double total_mass = 0;
     for (std::size_t i = 0; i < bodies; ++i) {
-        const auto at = static_cast<double>(i);
-        const double mass = std::pow(ratio, at / (bodies - 1));
+        const auto level = static_cast<double>(i);
+        const double mass = std::pow(ratio, level / (bodies - 1));
         total_mass += mass;
         // Apexes must not touch the diagonals between triangles.
-        world.bodies.push_back({.mesh = 1, .position = {0.05 + 0.002 * at, 0.01, edge * at}, .mass = mass});
+        world.bodies.push_back({.mesh = 1, .position = {0.05 + 0.002 * level, 0.01, edge * level}, .mass = mass});
     }
     world.law.stiffness = stiffness;
     world.law.damping = 2 * std::sqrt(bodies * stiffness * total_mass);
