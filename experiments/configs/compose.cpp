@@ -74,8 +74,8 @@ listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, c
     const auto excluded = doc.take_others(named);
     const auto require = [kind](const aabb::strategy_choice& choice) {
         if (choice.name == "auto")
-            throw aabb::input_error("auto is no " + std::string(name_of(kind)) + ": leave " +
-                                    std::string(name_of(kind)) + " out, and write auto = true beside what is named");
+            throw aabb::input_error("auto is not a " + std::string(name_of(kind)) + " strategy: omit " +
+                                    std::string(name_of(kind)) + ", and write auto = true beside the named strategies");
         aabb::require_known(kind, choice);
     };
     listed_strategies listed;
@@ -91,9 +91,9 @@ listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, c
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (std::ranges::find(aabb::strategies(kind), entry.key, &aabb::strategy_info::name) !=
             aabb::strategies(kind).end())
-            doc.fail(entry.line, "'" + entry.key + "' is a strategy, not a kind of them; write " +
-                                     std::string(name_of(kind)) + " = \"" + entry.key + "\", or { name = \"" +
-                                     entry.key + "\", … } with its parameters");
+            doc.fail(entry.line, "'" + entry.key + "' is a strategy, not a kind; write " + std::string(name_of(kind)) +
+                                     " = \"" + entry.key + "\", or { name = \"" + entry.key +
+                                     "\", … } with its parameters");
     doc.fail(entry.line, aabb::unknown_name("key of [compose]", entry.key, known));
 }
 

@@ -75,8 +75,8 @@ kept_costs costs_here(const aabb::cost_model& costs) {
 
 std::string text_of(const kept_costs& kept) {
     std::string text =
-        "# What elementary work takes, in nanoseconds, as `aabblab calibrate` measured it. Another version of the\n"
-        "# program, processor or instruction set makes no use of it; `aabblab calibrate --reset` removes it.\n";
+        "# Times of elementary operations in nanoseconds, measured by `aabblab calibrate`. Another version of the\n"
+        "# program, processor or instruction set ignores them; `aabblab calibrate --reset` removes them.\n";
     text += "version = " + toml_string(kept.version) + "\ndate = " + toml_string(kept.date) +
             "\nprocessor = " + toml_string(kept.processor) + "\ninstructions = " + toml_string(kept.instructions) +
             "\n\n[costs]\n";
@@ -123,7 +123,7 @@ void use_kept_costs() {
     }();
     if (!kept.serve(costs_here({}))) {
         note(file.string() + " is of aabblab " + kept.version + " with " + kept.instructions + " on " + kept.processor +
-             ", not of this; costs are as shipped until aabblab calibrate measures them here");
+             ", so the shipped costs are used until aabblab calibrate measures those of this machine");
         return;
     }
     aabb::set_machine_costs(kept.costs);

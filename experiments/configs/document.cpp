@@ -145,8 +145,8 @@ document::document(const std::string& as_written, std::string file, std::size_t 
     : file_(std::move(file)) {
     const std::string text = without_returns_at_ends(as_written);
     if (text.size() > most)
-        throw aabb::input_error(file_ + " is longer than " + std::to_string(most) + " bytes, the most that " +
-                                std::string(what) + " may have");
+        throw aabb::input_error(file_ + " is longer than " + std::to_string(most) + " bytes, the limit for " +
+                                std::string(what));
     if (const int line = line_of_long_key(text))
         fail(line, "a key has more than " + std::to_string(most_parts) + " parts");
     try {
@@ -156,7 +156,7 @@ document::document(const std::string& as_written, std::string file, std::size_t 
         const toml::source_position& at = error.source().begin;
         if (error.description().find("redefine existing string 'compose'") != std::string_view::npos)
             fail(static_cast<int>(at.line),
-                 "compose is a name already, so it cannot be a table too; write [[compose]] with auto = true in place "
+                 "compose is already a name, so it cannot be a table too; write [[compose]] with auto = true in place "
                  "of compose = \"auto\"");
         throw aabb::input_error(file_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
                                 ": this is not TOML: " + std::string(error.description()));
@@ -192,7 +192,7 @@ const node& document::needed(const node& table, std::string_view key, const std:
 std::span<const node> document::tables_of(const std::string& key) const {
     const node* list = root_.find(key);
     if (!list) return {};
-    if (list->kind != node_kind::list) fail(list->line, key + " must stand in double brackets: [[" + key + "]]");
+    if (list->kind != node_kind::list) fail(list->line, key + " must be in double brackets: [[" + key + "]]");
     return list->items;
 }
 
@@ -261,12 +261,12 @@ void document::require_few(int line, std::string_view of, std::span<const std::s
     products += std::accumulate(factors.begin(), factors.end(), 1.0, std::multiplies{});
     if (products > static_cast<double>(most_products))
         fail(line, "the lists multiply to more than " + std::to_string(most_products) + " " + std::string(of) +
-                       ", the most that a config may have");
+                       ", the limit for a config");
 }
 
 std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view what) {
     if (!std::filesystem::exists(file))
-        throw aabb::input_error(file.string() + " is not there; expected " + std::string(what));
+        throw aabb::input_error(file.string() + " does not exist; expected " + std::string(what));
     if (std::filesystem::is_directory(file))
         throw aabb::input_error(file.string() + " is a folder; expected " + std::string(what));
     return text_of_file(file, most);

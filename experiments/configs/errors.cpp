@@ -67,8 +67,8 @@ void require_doubles_taken(const document& doc, error_study& study) {
             else
                 names += (names.empty() ? "" : "; ") + to_text(choice);
         }
-    if (!names.empty()) study.notes.push_back("of floats only, with no part in doubles: " + names);
-    if (taking == 0) doc.fail(doc.root().find("pairs")->line, "no curve takes triangles of doubles");
+    if (!names.empty()) study.notes.push_back("only for floats, so left out of pairs of doubles: " + names);
+    if (taking == 0) doc.fail(doc.root().find("pairs")->line, "no curve has a test for triangles of doubles");
 }
 
 void require_meshes(const document& doc, const node& scene) {
@@ -91,8 +91,8 @@ std::vector<error_curve> curves_of(const document& doc) {
             doc.fail(table.line, "two curves have the label '" + curve.label + "'");
         if (curve.triangles.empty() != curves[0].triangles.empty())
             doc.fail(table.line, "'" + curve.label + "' and '" + curves[0].label +
-                                     "' do not go together: triangle tests alone are held against pairs of triangles, "
-                                     "other compositions play scenes; put them into two configs");
+                                     "' cannot be in one config: triangle tests alone run on pairs of triangles, other "
+                                     "compositions on scenes; put them into two configs");
         const auto add = [&](const std::string& text) {
             if (!methods.add(true, text)) doc.fail(table.line, "'" + text + "' is a point of two curves");
         };
@@ -142,7 +142,7 @@ experiment whole_of(const document& doc, const error_study& study, experiment_si
     if (const node* measure = doc.root().find("measure"))
         for (const char* key : {"processes", "ask", "caches", "metrics"})
             if (const node* entry = measure->find(key))
-                doc.fail(entry->line, std::string("errors has no ") + key + "; run has");
+                doc.fail(entry->line, std::string("errors has no ") + key + ", which is for run");
     for (const error_curve& curve : study.curves)
         e.compositions.insert(e.compositions.end(), curve.compositions.begin(), curve.compositions.end());
     for (const metric_plot& plot : study.plots)
@@ -185,12 +185,13 @@ void read_sized(const document& doc, experiment_size size, error_study& study) {
         if (study.hits.empty()) doc.fail(1, "this config has no curve; expected at least one [[curve]], or [[hits]]");
         reject_keys(doc, {"pairs", "scene", "plot", "measure"}, "is for curves, and this config has none");
     } else if (study.curves[0].triangles.empty()) {
-        reject_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these play each [[scene]] whole");
+        reject_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these run whole scenes");
         study.plots = plots_of(doc);
         study.whole = whole_of(doc, study, size);
         study.notes = study.whole->notes;
     } else {
-        reject_keys(doc, {"plot", "measure"}, "is for compositions; triangle tests alone are plotted over their time");
+        reject_keys(doc, {"plot", "measure"},
+                    "is for compositions; triangle tests alone are plotted against their time");
         read_triangles(doc, size, study);
     }
 }
@@ -200,7 +201,7 @@ void read_sized(const document& doc, experiment_size size, error_study& study) {
 error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
     if (const node* compose = doc.root().find("compose"))
-        doc.fail(compose->line, "[compose] is of a config of run; ./aabblab run plays it");
+        doc.fail(compose->line, "[compose] belongs to a config of run; use ./aabblab run");
     doc.require_keys(doc.root(), "", {"name", "seed", "pairs", "scene", "curve", "hits", "plot", "measure", "quick"});
     error_study study;
     study.name = name_of(doc);

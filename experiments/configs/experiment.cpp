@@ -136,9 +136,9 @@ void read_asking(const document& doc, experiment& e) {
         e.how.cold = read_word(doc, "caches", *caches, states) == 1;
         if (e.how.cold) require_meshes("caches", *caches);
     }
-    if (e.how.ask == question::first) e.notes.emplace_back("asked for: any one contact of a frame");
-    if (e.how.ask == question::count) e.notes.emplace_back("asked for: the number of contacts of a frame");
-    if (e.how.cold) e.notes.emplace_back("before each query the caches hold other things");
+    if (e.how.ask == question::first) e.notes.emplace_back("query: any one contact of each frame");
+    if (e.how.ask == question::count) e.notes.emplace_back("query: the number of contacts of each frame");
+    if (e.how.cold) e.notes.emplace_back("caches: cold before each query");
 }
 
 /// Fresh processes share the repeats, so there cannot be more processes than repeats.
@@ -200,7 +200,7 @@ void read_sized(const document& doc, experiment_size size, experiment& e) {
 experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
     if (const node* curve = doc.root().find("curve"))
-        doc.fail(curve->line, "[[curve]] is of a config of errors; ./aabblab errors runs it");
+        doc.fail(curve->line, "[[curve]] belongs to a config of errors; use ./aabblab errors");
     doc.require_keys(doc.root(), "", {"name", "seed", "engines", "external", "scene", "compose", "measure", "quick"});
     experiment e;
     e.file = file;
@@ -221,11 +221,11 @@ std::string text_of_config(const std::filesystem::path& file) {
         for (const char* folder : {AABBLAB_CONFIGS, AABBLAB_CONFIGS "/errors"})
             if (const auto of_project = std::filesystem::path(folder) / file.filename();
                 std::filesystem::exists(of_project))
-                throw aabb::input_error(file.string() + " is not there; did you mean " + of_project.string() + "?");
+                throw aabb::input_error(file.string() + " does not exist; did you mean " + of_project.string() + "?");
     if (file.extension() == ".aabbs")
         throw aabb::input_error(
             file.string() +
-            " is a recording, not a config: pairs, explain and recommend take it, and a config plays "
+            " is a recording, not a config: pairs, explain and recommend take it, and a config reads "
             "it as kind = \"recording\", file = \"" +
             file.filename().string() + "\" under [[scene]]");
     return text_of_file(file, longest_config, "a config");

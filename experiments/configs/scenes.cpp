@@ -58,7 +58,7 @@ void require_known_keys(const document& doc, const node& scene, const scene_info
     if (quick && is_false(*quick)) quick = nullptr;
     for (const node* table : {&scene, quick})
         if (const node* seed = table && info.reads_file ? table->find("seed") : nullptr)
-            doc.fail(seed->line, info.name + " plays a file as it is and has no seed");
+            doc.fail(seed->line, info.name + " reads a file, so it has no seed");
     std::vector<std::string> known{"kind", "seed", "quick"};
     if (info.has_meshes) known.insert(known.end(), {"meshes", "without_data"});
     for (const aabb::parameter_info& p : info.parameters) known.push_back(p.name);
@@ -84,7 +84,7 @@ std::vector<std::string> meshes_of(const document& doc, const node& scene, std::
         doc.at(listed->line, [&] { missing = std::ranges::find_if_not(meshes, is_there); });
     if (instead.empty() || missing == meshes.end()) return meshes;
     std::string note = std::string(name_without_order(*missing, doc.folder())) +
-                       " is not there (./aabblab data fetches it); instead the scene has";
+                       " does not exist (./aabblab data downloads it); it is replaced by";
     for (const std::string& mesh : instead) note += (&mesh == instead.data() ? " " : ", ") + mesh;
     notes.push_back(note);
     return instead;

@@ -67,7 +67,7 @@ private:
             waiting.pop_back();
             const gltf_node& next = node(at.node);
             std::optional<gltf_matrix>& place = places_[at.node];
-            if (place) file_.fail(gltf_place("nodes", at.node) + " stands in more than one place of the scene");
+            if (place) file_.fail(gltf_place("nodes", at.node) + " occurs more than once in the scene");
             if (!next.extension.empty())
                 file_.fail(gltf_place("nodes", at.node) + " has the extension " + in_quotes(next.extension) +
                            ", which is not supported");

@@ -99,7 +99,7 @@ struct gltf_asset {
 template <class Element>
 [[nodiscard]] inline const Element& gltf_element(const file_text& file, const std::vector<Element>& list,
                                                  std::string_view name, std::size_t index) {
-    if (index >= list.size()) file.fail(gltf_place(name, index) + " is used, but is not there");
+    if (index >= list.size()) file.fail(gltf_place(name, index) + " is used, but does not exist");
     return list[index];
 }
 

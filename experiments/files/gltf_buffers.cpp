@@ -21,11 +21,12 @@ struct chunk {
 };
 chunk take_chunk(const file_text& file, std::string_view& rest) {
     const std::string at = std::to_string(file.text.size() - rest.size());
-    if (rest.size() < chunk_header_bytes) file.fail("is no glTF file: it ends in the head of the chunk at byte " + at);
+    if (rest.size() < chunk_header_bytes)
+        file.fail("is not a glTF file: it ends in the header of the chunk at byte " + at);
     const std::size_t length = u32_at(rest, 0);
     const chunk taken{u32_at(rest, 4), rest.substr(chunk_header_bytes, length)};
     if (taken.bytes.size() != length)
-        file.fail("is no glTF file: the chunk at byte " + at + " announces " + std::to_string(length) +
+        file.fail("is not a glTF file: the chunk at byte " + at + " announces " + std::to_string(length) +
                   " bytes, but the file has " + std::to_string(taken.bytes.size()) + " of them");
     rest.remove_prefix(chunk_header_bytes + length);
     return taken;
@@ -145,7 +146,7 @@ private:
             case gltf_component::f32: return scalar::f32;
         }
         file_.fail(name_ + " has the componentType " + std::to_string(static_cast<std::size_t>(component)) +
-                   ", which is none");
+                   ", which is unknown");
     }
 
     [[nodiscard]] elements elements_of(std::size_t index, std::size_t offset, std::size_t count,
@@ -201,15 +202,15 @@ private:
 gltf_parts gltf_parts_of(const file_text& file) {
     std::string_view rest = file.text;
     if (!rest.starts_with("glTF")) return {rest, {}, true};
-    if (rest.size() < header_bytes) file.fail("is no glTF file: it ends in the header of 12 bytes");
+    if (rest.size() < header_bytes) file.fail("is not a glTF file: it ends in the header of 12 bytes");
     if (const std::uint32_t version = u32_at(rest, 4); version != 2)
         file.fail("is glTF of version " + std::to_string(version) + "; only version 2 is read");
     if (const std::uint32_t length = u32_at(rest, 8); length != rest.size())
-        file.fail("is no glTF file: its header announces " + std::to_string(length) + " bytes, but the file has " +
+        file.fail("is not a glTF file: its header announces " + std::to_string(length) + " bytes, but the file has " +
                   std::to_string(rest.size()));
     rest.remove_prefix(header_bytes);
     const chunk first = take_chunk(file, rest);
-    if (first.type != json_chunk) file.fail("is no glTF file: its first chunk is not JSON");
+    if (first.type != json_chunk) file.fail("is not a glTF file: its first chunk is not JSON");
     gltf_parts parts{first.bytes, {}};
     // Chunks of other types belong to extensions and are skipped.
     while (!rest.empty())

@@ -112,7 +112,7 @@ std::vector<std::size_t> roots_of(const object& root) {
 }  // namespace
 
 gltf_asset parse_gltf(const file_text& file, const gltf_parts& parts) {
-    const object root(file.name, parts.json, "is no glTF file",
+    const object root(file.name, parts.json, "is not a glTF file",
                       parts.is_text ? object::position::line : object::position::byte);
     const std::optional<object> metadata = root.member("asset");
     const std::string version = metadata ? metadata->text("version").value_or("") : "";

@@ -54,7 +54,7 @@ private:
         if (frame == frame_) return;
         if (frame < frame_)
             in_.fail("frame " + std::to_string(frame) + " follows frame " + std::to_string(frame_) +
-                     "; frames stand in order");
+                     "; frames must be in order");
         if (frame >= most)
             in_.fail("a frame is a number below " + std::to_string(most) + ", not " + std::to_string(frame));
         if (frame_ == 0) require_all_objects();

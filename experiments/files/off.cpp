@@ -144,7 +144,7 @@ loaded_mesh read_off(const file_text& file) {
     attempt words = read_as(file, arrangement::words);
     if (face_lines.loaded && words.loaded && face_lines.loaded->mesh.triangles != words.loaded->mesh.triangles)
         file.fail(
-            "can be read in two ways, as numbers behind the corners of a face are colours or more faces; expected each "
+            "can be read in two ways, as numbers after the corners of a face are colours or more faces; expected each "
             "vertex and each face on a line of its own");
     for (attempt* other : {&face_lines, &words})
         if (other->loaded) return *std::move(other->loaded);

@@ -67,7 +67,7 @@ output_file::output_file(const std::filesystem::path& file) : state_(std::make_u
         state_->file.reset(std::fopen(file.c_str(), "wb"));
     } else {
         if (std::filesystem::is_symlink(file, error)) {
-            if (!exists(status)) state_->reject("it is a symbolic link to what is not there");
+            if (!exists(status)) state_->reject("it is a symbolic link to a file that does not exist");
             state_->target = std::filesystem::canonical(file);  // the link itself is preserved
         }
         state_->folder = open(state_->folder_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);

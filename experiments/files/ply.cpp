@@ -130,7 +130,7 @@ header read_header(text_scanner& in) {
             const std::string name(in.word());
             h.elements.push_back({name, in.whole<std::uint64_t>("the number of elements"), {}});
         } else if (word == "property") {
-            if (h.elements.empty()) in.fail("a property stands before the first element");
+            if (h.elements.empty()) in.fail("a property precedes the first element");
             h.elements.back().properties.push_back(read_property(in, h.elements.back()));
         } else if (word == "end_header") {
             if (!has_format) in.fail("the header has no format");
@@ -212,7 +212,7 @@ public:
     [[nodiscard]] static std::size_t place(std::uint64_t face) { return face; }
     void end() const {
         if (bytes_.find_first_not_of(" \t\r\n") != std::string_view::npos)
-            reject(file_, "goes on for " + std::to_string(bytes_.size()) +
+            reject(file_, "continues for " + std::to_string(bytes_.size()) +
                               " bytes after the last element that its header announces");
     }
     [[nodiscard]] std::size_t rounded() const { return rounded_; }

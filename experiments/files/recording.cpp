@@ -83,13 +83,13 @@ std::array<char, 128> field(const std::string& text, const std::string& otherwis
 std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     if (size < sizeof(header))
-        reject(file, "is no recording: its header takes " + std::to_string(sizeof(header)) +
+        reject(file, "is not a recording: its header takes " + std::to_string(sizeof(header)) +
                          " bytes, but the file has " + std::to_string(size));
     whole_file opened(file, size);
     header h{};
     if (!opened.has_read(&h, sizeof h)) reject(file, "cannot be read");
     if (h.name.back() != 0 || h.type.back() != 0 || h.zero != std::array<std::int32_t, 2>{})
-        reject(file, "is no recording: its header does not hold two names and two zeros");
+        reject(file, "is not a recording: its header does not hold two names and two zeros");
     if (h.objects < 0 || h.last_frame < 0)
         reject(file, "its header announces " + std::to_string(h.objects) + " objects and " +
                          std::to_string(h.last_frame) + " frames; neither can be negative");

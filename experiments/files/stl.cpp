@@ -186,7 +186,7 @@ loaded_mesh read_stl(const file_text& file) {
     const std::size_t size = file.text.size();
     if (size < header_bytes)
         file.fail(
-            "is no STL file: it is neither text that begins with solid nor holds the 84 bytes of a binary header");
+            "is not an STL file: it is neither text that begins with solid nor holds the 84 bytes of a binary header");
     const std::uint32_t count = announced_triangles(file.text);
     file.fail("its header announces " + std::to_string(count) + " triangles, which take " +
               std::to_string(bytes_of_binary(count)) + " bytes, but the file has " + std::to_string(size));

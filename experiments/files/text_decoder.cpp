@@ -164,7 +164,7 @@ void text_decoder::take_byte(char c, std::string& text) {
     if (padding_ != ' ') {
         if (is_blank(c)) return;
         problem_ = std::string("is not text: ") + (padding_ == ctrl_z ? "Ctrl-Z" : "a NUL byte") + " in line " +
-                   std::to_string(line_) + ", with more behind it";
+                   std::to_string(line_) + ", with more text after it";
         return;
     }
     if (ends_ == line_end::unknown) {

@@ -159,7 +159,7 @@ void note_left_out(const std::vector<std::string>& names, const std::filesystem:
 void require_other_file(const std::string& out, const std::string& input) {
     std::error_code ignored;  // a file that does not exist is no conflict
     if (std::filesystem::equivalent(out, input, ignored))
-        throw aabb::input_error(out + " would write over " + input + ", which this command reads");
+        throw aabb::input_error(out + " would overwrite " + input + ", which this command reads");
 }
 
 void require_no_mesh(const std::string& out, const std::vector<std::string>& meshes) {
@@ -184,9 +184,10 @@ bool names_config(const std::string& argument) {
 scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     const std::string& first = arguments.front();
     if (names_config(first))
-        throw aabb::input_error(first +
-                                " is a config, one of which explain and run take alone; expected a recording, "
-                                "meshes, or a motion file and its meshes");
+        throw aabb::input_error(
+            first +
+            " is a config, which explain and run take as their only argument; expected a recording, "
+            "meshes, or a motion file and its meshes");
     if (first.ends_with(".aabbs")) {
         if (arguments.size() > 1)
             throw aabb::input_error("a recording is a scene of its own, so give " + first + " alone");
@@ -200,10 +201,9 @@ scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     if (std::error_code ignored; !names_mesh(first) && std::filesystem::is_regular_file(first, ignored))
         throw aabb::input_error(first +
                                 " is neither a recording (.aabbs) nor a mesh; if it is a motion file, its "
-                                "meshes come after it");
+                                "meshes follow it");
     if (arguments.size() > 2)
-        throw aabb::input_error("more than two meshes move by a motion file, which comes first; " + first +
-                                " is a mesh");
+        throw aabb::input_error("more than two meshes need a motion file, which comes first; " + first + " is a mesh");
     note_left_out(arguments);
     return {"mesh_pair", {{"normalise", "no"}}, arguments, 1, {}};
 }

@@ -45,7 +45,7 @@ private:
 
     void take_plain(std::string& field) {
         while (at_ < text_.size() && !next_is(",") && !is_at_line_end()) {
-            if (next_is("\"")) fail("a quote stands in a field that does not begin with one");
+            if (next_is("\"")) fail("a quote is in a field that does not begin with one");
             if (next_is("\r"))
                 fail("some lines end in carriage returns alone, others in line feeds; expected one of the two");
             field += text_[at_++];
@@ -101,7 +101,7 @@ csv_text read_csv(std::string_view text, const std::string& file) {
 std::vector<csv_record> whole_records_of(std::string_view text, const std::string& file) {
     csv_text table = read_csv(text, file);
     if (table.bytes < text.size())
-        throw aabb::input_error(file + ": its last row is cut off: expected a line feed behind it");
+        throw aabb::input_error(file + ": its last row is cut off: expected a line feed after it");
     return std::move(table.records);
 }
 

@@ -26,7 +26,7 @@ void make_folder(const std::filesystem::path& folder) {
     if (folder.empty()) throw aabb::input_error("the folder of the results has no name");
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) throw aabb::input_error("the folder " + folder.string() + " cannot be made: " + error.message());
+    if (error) throw aabb::input_error("the folder " + folder.string() + " cannot be created: " + error.message());
 }
 
 }  // namespace
@@ -42,8 +42,8 @@ folder_lock::folder_lock(const std::filesystem::path& folder) {
         usleep(50'000);
     }
     close(descriptor_);
-    throw aabb::input_error("another aabblab writes into " + folder.string() +
-                            " at this moment; wait until it ends, or name another folder with --out");
+    throw aabb::input_error("another aabblab is writing to " + folder.string() +
+                            "; wait until it ends, or name another folder with --out");
 }
 
 folder_lock::~folder_lock() {
@@ -75,9 +75,8 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
         std::tie(date_, digests_) = resume_manifest(manifest, experiment_);
         for (std::size_t i = 0; i < rows_.size(); ++i)
             if (!digests_.contains(rows_[i].scene))
-                throw aabb::input_error(table.string() + ":" + std::to_string(i + 2) +
-                                        ": manifest.json knows no scene " + rows_[i].scene.kind +
-                                        " with these parameters; was the row altered?");
+                throw aabb::input_error(table.string() + ":" + std::to_string(i + 2) + ": manifest.json has no scene " +
+                                        rows_[i].scene.kind + " with these parameters; was the row altered?");
         if (std::filesystem::exists(folder_ / "differences.csv"))
             differences_ = read_differences(folder_ / "differences.csv");
     }

@@ -100,7 +100,7 @@ struct read_in {
 
 read_in read_json(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file))
-        throw aabb::input_error(file.string() + " is not there; results without it cannot be used");
+        throw aabb::input_error(file.string() + " does not exist; results without it cannot be used");
     const std::string text = text_of_file(file);
     const char* const otherwise = "is not a manifest of results";
     json_value content(file.string(), text, otherwise);
@@ -187,8 +187,8 @@ sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
     if (!seal) return result;
     result.seal = seal_in(*seal);
     if (seal->needed("manifest").text() != checksum_of(manifest.raw))
-        throw aabb::input_error(
-            file.string() + " was altered after the run: what stands in it does not have the checksum that it states");
+        throw aabb::input_error(file.string() +
+                                " was altered after the run: it does not have the checksum that it states");
     return result;
 }
 
@@ -202,7 +202,7 @@ std::string rejection_to_resume(const std::filesystem::path& manifest, const exp
                previous.content.needed("build").text("commit").value_or("unknown") +
                "), whose times cannot be compared";
     if (previous.raw.value("costs", json()) != costs())
-        return where + " were made with other costs (aabblab calibrate), by which strategies plan otherwise";
+        return where + " were made with other costs (aabblab calibrate), with which strategies plan differently";
     if (!previous.content.has("seal")) return {};
     // Altered results must not be resumed and sealed again.
     try {

@@ -124,7 +124,7 @@ std::vector<row> read_rows(const std::filesystem::path& file,
             throw aabb::input_error(place + "the status is '" + r.status + "'; expected exact or inexact");
         if (const auto [first, is_new] = lines.emplace(r.key(), line); !is_new)
             throw aabb::input_error(place + "the measurement of line " + std::to_string(first->second) +
-                                    " stands here again, so two runs have written into one folder");
+                                    " is repeated here, so two runs have written to one folder");
         if (on_row) on_row(r, line);
     };
     const csv_text table = read_csv(text_of_file(file), file.string());

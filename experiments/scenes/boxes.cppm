@@ -25,19 +25,19 @@ struct motion_config : scene_size {
     double displacement = 0.1;
     length_unit unit = length_unit::extent;
 };
-/// @param way help text for `displacement`
-[[nodiscard]] constexpr auto motion_parameters_of(std::string_view way) {
+/// @param help for `displacement`
+[[nodiscard]] constexpr auto motion_parameters_of(std::string_view help) {
     return std::tuple_cat(
         size_parameters<scene_size>("how many boxes"),
         std::tuple{
-            aabb::number_parameter{"displacement", &motion_config::displacement, 0.0, 1e9, way},
+            aabb::number_parameter{"displacement", &motion_config::displacement, 0.0, 1e9, help},
             aabb::choice_parameter{
                 "unit", &motion_config::unit, std::array<std::string_view, 2>{"extent", "spacing"},
-                "what displacement is a fraction of: the mean extent of a box, or the mean spacing (the edge of the "
-                "cube that each box would have for itself)"}});
+                "the unit of displacement: the mean extent of a box, or the mean spacing (the edge of the cube of "
+                "space per box)"}});
 }
 inline constexpr auto motion_parameters =
-    motion_parameters_of("the way of every box in a frame, unfolded where walls reflect it");
+    motion_parameters_of("displacement of each box per frame, along its path if walls reflect it");
 
 /// `displacement` as a length.
 /// @param extent mean extent of the boxes

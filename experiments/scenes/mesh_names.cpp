@@ -80,7 +80,7 @@ ordered_name split_name(std::string_view name, const std::filesystem::path& fold
         const std::string_view build = name.substr(at + key.size());
         if (build.find_first_of(":,") != std::string_view::npos)
             throw aabb::input_error(
-                "order=BUILD stands last in the name of a mesh and takes no parameters, as in "
+                "order=BUILD must end the name of a mesh and takes no parameters, as in "
                 "torus_knot:triangles=5000,order=sah, not as in '" +
                 std::string(name) + "'");
         return {before.substr(0, at - 1), build};

@@ -15,7 +15,7 @@ const scene_kind& kind_named(const std::string& name) {
 }
 
 void require_seed(const scene_info& info, const scene_choice& choice) {
-    if (info.reads_file && choice.seed) throw aabb::input_error(info.name + " plays a file as it is and has no seed");
+    if (info.reads_file && choice.seed) throw aabb::input_error(info.name + " reads a file, so it has no seed");
     if (!info.reads_file && !choice.seed) throw aabb::input_error(info.name + " needs a seed");
 }
 

@@ -35,10 +35,9 @@ std::vector<std::string> unfinished_parts(const std::filesystem::path& folder) {
     std::vector<std::string> sentences;
     for (const part& p : parts) {
         if (!std::filesystem::exists(folder / p.name / "manifest.json"))
-            sentences.push_back(fmt::format("of {} nothing was played yet", p.name));
+            sentences.push_back(fmt::format("{} has not been run yet", p.name));
         else if (!read_manifest(folder / p.name).finished)
-            sentences.push_back(
-                fmt::format("{} is not finished; scenes of it that were not played are missing", p.name));
+            sentences.push_back(fmt::format("{} is not finished, so some of its scenes are missing", p.name));
     }
     return sentences;
 }

@@ -13,10 +13,10 @@ namespace {
 void print_tables(std::span<const error_point> points) {
     for (const pair_group group : groups_in(points)) {
         print(
-            fmt::format("In {}:\nshares of pairs with a wrong answer, of intersecting ones that were missed,\nof "
-                        "others that were invented; fewest wrong first\n\n{}\n",
+            fmt::format("In {}:\nshares of wrong results among all pairs, of false negatives among intersecting\n"
+                        "ones, of false positives among the others; fewest wrong first\n\n{}\n",
                         title_of(group), to_text(error_summary(points, group), output_width())));
-        print(fmt::format("By set, missed + invented as shares of all pairs\n\n{}\n",
+        print(fmt::format("By set, false negatives + false positives as shares of all pairs\n\n{}\n",
                           to_text(errors_by_set(points, group), output_width())));
         print(group_statement(points, group) + "\n\n");
     }
@@ -27,9 +27,9 @@ void print_tables(std::span<const hit_point> points) {
         const table shown = hit_summary(points, in_double);
         if (shown.rows.empty()) continue;
         print(
-            fmt::format("Hits of triangles of {}s against CGAL's exact construction: hits whose\n"
-                        "kind or number of corners differs, the greatest error of a coordinate over its\n"
-                        "bound, the greatest at all beside its bound\n\n{}\n",
+            fmt::format("Intersections of triangles of {}s, compared with CGAL's exact construction:\n"
+                        "those whose kind or number of corners differs, the greatest ratio of an error\n"
+                        "to its bound, and the greatest error with its bound\n\n{}\n",
                         in_double ? "double" : "float", to_text(shown, output_width())));
     }
 }
@@ -44,8 +44,8 @@ std::vector<std::string> measure_hits_into(const std::filesystem::path& folder, 
     std::vector<std::string> failures;
     for (const hit_point& p : points)
         if (!p.is_right())
-            failures.push_back(
-                fmt::format("{} constructs {} hits of {} wrongly", p.triangle, p.different + p.outside, p.pairs));
+            failures.push_back(fmt::format("{} constructs {} intersections of {} wrongly", p.triangle,
+                                           p.different + p.outside, p.pairs));
     return failures;
 }
 

@@ -79,7 +79,7 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
         print(heading_of(scene) + "\n" + to_text(table_of(scene, e.shown), output_width()) + "\n");
         if (shown != printed::tables_and_counts) continue;
         if (const table counts = counts_table_of(scene); !counts.columns.empty())
-            print("work a frame after the first one, and bytes\n" + to_text(counts, output_width()) + "\n");
+            print("work per frame after the first one, and bytes\n" + to_text(counts, output_width()) + "\n");
     }
     flush_output();
 }
@@ -90,10 +90,11 @@ void print_overall(std::span<const scene_summary> scenes) {
     for (const scene_summary& scene : scenes) alike[scene.lines[0].name].push_back(scene);
     for (const auto& [base, group] : alike)
         if (const table overall = overall_table_of(group); group.size() > 1 && !overall.rows.empty())
-            print(
-                fmt::format("{} scenes with {},\nthe ratio to it as a geometric mean, fastest first; regret: the ratio "
-                            "over\nthe least of an exact answer in each scene, the median, and the worst\n\n{}\n",
-                            group.size(), text_of(base), to_text(overall, output_width())));
+            print(fmt::format(
+                "{} scenes with the baseline {},\nratio: the geometric mean of the ratios to it, fastest first; "
+                "regret: the "
+                "ratio\nover the least one of an exact result in each scene, the median and the worst\n\n{}\n",
+                group.size(), text_of(base), to_text(overall, output_width())));
 }
 
 /// Multi-threaded compositions must not be pinned to one processor.
@@ -148,10 +149,10 @@ std::vector<std::string> idle_engines(const experiment& e, const scene_choice& s
     std::vector<std::string> sentences;
     for (const aabb::engine_info& engine : aabb::engines())
         if (std::ranges::find(e.engines, engine.name) != e.engines.end() && !candidate_of(engine, has_meshes(scene)))
-            sentences.push_back(engine.name + " has no part in " + called + ": it searches no boxes");
+            sentences.push_back(engine.name + " does not run on " + called + ": it does not search boxes");
     for (const external_engine& engine : e.externals)
         if (has_meshes(scene))
-            sentences.push_back(engine.name + " has no part in " + called + ": it is given boxes only");
+            sentences.push_back(engine.name + " does not run on " + called + ": it takes only boxes");
     return sentences;
 }
 

@@ -18,13 +18,12 @@ namespace {
 /// The tables of a report, with their captions.
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
     std::vector<named_table> tables = {
-        {"extreme_boxes", "Boxes: by the definition, in a double loop", scene_table(rows, row_group::boxes)},
-        {"extreme_meshes", "Meshes: by CGAL's exact kernel on every two triangles; -missing +invented",
+        {"extreme_boxes", "Boxes, compared with the definition in a double loop", scene_table(rows, row_group::boxes)},
+        {"extreme_meshes", "Meshes, compared with CGAL's exact kernel; -false negatives +false positives",
          scene_table(rows, row_group::meshes)},
         {"extreme_tests", "Meshes, by inexact triangle tests", inexact_scene_table(rows)},
         {"extreme_classes", "The same by class", class_table(rows)},
-        {"extreme_cases", "Pairs of triangles that were found hard, by exact tests and as two meshes",
-         case_table(rows)},
+        {"extreme_cases", "Hard pairs of triangles, by exact tests and as two meshes", case_table(rows)},
         {"extreme_case_tests", "The same by inexact triangle tests, in every order of corners, float and double",
          inexact_case_table(rows)}};
     std::erase_if(tables, [](const named_table& t) { return t.content.rows.empty(); });
@@ -145,7 +144,7 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
         for (const named_table& t : report.tables)
             print(t.caption + "\n\n" + to_text(t.content, output_width()) + "\n");
         for (const std::string& sentence : report.paragraphs) print(sentence + "\n");
-        print("\nRefused:\n");
+        print("\nRejected:\n");
         for (const std::string& sentence : rejections_in(rows)) print("  " + sentence + "\n");
     }
     for (const std::string& sentence : report.failures) note(sentence);
@@ -163,8 +162,8 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     for (const stiff_study& study : chosen) {
         stiff_result result;
         {
-            progress done("playing " + std::string(study.name), 1000);
-            result = study.run(
+            progress done("running " + std::string(study.name), 1000);
+            result = study.play(
                 {quick, default_candidate(), [&](double share) { done.at(static_cast<std::size_t>(1000 * share)); }});
         }
         add_study(report, study, result);

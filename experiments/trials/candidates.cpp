@@ -132,7 +132,8 @@ public:
     /// @throws aabb::input_error if the file is missing or its header differs. All member functions that read throw it.
     engine_output(std::string what, const std::filesystem::path& file, std::string columns)
         : what_(std::move(what)), columns_(std::move(columns)) {
-        if (!std::filesystem::exists(file)) throw aabb::input_error(what_ + " are not there: it wrote no such file");
+        if (!std::filesystem::exists(file))
+            throw aabb::input_error(what_ + " are missing: the engine did not write the file");
         if (std::filesystem::is_directory(file)) throw aabb::input_error(what_ + " are a folder; expected a file");
         in_.emplace(file, what_);
         if (!next()) throw aabb::input_error(what_ + " are an empty file; expected the line " + columns_);
@@ -262,13 +263,13 @@ private:
                                               .kept = true,
                                               .timeout = std::chrono::seconds(engine.timeout_s)});
         if (ended.timed_out)
-            throw engine_timeout("the " + name_ + " was killed: it had not ended after " +
+            throw engine_timeout("the " + name_ + " was killed: it was still running after " +
                                  std::to_string(engine.timeout_s) + " s, its timeout_s");
         if (ended.rejected == ENOENT && engine.program.find('/') == std::string::npos)
             fail(": there is no program " + engine.program + " in PATH; write ./" + engine.program +
                  " for one in the folder of the config");
         if (ended.rejected != 0) fail(": " + engine.program + " cannot be started: " + std::strerror(ended.rejected));
-        if (!WIFEXITED(ended.status)) fail(" was ended by signal " + std::to_string(WTERMSIG(ended.status)));
+        if (!WIFEXITED(ended.status)) fail(" was terminated by signal " + std::to_string(WTERMSIG(ended.status)));
         if (WEXITSTATUS(ended.status) != 0) fail(" ended with status " + std::to_string(WEXITSTATUS(ended.status)));
     }
 
@@ -277,11 +278,11 @@ private:
         engine_output table("the times of the " + name_, times_file_, "frame,update_ms,search_ms");
         while (table.next()) {
             if (table.number(0, "a frame", frames_) != times.size())
-                table.fail("expected frame " + std::to_string(times.size()) + "; each stands once, in order");
+                table.fail("expected frame " + std::to_string(times.size()) + "; each frame has one row, in order");
             times.push_back({table.milliseconds(1), table.milliseconds(2)});
             // A ratio cannot be formed with zero, and no search takes zero time.
             if (times.back().update_ms + times.back().search_ms == 0)
-                table.fail("expected more than 0 ms, the two together");
+                table.fail("expected a sum of the two times above 0 ms");
         }
         if (times.size() < frames_)
             throw aabb::input_error("the times of the " + name_ + " end before frame " + std::to_string(times.size()));
@@ -301,14 +302,14 @@ private:
         pairs_.clear();
         for (; ahead_ && ahead_->frame <= frame_; read_ahead()) {
             if (ahead_->frame < frame_)
-                table_->fail("this row of frame " + std::to_string(ahead_->frame) + " stands behind one of frame " +
+                table_->fail("this row of frame " + std::to_string(ahead_->frame) + " follows one of frame " +
                              std::to_string(frame_) +
                              "; expected rows sorted by frame, from 0 on, in any order within a frame");
             pairs_.push_back(ahead_->pair);
         }
         sort_rows(pairs_);
         if (const auto twice = std::ranges::adjacent_find(pairs_); twice != pairs_.end())
-            throw aabb::input_error("the pairs of the " + name_ + " have " + std::to_string(twice->a) + " " +
+            throw aabb::input_error("the pairs of the " + name_ + " contain " + std::to_string(twice->a) + " " +
                                     std::to_string(twice->b) + " twice in frame " + std::to_string(frame_));
         ++frame_;
     }

@@ -46,10 +46,10 @@ elapsed ask(stage_runner& p, const asking& how, std::string& wrong) {
     p.detect();
     const std::vector<aabb::contact>& contacts = p.sorted_contacts();
     if (how.ask == question::count && count != contacts.size())
-        wrong = "it counts " + std::to_string(count) + " contacts of " + std::to_string(contacts.size());
+        wrong = "it counts " + std::to_string(count) + " contacts, but there are " + std::to_string(contacts.size());
     if (how.ask == question::first && (first ? !std::ranges::binary_search(contacts, *first) : !contacts.empty()))
-        wrong = first ? "its first contact is none"
-                      : "it finds no contact, and there are " + std::to_string(contacts.size());
+        wrong = first ? "the contact that it finds is a false positive"
+                      : "it finds no contact, but there are " + std::to_string(contacts.size());
     return took;
 }
 

@@ -106,9 +106,9 @@ std::string time_into(const scene_choice& scene, const asking& how, timed_candid
     take(times.rest.detect.wall_ms, times.rest.detect.cpu_ms, r.detect_ms, r.detect_cpu_ms);
     std::string wrong = times.wrong;
     if (wrong.empty() && times.digest != r.digest && !may_diverge(scene, *timed.tested))
-        wrong = "timed, its digest is " + times.digest + ", validated it was " + r.digest;
+        wrong = "its digest is " + times.digest + " when timed, but was " + r.digest + " when validated";
     if (wrong.empty()) return {};
-    return text_of(r.name) + " is wrong on " + scene.kind + " (" + parameters_text(scene) + "): " + wrong;
+    return text_of(r.name) + " has a wrong result on " + scene.kind + " (" + parameters_text(scene) + "): " + wrong;
 }
 
 /// The candidates that are ready to be timed, and the failures of the others.

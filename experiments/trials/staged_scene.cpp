@@ -199,10 +199,10 @@ std::string text_of(const attempt& run) {
     const std::string where = run.seen.frames > 0 ? fmt::format(", in frame {}", run.seen.frames) : "";
     const std::string after = fmt::format("after {:.2g} s{}", run.seconds, where);
     switch (run.end) {
-        case ending::done: return "played to its end";
-        case ending::stopped: return run.seconds > 0 ? "stopped " + after : "not played: no time was left";
+        case ending::done: return "ran to the end";
+        case ending::stopped: return run.seconds > 0 ? "stopped " + after : "not run: no time was left";
         case ending::out_of_memory: return "out of memory " + after;
-        case ending::rejected: return "refused " + after + ": " + run.reason;
+        case ending::rejected: return "rejected " + after + ": " + run.reason;
         case ending::failed: break;
     }
     return "failed " + after;

@@ -239,9 +239,10 @@ struct observation {
 
 /// Explain the columns of these times below a table.
 inline constexpr const char* build_ms_text =
-    "build ms: the stages are made, with the trees of all meshes, before frame 0.";
+    "build ms: the time to create the stages and build the trees of all meshes, before frame 0.";
 inline constexpr const char* ms_a_frame_text =
-    "ms/frame: update, search and detection of a frame, the mean of those after frame 0; of frame 0 where it is alone.";
+    "ms/frame: the mean time per frame after frame 0, in update, search and detection; of frame 0 if it is "
+    "the only one.";
 
 struct protocol {
     asking asked = {};
@@ -292,7 +293,7 @@ struct attempt {
     bool is_out_of_time = false;   ///< the overall time was over: the candidate is not necessarily slow
 };
 
-/// "stopped after 2.1 s, in frame 3", "not played: no time was left"
+/// "stopped after 2.1 s, in frame 3", "not run: no time was left"
 [[nodiscard]] std::string text_of(const attempt& run);
 
 /// A scene that is read once and then run in child processes, each of which starts at its first frame.

@@ -28,7 +28,7 @@ attempt first_run(staged_scene& scene, const candidate& tested, std::size_t fram
 
 turns run_interleaved(staged_scene& scene, std::span<const candidate> candidates, std::size_t frames,
                       std::size_t rounds, const time_limits& limits) {
-    progress shown("plays", rounds * candidates.size());
+    progress shown("runs", rounds * candidates.size());
     turns result{frames, 0, std::vector<std::vector<observation>>(candidates.size()),
                  std::vector<std::optional<attempt>>(candidates.size()), std::vector<bool>(candidates.size())};
     const double before_first = limits.to_run();

@@ -20,9 +20,8 @@ template <class T>
 std::string first_of(const aabb::set_difference<T>& d) {
     if (d.false_negatives.empty() && d.false_positives.empty()) return {};
     if (d.false_positives.empty() || (!d.false_negatives.empty() && d.false_negatives[0] < d.false_positives[0]))
-        return text_of(d.false_negatives[0]) + " is missing";
-    return text_of(d.false_positives[0]) +
-           (d.repeated ? " is reported more than once" : " is reported, but is not in the exact answer");
+        return text_of(d.false_negatives[0]) + " is a false negative";
+    return text_of(d.false_positives[0]) + (d.repeated ? " is reported more than once" : " is a false positive");
 }
 
 /// Compares one candidate with the ground truth.
@@ -103,8 +102,8 @@ private:
 
     void note(std::size_t frame, const std::string& difference) {
         if (!failure_.empty() || difference.empty()) return;
-        failure_ = text_of(candidate_.name) + " is wrong on " + choice_.kind + " (" + parameters_text(choice_) +
-                   "), frame " + std::to_string(frame) + ": " + difference;
+        failure_ = text_of(candidate_.name) + " has a wrong result on " + choice_.kind + " (" +
+                   parameters_text(choice_) + "), frame " + std::to_string(frame) + ": " + difference;
     }
 
     /// Classifies the differences of each pair of objects.

@@ -198,7 +198,7 @@ TEST_CASE("atlas --judge makes maps of results that are there, and says where th
                  "[measure]\nrepeats = 2\n");
     run_well({"run", folder / "small.toml", "--out", folder / "map/atlas"});
     const program_result made = run_well({"atlas", "--judge", "--out", folder / "map"});
-    CHECK(holds(made.err, "of atlas_large nothing was played yet"));
+    CHECK(holds(made.err, "atlas_large has not been run yet"));
     for (const std::string& line : lines_of(made.out.substr(made.out.find("B1: ")))) {
         INFO(line);
         CHECK((line.size() <= 80 || line.starts_with("Maps, borders")));

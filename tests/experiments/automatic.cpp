@@ -51,10 +51,10 @@ TEST_CASE("What is wrong with auto in a config is said with its line") {
     CHECK(rejection_of("compose = \"best\"") == "a.toml:2: compose must be a table or \"auto\", not \"best\"");
     CHECK(
         rejection_of("compose = \"auto\"\n[[compose]]\nsort = \"std\"") ==
-        "a.toml:3: compose is a name already, so it cannot be a table too; write [[compose]] with auto = true in place "
+        "a.toml:3: compose is already a name, so it cannot be a table too; write [[compose]] with auto = true in place "
         "of compose = \"auto\"");
     CHECK(rejection_of("[[compose]]\nprepare = \"auto\"") ==
-          "a.toml:3: auto is no prepare: leave prepare out, and write auto = true beside what is named");
+          "a.toml:3: auto is not a prepare strategy: omit prepare, and write auto = true beside the named strategies");
     CHECK(rejection_of("[[compose]]\nauto = 1") == "a.toml:3: auto is a number; expected true or false");
     CHECK(rejection_of("[[compose]]\nauto = true\n[[compose]]\nauto = true") == "a.toml:4: this auto is listed twice");
     CHECK(
@@ -73,7 +73,7 @@ TEST_CASE("auto finds the exact pairs in a run, and is one line of every table")
         "\"population\"]\nobjects = 60\nframes = 6\n[[scene]]\nkind = \"brownian\"\nobjects = 60\nframes = 1\n"
         "[measure]\nrepeats = 1\n");
     const program_result run = run_well({"run", config.string(), "--out", folder / "r"});
-    CHECK(holds(run.out, "3 scenes with std + none + one_axis"));
+    CHECK(holds(run.out, "3 scenes with the baseline std + none + one_axis"));
     CHECK(holds(run.out, "regret"));
     // A line for each scene, and one for all.
     CHECK(count_of("\n1  auto ", run.out) + count_of("\n2  auto ", run.out) == 4);
@@ -155,7 +155,7 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     CHECK_FALSE(holds(reported.out, "canonical"));
     // columns take no other sweep.
     for (const char* part : {"\nsweep: nothing else can be composed with the rest.\n", "\nratio: ms/frame over",
-                             "\nms/frame: update, search", "\nbuild ms: the stages are made"})
+                             "\nms/frame: the mean time per frame", "\nbuild ms: the time to create"})
         CHECK(holds(reported.out, part));
     check_narrow(reported.out);
     CHECK(holds(run_program({"explain", file, file}).err, "a recording is a scene of its own"));
@@ -209,7 +209,7 @@ TEST_CASE("explain takes meshes, and a motion with its meshes") {
     for (const char* part : {"canonical", "sah", "interval_arithmetic"}) CHECK(holds(pair.out, part));
     CHECK_FALSE(holds(pair.out, "moller"));
     CHECK(holds(run_refused({"explain", "icosphere", "icosphere", "icosphere"}).err,
-                "more than two meshes move by a motion file"));
+                "more than two meshes need a motion file"));
 }
 
 TEST_CASE("explain says what it did not get to in its time") {
@@ -230,7 +230,7 @@ TEST_CASE("explain says what is wrong with a name before anything else") {
     const std::string cut = folder.write("cut.aabbs", "no recording");
     check_refused({"explain"}, {{{"nope.off"}, "unknown mesh 'nope.off'"},
                                 {{"icospher"}, "did you mean 'icosphere'?"},
-                                {{text}, "if it is a motion file, its meshes come after it"},
+                                {{text}, "if it is a motion file, its meshes follow it"},
                                 {{cut}, cut}});
 }
 

@@ -249,5 +249,5 @@ TEST_CASE("What a terminal would obey is shown instead") {
                                  {"contacts", folder.write("\x1b.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n"), mesh}};
     CHECK(holds(run_program(printed[0]).out, shown + " (4 triangles) against"));
     CHECK(holds(run_program(printed[2]).out, "/\\x1b.txt: 1 object, "));
-    require_refused(printed[1], shown);  // it would write over the mesh
+    require_refused(printed[1], shown);  // it would overwrite the mesh
 }

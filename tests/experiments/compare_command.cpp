@@ -323,7 +323,7 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
         {{none, good}, "there are no results in " + none},
         {{good, other}, "have no scene in common"},
         {{good, torn}, "results.csv:83: the column scene_parameters is missing"},
-        {{unsaid, good}, "manifest.json is not there"},
+        {{unsaid, good}, "manifest.json does not exist"},
         {{good, typed}, "typed/manifest.json: build.cpu must be a string"},
         {{strange, good}, "strange/manifest.json:2: is not a manifest of results: its JSON is malformed"},
         {{folder / "twice", good}, "both hold results of the experiment test"},

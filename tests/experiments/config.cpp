@@ -128,10 +128,9 @@ TEST_CASE("A metric that is named is recorded and shown; a group is recorded") {
 }
 
 TEST_CASE("What was a key or a parameter once is refused with the new spelling") {
-    REQUIRE(
-        rejection_of(compose + "split_large = 4\n")
-            .ends_with("'split_large' is a strategy, not a kind of them; write prepare = \"split_large\", or { name = "
-                       "\"split_large\", … } with its parameters"));
+    REQUIRE(rejection_of(compose + "split_large = 4\n")
+                .ends_with("'split_large' is a strategy, not a kind; write prepare = \"split_large\", or { name = "
+                           "\"split_large\", … } with its parameters"));
     REQUIRE(
         rejection_of(compose + "tree = { name = \"leafless\", build = \"sah\" }\n")
             .ends_with(
@@ -213,7 +212,7 @@ TEST_CASE("Meshes that are not there are replaced by what the config names, and 
     const experiment e = parsed(scene + "without_data = [\"icosphere:triangles=20\", \"torus_knot:triangles=96\"]\n");
     REQUIRE(e.scenes[0].meshes == std::vector<std::string>{"icosphere:triangles=20", "torus_knot:triangles=96"});
     REQUIRE(e.notes.size() == 1);
-    REQUIRE(e.notes[0].starts_with("no_such.off is not there"));
+    REQUIRE(e.notes[0].starts_with("no_such.off does not exist"));
     REQUIRE(rejection_of(scene).find("test.toml:2: ") == 0);
     REQUIRE(holds(rejection_of(scene), "no_such.off"));
 }
@@ -280,7 +279,7 @@ TEST_CASE("A config that cannot be read is refused by name") {
     const temporary_folder folder;
     REQUIRE_THROWS_WITH(
         aabblab::read_experiment(folder / "first.toml", experiment_size::full),
-        Catch::Matchers::EndsWith("first.toml is not there; did you mean " AABBLAB_CONFIGS "/first.toml?"));
+        Catch::Matchers::EndsWith("first.toml does not exist; did you mean " AABBLAB_CONFIGS "/first.toml?"));
     REQUIRE(aabblab::read_experiment(folder.write("yes.toml", minimal), experiment_size::full).text == minimal);
 }
 

@@ -73,7 +73,7 @@ TEST_CASE("A config is no longer than its limit") {
     const std::string text = head + scene;
     const std::string longest = text + std::string(262'144 - text.size(), '#');
     CHECK(rejection_of(longest) == "accepted");
-    CHECK(rejection_of(longest + "#") == "test.toml is longer than 262144 bytes, the most that a config may have");
+    CHECK(rejection_of(longest + "#") == "test.toml is longer than 262144 bytes, the limit for a config");
     const temporary_folder folder;
     REQUIRE_NOTHROW(aabblab::read_experiment(folder.write("a.toml", longest), experiment_size::full));
     REQUIRE_THROWS_AS(aabblab::read_experiment("/dev/zero", experiment_size::full), aabb::input_error);
@@ -87,17 +87,17 @@ TEST_CASE("Lists that multiply are counted before anything is made of them") {
         return "{ name = \"axial_cut\", axes = [1, 2, 3], limit = [\"on\", \"off\"], " + list + " }";
     };
     CHECK(rejection_of(head + scene + "[compose]\npartition = " + cuts(20'000) + "\n") ==
-          "test.toml:6: " + most + "choices of partition, the most that a config may have");
+          "test.toml:6: " + most + "choices of partition, the limit for a config");
     // Each list is short enough; together they are not.
     const std::string splits = prepares(100);
     CHECK(rejection_of(head + scene + "[compose]\npartition = " + cuts(200) + "\n" + splits) ==
-          "test.toml:5: " + most + "compositions, the most that a config may have");
+          "test.toml:5: " + most + "compositions, the limit for a config");
     // Nor are several tables.
     const std::string half = "[[compose]]\npartition = " + cuts(100) + "\n" + splits;
     const std::string first = half + "sort = \"insertion\"\n";
     CHECK(rejection_of(head + scene + first + half + "sort = \"std\"\n").starts_with("test.toml:9: " + most));
     CHECK(rejection_of(head + "[[scene]]\nkind = [\"brownian\", \"still\"]\n" + list_of("seed", 400) +
-                       list_of("objects", 400)) == "test.toml:2: " + most + "scenes, the most that a config may have");
+                       list_of("objects", 400)) == "test.toml:2: " + most + "scenes, the limit for a config");
 }
 
 TEST_CASE("Names are checked before lists are multiplied, and every scene's before the first is made") {

@@ -21,7 +21,7 @@ TEST_CASE("CSV is read and written as RFC 4180 says") {
     CHECK(fields_of("a,b\r\nc,\"d\r\ne\"\r\n") == table{{"a", "b"}, {"c", "d\r\ne"}});
     CHECK(fields_of("\"a\",\"\"\n,\n\n") == table{{"a", ""}, {"", ""}, {""}});
     CHECK(read_csv("\"a\nb\",c\nd\n", "t.csv").records[1].line == 3);
-    CHECK(rejection_of("a\nb,c\"d\n") == "t.csv:2: a quote stands in a field that does not begin with one");
+    CHECK(rejection_of("a\nb,c\"d\n") == "t.csv:2: a quote is in a field that does not begin with one");
     CHECK(rejection_of("a,\"b\n\"c\n") == "t.csv:2: expected a comma or the end of the line after a closing quote");
 }
 

@@ -116,7 +116,7 @@ TEST_CASE("errors holds the geometry of hits against CGAL's exact construction")
                      "name = \"h\"\n[[hits]]\nclass = [\"random\", \"coplanar\", \"zero_area\"]\n"
                      "precision = [\"float\", \"double\"]\ncount = 1500\n");
     const program_result ran = run_well({"errors", config, "--out", folder / "out"});
-    CHECK(holds(ran.out, "Hits of triangles of doubles"));
+    CHECK(holds(ran.out, "Intersections of triangles of doubles"));
     CHECK(holds(ran.out, "error/bound"));
     CHECK_FALSE(std::filesystem::exists(folder / "out/errors.csv"));
     CHECK(std::filesystem::exists(folder / "out/config.toml"));
@@ -178,7 +178,7 @@ TEST_CASE("a config of errors that is wrong is refused with its line and the nea
     CHECK(rejection_of("[[scene]]\nkind = \"brownian\"\n" + one_curve) ==
           "e.toml:3: brownian is a scene of boxes, which has no triangles");
     CHECK(rejection_of("[[pairs]]\nprecision = \"double\"\n[[curve]]\ntriangle = \"moller\"\n") ==
-          "e.toml:2: no curve takes triangles of doubles");
+          "e.toml:2: no curve has a test for triangles of doubles");
     CHECK(rejection_of(some_pairs + one_curve + one_curve) == "e.toml:6: two curves have the label 'exact'");
     CHECK(rejection_of(some_pairs + one_curve + "[[curve]]\nlabel = \"x\"\ntriangle = \"exact\"\n") ==
           "e.toml:6: 'exact' is a point of two curves");
@@ -194,7 +194,7 @@ TEST_CASE("a config of errors that is wrong is refused with its line and the nea
     CHECK(rejection_of(some_hits + some_hits) == "e.toml:5: these hits are listed twice: random in float");
     CHECK(rejection_of("[[hits]]\nclas = \"random\"\n").starts_with("e.toml:3: unknown key of [[hits]] 'clas'"));
     CHECK(rejection_of("[[hits]]\ncount = 0\n") == "e.toml:3: count must be a whole number, at least 1, not 0");
-    CHECK(rejection_of("[hits]\ncount = 5\n") == "e.toml:2: hits must stand in double brackets: [[hits]]");
+    CHECK(rejection_of("[hits]\ncount = 5\n") == "e.toml:2: hits must be in double brackets: [[hits]]");
     run_refused({"errors", "nowhere.toml"});
 }
 
@@ -232,24 +232,25 @@ TEST_CASE("a config of errors keeps triangle tests and compositions apart") {
     const std::string scene = "[[scene]]\nkind = \"brownian\"\nobjects = 20\nframes = 3\n";
     CHECK(rejection_of(scene + lists) == "accepted");
     CHECK(rejection_of(lists + scene + one_curve) ==
-          "e.toml:9: 'exact' and 'lists' do not go together: triangle tests alone are held against pairs of triangles, "
-          "other compositions play scenes; put them into two configs");
+          "e.toml:9: 'exact' and 'lists' cannot be in one config: triangle tests alone run on pairs of triangles, "
+          "other compositions on scenes; put them into two configs");
     CHECK(rejection_of(lists + some_pairs) ==
-          "e.toml:5: [[pairs]] is for curves of triangle tests alone; these play each [[scene]] whole");
+          "e.toml:5: [[pairs]] is for curves of triangle tests alone; these run whole scenes");
     CHECK(rejection_of(some_pairs + one_curve + "[[plot]]\nx = \"frame_ms\"\n") ==
-          "e.toml:6: [[plot]] is for compositions; triangle tests alone are plotted over their time");
+          "e.toml:6: [[plot]] is for compositions; triangle tests alone are plotted against their time");
     CHECK(rejection_of(scene + lists + "[[plot]]\nx = \"frame_ms\"\ny = \"wrong\"\n")
               .starts_with("e.toml:11: unknown metric 'wrong'"));
     CHECK(rejection_of(scene + lists + "[[plot]]\nx = \"frame_ms\"\n") ==
           "e.toml:9: this plot has no y; expected the name of a metric");
     CHECK(rejection_of("seed = [1, 2]\n" + scene + lists) == "accepted");
-    CHECK(rejection_of(scene + "[compose]\n") == "e.toml:6: [compose] is of a config of run; ./aabblab run plays it");
+    CHECK(rejection_of(scene + "[compose]\n") == "e.toml:6: [compose] belongs to a config of run; use ./aabblab run");
     CHECK(refusal_in<aabb::input_error>([&] {
               return aabblab::parse_experiment("name = \"e\"\n" + scene + lists, "e.toml", experiment_size::full);
-          }) == "e.toml:6: [[curve]] is of a config of errors; ./aabblab errors runs it");
+          }) == "e.toml:6: [[curve]] belongs to a config of errors; use ./aabblab errors");
     CHECK(rejection_of(some_pairs + one_curve + "[measure]\nrepeats = 2\n")
               .starts_with("e.toml:6: [measure] is for compositions"));
-    CHECK(rejection_of(scene + lists + "[measure]\nprocesses = 2\n") == "e.toml:10: errors has no processes; run has");
+    CHECK(rejection_of(scene + lists + "[measure]\nprocesses = 2\n") ==
+          "e.toml:10: errors has no processes, which is for run");
     CHECK(rejection_of(scene + lists + "[[curve]]\nprepare = \"neighbour_lists\"\n") ==
           "e.toml:10: unknown prepare 'neighbour_lists'; did you mean 'neighbour_list'?");
     CHECK(rejection_of(scene + lists + "[[curve]]\nlabel = \"x\"\n")

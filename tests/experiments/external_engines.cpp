@@ -80,15 +80,15 @@ TEST_CASE("An external engine is held against the exact answer and has the times
 
 TEST_CASE("What an external engine gets wrong is a failure, and counted where it says that it may") {
     const auto [fault, says] = GENERATE(table<std::string, std::string>({
-        {"sed -i 2d \"$2\"\n", " is missing\n"},
-        {"sed -i '2s/.*/0,0,1/' \"$2\"\n", "the pair 0 1 is reported, but is not in the exact answer\n"},
-        {"sed -i 1q \"$2\"\n", " is missing\n"},
+        {"sed -i 2d \"$2\"\n", " is a false negative\n"},
+        {"sed -i '2s/.*/0,0,1/' \"$2\"\n", "the pair 0 1 is a false positive\n"},
+        {"sed -i 1q \"$2\"\n", " is a false negative\n"},
     }));
     const temporary_folder folder;
     const program_result result = run_with(folder, good + fault);
     INFO(result.err << result.out);
     REQUIRE(result.status == 1);
-    REQUIRE(result.err.starts_with("aabblab: mine is wrong on brownian ("));
+    REQUIRE(result.err.starts_with("aabblab: mine has a wrong result on brownian ("));
     REQUIRE(holds(result.err, says));
     REQUIRE(aabblab::read_rows(folder / "out/results.csv").size() == 2);
     const program_result counted = run_with(folder, good + fault, "brownian", "exact = false\n");
@@ -103,16 +103,16 @@ TEST_CASE("What an external engine gets wrong is a failure, and counted where it
 TEST_CASE("An answer of an external engine that is malformed gets one sentence and status 2") {
     const auto [fault, says] = GENERATE(table<std::string, std::string>({
         {"exit 3\n", "the external engine 'mine' ended with status 3"},
-        {"kill -9 $$\n", "the external engine 'mine' was ended by signal 9"},
-        {"rm \"$2\"\n", pairs + " are not there: it wrote no such file"},
-        {"rm \"$3\"\n", timing + " are not there: it wrote no such file"},
+        {"kill -9 $$\n", "the external engine 'mine' was terminated by signal 9"},
+        {"rm \"$2\"\n", pairs + " are missing: the engine did not write the file"},
+        {"rm \"$3\"\n", timing + " are missing: the engine did not write the file"},
         {": >\"$2\"\n", pairs + " are an empty file; expected the line frame,a,b"},
         {"sed -i 1d \"$3\"\n", timing + ", line 1, '0,0.5,1.25': expected the line frame,update_ms,search_ms"},
         {"rm \"$2\"; mkdir \"$2\"\n", pairs + " are a folder; expected a file"},
         {"sed -i '2s/.*/0,1,2,7/' \"$2\"\n", pairs + ", line 2, '0,1,2,7': expected frame,a,b"},
         {"sed -i \"2s/.*/$(printf %070d 7)/\" \"$2\"\n",
          pairs + ", line 2, '" + std::string(60, '0') + "…': expected frame,a,b"},
-        {"sed -i '2s/.*/0\\x00,4/' \"$2\"\n", pairs + ": is not text: a NUL byte in line 2, with more behind it"},
+        {"sed -i '2s/.*/0\\x00,4/' \"$2\"\n", pairs + ": is not text: a NUL byte in line 2, with more text after it"},
         {"sed -i '2s/.*/0,4/' \"$2\"\n", pairs + ", line 2, '0,4': expected frame,a,b"},
         {"sed -i '2s/.*//' \"$2\"\n", pairs + ", line 2, '': expected frame,a,b"},
         {"sed -i '2s/.*/0,1,x/' \"$2\"\n", pairs + ", line 2, '0,1,x': expected an object below 150"},
@@ -121,15 +121,16 @@ TEST_CASE("An answer of an external engine that is malformed gets one sentence a
         {"echo 4,1,2 >>\"$2\"\n", ": expected a frame below 4"},
         {"sed -i '2s/.*/0,7,7/' \"$2\"\n", pairs + ", line 2, '0,7,7': object 7 is paired with itself"},
         {"echo 0,1,2 >>\"$2\"\n",
-         ", '0,1,2': this row of frame 0 stands behind one of frame 3; expected rows sorted by frame, from 0 on, in "
+         ", '0,1,2': this row of frame 0 follows one of frame 3; expected rows sorted by frame, from 0 on, in "
          "any order within a frame"},
-        {"sed -i '2s/.*/0,5,6\\n0,6,5/' \"$2\"\n", pairs + " have 5 6 twice in frame 0"},
+        {"sed -i '2s/.*/0,5,6\\n0,6,5/' \"$2\"\n", pairs + " contain 5 6 twice in frame 0"},
         {"sed -i '$d' \"$3\"\n", timing + " end before frame 3"},
-        {"sed -i '3s/.*/2,1,1/' \"$3\"\n", timing + ", line 3, '2,1,1': expected frame 1; each stands once, in order"},
+        {"sed -i '3s/.*/2,1,1/' \"$3\"\n",
+         timing + ", line 3, '2,1,1': expected frame 1; each frame has one row, in order"},
         {"sed -i '3s/.*/1,-1,1/' \"$3\"\n", timing + ", line 3, \'1,-1,1\'" + no_time},
         {"sed -i '3s/.*/1,nan,1/' \"$3\"\n", timing + ", line 3, \'1,nan,1\'" + no_time},
         {"sed -i '3s/.*/1,1,2ms/' \"$3\"\n", timing + ", line 3, \'1,1,2ms\'" + no_time},
-        {"sed -i '3s/.*/1,0,0/' \"$3\"\n", timing + ", line 3, '1,0,0': expected more than 0 ms, the two together"},
+        {"sed -i '3s/.*/1,0,0/' \"$3\"\n", timing + ", line 3, '1,0,0': expected a sum of the two times above 0 ms"},
         {"echo 4,1,1 >>\"$3\"\n", timing + ", line 6, '4,1,1': expected a frame below 4"},
     }));
     CAPTURE(fault);
@@ -254,14 +255,14 @@ TEST_CASE("An external engine has no part in scenes of meshes") {
                      "kind = \"mesh_swarm\"\nmeshes = [\"icosphere:triangles=20\"]\nobjects = 5\n"
                      "frames = 1\n[measure]\nrepeats = 1\n");
     REQUIRE(run_well({"run", config, "--out", folder / "out"}).err ==
-            "aabblab: mine has no part in mesh_swarm: it is given boxes only\n");
+            "aabblab: mine does not run on mesh_swarm: it takes only boxes\n");
 }
 
 TEST_CASE("External engines in a config are checked, and are part of its hash") {
     const std::string scene = "[[scene]]\nkind = \"brownian\"\nobjects = 10\n";
     const auto with = [&](const std::string& external) { return "name = \"x\"\n" + external + scene; };
     const auto [external, says] = GENERATE(table<std::string, std::string>({
-        {"[external]\nname = \"a\"\ncommand = \"ls\"\n", ":2: external must stand in double brackets: [[external]]"},
+        {"[external]\nname = \"a\"\ncommand = \"ls\"\n", ":2: external must be in double brackets: [[external]]"},
         {"[[external]]\ncommand = \"ls\"\n", ":2: this [[external]] has no name; expected name = \"…\""},
         {"[[external]]\nname = \"a/b\"\ncommand = \"ls\"\n",
          ":3: the name 'a/b' must consist of letters, digits, - and _"},

@@ -79,7 +79,7 @@ TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, 
         CHECK(holds(ran.out, "\n" + scene));
     CHECK(holds(ran.out, "\n  box_inverted: box 7 is inverted"));
     CHECK(holds(ran.out, "many_against_many, "));
-    check_narrow(ran.out.substr(0, ran.out.find("\nRefused:")));
+    check_narrow(ran.out.substr(0, ran.out.find("\nRejected:")));
 
     const auto rows = csv_rows(out / "extreme.csv");
     REQUIRE(rows.size() >= 1000);

@@ -123,7 +123,7 @@ TEST_CASE("Seeds of a config do not multiply what has none, and one of its own i
     REQUIRE(e.scenes.size() == 1 + 2);
     CHECK_FALSE(e.scenes[0].seed);
     CHECK(aabblab::parameters_text(e.scenes[0]) == "file=" + file);
-    const std::string said = " recording plays a file as it is and has no seed";
+    const std::string said = " recording reads a file, so it has no seed";
     CHECK(rejection_of(recording_config("file = " + in_toml(file) + "\nseed = 1\n")) == "test.toml:6:" + said);
     CHECK(rejection_of(recording_config("file = " + in_toml(file) + "\nquick={ seed = 1 }\n")) ==
           "test.toml:6:" + said);
@@ -218,7 +218,7 @@ TEST_CASE("scene draws a recording, and makes one of a motion") {
     const std::string far = folder.write("far.txt", "0 0 1 0 0 1e39 0 1 0 0 0 0 1 0\n");
     check_refused({"scene"},
                   {{{"recording", "--picture", picture}, "recording: file must be given, the path of a file"},
-                   {{"recording", "--file", file, "--out", file}, "would write over"},
+                   {{"recording", "--file", file, "--out", file}, "would overwrite"},
                    {{"recording", "--file", file, "--seed", "1", "--picture", picture}, "has no seed"},
                    {{"recording", "--file", folder / "absent", "--picture", picture}, "no such file"},
                    {{"brownian", "--file", file, "--picture", picture}, "unknown parameter of brownian 'file'"},
@@ -234,7 +234,7 @@ TEST_CASE("A recording in place of a config is refused with what takes it") {
     for (const char* command : {"run", "validate"})
         CHECK(run_refused({command, file})
                   .err.ends_with("/s.aabbs is a recording, not a config: pairs, explain and recommend take it, and a "
-                                 "config plays it as kind = \"recording\", file = \"s.aabbs\" under [[scene]]\n"));
+                                 "config reads it as kind = \"recording\", file = \"s.aabbs\" under [[scene]]\n"));
 }
 
 TEST_CASE("list says which scenes play a file, and that it must be given") {

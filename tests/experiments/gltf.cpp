@@ -246,12 +246,12 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
         {&parts::more, R"(,"extensionsRequired":["KHR_draco_mesh_compression"])",
          "the file requires the extension 'KHR_draco_mesh_compression', which is not supported"},
         {&parts::more, R"(,"scene":1)", "the file shows scene 1, but it has 1"},
-        {&parts::scene, R"({"nodes":[7]})", "nodes[7] is used, but is not there"},
+        {&parts::scene, R"({"nodes":[7]})", "nodes[7] is used, but does not exist"},
         {&parts::scene, R"({"nodes":[-1]})", "scenes[0].nodes must be a list of whole numbers"},
         {&parts::scene, "5", "scenes[0] must be an object"},
-        {&parts::scene, R"({"nodes":[0,0]})", "nodes[0] stands in more than one place of the scene"},
-        {&parts::nodes, R"({"mesh":0,"children":[0]})", "nodes[0] stands in more than one place of the scene"},
-        {&parts::nodes, R"({"mesh":1})", "meshes[1] is used, but is not there"},
+        {&parts::scene, R"({"nodes":[0,0]})", "nodes[0] occurs more than once in the scene"},
+        {&parts::nodes, R"({"mesh":0,"children":[0]})", "nodes[0] occurs more than once in the scene"},
+        {&parts::nodes, R"({"mesh":1})", "meshes[1] is used, but does not exist"},
         {&parts::nodes, R"({"mesh":0.5})", "nodes[0].mesh must be a whole number"},
         {&parts::nodes, R"({"mesh":0,"matrix":[1]})", "nodes[0].matrix must be a list of 16 numbers"},
         {&parts::nodes, R"({"mesh":0,"matrix":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]})",
@@ -264,7 +264,7 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
         {&parts::primitive, R"({"attributes":{"NORMAL":0}})", "meshes[0] has a primitive without positions"},
         {&parts::primitive, R"({"attributes":{"POSITION":0},"mode":7})",
          "meshes[0] has a primitive of mode 7; modes are 0 to 6"},
-        {&parts::primitive, R"({"attributes":{"POSITION":2}})", "accessors[2] is used, but is not there"},
+        {&parts::primitive, R"({"attributes":{"POSITION":2}})", "accessors[2] is used, but does not exist"},
         {&parts::primitive, R"({"attributes":{"POSITION":1}})",
          "accessors[1] must be of floats and VEC3, as it has positions"},
         {&parts::primitive, R"({"attributes":{"POSITION":0},"indices":0})",
@@ -280,13 +280,13 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
          "buffers[0]: is a data: URI that is not base64"},
         {&parts::buffer, R"({"uri":"data:;base64,AAAAA","byteLength":1})",
          "buffers[0]: is a data: URI that is not base64"},
-        {&parts::views, R"({"buffer":1,"byteLength":48})", "buffers[1] is used, but is not there"},
+        {&parts::views, R"({"buffer":1,"byteLength":48})", "buffers[1] is used, but does not exist"},
         {&parts::views, R"({"buffer":0,"byteLength":61})", "bufferViews[0] reaches beyond the end of buffers[0]"},
         {&parts::views, R"({"buffer":0,"byteOffset":18446744073709551615,"byteLength":48})",
          "bufferViews[0] reaches beyond the end of buffers[0]"},
         {&parts::views, R"({"buffer":0,"byteLength":48,"byteStride":8})",
          "bufferViews[0] has a byteStride below the 12 bytes of one"},
-        {&parts::views, R"({"buffer":0,"byteLength":48})", "bufferViews[1] is used, but is not there"},
+        {&parts::views, R"({"buffer":0,"byteLength":48})", "bufferViews[1] is used, but does not exist"},
         {&parts::positions, R"({"componentType":5126,"count":4,"type":"VEC3"})",
          "accessors[0] has no bufferView, so its numbers are not in the file"},
         {&parts::positions, R"({"bufferView":0,"componentType":5126,"count":5,"type":"VEC3"})",
@@ -305,7 +305,7 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
         {&parts::nodes, R"({"mesh":0,"weights":["x"]})", "nodes[0].weights must be a list of numbers"},
         {&parts::nodes, R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{}}})",
          "nodes[0] has the extension 'EXT_mesh_gpu_instancing', which is not supported"},
-        {&parts::nodes, R"({"mesh":0,"skin":0})", "skins[0] is used, but is not there"},
+        {&parts::nodes, R"({"mesh":0,"skin":0})", "skins[0] is used, but does not exist"},
         {&parts::positions, R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"})",
          "meshes[0] has a face that uses vertex 3, but there are 3 vertices, counted from 0"},
         {&parts::indices, R"({"bufferView":1,"componentType":5122,"count":6)" + last,
@@ -321,7 +321,7 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
     CHECK_THAT(error_of(parts{.buffer = R"({"uri":"absent.bin","byteLength":60})"}.text()),
                EndsWith("/absent.bin: no such file"));
     CHECK_THAT(error_of(R"({"asset":{"version":"2.0"}})"), EndsWith("/a.gltf: the file has no scene"));
-    CHECK_THAT(error_of("{\n\n\"asset\":}"), EndsWith("/a.gltf:3: is no glTF file: its JSON is malformed"));
+    CHECK_THAT(error_of("{\n\n\"asset\":}"), EndsWith("/a.gltf:3: is not a glTF file: its JSON is malformed"));
 }
 
 TEST_CASE("glTF: morph targets move vertices by the weights of the node, or else of the mesh") {
@@ -343,7 +343,7 @@ TEST_CASE("glTF: morph targets move vertices by the weights of the node, or else
     CHECK_THAT(error_of(morphed("", R"("weights":[1],)", R"({"POSITION":4})")),
                EndsWith("/a.gltf: meshes[0] has a morph target for a number of vertices other than its own: 1, not 3"));
     CHECK_THAT(error_of(morphed("", R"("weights":[1],)", R"({"POSITION":9})")),
-               EndsWith("/a.gltf: accessors[9] is used, but is not there"));
+               EndsWith("/a.gltf: accessors[9] is used, but does not exist"));
 }
 
 TEST_CASE("glTF: sparse accessors replace elements of their view") {
@@ -383,7 +383,7 @@ TEST_CASE("glTF: a skinned mesh stands where its joints are") {
          "meshes[0] has a vertex that refers to joint 7, counted from 0, but its skin has 2 joints"},
         {{.joint_type = 5120}, "accessors[1] must be of whole numbers and VEC4, as it has joints"},
         {{.joints = {0, 0, 0, 0}}, "meshes[0] has 3 positions, but joints of 1 and weights of 3 vertices"},
-        {{.members = R"("joints":[1,9])"}, "nodes[9] is used, but is not there"},
+        {{.members = R"("joints":[1,9])"}, "nodes[9] is used, but does not exist"},
         {{.members = R"("joints":[1,2,0],"inverseBindMatrices":3)"},
          "skins[0] has 3 joints, but 2 inverse bind matrices"},
         {{.members = R"("joints":[1,2],"inverseBindMatrices":0)"},
@@ -431,15 +431,15 @@ TEST_CASE("glTF: a .glb file whose lengths lie is refused") {
     const std::string guess = "g\x1cgeometrynode'" + raw(std::uint8_t{0}) + "\x01" + raw(std::uint8_t{0}) + "n,";
     for (const auto& [bytes, error] : {
              std::pair{old, std::string(": is glTF of version 1; only version 2 is read")},
-             {guess, ":1: is no glTF file: its JSON is malformed"},
-             {std::string("glTF"), ": is no glTF file: it ends in the header of 12 bytes"},
-             {glb(json) + "x", ": is no glTF file: its header announces"},
-             {glb(""), ": is no glTF file: it ends in the head of the chunk at byte 12"},
+             {guess, ":1: is not a glTF file: its JSON is malformed"},
+             {std::string("glTF"), ": is not a glTF file: it ends in the header of 12 bytes"},
+             {glb(json) + "x", ": is not a glTF file: its header announces"},
+             {glb(""), ": is not a glTF file: it ends in the header of the chunk at byte 12"},
              {glb(raw(0xffffffffU) + raw(json_chunk) + "{}"),
-              ": is no glTF file: the chunk at byte 12 announces 4294967295 bytes, but the file has 2 of them"},
-             {glb(json + raw(8U)), ": is no glTF file: it ends in the head of the chunk at byte"},
-             {glb(chunk(binary_chunk, binary(), 0)), ": is no glTF file: its first chunk is not JSON"},
-             {glb(chunk(json_chunk, "{]", ' ')), ": is no glTF file: its JSON is malformed at byte 2"},
+              ": is not a glTF file: the chunk at byte 12 announces 4294967295 bytes, but the file has 2 of them"},
+             {glb(json + raw(8U)), ": is not a glTF file: it ends in the header of the chunk at byte"},
+             {glb(chunk(binary_chunk, binary(), 0)), ": is not a glTF file: its first chunk is not JSON"},
+             {glb(chunk(json_chunk, "{]", ' ')), ": is not a glTF file: its JSON is malformed at byte 2"},
          })
         CHECK_THAT(error_of(bytes, "a.glb"), Catch::Matchers::ContainsSubstring("/a.glb" + error));
 }

@@ -76,6 +76,6 @@ TEST_CASE("What is no JSON is refused where it goes wrong, however deeply it is 
     const auto nested = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
     CHECK_NOTHROW(read(nested(64)));
     CHECK_THROWS_AS(read(nested(65)), aabb::input_error);
-    CHECK_REFUSED(json_value("a.glb", "{]", "is no glTF file", json_value::position::byte),
-                  "a.glb: is no glTF file: its JSON is malformed at byte 2");
+    CHECK_REFUSED(json_value("a.glb", "{]", "is not a glTF file", json_value::position::byte),
+                  "a.glb: is not a glTF file: its JSON is malformed at byte 2");
 }

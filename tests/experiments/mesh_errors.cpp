@@ -94,7 +94,7 @@ TEST_CASE("malformed text meshes are refused with the line") {
              {"a.ply", "ply\nend_header\n", ":2: the header has no format"},
              {"a.ply", "ply\nformat binary 1.0\n",
               ":2: expected ascii, binary_little_endian or binary_big_endian, found 'binary'"},
-             {"a.ply", "ply\nproperty float x\n", ":2: a property stands before the first element"},
+             {"a.ply", "ply\nproperty float x\n", ":2: a property precedes the first element"},
              {"a.ply", "ply\nelement vertex 1\nproperty real x\n", ":3: expected the type of a property, found 'real'"},
              {"a.ply", "ply\nelement vertex many\n", ":2: expected the number of elements, found 'many'"},
              {"a.ply", "ply\nelement vertex 1\nproperty float x\nproperty float y\nelement face 1\n",
@@ -151,7 +151,7 @@ TEST_CASE("malformed binary meshes are refused") {
     const std::string face = raw(std::uint8_t{3}) + raw(0) + raw(1);
     const std::string triangle = stl_triangle({0, 0, 0, 1, 0, 0, 0, 1, 0});
     const std::string no_stl =
-        ": is no STL file: it is neither text that begins with solid nor holds the 84 bytes of a binary header";
+        ": is not an STL file: it is neither text that begins with solid nor holds the 84 bytes of a binary header";
     const std::string lying =
         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty float y\n"
         "property float z\nend_header\n";
@@ -166,7 +166,7 @@ TEST_CASE("malformed binary meshes are refused") {
              {"a.ply", ply_binary + ply_points() + face + raw(-1), ": face 0 has a negative length or corner"},
              {"a.ply", ply_binary + ply_points() + face, ": ends in element 0 of 1 elements 'face'"},
              {"a.ply", ply_binary + ply_points() + face + raw(2) + raw(1),
-              ": goes on for 4 bytes after the last element that its header announces"},
+              ": continues for 4 bytes after the last element that its header announces"},
              {"a.stl", "cube", no_stl},
              {"a.stl", (stl_header(2, "solid but binary") + triangle).substr(0, 100),
               ": its header announces 2 triangles, which take 184 bytes, but the file has 100"},

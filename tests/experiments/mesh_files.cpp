@@ -82,7 +82,7 @@ TEST_CASE("OFF is made of words, and lines mean something only where colours of 
     CHECK(error_of("OFF 9 2 0 0 0 0 2 0 0 3 1 0 3 2 0 2 3 0 1 3 0 0 1 0 9 9 9 8 8 8\n3 0 1 2 7\n7 0 1 2 3 4 5 6\n") ==
           "accepted");
     CHECK(error_of("OFF 9 2 0 0 0 0 1 0 0 0 1 0 0 0 1 1 1 1 1 1 2 1 1 3 1 1 4 1 1 5\n3 0 1 2 7\n3 0 1 2 4 5 6\n") ==
-          "a.off: can be read in two ways, as numbers behind the corners of a face are colours or more faces; expected "
+          "a.off: can be read in two ways, as numbers after the corners of a face are colours or more faces; expected "
           "each vertex and each face on a line of its own");
     // A number that is missing does not shift all others.
     CHECK(error_of("OFF\n3 2 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n3 2 1 0\n") ==

@@ -135,7 +135,7 @@ TEST_CASE("what cannot be written is refused") {
                         EndsWith("/proc/self/a: cannot be written: No such file or directory"));
     std::filesystem::create_symlink("absent", folder / "link");
     REQUIRE_THROWS_WITH(aabblab::output_file(folder / "link"),
-                        EndsWith("/link: cannot be written: it is a symbolic link to what is not there"));
+                        EndsWith("/link: cannot be written: it is a symbolic link to a file that does not exist"));
     REQUIRE(folder.files() == 1);
     const auto fill = [] { put("/dev/full", std::string(100'000, 'x')); };
     REQUIRE_THROWS_WITH(fill(), "/dev/full: cannot be written: No space left on device");

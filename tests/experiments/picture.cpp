@@ -17,7 +17,7 @@ TEST_CASE("a survey measures displacement over the mean extent and the mean spac
     REQUIRE(seen.sides() == aabb::vec3d{8, 8, 0});
     REQUIRE(*seen.displacement_over_spacing() == 1 / 4.0);
     REQUIRE(aabblab::displacement_text(seen) ==
-            "mean displacement a frame: 1 of the mean extent, 0.25 of the mean spacing");
+            "mean displacement per frame: 1 of the mean extent, 0.25 of the mean spacing");
     REQUIRE(seen.paths().size() == 4);
     REQUIRE_FALSE(seen.paths()[2][1]);
     // Back again, which is no way either.
@@ -99,7 +99,7 @@ TEST_CASE("scene draws every kind, without a recording where none is wanted") {
     REQUIRE(folder.files() == 1);
     REQUIRE(holds(result.out,
                   "wrote " + file + ": " + objects + (objects == "1" ? " object" : " objects") + ", 3 frames\n"));
-    REQUIRE(holds(result.out, "mean displacement a frame: "));
+    REQUIRE(holds(result.out, "mean displacement per frame: "));
     const std::string svg = bytes_of_file(file);
     for (const std::string& part : {">" + kind + "<", "objects=" + objects + " frames=2", std::string(" seed=9<")})
         REQUIRE(holds(svg, part));
@@ -133,10 +133,10 @@ TEST_CASE("scene says the displacement that was asked for") {
     const auto said = [&](const std::string& unit) {
         return run_program({"scene", "line", "--displacement", "0.25", "--unit", unit, "--out", out}).out;
     };
-    REQUIRE(holds(said("extent"), "mean displacement a frame: 0.25 of the mean extent, "));
+    REQUIRE(holds(said("extent"), "mean displacement per frame: 0.25 of the mean extent, "));
     REQUIRE(holds(said("spacing"), " of the mean extent, 0.25 of the mean spacing\n"));
     REQUIRE(holds(run_program({"scene", "line", "--frames", "0", "--out", out}).out,
-                  "mean displacement a frame: - of the mean extent, - of the mean spacing\n"));
+                  "mean displacement per frame: - of the mean extent, - of the mean spacing\n"));
 }
 
 TEST_CASE("scene refuses pictures that it cannot write and leaves no file behind") {

@@ -157,7 +157,7 @@ TEST_CASE("A repeat of a later process that finds other pairs is named, and its 
     };
     const auto failures = aabblab::run_scene(e, e.scenes[0], candidates, results, 1);
     REQUIRE(failures.size() == 1);
-    CHECK(failures[0].starts_with("std + none + one_axis is wrong on brownian"));
+    CHECK(failures[0].starts_with("std + none + one_axis has a wrong result on brownian"));
     for (const row& r : results.rows()) CHECK(r.name == candidates[1].name);
 }
 

@@ -306,7 +306,7 @@ TEST_CASE("Who did not end is not recommended where anybody did, and all are nam
     CHECK(race.finalists.front().name == "ends");
     REQUIRE(race.dropped.size() == 12);
     const auto not_run = std::ranges::count_if(
-        race.dropped, [](const racer& r) { return text_of(r.broken_off.value()) == "not played: no time was left"; });
+        race.dropped, [](const racer& r) { return text_of(r.broken_off.value()) == "not run: no time was left"; });
     CHECK_BETWEEN(0, not_run, 12);
     CHECK(std::ranges::count(aabblab::advice_of(race), "There was no time for " + std::to_string(not_run) + " other" +
                                                            (not_run > 1 ? "s" : "") + "; increase --seconds.") == 1);
@@ -585,7 +585,8 @@ TEST_CASE("recommend ranks, says what to use, and writes a page") {
     const std::string html = bytes_of_file(page);
     for (const char* part : {"<p>Use ", "overlapping pairs an object", "dropped", "all_axes", "<p>aabblab "})
         CHECK(holds(html, part));
-    for (const char* part : {"\nratio: all ms over", "\nms/frame: update, search", "\nbuild ms: the stages are made"})
+    for (const char* part :
+         {"\nratio: all ms over", "\nms/frame: the mean time per frame", "\nbuild ms: the time to create"})
         CHECK(holds(reported.out, part));
     check_narrow(reported.out.substr(reported.out.find("\nUse ") + 1));
     for (const char* seconds : {"0", "-1", "inf", "nan", "1e7", "x", ""}) {
@@ -598,7 +599,7 @@ TEST_CASE("recommend ranks, says what to use, and writes a page") {
     run_well({"scene", "pile", "--n", "1", "--frames", "2", "--out", one});
     CHECK(holds(run_refused({"recommend", one}).err, "nothing to search: the scene has 1 object"));
     CHECK(holds(run_refused({"recommend", "still.toml"}).err,
-                "still.toml is a config, one of which explain and run take alone"));
+                "still.toml is a config, which explain and run take as their only argument"));
 }
 
 TEST_CASE("recommend writes its page over nothing that it reads, and says early where it cannot be") {

@@ -130,9 +130,9 @@ TEST_CASE("recordings that cannot be used are refused") {
     using malformed = std::pair<std::string, std::string>;
     for (const auto& [bytes, error] : {
              malformed{"", "is empty"},
-             {"short", "is no recording: its header takes 304 bytes, but the file has 5"},
-             {header(1, 0, unit, 7) + unit, "is no recording: its header does not hold two names and two zeros"},
-             {std::string(400, 'x'), "is no recording: its header does not hold two names and two zeros"},
+             {"short", "is not a recording: its header takes 304 bytes, but the file has 5"},
+             {header(1, 0, unit, 7) + unit, "is not a recording: its header does not hold two names and two zeros"},
+             {std::string(400, 'x'), "is not a recording: its header does not hold two names and two zeros"},
              {header(-1, 0), "its header announces -1 objects and 0 frames; neither can be negative"},
              {header(1, -1), "its header announces 1 objects and -1 frames; neither can be negative"},
              {header(1, 0, box_bytes({0, 0, 0}, {not_a_number, 1, 1})) + unit,

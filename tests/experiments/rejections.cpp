@@ -163,7 +163,7 @@ TEST_CASE("contacts refuses what is not a motion, with file and line, and leaves
         {"0 0 1 0 0 0 0 1 0 0 0 0 1 0 7\n", ":1: expected the end of the line after frame, object and twelve numbers"},
         {"1 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
         {one + "99999999 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: a frame is a number below 10000000"},
-        {one + "1 0 1 0 0 0 0 1 0 0 0 0 1 0\n" + one, ":3: frame 0 follows frame 1; frames stand in order"},
+        {one + "1 0 1 0 0 0 0 1 0 0 0 0 1 0\n" + one, ":3: frame 0 follows frame 1; frames must be in order"},
         {one + one, ":2: object 0 has two poses in frame 0"},
         {one + "1 4 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: frame 0 has no pose of object 4"},
         {"0 2 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
@@ -192,14 +192,14 @@ TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
                    "--geometry is constructed by the triangle test, so --engine does not go with it"},
                   {{mesh, "--geometry", "--out", folder / "x.csv", "--triangle", "separating_axes"},
                    "--geometry: separating_axes decides whether triangles intersect"},
-                  {{mesh, "--out", motion}, "m.txt would write over "},
-                  {{mesh, "--out", mesh}, "a.off would write over "},
+                  {{mesh, "--out", motion}, "m.txt would overwrite "},
+                  {{mesh, "--out", mesh}, "a.off would overwrite "},
               });
     check_all(folder, {"scene"},
               {
-                  {{"mesh_pair", "--mesh", mesh, "--out", mesh}, "a.off would write over "},
-                  {{"mesh_pair", "--mesh", mesh, "--picture", mesh}, "a.off would write over "},
-                  {{"mesh_pair", "--mesh", mesh, "--normalise", "no", "--motion", mesh}, "a.off would write over "},
+                  {{"mesh_pair", "--mesh", mesh, "--out", mesh}, "a.off would overwrite "},
+                  {{"mesh_pair", "--mesh", mesh, "--picture", mesh}, "a.off would overwrite "},
+                  {{"mesh_pair", "--mesh", mesh, "--normalise", "no", "--motion", mesh}, "a.off would overwrite "},
                   {{"brownian", "--motion", folder / "x"}, "brownian is a scene of boxes, which have no poses"},
                   {{"deforming", "--motion", folder / "x"}, "deforming deforms its meshes, so poses alone"},
                   {{"mesh_pair", "--motion", folder / "x"}, "so give --normalise no with it"},
@@ -216,13 +216,13 @@ TEST_CASE("order refuses what it does not know, and to write over the mesh that 
                   {{mesh, "--build", "sha", "--out", folder / "b.off"}, "unknown build 'sha'; did you mean 'sah'?"},
                   {{mesh, "--out", folder / "b.ply"}, "order writes OFF, so --out ends in .off, not '.ply'"},
                   {{mesh, "--out", folder / "b.off", "--numbers", folder / "./b.off"}, "--numbers are the same file"},
-                  {{mesh, "--out", mesh}, "a.off would write over "},
-                  {{sorted, "--out", mesh}, "a.off would write over "},
-                  {{mesh, "--out", folder / "b.off", "--numbers", mesh}, "a.off would write over "},
-                  {{sorted, "--out", folder / "b.off", "--numbers", mesh}, "a.off would write over "},
+                  {{mesh, "--out", mesh}, "a.off would overwrite "},
+                  {{sorted, "--out", mesh}, "a.off would overwrite "},
+                  {{mesh, "--out", folder / "b.off", "--numbers", mesh}, "a.off would overwrite "},
+                  {{sorted, "--out", folder / "b.off", "--numbers", mesh}, "a.off would overwrite "},
               });
     for (const std::string& name : {mesh, sorted})
-        check_all(folder, {"collide", name}, {{{"--self", "--out", mesh}, "a.off would write over "}});
+        check_all(folder, {"collide", name}, {{{"--self", "--out", mesh}, "a.off would overwrite "}});
     CHECK(bytes_of_file(mesh) == tetrahedron);
     run_well({"order", mesh, "--out", folder / "B.OFF"});
 }

@@ -32,10 +32,10 @@ TEST_CASE("Two runs do not write into one folder at once") {
     const auto& [folder, config, out] = made;
     auto held = std::make_unique<aabblab::folder_lock>(folder / "out");
     CHECK_THROWS_WITH(aabblab::folder_lock(folder / "out"),
-                      StartsWith("another aabblab writes into ") && EndsWith("with --out"));
+                      StartsWith("another aabblab is writing to ") && EndsWith("with --out"));
     for (const auto& arguments : {std::vector<std::string>{"run", config, "--out", out},
                                   std::vector<std::string>{"reproduce", "--quick", "--out", out}})
-        CHECK(holds(run_refused(arguments).err, "another aabblab writes into " + out));
+        CHECK(holds(run_refused(arguments).err, "another aabblab is writing to " + out));
     CHECK(std::filesystem::is_empty(folder / "out"));
     held.reset();
     run_well({"run", config, "--out", out});
@@ -52,7 +52,7 @@ TEST_CASE("Rows that stand in a results.csv twice are refused, by file and lines
         << text.substr(second_line, text.find('\n', second_line) + 1 - second_line);
     for (const auto& arguments : {std::vector<std::string>{"run", config, "--out", out, "--resume"},
                                   std::vector<std::string>{"compare", out, out}})
-        CHECK(holds(run_refused(arguments).err, "/results.csv:11: the measurement of line 2 stands here again"));
+        CHECK(holds(run_refused(arguments).err, "/results.csv:11: the measurement of line 2 is repeated here"));
 }
 
 TEST_CASE("Results of before a count was there are read without it, others are refused") {

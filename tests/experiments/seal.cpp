@@ -137,7 +137,7 @@ TEST_CASE("A manifest that was altered is refused") {
         check_refused_rows(run, sentence);
     };
     const std::string sentence =
-        "manifest.json was altered after the run: what stands in it does not have the checksum that it states";
+        "manifest.json was altered after the run: it does not have the checksum that it states";
     rejected([](auto& m) { m["build"]["cpu"] = "a faster one"; }, sentence);
     rejected([](auto& m) { m["scenes"][0]["digest"] = "0000000000000000"; }, sentence);
     rejected([](auto& m) { m["config"]["text"] = "name = \"sealed\"\n"; }, sentence);

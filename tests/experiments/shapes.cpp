@@ -144,11 +144,11 @@ TEST_CASE("a mesh is a file, a file of the data folder or a shape") {
     REQUIRE(error_of("elephant.off:order=sag") == "unknown build 'sag'; did you mean 'sah'?");
     REQUIRE(error_of("icosphere:order=").starts_with("unknown build ''"));
     REQUIRE(error_of("icosphere:order=sah,triangles=80") ==
-            "order=BUILD stands last in the name of a mesh and takes no parameters, as in "
+            "order=BUILD must end the name of a mesh and takes no parameters, as in "
             "torus_knot:triangles=5000,order=sah, not as in 'icosphere:order=sah,triangles=80'");
     folder.write("x:order=sah.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     REQUIRE(aabblab::make_mesh("x:order=sah.off").mesh.triangle_count() == 1);
-    REQUIRE(error_of("icosphere:order=sah:order=sah").starts_with("order=BUILD stands last in the name of a mesh"));
+    REQUIRE(error_of("icosphere:order=sah:order=sah").starts_with("order=BUILD must end the name of a mesh"));
     REQUIRE(error_of("icosphere,order=sah").starts_with("unknown mesh 'icosphere,order=sah'"));
     REQUIRE(aabblab::name_without_order("icosphere:triangles=80,order=sah") == "icosphere:triangles=80");
     REQUIRE(error_of("torus_knot:5000") == "'5000' after 'torus_knot:' is not of the form name=value");

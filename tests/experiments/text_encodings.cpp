@@ -183,7 +183,7 @@ TEST_CASE("In every text format, what is no text or may mean two things is named
             const std::string rejection = rejection_of(bytes);
             CHECK_FALSE(holds(rejection, "read: "));
             if (!is_of_two_kinds)
-                CHECK_THAT(rejection, EndsWith(head + "not text: " + name + " in line 2, with more behind it"));
+                CHECK_THAT(rejection, EndsWith(head + "not text: " + name + " in line 2, with more text after it"));
         }
         // A carriage return in place of one line feed. JSON has no lines.
         if (format.text == gltf) continue;

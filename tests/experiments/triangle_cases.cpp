@@ -52,7 +52,7 @@ TEST_CASE("A file of cases is read with every number as it stands") {
 TEST_CASE("A bad file of cases gets one sentence with file and line") {
     CHECK(rejection_of(case_named("one", "true") + case_named("two", "false")) == "accepted");
     CHECK(rejection_of("") == "c.toml has no cases; expected [[case]]");
-    CHECK(rejection_of("[case]\n") == "c.toml:1: case must stand in double brackets: [[case]]");
+    CHECK(rejection_of("[case]\n") == "c.toml:1: case must be in double brackets: [[case]]");
     CHECK(rejection_of("[[cases]]\n").starts_with("c.toml:1: unknown key 'cases'"));
     CHECK(rejection_of("[[case]\n").starts_with("c.toml:1:"));
     CHECK(rejection_of(with_line("about", "abuot = \"a\"")) ==

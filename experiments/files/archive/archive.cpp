@@ -64,12 +64,12 @@ public:
                 fail("has an entry that is neither a file nor a folder: '" + place.string() + "'");
             if (type == AE_IFDIR) {
                 if (++folders > limits_.files)
-                    fail("has more than " + std::to_string(limits_.files) + " folders, which no results have");
+                    fail("has more than " + std::to_string(limits_.files) + " folders, the limit for results");
                 continue;
             }
             if (!places.insert(place).second) fail("has the file '" + place.string() + "' twice");
             if (places.size() > limits_.files)
-                fail("has more than " + std::to_string(limits_.files) + " files, which no results have");
+                fail("has more than " + std::to_string(limits_.files) + " files, the limit for results");
             take(into / place);
         }
         if (places.empty()) fail("is empty");
@@ -97,7 +97,7 @@ private:
             // Counts the actual bytes, as the size in the header cannot be trusted.
             bytes_ += static_cast<std::uint64_t>(size);
             if (bytes_ > limits_.bytes)
-                fail("unpacks to more than " + std::to_string(limits_.bytes >> 20U) + " MiB, which no results have");
+                fail("unpacks to more than " + std::to_string(limits_.bytes >> 20U) + " MiB, the limit for results");
             out.write(buffer.data(), static_cast<std::size_t>(size));
         }
         out.commit();

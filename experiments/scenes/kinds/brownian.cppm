@@ -10,7 +10,7 @@ class brownian final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "brownian";
     static constexpr std::string_view summary =
-        "unit cubes that drift in a cube with reflecting walls; a hundredth of them turn every frame";
+        "unit cubes that drift in a cube with reflecting walls; a hundredth of them turn in every frame";
 
     struct config : scene_size {
         double density = 0.1;
@@ -21,8 +21,8 @@ public:
         std::tuple{aabb::number_parameter{"density", &config::density, 1e-30, 1e6,
                                           "volume of the cubes over that of the world"},
                    aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
-                                          "the longest way of a cube in a frame, in edges; auto: 1/40 of the world's "
-                                          "side"}});
+                                          "greatest displacement of a cube per frame, in edges; auto: 1/40 of the "
+                                          "world's side"}});
 
     brownian(const config& c, std::uint64_t seed) : drifting_boxes(name, c, seed) {
         const double side = cube_root(c.objects / c.density);

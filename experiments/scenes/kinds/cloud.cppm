@@ -14,7 +14,7 @@ class cloud final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "cloud";
     static constexpr std::string_view summary =
-        "cubes that drift in one cloud or in several apart; density, sizes and clustering are set one by one";
+        "cubes that drift in one cloud or in several distant ones, with independent density, sizes and clustering";
 
     struct config : motion_config {
         double moving = 1;
@@ -35,7 +35,7 @@ public:
                                           "edge of the largest cube over that of the smallest", true},
                    aabb::integer_parameter{"clouds", &config::clouds, 1U, 1'000'000U, "how many clouds"},
                    aabb::number_parameter{"apart", &config::apart, 1.0, 1e6,
-                                          "edge of the cell that a cloud has for itself, over that of the cloud", true},
+                                          "edge of the lattice cell of a cloud over that of the cloud", true},
                    aabb::number_parameter{"parked", &config::parked, 0.0, 1.0,
                                           "share of the cubes that rest in a cloud of their own", true}});
 

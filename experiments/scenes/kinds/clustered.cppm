@@ -13,7 +13,7 @@ class clustered final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "clustered";
     static constexpr std::string_view summary =
-        "unit cubes in tight clusters far apart, each drifting about its cluster's centre; most of the world is empty";
+        "unit cubes in tight clusters far apart, each drifting within its cluster; most of the world is empty";
 
     struct config : motion_config {
         std::uint32_t clusters = 10;

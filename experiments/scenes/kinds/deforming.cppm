@@ -13,7 +13,7 @@ namespace aabblab {
 class deforming final : public generated_meshes {
 public:
     static constexpr std::string_view name = "deforming";
-    static constexpr std::string_view summary = "a rigid mesh turns in another, through which a wave runs";
+    static constexpr std::string_view summary = "a rigid mesh rotates inside another one, which a wave deforms";
     static constexpr std::array<std::string_view, 2> default_meshes = {"torus_knot", "noise_sphere"};
     static constexpr std::size_t most_meshes = 2;
 
@@ -26,9 +26,9 @@ public:
     static constexpr std::tuple parameters{
         frames_parameter<config>(),
         aabb::number_parameter{"distance", &config::distance, 0.0, 1e6,
-                               "between the meshes' centres, over their mean extent"},
+                               "between the centres of the meshes, over their mean extent"},
         aabb::number_parameter{"amplitude", &config::amplitude, 0.0, 1e6,
-                               "of the wave, over the extent of the mesh that it runs through"},
+                               "of the wave, over the extent of the mesh that it deforms"},
         normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
     deforming(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)

@@ -16,7 +16,7 @@ class dropped final : public generated_meshes {
 public:
     static constexpr std::string_view name = "dropped";
     static constexpr std::string_view summary =
-        "balls dropped on a floor and on each other, pushed apart by the contacts that are found";
+        "balls dropped on a floor and on each other, pushed apart by the detected contacts";
     static constexpr std::array<std::string_view, 2> default_meshes = {"square", "icosphere:triangles=80"};
     static constexpr std::size_t most_meshes = 2;
 
@@ -33,13 +33,13 @@ public:
     static constexpr std::tuple parameters{
         aabb::integer_parameter{"balls", &config::balls, 0U, 0x7ffffffeU, "how many balls"},
         frames_parameter<config>(),
-        aabb::number_parameter{"step", &config::step, 0.0, 1e6, "of time from frame to frame, in seconds"},
+        aabb::number_parameter{"step", &config::step, 0.0, 1e6, "of time between frames, in seconds"},
         aabb::number_parameter{"height", &config::height, 0.0, 1e6, "of the lowest ball above the floor, in extents",
                                true},
-        aabb::number_parameter{"speed", &config::speed, 0.0, 1e6, "downwards at the beginning, in m/s", true},
+        aabb::number_parameter{"speed", &config::speed, 0.0, 1e6, "initial, downwards, in m/s", true},
         aabb::number_parameter{"depth", &config::depth, 0.0, 1.0,
-                               "to which one ball's weight presses it into the floor, in extents"},
-        aabb::number_parameter{"loss", &config::loss, 0.0, 1e6, "damping over the critical one", true},
+                               "to which its weight presses a ball into the floor, in extents"},
+        aabb::number_parameter{"loss", &config::loss, 0.0, 1e6, "damping over critical damping", true},
         normalise_parameter<config>("scale the ball to a longest extent of 1")};
 
     dropped(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)

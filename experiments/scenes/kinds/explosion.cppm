@@ -13,7 +13,7 @@ class explosion final : public generated_boxes {
 public:
     static constexpr std::string_view name = "explosion";
     static constexpr std::string_view summary =
-        "unit cubes heaped in a cube that creep outwards, then fly apart, then stand still, a third of the frames each";
+        "unit cubes heaped in a cube that creep outwards, then fly apart, then rest, a third of the frames each";
 
     struct config : scene_size {
         /// The displacement of a flying cube per frame, in edges; a creeping cube moves a hundredth of it.
@@ -22,7 +22,7 @@ public:
     static constexpr auto parameters =
         std::tuple_cat(size_parameters<config>("how many boxes"),
                        std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
-                                                         "the way of a cube in a frame while it flies, in edges"}});
+                                                         "displacement of a flying cube per frame, in edges"}});
 
     explosion(const config& c, std::uint64_t seed)
         : generated_boxes(name, c, seed, sizeof(flying_box)), flight_(c.displacement) {

@@ -8,7 +8,7 @@ class flat final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "flat";
     static constexpr std::string_view summary =
-        "unit cubes that drift in the plane of x and y; on z all are alike, so that this axis tells nothing";
+        "unit cubes that drift in the plane of x and y; on z all are equal, so that this axis separates none";
 
     using config = motion_config;
     static constexpr auto parameters = motion_parameters;

@@ -14,15 +14,16 @@ class lattice final : public generated_boxes {
 public:
     static constexpr std::string_view name = "lattice";
     static constexpr std::string_view summary =
-        "unit cubes that touch on an integer lattice and move as one: nothing but ties; the seed does not matter";
+        "unit cubes that touch on an integer lattice and move together, so that bounds are equal; the seed has no "
+        "effect";
 
     struct config : scene_size {
         double displacement = 0.25;
     };
-    static constexpr auto parameters =
-        std::tuple_cat(size_parameters<config>("how many cubes"),
-                       std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
-                                                         "the way of all cubes along each axis in a frame, in edges"}});
+    static constexpr auto parameters = std::tuple_cat(
+        size_parameters<config>("how many cubes"),
+        std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
+                                          "displacement of all cubes per frame on each axis, in edges"}});
 
     lattice(const config& c, std::uint64_t seed)
         : generated_boxes(name, c, seed, 0, ""), displacement_(c.displacement), side_(lattice_side(c.objects)) {}

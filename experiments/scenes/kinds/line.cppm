@@ -8,7 +8,7 @@ class line final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "line";
     static constexpr std::string_view summary =
-        "unit cubes that drift along x; on y and z all are alike, so that these axes tell nothing";
+        "unit cubes that drift along x; on y and z all are equal, so that these axes separate none";
 
     using config = motion_config;
     static constexpr auto parameters = motion_parameters;

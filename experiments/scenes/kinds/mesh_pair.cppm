@@ -12,7 +12,7 @@ namespace aabblab {
 class mesh_pair final : public generated_meshes {
 public:
     static constexpr std::string_view name = "mesh_pair";
-    static constexpr std::string_view summary = "one mesh stands, another passes through it and turns";
+    static constexpr std::string_view summary = "one mesh rests; another passes through it and rotates";
     static constexpr std::array<std::string_view, 2> default_meshes = {"torus_knot", "noise_sphere"};
     static constexpr std::size_t most_meshes = 2;
 
@@ -26,8 +26,8 @@ public:
     static constexpr std::tuple parameters{
         frames_parameter<config>(),
         aabb::number_parameter{"distance", &config::distance, 0.0, 1e6,
-                               "of the centres at both ends of the path, over the meshes' mean extent", true},
-        aabb::number_parameter{"turn", &config::turn, 0.0, 1e6, "of the second mesh in a frame, in radians", true},
+                               "of the centres at both ends of the path, over the mean extent of the meshes", true},
+        aabb::number_parameter{"turn", &config::turn, 0.0, 1e6, "of the second mesh per frame, in radians", true},
         normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
     mesh_pair(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)

@@ -15,7 +15,7 @@ class mesh_swarm final : public generated_meshes {
 public:
     static constexpr std::string_view name = "mesh_swarm";
     static constexpr std::string_view summary =
-        "meshes, each scaled to extent 1, that drift and turn in a cube with reflecting walls";
+        "meshes, each scaled to extent 1, that drift and rotate in a cube with reflecting walls";
     static constexpr std::array<std::string_view, 3> default_meshes = {"icosphere", "torus_knot", "noise_sphere"};
     static constexpr std::size_t most_meshes = std::numeric_limits<std::uint32_t>::max();
 
@@ -31,15 +31,15 @@ public:
     };
     static constexpr auto parameters = std::tuple_cat(
         size_parameters<config>("how many objects"),
-        std::tuple{
-            aabb::number_parameter{"density", &config::density, 1e-30, 1e6,
-                                   "volume of cubes as long as the objects over that of the world"},
-            aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e6,
-                                   "the longest way of an object in a frame, in mean extents (and radians it turns)"},
-            normalise_parameter<config>("scale each mesh to a longest extent of 1"),
-            aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many objects are huge"},
-            aabb::number_parameter{"span", &config::span, 0.0, 1.0,
-                                   "longest extent of a huge object over the side of the world"}});
+        std::tuple{aabb::number_parameter{"density", &config::density, 1e-30, 1e6,
+                                          "volume of cubes with the extents of the objects over that of the world"},
+                   aabb::number_parameter{
+                       "displacement", &config::displacement, 0.0, 1e6,
+                       "greatest displacement of an object per frame, in mean extents; its rotation, in radians"},
+                   normalise_parameter<config>("scale each mesh to a longest extent of 1"),
+                   aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many objects are huge"},
+                   aabb::number_parameter{"span", &config::span, 0.0, 1.0,
+                                          "longest extent of a huge object over the side of the world"}});
 
     mesh_swarm(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise), random_(seed) {

@@ -13,7 +13,7 @@ class mixed_sizes final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "mixed_sizes";
     static constexpr std::string_view summary =
-        "cubes that drift in a cube, their edges evenly spread in the logarithm from 1 to a ratio";
+        "cubes that drift in a cube, with edges in geometric progression from 1 to a ratio";
 
     struct config : motion_config {
         double ratio = 100;

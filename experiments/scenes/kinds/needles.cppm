@@ -12,7 +12,7 @@ class needles final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "needles";
     static constexpr std::string_view summary =
-        "thin boxes that drift in a cube, a third of them long on each axis, so that no cell fits them";
+        "thin boxes that drift in a cube, a third of them long on each axis, so that no cell size suits all";
 
     struct config : motion_config {
         double length = 20;

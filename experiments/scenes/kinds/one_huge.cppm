@@ -12,7 +12,7 @@ class one_huge final : public generated_boxes {
 public:
     static constexpr std::string_view name = "one_huge";
     static constexpr std::string_view summary =
-        "unit cubes that drift in a cube, and one, or several, that span a large part of their world";
+        "unit cubes that drift in a cube, and one or several huge ones that span a large part of it";
 
     struct config : motion_config {
         double span = 0.5;

@@ -19,7 +19,7 @@ public:
         std::uint32_t neighbours = 20;
     };
     static constexpr auto parameters =
-        std::tuple_cat(motion_parameters_of("the way of every box in a frame"),
+        std::tuple_cat(motion_parameters_of("displacement of each box per frame"),
                        std::tuple{aabb::integer_parameter{"neighbours", &config::neighbours, 10U, 50U,
                                                           "mean number of others that a box overlaps"}});
 

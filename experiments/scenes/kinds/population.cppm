@@ -13,14 +13,15 @@ class population final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "population";
     static constexpr std::string_view summary =
-        "unit cubes that drift in a cube and come and go: about half of them are there at a time";
+        "unit cubes that drift in a cube, appear and disappear; about half of them are present at a time";
 
     struct config : motion_config {
         double turnover = 0.05;
     };
-    static constexpr auto parameters = std::tuple_cat(
-        motion_parameters, std::tuple{aabb::number_parameter{"turnover", &config::turnover, 0.0, 1.0,
-                                                             "share of the objects that come or go in a frame"}});
+    static constexpr auto parameters =
+        std::tuple_cat(motion_parameters,
+                       std::tuple{aabb::number_parameter{"turnover", &config::turnover, 0.0, 1.0,
+                                                         "share of the objects that appear or disappear per frame"}});
 
     population(const config& c, std::uint64_t seed)
         : drifting_boxes(name, c, seed, 1),

@@ -8,7 +8,7 @@ namespace aabblab {
 
 struct recording {
     static constexpr std::string_view name = "recording";
-    static constexpr std::string_view summary = "boxes as a recording (.aabbs) has them, frame by frame";
+    static constexpr std::string_view summary = "the boxes of a recording (.aabbs), frame by frame";
 
     struct config {
         std::string file;

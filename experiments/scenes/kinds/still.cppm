@@ -10,7 +10,7 @@ namespace aabblab {
 class still final : public generated_boxes {
 public:
     static constexpr std::string_view name = "still";
-    static constexpr std::string_view summary = "unit cubes in a cube, none of which ever moves: all frames are equal";
+    static constexpr std::string_view summary = "unit cubes at rest in a cube: all frames are equal";
 
     using config = scene_size;
     static constexpr auto parameters = size_parameters<config>("how many boxes");

@@ -11,7 +11,7 @@ class teleport final : public generated_boxes {
 public:
     static constexpr std::string_view name = "teleport";
     static constexpr std::string_view summary =
-        "unit cubes, each at a fresh random place in every frame: no coherence between frames";
+        "unit cubes, each at a new random position in every frame: no coherence between frames";
 
     using config = scene_size;
     static constexpr auto parameters = size_parameters<config>("how many boxes");

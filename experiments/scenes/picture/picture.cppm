@@ -62,7 +62,7 @@ private:
     std::size_t boxes_counted_ = 0;
 };
 
-/// "mean displacement a frame: 0.1 of the mean extent, 0.063 of the mean spacing"
+/// "mean displacement per frame: 0.1 of the mean extent, 0.063 of the mean spacing"
 [[nodiscard]] std::string displacement_text(const survey& seen);
 
 /// The text above the drawing.

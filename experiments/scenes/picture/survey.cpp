@@ -81,7 +81,7 @@ std::optional<double> survey::displacement_over_spacing() const {
 
 std::string displacement_text(const survey& seen) {
     const auto shown = [](std::optional<double> value) { return value ? fmt::format("{:.3g}", *value) : "-"; };
-    return fmt::format("mean displacement a frame: {} of the mean extent, {} of the mean spacing",
+    return fmt::format("mean displacement per frame: {} of the mean extent, {} of the mean spacing",
                        shown(seen.displacement_over_extent()), shown(seen.displacement_over_spacing()));
 }
 

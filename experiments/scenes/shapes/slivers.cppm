@@ -12,7 +12,7 @@ struct slivers {
     static constexpr std::string_view summary = "thin triangles in a row along a diagonal, whose boxes all overlap";
 
     using config = shape_size<3000>;
-    static constexpr auto parameters = config::parameters(2, "how many");
+    static constexpr auto parameters = config::parameters(2, "how many triangles");
 
     [[nodiscard]] static aabb::mesh make(const config& c) {
         constexpr double half_length = 28.867513459481287;  // 50 √⅓ along each axis

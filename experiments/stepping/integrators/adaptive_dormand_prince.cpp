@@ -41,7 +41,7 @@ private:
 
 integrator_info adaptive_dormand_prince_integrator() {
     return {"adaptive_dormand_prince",
-            "the same with steps of its own choice, after a tolerance (Boost.odeint)",
+            "the same with adaptive steps, controlled by a tolerance (Boost.odeint)",
             true,
             5,
             std::numeric_limits<double>::infinity(),

@@ -19,7 +19,7 @@ class bdf final : public integrator {
 public:
     explicit bdf(double tolerance) : tolerance_(tolerance) {
         SUNContext context = nullptr;
-        if (SUNContext_Create(nullptr, &context) != 0) throw aabb::input_error("bdf: SUNDIALS gives no context");
+        if (SUNContext_Create(nullptr, &context) != 0) throw aabb::input_error("bdf: SUNDIALS cannot create a context");
         context_.reset(context);
     }
 

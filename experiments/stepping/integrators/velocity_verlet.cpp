@@ -24,13 +24,12 @@ private:
 }  // namespace
 
 integrator_info velocity_verlet_integrator() {
-    return {
-        "velocity_verlet",
-        "central differences; of first order where forces hang on velocity, which it sees a step late (Boost.odeint)",
-        false,
-        2,
-        2,
-        [](double) -> std::unique_ptr<integrator> { return std::make_unique<velocity_verlet>(); }};
+    return {"velocity_verlet",
+            "central differences; of first order if forces depend on velocity, which lags a step behind (Boost.odeint)",
+            false,
+            2,
+            2,
+            [](double) -> std::unique_ptr<integrator> { return std::make_unique<velocity_verlet>(); }};
 }
 
 }  // namespace aabblab
