@@ -81,7 +81,7 @@ int main_of(int argc, char** argv) {
             "Exit status: 0; 1 when a check failed, or collide --exit-code finds an intersection; 2 on bad input.");
         // Costs are loaded before every command except calibrate, which must run even if the file is malformed.
         program.parse_complete_callback([&] {
-            if (!program.got_subcommand("calibrate")) use_kept_costs();
+            if (!program.got_subcommand("calibrate")) use_calibrated_costs();
         });
         run(program, argc, argv);
         return status;

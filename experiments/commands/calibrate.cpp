@@ -19,7 +19,7 @@ struct calibrate_request {
 };
 
 std::filesystem::path file_of(const calibrate_request& request) {
-    const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : kept_costs_file();
+    const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : calibrated_costs_file();
     if (file.empty())
         throw aabb::input_error("neither XDG_CONFIG_HOME nor HOME names a folder; --out FILE says where costs go");
     return file;
@@ -60,7 +60,7 @@ void calibrate(const calibrate_request& request) {
     const idlest_processor here;
     const calibration fit =
         request.quick ? calibrate(calibration_size::quick, 12) : calibrate(calibration_size::full, 95);
-    const kept_costs kept = costs_here(fit.costs);
+    const calibrated_costs kept = label_costs(fit.costs);
     out.write(text_of(kept));
     out.commit();
     print(kept.processor + ", " + kept.instructions + "; times as processor time\n\n");

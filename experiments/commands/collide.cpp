@@ -29,9 +29,9 @@ struct collide_request {
 
     [[nodiscard]] std::vector<std::string> meshes() const { return b ? std::vector{a, *b} : std::vector{a}; }
     [[nodiscard]] mesh_query query() const {
-        return {.ask = count   ? question::count
-                       : first ? question::first
-                               : question::pairs,
+        return {.ask = count   ? query_kind::count
+                       : first ? query_kind::first
+                               : query_kind::pairs,
                 .self = !self.empty(),
                 .neighbours = !self.empty() && self != "apart",
                 .by_pose = poses_of_b.has_value(),

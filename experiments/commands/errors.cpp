@@ -8,7 +8,7 @@ namespace aabblab {
 namespace {
 
 struct errors_request {
-    std::string config = usual_study();
+    std::string config = default_study();
     std::optional<std::string> out;
     bool quick = false;
 };

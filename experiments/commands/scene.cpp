@@ -45,7 +45,7 @@ public:
             finder_->update();
             finder_->search();
             finder_->detect();
-            scene_.tell(finder_->sorted_pairs(), finder_->sorted_contacts());
+            scene_.take_results(finder_->sorted_pairs(), finder_->sorted_contacts());
         }
         boxes.assign(world_.boxes().begin(), world_.boxes().end());
         return true;
@@ -67,15 +67,15 @@ public:
     [[nodiscard]] std::size_t frames() const override { return scene_->frames(); }
     bool next(std::vector<aabb::box>& boxes) override {
         if (!scene_->next(boxes)) return false;
-        survey_.see(boxes, scene_->present());
+        survey_.add_frame(boxes, scene_->present());
         return true;
     }
     [[nodiscard]] std::span<const std::uint8_t> present() const override { return scene_->present(); }
-    [[nodiscard]] const survey& observations() const { return survey_; }
+    [[nodiscard]] const picture_data& observations() const { return survey_; }
 
 private:
     std::unique_ptr<aabb::box_scene> scene_;
-    survey survey_;
+    picture_data survey_;
 };
 
 /// The seed option, else 1 if the kind has a seed.

@@ -9,7 +9,7 @@ namespace aabblab {
 namespace {
 
 struct extreme_request {
-    std::string cases = usual_cases();
+    std::string cases = default_cases();
     std::optional<std::string> out;
     bool quick = false;
 };

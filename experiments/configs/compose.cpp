@@ -13,38 +13,39 @@ using choice_check = std::function<void(const aabb::strategy_choice&)>;
 
 /// Adds the choices of one list entry: a name, or a table of a name and parameters, whose lists multiply.
 void add_strategies(const document& doc, const std::string& key, const node& value, const std::string& example,
-                    const choice_check& require, each_once<aabb::strategy_choice>& choices) {
+                    const choice_check& require, unique_list<aabb::strategy_choice>& choices) {
     const auto add = [&](const aabb::strategy_choice& choice) {
-        doc.at(value.line, [&] { require(choice); });
+        doc.at_line(value.line, [&] { require(choice); });
         if (!choices.add(choice, to_text(choice))) doc.fail(value.line, key + " lists '" + to_text(choice) + "' twice");
     };
-    if (value.kind == node_kind::text) return add(doc.at(value.line, [&] { return aabb::parse_strategy(value.text); }));
+    if (value.kind == node_kind::text)
+        return add(doc.at_line(value.line, [&] { return aabb::parse_strategy(value.text); }));
     if (value.kind != node_kind::table) doc.fail_type(key, value, "a name, a table with a name, or a list of them");
-    const node& name = doc.needed(value, "name", key + " has no name; expected { name = \"" + example + "\", … }");
+    const node& name = doc.required(value, "name", key + " has no name; expected { name = \"" + example + "\", … }");
     std::vector<alternatives> parameters;
     for (const node& entry : value.items)
         if (entry.key != "name") parameters.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
     const std::vector<located_text> names = doc.alternatives_of("name", name);
-    for (const located_text& strategy : names) doc.at(strategy.line, [&] { require({strategy.text, {}}); });
+    for (const located_text& strategy : names) doc.at_line(strategy.line, [&] { require({strategy.text, {}}); });
     std::vector<std::size_t> factors = sizes_of(parameters);
     factors.push_back(names.size());
-    doc.require_few(value.line, "choices of " + key, factors, choices.all().size());
+    doc.require_small_product(value.line, "choices of " + key, factors, choices.items().size());
     for (const located_text& strategy : names)
-        for (const std::vector<aabb::setting>& settings : multiplied(parameters)) add({strategy.text, settings});
+        for (const std::vector<aabb::setting>& settings : cartesian_product(parameters)) add({strategy.text, settings});
 }
 
 /// Reads a name, a table of a name and parameters, or a list of both.
 /// @param example a valid name, for messages
 std::vector<aabb::strategy_choice> choices_of(const document& doc, const node& value, const std::string& example,
                                               const choice_check& require) {
-    each_once<aabb::strategy_choice> choices;
+    unique_list<aabb::strategy_choice> choices;
     if (value.kind != node_kind::list) {
         add_strategies(doc, value.key, value, example, require, choices);
-        return choices.all();
+        return choices.items();
     }
     if (value.items.empty()) doc.fail(value.line, value.key + " is an empty list; expected at least one name");
     for (const node& item : value.items) add_strategies(doc, value.key, item, example, require, choices);
-    return choices.all();
+    return choices.items();
 }
 
 struct listed_strategies {
@@ -57,7 +58,7 @@ void add_others(const document& doc, aabb::strategy_kind kind, const std::vector
                 listed_strategies& listed) {
     std::set<std::string> named;
     for (const located_text& name : excluded) {
-        doc.at(name.line, [&] { aabb::require_known(kind, {name.text, {}}); });
+        doc.at_line(name.line, [&] { aabb::require_known(kind, {name.text, {}}); });
         named.insert(name.text);
     }
     for (const auto& choice : listed.choices) named.insert(choice->name);
@@ -68,6 +69,8 @@ void add_others(const document& doc, aabb::strategy_kind kind, const std::vector
         }
 }
 
+/// The strategies that a config lists for a kind.
+/// @param value null if the config leaves the kind out
 listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, const node* value) {
     if (!value) return {{std::nullopt}, {}};
     node named = *value;
@@ -114,7 +117,8 @@ bool is_rejected(const aabb::composition& c) {
            !rejection_of(c, aabb::stage::local_detection).empty();
 }
 
-void add_composition(const document& doc, int line, const aabb::composition& c, each_once<aabb::composition>& list) {
+/// Rejects duplicates, and combinations that make no sense.
+void add_composition(const document& doc, int line, const aabb::composition& c, unique_list<aabb::composition>& list) {
     for (const aabb::stage stage : {aabb::stage::global_search, aabb::stage::local_detection})
         if (const std::string_view reason = aabb::rejection_of(c, stage); !reason.empty())
             doc.fail(line, to_text(c, stage) + ": " + std::string(reason));
@@ -123,20 +127,21 @@ void add_composition(const document& doc, int line, const aabb::composition& c, 
 
 /// Every combination of the listed strategies, the last kind fastest. Invalid combinations are dropped if others_but
 /// contributes to them; those of named strategies only are kept, so that the caller can report them.
-std::vector<aabb::named_strategies> named_by(const document& doc, const node& compose, std::size_t listed) {
+/// @param listed the number of compositions that the config has already, for the limit
+std::vector<aabb::named_strategies> combinations_of(const document& doc, const node& compose, std::size_t listed) {
     aabb::by_kind<listed_strategies> strategies;
     std::vector<std::size_t> factors;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         strategies[kind] = strategies_of(doc, kind, compose.find(name_of(kind)));
         factors.push_back(strategies[kind].choices.size());
     }
-    doc.require_few(compose.line, "compositions", factors, listed);
+    doc.require_small_product(compose.line, "compositions", factors, listed);
     std::vector<aabb::named_strategies> products(1);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
-        std::vector<aabb::named_strategies> longer;
+        std::vector<aabb::named_strategies> extended;
         for (const aabb::named_strategies& product : products)
-            for (const auto& choice : strategies[kind].choices) longer.emplace_back(product)[kind] = choice;
-        products = std::move(longer);
+            for (const auto& choice : strategies[kind].choices) extended.emplace_back(product)[kind] = choice;
+        products = std::move(extended);
     }
     std::erase_if(products, [&](const aabb::named_strategies& product) {
         const bool is_named = std::ranges::none_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
@@ -148,8 +153,8 @@ std::vector<aabb::named_strategies> named_by(const document& doc, const node& co
 }
 
 /// @param compose a table whose keys are kinds; its lists multiply
-void add_compositions(const document& doc, const node& compose, each_once<aabb::composition>& list) {
-    for (const aabb::named_strategies& named : named_by(doc, compose, list.all().size()))
+void add_compositions(const document& doc, const node& compose, unique_list<aabb::composition>& list) {
+    for (const aabb::named_strategies& named : combinations_of(doc, compose, list.items().size()))
         add_composition(doc, compose.line, aabb::composition(named), list);
 }
 
@@ -160,9 +165,9 @@ bool is_automatic(const document& doc, const node& compose) {
 
 /// Selects a composition without a scene, which rejects named strategies that are invalid together in every scene.
 void add_automatic(const document& doc, const node& compose, std::vector<aabb::named_strategies>& automatic) {
-    for (const aabb::named_strategies& named : named_by(doc, compose, automatic.size())) {
-        each_once<aabb::composition> alone;
-        add_composition(doc, compose.line, select_composition(named, {}), alone);
+    for (const aabb::named_strategies& named : combinations_of(doc, compose, automatic.size())) {
+        unique_list<aabb::composition> ignored;
+        add_composition(doc, compose.line, select_composition(named, {}), ignored);
         if (std::ranges::find(automatic, named) != automatic.end()) doc.fail(compose.line, "this auto is listed twice");
         automatic.push_back(named);
     }
@@ -201,7 +206,7 @@ std::string label_of(const node& methods, const error_curve& curve) {
 /// @param compose null if the config has none
 void read_compositions(const document& doc, const node* compose, experiment& e) {
     static const node nothing{};
-    each_once<aabb::composition> list;
+    unique_list<aabb::composition> list;
     const auto add = [&](const node& table) {
         doc.require_table("compose", table);
         require_kinds(doc, table);
@@ -219,13 +224,13 @@ void read_compositions(const document& doc, const node* compose, experiment& e) 
     } else {
         add(compose ? *compose : nothing);
     }
-    e.compositions = list.all();
+    e.compositions = list.items();
     if (e.compositions.empty() && e.automatic.empty())
         doc.fail(compose->line, "compose is an empty list; expected a table");
 }
 
 /// A curve that names only triangle tests runs on triangle pairs; any other curve runs on whole scenes.
-error_curve curve_of(const document& doc, const node& written) {
+error_curve read_curve(const document& doc, const node& written) {
     doc.require_table("curve", written);
     std::vector<std::string> known{"label"};
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) known.emplace_back(name_of(kind));
@@ -242,9 +247,9 @@ error_curve curve_of(const document& doc, const node& written) {
             static_cast<void>(triangle_test_named(choice));
         });
     } else {
-        each_once<aabb::composition> list;
+        unique_list<aabb::composition> list;
         add_compositions(doc, methods, list);
-        curve.compositions = list.all();
+        curve.compositions = list.items();
     }
     const node* label = written.find("label");
     curve.label = label ? doc.text_of("label", *label) : label_of(methods, curve);

@@ -21,20 +21,20 @@ struct external_engine {
     std::uint64_t timeout_s = 600;     ///< the process is killed after this time
 };
 
-/// The query that the narrow phase runs and that is timed.
-enum class question : std::uint8_t {
+/// The query that the narrow phase runs, key `ask` of a config.
+enum class query_kind : std::uint8_t {
     pairs,  ///< report every pair of intersecting triangles
     count,  ///< report only the number of such pairs
     first   ///< stop at any such pair
 };
-inline constexpr std::array<std::string_view, 3> question_names{"pairs", "count", "first"};
+inline constexpr std::array<std::string_view, 3> query_names{"pairs", "count", "first"};
 
 /// How the queries of a mesh scene are timed.
-struct asking {
-    question ask = question::pairs;
+struct query_settings {
+    query_kind kind = query_kind::pairs;
     bool cold = false;  ///< the processor's caches hold other data before each query
 
-    friend bool operator==(const asking&, const asking&) = default;
+    friend bool operator==(const query_settings&, const query_settings&) = default;
 };
 
 /// A config with its lists expanded to their Cartesian product. Every name, value and combination is validated.
@@ -54,7 +54,7 @@ struct experiment {
     std::size_t processes = 1;  ///< fresh processes, run one after another, that share the repeats
     /// Early stopping: a candidate slower than this multiple of the fastest in the first repeat is not repeated.
     std::optional<std::uint64_t> patience;
-    asking how;
+    query_settings query;
     /// What each row records beside the pairs and their digest, so that metrics can be computed from it later.
     std::set<metric_group> recorded{metric_group::time, metric_group::counts, metric_group::bytes, metric_group::error};
     std::vector<std::string> shown;  ///< metrics that tables show in additional columns
@@ -130,8 +130,8 @@ struct error_study {
 [[nodiscard]] std::vector<aabb::triangle_case> read_triangle_cases(const std::filesystem::path& file);
 [[nodiscard]] std::vector<aabb::triangle_case> parse_triangle_cases(const std::string& text, const std::string& file);
 
-/// Measured costs with the program, processor and instruction set that they depend on.
-struct kept_costs {
+/// Costs that `calibrate` measured, with the program, processor and instruction set that they depend on.
+struct calibrated_costs {
     std::string version;       ///< of the program that measured them
     std::string date;          ///< when they were measured, as "2026-01-31T12:00:00Z"
     std::string processor;     ///< its model name
@@ -139,28 +139,28 @@ struct kept_costs {
     aabb::cost_model costs;
 
     /// Whether the costs apply to `here`: same version, processor and instruction set.
-    [[nodiscard]] bool serve(const kept_costs& here) const {
+    [[nodiscard]] bool applies_to(const calibrated_costs& here) const {
         return version == here.version && processor == here.processor && instructions == here.instructions;
     }
 };
 
 /// Labels the costs with this program, this machine and the current time.
-[[nodiscard]] kept_costs costs_here(const aabb::cost_model& costs);
+[[nodiscard]] calibrated_costs label_costs(const aabb::cost_model& costs);
 /// Formats the costs as a TOML file.
-[[nodiscard]] std::string text_of(const kept_costs& kept);
+[[nodiscard]] std::string text_of(const calibrated_costs& costs);
 /// Reads the costs, or only the header of a file of another version, whose costs may differ in name and meaning.
 /// @throws aabb::input_error with file and line on malformed TOML, an unknown key, or a cost that is not positive.
-[[nodiscard]] kept_costs read_costs(const std::filesystem::path& file);
+[[nodiscard]] calibrated_costs read_costs(const std::filesystem::path& file);
 /// Parses the text of such a file. `file` appears only in messages.
-[[nodiscard]] kept_costs parse_costs(const std::string& text, const std::string& file);
+[[nodiscard]] calibrated_costs parse_costs(const std::string& text, const std::string& file);
 
 /// Where `calibrate` stores costs: $XDG_CONFIG_HOME/aabblab/costs.toml, else ~/.config/aabblab/costs.toml.
 /// @returns an empty path if the environment names neither folder.
-[[nodiscard]] std::filesystem::path kept_costs_file();
+[[nodiscard]] std::filesystem::path calibrated_costs_file();
 /// Replaces the shipped costs by the calibrated ones, if there are any, for the rest of the process. Costs of another
 /// version or machine are ignored with a note.
 /// @throws aabb::input_error like `read_costs`.
-void use_kept_costs();
+void use_calibrated_costs();
 /// Describes the costs in use: "costs as shipped", or "costs calibrated 2026-01-31T12:00:00Z (FILE)".
 [[nodiscard]] std::string costs_in_force();
 

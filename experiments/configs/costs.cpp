@@ -14,11 +14,10 @@ namespace {
 constexpr std::size_t longest_file = 65'536;
 
 std::string_view instructions() {
-    constexpr std::size_t of_avx512 = 16;
-    constexpr std::size_t of_avx2 = 8;
-    return aabb::simd::width == of_avx512 ? "AVX-512" : aabb::simd::width == of_avx2 ? "AVX2" : "128 bits";
+    return aabb::simd::width == 16 ? "AVX-512" : aabb::simd::width == 8 ? "AVX2" : "128 bits";
 }
 
+/// Quotes a text for TOML; control characters, which a processor's name may contain, become blanks.
 std::string toml_string(std::string_view text) {
     std::string quoted = "\"";
     for (const char c : text) {
@@ -28,13 +27,14 @@ std::string toml_string(std::string_view text) {
     return quoted + "\"";
 }
 
-std::string head_of(const document& doc, const std::string& key) {
-    return doc.text_of(key, doc.needed(doc.root(), key, "there is no " + key + "; aabblab calibrate writes it"));
+std::string header_field(const document& doc, const std::string& key) {
+    return doc.text_of(key, doc.required(doc.root(), key, "there is no " + key + "; aabblab calibrate writes it"));
 }
 
+/// Reads one cost, which must be positive.
 double cost_of(const document& doc, const node& table, const aabb::cost_info& cost) {
     const std::string key(cost.name);
-    const node& value = doc.needed(table, key, "[costs] has no " + key + "; aabblab calibrate writes all");
+    const node& value = doc.required(table, key, "[costs] has no " + key + "; aabblab calibrate writes all");
     double number = 0;
     if (value.kind == node_kind::integer || value.kind == node_kind::real)
         std::from_chars(value.text.data(), value.text.data() + value.text.size(), number);
@@ -44,7 +44,7 @@ double cost_of(const document& doc, const node& table, const aabb::cost_info& co
 }
 
 aabb::cost_model costs_in(const document& doc) {
-    const node& table = doc.needed(doc.root(), "costs", "there is no [costs]; aabblab calibrate writes it");
+    const node& table = doc.required(doc.root(), "costs", "there is no [costs]; aabblab calibrate writes it");
     doc.require_table("costs", table);
     std::vector<std::string> names;
     for (const aabb::cost_info& cost : aabb::cost_infos) names.emplace_back(cost.name);
@@ -61,78 +61,80 @@ std::filesystem::path folder_in(const char* variable) {
     return folder.is_absolute() ? folder : std::filesystem::path();
 }
 
-/// The date of the costs that `use_kept_costs` loaded; empty while the shipped costs are in use.
-std::string& date_taken() {
+/// The date of the costs that `use_calibrated_costs` loaded; empty while the shipped costs are in use.
+std::string& loaded_date() {
     static std::string date;
     return date;
 }
 
 }  // namespace
 
-kept_costs costs_here(const aabb::cost_model& costs) {
+calibrated_costs label_costs(const aabb::cost_model& costs) {
     return {AABBLAB_VERSION, date_now(), this_machine().processor, std::string(instructions()), costs};
 }
 
-std::string text_of(const kept_costs& kept) {
+std::string text_of(const calibrated_costs& costs) {
     std::string text =
         "# Times of elementary operations in nanoseconds, measured by `aabblab calibrate`. Another version of the\n"
         "# program, processor or instruction set ignores them; `aabblab calibrate --reset` removes them.\n";
-    text += "version = " + toml_string(kept.version) + "\ndate = " + toml_string(kept.date) +
-            "\nprocessor = " + toml_string(kept.processor) + "\ninstructions = " + toml_string(kept.instructions) +
+    text += "version = " + toml_string(costs.version) + "\ndate = " + toml_string(costs.date) +
+            "\nprocessor = " + toml_string(costs.processor) + "\ninstructions = " + toml_string(costs.instructions) +
             "\n\n[costs]\n";
     constexpr std::size_t column = 34;
     for (const aabb::cost_info& cost : aabb::cost_infos) {
-        std::string line = std::string(cost.name) + " = " + aabb::shortest(kept.costs.*cost.value);
+        std::string line = std::string(cost.name) + " = " + aabb::shortest(costs.costs.*cost.value);
         line.append(column > line.size() ? column - line.size() : 1, ' ');
         text += line + " # " + std::string(cost.unit) + ": " + std::string(cost.of) + "\n";
     }
     return text;
 }
 
-kept_costs parse_costs(const std::string& text, const std::string& file) {
+calibrated_costs parse_costs(const std::string& text, const std::string& file) {
     const document doc(text, file, longest_file, "a file of costs");
-    kept_costs kept{head_of(doc, "version"), "", head_of(doc, "processor"), head_of(doc, "instructions"), {}};
-    if (kept.version != AABBLAB_VERSION) return kept;
+    calibrated_costs parsed{
+        header_field(doc, "version"), "", header_field(doc, "processor"), header_field(doc, "instructions"), {}};
+    if (parsed.version != AABBLAB_VERSION) return parsed;
     doc.require_keys(doc.root(), "", {"version", "date", "processor", "instructions", "costs"});
-    kept.date = head_of(doc, "date");
-    kept.costs = costs_in(doc);
-    return kept;
+    parsed.date = header_field(doc, "date");
+    parsed.costs = costs_in(doc);
+    return parsed;
 }
 
-kept_costs read_costs(const std::filesystem::path& file) {
+calibrated_costs read_costs(const std::filesystem::path& file) {
     return parse_costs(text_of_file(file), file.string());
 }
 
-std::filesystem::path kept_costs_file() {
+std::filesystem::path calibrated_costs_file() {
     const std::filesystem::path file = "aabblab/costs.toml";
     if (const std::filesystem::path config = folder_in("XDG_CONFIG_HOME"); !config.empty()) return config / file;
     const std::filesystem::path home = folder_in("HOME");
     return home.empty() ? home : home / ".config" / file;
 }
 
-void use_kept_costs() {
-    const std::filesystem::path file = kept_costs_file();
+void use_calibrated_costs() {
+    const std::filesystem::path file = calibrated_costs_file();
     std::error_code ignored;  // an inaccessible file counts as absent
     if (file.empty() || !std::filesystem::exists(file, ignored)) return;
-    const kept_costs kept = [&] {
+    const calibrated_costs costs = [&] {
         try {
             return read_costs(file);
         } catch (const aabb::input_error& e) {
             throw aabb::input_error(std::string(e.what()) + "; aabblab calibrate --reset removes it");
         }
     }();
-    if (!kept.serve(costs_here({}))) {
-        note(file.string() + " is of aabblab " + kept.version + " with " + kept.instructions + " on " + kept.processor +
+    if (!costs.applies_to(label_costs({}))) {
+        note(file.string() + " is of aabblab " + costs.version + " with " + costs.instructions + " on " +
+             costs.processor +
              ", so the shipped costs are used until aabblab calibrate measures those of this machine");
         return;
     }
-    aabb::set_machine_costs(kept.costs);
-    date_taken() = kept.date;
+    aabb::set_machine_costs(costs.costs);
+    loaded_date() = costs.date;
 }
 
 std::string costs_in_force() {
-    if (date_taken().empty()) return "costs as shipped";
-    return "costs calibrated " + date_taken() + " (" + kept_costs_file().string() + ")";
+    if (loaded_date().empty()) return "costs as shipped";
+    return "costs calibrated " + loaded_date() + " (" + calibrated_costs_file().string() + ")";
 }
 
 }  // namespace aabblab

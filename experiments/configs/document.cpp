@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t most_parts = 16;  // per dotted key; a config needs two
 constexpr std::size_t most_products = 100'000;
 
-node converted(const toml::node& value) {
+node to_node(const toml::node& value) {
     node result;
     result.line = static_cast<int>(value.source().begin.line);
     if (const toml::table* table = value.as_table()) {
@@ -22,7 +22,7 @@ node converted(const toml::node& value) {
         // toml++ sorts entries by key, but products of lists follow the order in the file.
         std::vector<std::pair<toml::source_position, node>> entries;
         for (const auto& [key, value_of_key] : *table) {
-            node entry = converted(value_of_key);
+            node entry = to_node(value_of_key);
             entry.line = static_cast<int>(key.source().begin.line);
             entry.key = key.str();
             entries.emplace_back(key.source().begin, std::move(entry));
@@ -32,7 +32,7 @@ node converted(const toml::node& value) {
         for (auto& [position, entry] : entries) result.items.push_back(std::move(entry));
     } else if (const toml::array* list = value.as_array()) {
         result.kind = node_kind::list;
-        for (const toml::node& item : *list) result.items.push_back(converted(item));
+        for (const toml::node& item : *list) result.items.push_back(to_node(item));
     } else if (const auto* text = value.as_string()) {
         result.kind = node_kind::text;
         result.text = text->get();
@@ -150,7 +150,7 @@ document::document(const std::string& as_written, std::string file, std::size_t 
     if (const int line = line_of_long_key(text))
         fail(line, "a key has more than " + std::to_string(most_parts) + " parts");
     try {
-        root_ = converted(toml::parse(text, file_));
+        root_ = to_node(toml::parse(text, file_));
         root_.line = 1;
     } catch (const toml::parse_error& error) {
         const toml::source_position& at = error.source().begin;
@@ -183,7 +183,7 @@ void document::require_table(const std::string& key, const node& value) const {
     if (value.kind != node_kind::table) fail_type(key, value, "a table");
 }
 
-const node& document::needed(const node& table, std::string_view key, const std::string& sentence) const {
+const node& document::required(const node& table, std::string_view key, const std::string& sentence) const {
     const node* value = table.find(key);
     if (!value) fail(table.line, sentence);
     return *value;
@@ -232,8 +232,8 @@ std::vector<located_text> document::texts_of(const std::string& key, const node&
 }
 
 std::optional<std::vector<located_text>> document::take_others(node& list) const {
-    const auto stands_for_others = [](const node& item) { return item.find("others_but") != nullptr; };
-    const auto others = std::ranges::find_if(list.items, stands_for_others);
+    const auto is_others = [](const node& item) { return item.find("others_but") != nullptr; };
+    const auto others = std::ranges::find_if(list.items, is_others);
     if (list.kind != node_kind::list || others == list.items.end()) return std::nullopt;
     require_keys(*others, " beside others_but", {"others_but"});
     std::vector<located_text> excluded = texts_of("others_but", *others->find("others_but"));
@@ -255,8 +255,8 @@ std::vector<located_text> document::alternatives_of(const std::string& key, cons
     return values;
 }
 
-void document::require_few(int line, std::string_view of, std::span<const std::size_t> factors,
-                           std::size_t more) const {
+void document::require_small_product(int line, std::string_view of, std::span<const std::size_t> factors,
+                                     std::size_t more) const {
     auto products = static_cast<double>(more);
     products += std::accumulate(factors.begin(), factors.end(), 1.0, std::multiplies{});
     if (products > static_cast<double>(most_products))
@@ -278,16 +278,13 @@ std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys) {
     return sizes;
 }
 
-std::vector<std::vector<aabb::setting>> multiplied(const std::vector<alternatives>& keys) {
+std::vector<std::vector<aabb::setting>> cartesian_product(const std::vector<alternatives>& keys) {
     std::vector<std::vector<aabb::setting>> products{{}};
     for (const auto& [key, values] : keys) {
-        std::vector<std::vector<aabb::setting>> longer;
+        std::vector<std::vector<aabb::setting>> extended;
         for (const std::vector<aabb::setting>& product : products)
-            for (const located_text& value : values) {
-                longer.push_back(product);
-                longer.back().push_back({key, value.text});
-            }
-        products = std::move(longer);
+            for (const located_text& value : values) extended.emplace_back(product).push_back({key, value.text});
+        products = std::move(extended);
     }
     return products;
 }

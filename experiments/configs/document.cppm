@@ -43,12 +43,13 @@ public:
 
     /// The place of a line in messages, "FILE:LINE".
     [[nodiscard]] std::string place(int line) const { return file_ + ":" + std::to_string(line); }
+    /// Throws an input_error: "FILE:LINE: SENTENCE".
     [[noreturn]] void fail(int line, const std::string& sentence) const;
     /// Reports a value of the wrong type: "KEY is a number; expected WHAT".
     [[noreturn]] void fail_type(const std::string& key, const node& value, std::string_view expected) const;
 
-    /// Calls the function and prefixes its input_error with the place.
-    decltype(auto) at(int line, auto function) const {
+    /// Calls the function and prefixes the message of its input_error with the place.
+    decltype(auto) at_line(int line, auto function) const {
         try {
             return function();
         } catch (const aabb::input_error& error) {
@@ -60,7 +61,7 @@ public:
     void require_keys(const node& table, const std::string& of, const std::vector<std::string>& known) const;
     void require_table(const std::string& key, const node& value) const;
     /// The value of a required key; without it, the table is rejected with the sentence.
-    [[nodiscard]] const node& needed(const node& table, std::string_view key, const std::string& sentence) const;
+    [[nodiscard]] const node& required(const node& table, std::string_view key, const std::string& sentence) const;
     /// The tables of [[key]]; empty if the key is absent.
     [[nodiscard]] std::span<const node> tables_of(const std::string& key) const;
     [[nodiscard]] bool flag_of(const std::string& key, const node& value) const;
@@ -74,10 +75,11 @@ public:
     /// @returns the names in it; nullopt if the list has no such entry
     [[nodiscard]] std::optional<std::vector<located_text>> take_others(node& list) const;
     /// Rejects a product that is too large before it is expanded, as a short config can describe an enormous one.
-    /// @param of what the product consists of, as in "compositions"
+    /// @param of the noun for the products in the message, as in "compositions"
     /// @param factors the lengths of the lists
     /// @param more the number of products that exist already
-    void require_few(int line, std::string_view of, std::span<const std::size_t> factors, std::size_t more) const;
+    void require_small_product(int line, std::string_view of, std::span<const std::size_t> factors,
+                               std::size_t more) const;
 
 private:
     std::string file_;
@@ -86,7 +88,7 @@ private:
 
 /// The items of a list in order, without duplicates.
 template <class T>
-class each_once {
+class unique_list {
 public:
     /// @param text identifies the item: equal items have equal texts
     /// @returns false if the item is a duplicate
@@ -95,7 +97,7 @@ public:
         items_.push_back(item);
         return true;
     }
-    [[nodiscard]] const std::vector<T>& all() const { return items_; }
+    [[nodiscard]] const std::vector<T>& items() const { return items_; }
 
 private:
     std::vector<T> items_;
@@ -112,6 +114,6 @@ using alternatives = std::pair<std::string, std::vector<located_text>>;
 
 [[nodiscard]] std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys);
 /// The Cartesian product: one alternative per key; the first key varies slowest.
-[[nodiscard]] std::vector<std::vector<aabb::setting>> multiplied(const std::vector<alternatives>& keys);
+[[nodiscard]] std::vector<std::vector<aabb::setting>> cartesian_product(const std::vector<alternatives>& keys);
 
 }  // namespace aabblab

@@ -5,8 +5,8 @@ import :document;
 namespace aabblab {
 
 // Defined in compose.cpp, experiment.cpp and scenes.cpp.
-error_curve curve_of(const document& doc, const node& written);
-std::string name_of(const document& doc);
+error_curve read_curve(const document& doc, const node& written);
+std::string read_name(const document& doc);
 std::string text_of_config(const std::filesystem::path& file);
 void read_measure(const document& doc, experiment_size size, experiment& e);
 void read_scenes(const document& doc, experiment_size size, experiment& e);
@@ -17,6 +17,7 @@ namespace {
 const std::vector<std::string> known_precisions = {"float", "double"};
 constexpr std::uint64_t quick_share = 20;  // a quick run takes 1/20 of the pairs by default
 
+/// The number of pairs per class at this size of the experiment.
 std::uint64_t count_of(const document& doc, const node& pairs, experiment_size size) {
     const node* count = pairs.find("count");
     const node* quick = pairs.find("quick");
@@ -30,9 +31,10 @@ std::uint64_t count_of(const document& doc, const node& pairs, experiment_size s
     return size == experiment_size::quick ? quick_count : full_count;
 }
 
+/// Adds the sets of one table: every listed class, or all classes, in every listed precision.
 /// @param key "pairs", or "hits", whose count includes only pairs that intersect
 void add_pairs(const document& doc, const std::string& key, const node& written, experiment_size size,
-               std::uint64_t seed, each_once<pair_set>& sets) {
+               std::uint64_t seed, unique_list<pair_set>& sets) {
     doc.require_table(key, written);
     doc.require_keys(written, " of [[" + key + "]]", {"class", "precision", "count", "quick"});
     std::vector<located_text> classes;
@@ -48,7 +50,7 @@ void add_pairs(const document& doc, const std::string& key, const node& written,
         if (precision.text != "float" && precision.text != "double")
             doc.fail(precision.line, aabb::unknown_name("precision", precision.text, known_precisions));
         for (const located_text& name : classes) {
-            doc.at(name.line, [&] { static_cast<void>(pair_source<float>(name.text, seed)); });
+            doc.at_line(name.line, [&] { static_cast<void>(pair_source<float>(name.text, seed)); });
             if (!sets.add({name.text, precision.text == "double", count, seed}, name.text + " in " + precision.text))
                 doc.fail(name.line, "these " + key + " are listed twice: " + name.text + " in " + precision.text);
         }
@@ -56,21 +58,21 @@ void add_pairs(const document& doc, const std::string& key, const node& written,
 }
 
 /// Notes which tests support only floats, and rejects pairs in double if no test supports them.
-void require_doubles_taken(const document& doc, error_study& study) {
+void require_test_for_doubles(const document& doc, error_study& study) {
     if (std::ranges::none_of(study.pairs, &pair_set::in_double)) return;
-    std::size_t taking = 0;
-    std::string names;
+    bool has_test = false;
+    std::string float_tests;
     for (const error_curve& curve : study.curves)
-        for (const aabb::strategy_choice& choice : curve.triangles) {
+        for (const aabb::strategy_choice& choice : curve.triangles)
             if (triangle_test_named(choice)->takes_double())
-                ++taking;
+                has_test = true;
             else
-                names += (names.empty() ? "" : "; ") + to_text(choice);
-        }
-    if (!names.empty()) study.notes.push_back("only for floats, so left out of pairs of doubles: " + names);
-    if (taking == 0) doc.fail(doc.root().find("pairs")->line, "no curve has a test for triangles of doubles");
+                float_tests += (float_tests.empty() ? "" : "; ") + to_text(choice);
+    if (!float_tests.empty()) study.notes.push_back("only for floats, so left out of pairs of doubles: " + float_tests);
+    if (!has_test) doc.fail(doc.root().find("pairs")->line, "no curve has a test for triangles of doubles");
 }
 
+/// Rejects scenes of boxes; unknown kinds are reported later.
 void require_meshes(const document& doc, const node& scene) {
     const node* kinds = scene.find("kind");
     if (!kinds) return;
@@ -83,9 +85,9 @@ void require_meshes(const document& doc, const node& scene) {
 /// Reads the curves, which are either all of triangle tests or all of compositions, and share no method.
 std::vector<error_curve> curves_of(const document& doc) {
     std::vector<error_curve> curves;
-    each_once<bool> methods;
+    unique_list<bool> methods;
     for (const node& table : doc.tables_of("curve")) {
-        curves.push_back(curve_of(doc, table));
+        curves.push_back(read_curve(doc, table));
         const error_curve& curve = curves.back();
         if (std::ranges::count(curves, curve.label, &error_curve::label) > 1)
             doc.fail(table.line, "two curves have the label '" + curve.label + "'");
@@ -103,7 +105,8 @@ std::vector<error_curve> curves_of(const document& doc) {
     return curves;
 }
 
-/// Rejects keys that belong only to the other sort of study.
+/// Rejects keys that belong only to the other kind of study.
+/// @param reason follows the name of the key in the message
 void reject_keys(const document& doc, std::initializer_list<std::string_view> keys, const std::string& reason) {
     for (const std::string_view key : keys)
         if (const node* entry = doc.root().find(key)) {
@@ -112,6 +115,7 @@ void reject_keys(const document& doc, std::initializer_list<std::string_view> ke
         }
 }
 
+/// The plots of a config; without any, wrong results are plotted against time.
 std::vector<metric_plot> plots_of(const document& doc) {
     std::vector<metric_plot> plots;
     for (const node& table : doc.tables_of("plot")) {
@@ -119,9 +123,9 @@ std::vector<metric_plot> plots_of(const document& doc) {
         doc.require_keys(table, " of [[plot]]", {"x", "y"});
         const auto metric_of = [&](const char* key) {
             const node& value =
-                doc.needed(table, key, std::string("this plot has no ") + key + "; expected the name of a metric");
+                doc.required(table, key, std::string("this plot has no ") + key + "; expected the name of a metric");
             const std::string& name = doc.text_of(key, value);
-            doc.at(value.line, [&] { static_cast<void>(metric_named(name)); });
+            doc.at_line(value.line, [&] { static_cast<void>(metric_named(name)); });
             return name;
         };
         plots.push_back({metric_of("x"), metric_of("y")});
@@ -152,20 +156,21 @@ experiment whole_of(const document& doc, const error_study& study, experiment_si
     return e;
 }
 
+/// The sets of pairs in all tables of a key.
 std::vector<pair_set> pairs_of(const document& doc, const std::string& key, experiment_size size) {
     const std::span<const node> tables = doc.tables_of(key);
     if (tables.empty()) return {};
     const node* seed = seed_of(doc, size);
     const std::uint64_t number = seed ? doc.integer_of("seed", *seed, 0) : 1;
-    each_once<pair_set> sets;
+    unique_list<pair_set> sets;
     for (const node& table : tables) add_pairs(doc, key, table, size, number, sets);
-    return sets.all();
+    return sets.items();
 }
 
 /// Reads the triangle pairs and the mesh scenes on which triangle tests are compared.
 void read_triangles(const document& doc, experiment_size size, error_study& study) {
     study.pairs = pairs_of(doc, "pairs", size);
-    require_doubles_taken(doc, study);
+    require_test_for_doubles(doc, study);
     for (const node& table : doc.tables_of("scene")) require_meshes(doc, table);
     if (doc.root().find("scene")) {
         experiment with_scenes;
@@ -204,7 +209,7 @@ error_study parse_error_study(const std::string& text, const std::string& file, 
         doc.fail(compose->line, "[compose] belongs to a config of run; use ./aabblab run");
     doc.require_keys(doc.root(), "", {"name", "seed", "pairs", "scene", "curve", "hits", "plot", "measure", "quick"});
     error_study study;
-    study.name = name_of(doc);
+    study.name = read_name(doc);
     study.text = text;
     study.curves = curves_of(doc);
     read_sized(doc, size, study);

@@ -39,29 +39,29 @@ std::vector<std::string> engines_of(const document& doc) {
 }
 
 /// Resolves a program like any file of the config; a name without a slash is left for PATH.
-std::string found_program(const document& doc, const std::string& name) {
+std::string resolve_program(const document& doc, const std::string& name) {
     if (name.find('/') == std::string::npos) return name;
-    const std::filesystem::path program = found_file(name, doc.folder());
+    const std::filesystem::path program = resolve_file(name, doc.folder());
     if (std::filesystem::is_directory(program)) throw aabb::input_error(name + " is a folder; expected a program");
     return program.string();
 }
 
-external_engine external_of(const document& doc, const node& table) {
+external_engine read_external(const document& doc, const node& table) {
     doc.require_table("external", table);
     doc.require_keys(table, " of [[external]]", {"name", "command", "exact", "timeout_s"});
     external_engine engine;
-    const node& name = doc.needed(table, "name", "this [[external]] has no name; expected name = \"…\"");
+    const node& name = doc.required(table, "name", "this [[external]] has no name; expected name = \"…\"");
     engine.name = doc.text_of("name", name);
     require_plain_name(doc, name);
     if (engine.name == "auto" || std::ranges::count(aabb::engines(), engine.name, &aabb::engine_info::name) > 0 ||
         std::ranges::count(aabb::left_out_engines(), engine.name, &aabb::left_out_engine::name) > 0)
         doc.fail(name.line, "there is an engine '" + engine.name + "' already; give this one another name");
     const node& command =
-        doc.needed(table, "command", "'" + engine.name + "' has no command; expected command = [\"…\"]");
+        doc.required(table, "command", "'" + engine.name + "' has no command; expected command = [\"…\"]");
     for (const located_text& word : doc.texts_of("command", command)) engine.command.push_back(word.text);
     if (engine.command.empty() || engine.command[0].empty())
         doc.fail(command.line, "the command of '" + engine.name + "' is empty; expected a program");
-    doc.at(command.line, [&] { engine.program = found_program(doc, engine.command[0]); });
+    doc.at_line(command.line, [&] { engine.program = resolve_program(doc, engine.command[0]); });
     engine.place = doc.place(command.line);
     if (const node* exact = table.find("exact")) engine.exact = doc.flag_of("exact", *exact);
     if (const node* timeout = table.find("timeout_s")) {
@@ -75,7 +75,7 @@ external_engine external_of(const document& doc, const node& table) {
 std::vector<external_engine> externals_of(const document& doc) {
     std::vector<external_engine> externals;
     for (const node& table : doc.tables_of("external")) {
-        external_engine engine = external_of(doc, table);
+        external_engine engine = read_external(doc, table);
         if (std::ranges::find(externals, engine.name, &external_engine::name) != externals.end())
             doc.fail(table.line, "two [[external]] have the name '" + engine.name + "'");
         externals.push_back(std::move(engine));
@@ -83,7 +83,7 @@ std::vector<external_engine> externals_of(const document& doc) {
     return externals;
 }
 
-/// Reads names of groups and metrics. A group is recorded; a metric is also shown in the tables.
+/// Reads names of groups and metrics. A listed group is only recorded; a listed metric is also shown in the tables.
 void read_metrics(const document& doc, const node& value, experiment& e) {
     e.recorded.clear();
     std::vector<std::string> known;
@@ -118,7 +118,7 @@ std::size_t read_word(const document& doc, const char* key, const node& value,
 }
 
 /// Reads the query and the state of the caches, which only mesh scenes support.
-void read_asking(const document& doc, experiment& e) {
+void read_query(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     if (!measure) return;
     const auto require_meshes = [&](const char* key, const node& value) {
@@ -128,17 +128,17 @@ void read_asking(const document& doc, experiment& e) {
                                  boxes->kind + " has none");
     };
     if (const node* ask = measure->find("ask")) {
-        e.how.ask = static_cast<question>(read_word(doc, "ask", *ask, question_names));
-        if (e.how.ask != question::pairs) require_meshes("ask", *ask);
+        e.query.kind = static_cast<query_kind>(read_word(doc, "ask", *ask, query_names));
+        if (e.query.kind != query_kind::pairs) require_meshes("ask", *ask);
     }
     constexpr std::array<std::string_view, 2> states{"warm", "cold"};
     if (const node* caches = measure->find("caches")) {
-        e.how.cold = read_word(doc, "caches", *caches, states) == 1;
-        if (e.how.cold) require_meshes("caches", *caches);
+        e.query.cold = read_word(doc, "caches", *caches, states) == 1;
+        if (e.query.cold) require_meshes("caches", *caches);
     }
-    if (e.how.ask == question::first) e.notes.emplace_back("query: any one contact of each frame");
-    if (e.how.ask == question::count) e.notes.emplace_back("query: the number of contacts of each frame");
-    if (e.how.cold) e.notes.emplace_back("caches: cold before each query");
+    if (e.query.kind == query_kind::first) e.notes.emplace_back("query: any one contact of each frame");
+    if (e.query.kind == query_kind::count) e.notes.emplace_back("query: the number of contacts of each frame");
+    if (e.query.cold) e.notes.emplace_back("caches: cold before each query");
 }
 
 /// Fresh processes share the repeats, so there cannot be more processes than repeats.
@@ -158,12 +158,13 @@ void read_processes(const document& doc, experiment& e) {
 }  // namespace
 
 /// The name of the experiment and of its results folder.
-std::string name_of(const document& doc) {
-    const node& name = doc.needed(doc.root(), "name", "this config has no name; expected name = \"…\"");
+std::string read_name(const document& doc) {
+    const node& name = doc.required(doc.root(), "name", "this config has no name; expected name = \"…\"");
     require_plain_name(doc, name);
     return doc.text_of("name", name);
 }
 
+/// Reads [measure], except what `read_processes` and `read_query` read; `quick` applies in quick runs only.
 void read_measure(const document& doc, experiment_size size, experiment& e) {
     const bool quick = size == experiment_size::quick;
     if (quick) e.repeats = quick_repeats;
@@ -192,7 +193,7 @@ void read_sized(const document& doc, experiment_size size, experiment& e) {
     read_measure(doc, size, e);
     read_processes(doc, e);
     read_scenes(doc, size, e);
-    read_asking(doc, e);
+    read_query(doc, e);
 }
 
 }  // namespace
@@ -205,7 +206,7 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     experiment e;
     e.file = file;
     e.text = text;
-    e.name = name_of(doc);
+    e.name = read_name(doc);
     e.engines = engines_of(doc);
     e.externals = externals_of(doc);
     read_compositions(doc, doc.root().find("compose"), e);
@@ -216,6 +217,7 @@ experiment parse_experiment(const std::string& text, const std::string& file, ex
     return e;
 }
 
+/// Reads a config. If it does not exist, the message suggests a config of the project with the same name.
 std::string text_of_config(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file))
         for (const char* folder : {AABBLAB_CONFIGS, AABBLAB_CONFIGS "/errors"})
@@ -260,9 +262,9 @@ std::string hash_of(const experiment& e) {
             if (named[kind]) text += " + " + to_text(*named[kind]);
     }
     for (const scene_choice& scene : e.scenes) text += "\n" + scene.kind + " " + parameters_text(scene);
-    if (e.how != asking{})
-        text +=
-            "\n" + std::string(question_names[static_cast<std::size_t>(e.how.ask)]) + (e.how.cold ? " cold" : " warm");
+    if (e.query != query_settings{})
+        text += "\n" + std::string(query_names[static_cast<std::size_t>(e.query.kind)]) +
+                (e.query.cold ? " cold" : " warm");
     return aabb::hash_of_text(text + "\n" + e.content_digest);
 }
 

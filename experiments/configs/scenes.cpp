@@ -13,25 +13,25 @@ bool is_false(const node& value) {
 }
 
 /// The scene at this size of the experiment: `quick` is removed, and its entries override the others in quick runs.
-node sized(const document& doc, const node& scene, experiment_size size) {
-    node sized_scene = scene;
-    std::erase_if(sized_scene.items, [](const node& entry) { return entry.key == "quick"; });
-    const node* quick = scene.find("quick");
-    if (!quick || is_false(*quick)) return sized_scene;
+node at_size(const document& doc, const node& written, experiment_size size) {
+    node scene = written;
+    std::erase_if(scene.items, [](const node& entry) { return entry.key == "quick"; });
+    const node* quick = written.find("quick");
+    if (!quick || is_false(*quick)) return scene;
     doc.require_table("quick", *quick);
-    if (size == experiment_size::full) return sized_scene;
+    if (size == experiment_size::full) return scene;
     for (const node& entry : quick->items) {
-        const auto same = std::ranges::find(sized_scene.items, entry.key, &node::key);
-        if (same == sized_scene.items.end())
-            sized_scene.items.push_back(entry);
+        const auto overridden = std::ranges::find(scene.items, entry.key, &node::key);
+        if (overridden == scene.items.end())
+            scene.items.push_back(entry);
         else
-            *same = entry;
+            *overridden = entry;
     }
-    return sized_scene;
+    return scene;
 }
 
 const scene_info& info_of(const document& doc, const located_text& kind) {
-    return doc.at(kind.line, [&]() -> const scene_info& { return scene_named(kind.text); });
+    return doc.at_line(kind.line, [&]() -> const scene_info& { return scene_named(kind.text); });
 }
 
 /// Expands { others_but = […] } to every generated scene of boxes that is neither excluded nor listed by name.
@@ -53,6 +53,7 @@ std::vector<located_text> kinds_of(const document& doc, node list) {
 /// The keys of a scene that are not settings.
 constexpr std::string_view own_keys[] = {"kind", "seed", "meshes", "without_data"};
 
+/// Rejects keys that the kind of scene does not have, in the scene and in its `quick`.
 void require_known_keys(const document& doc, const node& scene, const scene_info& info) {
     const node* quick = scene.find("quick");
     if (quick && is_false(*quick)) quick = nullptr;
@@ -75,19 +76,20 @@ std::vector<std::string> names_of(const document& doc, const node& scene, const 
     return names;
 }
 
+/// The meshes of a scene. If one does not exist, those of `without_data` replace all of them, with a note.
 std::vector<std::string> meshes_of(const document& doc, const node& scene, std::vector<std::string>& notes) {
     std::vector<std::string> meshes = names_of(doc, scene, "meshes");
-    std::vector<std::string> instead = names_of(doc, scene, "without_data");
+    std::vector<std::string> fallback = names_of(doc, scene, "without_data");
     auto missing = meshes.begin();
-    const auto is_there = [&](const std::string& mesh) { return is_mesh(mesh, doc.folder()); };
+    const auto exists = [&](const std::string& mesh) { return is_mesh(mesh, doc.folder()); };
     if (const node* listed = scene.find("meshes"))
-        doc.at(listed->line, [&] { missing = std::ranges::find_if_not(meshes, is_there); });
-    if (instead.empty() || missing == meshes.end()) return meshes;
+        doc.at_line(listed->line, [&] { missing = std::ranges::find_if_not(meshes, exists); });
+    if (fallback.empty() || missing == meshes.end()) return meshes;
     std::string note = std::string(name_without_order(*missing, doc.folder())) +
                        " does not exist (./aabblab data downloads it); it is replaced by";
-    for (const std::string& mesh : instead) note += (&mesh == instead.data() ? " " : ", ") + mesh;
+    for (const std::string& mesh : fallback) note += (&mesh == fallback.data() ? " " : ", ") + mesh;
     notes.push_back(note);
-    return instead;
+    return fallback;
 }
 
 /// The settings of a scene, each with its alternatives.
@@ -98,11 +100,12 @@ std::vector<alternatives> settings_of(const document& doc, const node& scene, bo
         settings.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
         if (reads_file && entry.key == "file")
             for (const located_text& name : settings.back().second)
-                doc.at(name.line, [&] { static_cast<void>(found_file(name.text, doc.folder())); });
+                doc.at_line(name.line, [&] { static_cast<void>(resolve_file(name.text, doc.folder())); });
     }
     return settings;
 }
 
+/// The alternatives of a seed, which is 1 by default.
 std::vector<std::optional<std::uint64_t>> seeds_of(const document& doc, const node* seed) {
     if (!seed) return {1U};
     if (seed->kind != node_kind::list) return {doc.integer_of("seed", *seed, 0)};
@@ -190,17 +193,19 @@ void add_content(const document& doc, const written_scene& scene, aabb::digest& 
         const std::string sentence = error.what();
         const auto file = std::ranges::find(scene.choice.settings, "file", &aabb::setting::name);
         const bool of_file = scene.info->reads_file && scene.file_line > 0 && !file->value.empty() &&
-                             sentence.starts_with(found_file(file->value, doc.folder()).string());
+                             sentence.starts_with(resolve_file(file->value, doc.folder()).string());
         doc.fail(of_file ? scene.file_line : scene.line, sentence);
     }
 }
 
+/// Adds the scenes of one [[scene]]: kinds, settings and seeds multiply.
+/// @param seed the default of the config; null if it has none
 void add_scenes(const document& doc, const node& written, const node* seed, experiment_size size,
-                std::vector<std::string>& notes, each_once<written_scene>& scenes) {
+                std::vector<std::string>& notes, unique_list<written_scene>& scenes) {
     doc.require_table("scene", written);
-    const node scene = sized(doc, written, size);
+    const node scene = at_size(doc, written, size);
     const node& kinds =
-        doc.needed(scene, "kind", "this scene has no kind; expected kind = \"" + scene_names()[0] + "\" or another");
+        doc.required(scene, "kind", "this scene has no kind; expected kind = \"" + scene_names()[0] + "\" or another");
     const std::vector<located_text> names = kinds_of(doc, kinds);
     for (const located_text& kind : names) require_known_keys(doc, written, info_of(doc, kind));
     const node* own_seed = scene.find("seed");
@@ -214,8 +219,8 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
         const auto seeds = info.reads_file ? std::vector<std::optional<std::uint64_t>>(1) : all_seeds;
         std::vector<std::size_t> factors = sizes_of(keys);
         factors.push_back(seeds.size());
-        doc.require_few(written.line, "scenes", factors, scenes.all().size());
-        for (const std::vector<aabb::setting>& settings : multiplied(keys))
+        doc.require_small_product(written.line, "scenes", factors, scenes.items().size());
+        for (const std::vector<aabb::setting>& settings : cartesian_product(keys))
             for (const std::optional<std::uint64_t> seed_value : seeds) {
                 written_scene resolved{{kind.text, settings, meshes, seed_value, doc.folder()}, &info, written.line};
                 resolved.file_line = line_of_file(resolved.choice, keys);
@@ -240,18 +245,18 @@ const node* seed_of(const document& doc, experiment_size size) {
 
 /// Scenes that the experiment already has, at another size, are valid and are not generated again.
 void read_scenes(const document& doc, experiment_size size, experiment& e) {
-    const node& scenes = doc.needed(doc.root(), "scene", "this config has no scene; expected at least one [[scene]]");
+    const node& scenes = doc.required(doc.root(), "scene", "this config has no scene; expected at least one [[scene]]");
     const std::span<const node> tables = doc.tables_of("scene");
     const node* seed = seed_of(doc, size);
-    each_once<written_scene> written;
+    unique_list<written_scene> written;
     for (const node& scene : tables) add_scenes(doc, scene, seed, size, e.notes, written);
-    if (written.all().empty())
+    if (written.items().empty())
         doc.fail(scenes.line, tables.empty() ? "this config has no scene; expected at least one [[scene]]"
                                              : "every scene of this config is left out by quick = false");
     const std::set<scene_choice> checked(e.scenes.begin(), e.scenes.end());
     e.scenes.clear();
     aabb::digest content;
-    for (const written_scene& scene : written.all()) {
+    for (const written_scene& scene : written.items()) {
         require_runnable(doc, scene, e);
         if (!checked.contains(scene.choice)) add_content(doc, scene, content);
         e.scenes.push_back(scene.choice);

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t longest_file = 16'777'216;
 
 const node& entry_of(const document& doc, const node& table, std::string_view key) {
-    return doc.needed(table, key, "this case has no " + std::string(key));
+    return doc.required(table, key, "this case has no " + std::string(key));
 }
 
 bool truth_of(const document& doc, const node& table, const std::string& key) {
@@ -65,12 +65,12 @@ std::vector<aabb::triangle_case> parse_triangle_cases(const std::string& text, c
     const document doc(text, file, longest_file, "a file of cases");
     doc.require_keys(doc.root(), "", {"case"});
     if (!doc.root().find("case")) throw aabb::input_error(file + " has no cases; expected [[case]]");
-    each_once<aabb::triangle_case> cases;
+    unique_list<aabb::triangle_case> cases;
     for (const node& table : doc.tables_of("case")) {
         const aabb::triangle_case pair = case_of(doc, table);
         if (!cases.add(pair, pair.name)) doc.fail(table.line, "two cases have the name '" + pair.name + "'");
     }
-    return cases.all();
+    return cases.items();
 }
 
 std::vector<aabb::triangle_case> read_triangle_cases(const std::filesystem::path& file) {

@@ -51,7 +51,7 @@ constexpr std::size_t explained_frames = 2;
 
 std::string explained(scene_frames& scene, const candidate& tested) {
     stage_runner p(tested, scene, aabb::instrumentation::none);
-    play(scene, p, [](const searched_frame&) {}, explained_frames);
+    run_frames(scene, p, [](const searched_frame&) {}, explained_frames);
     const candidate_name& name = tested.name;
     std::string text = text_of("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
     text += text_of(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
@@ -67,7 +67,7 @@ std::string explained(scene_frames& scene, const candidate& tested) {
 
 void explain_candidate(staged_scene& scene, const candidate& tested, const time_limits& limits) {
     const child_result work =
-        scene.in_child([&](scene_frames& play, const output_sender& send) { send(explained(play, tested)); },
+        scene.in_child([&](scene_frames& frames, const output_sender& send) { send(explained(frames, tested)); },
                        share_of_part * limits.to_run());
     // A candidate rejects only invalid input.
     if (work.end == ending::rejected) throw aabb::input_error(work.reason);
@@ -88,8 +88,8 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
 /// Prints the scene and its measures, unless its input is invalid.
 void explain_measures(staged_scene& scene, const time_limits& limits) {
     const child_result work = scene.in_child(
-        [](scene_frames& play, const output_sender& send) {
-            send(to_text(measures_table(measure_scene(play)), output_width()));
+        [](scene_frames& frames, const output_sender& send) {
+            send(to_text(measures_table(measure_scene(frames)), output_width()));
         },
         share_of_part * limits.to_run());
     if (work.end == ending::rejected) throw aabb::input_error(work.reason);
@@ -151,7 +151,7 @@ bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& 
 
 int explain(const explain_request& request) {
     experiment e;
-    if (request.what.size() == 1 && names_config(request.what.front())) {
+    if (request.what.size() == 1 && is_config_name(request.what.front())) {
         e = open_experiment(request.what.front(), false);
     } else {
         e.automatic.emplace_back();
@@ -163,7 +163,7 @@ int explain(const explain_request& request) {
         time_limits limits(request.seconds);
         // A scene that cannot be created is reported before any output.
         staged_scene scene(choice);
-        limits.scene_is_read();
+        limits.note_scene_read();
         if (&choice == e.scenes.data()) print(wrapped("strategies plan by " + costs_in_force()) + "\n\n");
         same &= explain_scene(e, scene, limits);
     }

@@ -188,7 +188,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     std::ranges::move(by_settings, std::back_inserter(variants));
     std::vector<candidate> candidates;
     for (const variant& v : variants) candidates.push_back(v.tested);
-    turns outcome = run_interleaved(staged, candidates, most_frames, rounds, limits);
+    interleaved_runs outcome = run_interleaved(staged, candidates, most_frames, rounds, limits);
     if (outcome.times[0].empty()) {
         const attempt& selected_run = *outcome.broken_off[0];
         if (selected_run.end == ending::rejected) throw aabb::input_error(selected_run.reason);
@@ -214,7 +214,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     if (!is_small)
         print_paragraph(fmt::format("With more than {} only kinds that stand apart are tried in other ways.",
                                     counted(most_objects_of_any, "object")));
-    print_paragraph(ms_a_frame_text);
+    print_paragraph(ms_per_frame_text);
     print_paragraph(fmt::format(
         "ratio: ms/frame over that of what is selected in the same round, the median; range: the least and the "
         "greatest; ?: the range comes within 3 % of 1, so that the rounds leave it open; > {:.0f}: seen in one "

@@ -54,22 +54,22 @@ whole_file::whole_file(const std::filesystem::path& file, std::size_t size)
     if (!file_) reject(file, "cannot be read: " + system_error_text());
 }
 
-bool whole_file::has_read(void* to, std::size_t bytes) {
+bool whole_file::try_read(void* to, std::size_t bytes) {
     const std::size_t count = std::fread(to, 1, bytes, file_.get());
     done_ += count;
     return count == bytes;
 }
 
 void whole_file::read(void* to, std::size_t bytes) {
-    if (!has_read(to, bytes))
+    if (!try_read(to, bytes))
         reject(name_, "cannot be read beyond byte " + std::to_string(done_) + " of " + std::to_string(size_));
 }
 
-file_text read_whole(const std::filesystem::path& file, std::size_t size, double times) {
-    require_memory(file.string() + ": reading it", times * static_cast<double>(size));
-    file_text whole{file.string(), std::string(size, '\0')};
-    whole_file(file, size).read(whole.text.data(), size);
-    return whole;
+file_text read_whole(const std::filesystem::path& file, std::size_t size, double memory_factor) {
+    require_memory(file.string() + ": reading it", memory_factor * static_cast<double>(size));
+    file_text content{file.string(), std::string(size, '\0')};
+    whole_file(file, size).read(content.text.data(), size);
+    return content;
 }
 
 std::string bytes_of_file(const std::filesystem::path& file) {

@@ -60,8 +60,8 @@ public:
     /// @param size as returned by `require_file`
     /// @throws aabb::input_error if the file cannot be opened.
     whole_file(const std::filesystem::path& file, std::size_t size);
-    /// False if fewer bytes are left.
-    [[nodiscard]] bool has_read(void* to, std::size_t bytes);
+    /// @returns false if fewer bytes are left
+    [[nodiscard]] bool try_read(void* to, std::size_t bytes);
     /// @throws aabb::input_error if fewer bytes are left.
     void read(void* to, std::size_t bytes);
 
@@ -74,9 +74,9 @@ private:
 
 /// Reads a whole file.
 /// @param size as returned by `require_file`
-/// @param times the maximum memory of the text and everything parsed from it, as a multiple of the file size
+/// @param memory_factor the maximum memory of the text and everything parsed from it, as a multiple of the file size
 /// @throws aabb::input_error if the file cannot be read or does not fit into memory.
-[[nodiscard]] file_text read_whole(const std::filesystem::path& file, std::size_t size, double times);
+[[nodiscard]] file_text read_whole(const std::filesystem::path& file, std::size_t size, double memory_factor);
 
 /// Decodes the bytes of a file with `text_decoder`.
 /// @throws aabb::input_error if they are not text.

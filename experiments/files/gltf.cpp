@@ -56,23 +56,23 @@ private:
             std::size_t node;
             gltf_matrix parent;
         };
-        std::vector<waiting_node> waiting;
+        std::vector<waiting_node> waiting;  // a stack
         const auto add = [&](const std::vector<std::size_t>& nodes, const gltf_matrix& parent) {
             for (std::size_t i = nodes.size(); i-- > 0;) waiting.push_back({nodes[i], parent});
         };
         std::vector<std::size_t> nodes;
         add(asset_.roots, gltf_matrix::Identity());
         while (!waiting.empty()) {
-            const waiting_node at = waiting.back();
+            const waiting_node top = waiting.back();
             waiting.pop_back();
-            const gltf_node& next = node(at.node);
-            std::optional<gltf_matrix>& place = places_[at.node];
-            if (place) file_.fail(gltf_place("nodes", at.node) + " occurs more than once in the scene");
+            const gltf_node& next = node(top.node);
+            std::optional<gltf_matrix>& place = places_[top.node];
+            if (place) file_.fail(gltf_place("nodes", top.node) + " occurs more than once in the scene");
             if (!next.extension.empty())
-                file_.fail(gltf_place("nodes", at.node) + " has the extension " + in_quotes(next.extension) +
+                file_.fail(gltf_place("nodes", top.node) + " has the extension " + in_quotes(next.extension) +
                            ", which is not supported");
-            place = combined(at.parent, next.place);
-            nodes.push_back(at.node);
+            place = combined(top.parent, next.place);
+            nodes.push_back(top.node);
             add(next.children, *place);
         }
         return nodes;
@@ -85,6 +85,7 @@ private:
         return gltf_numbers(asset_, file_, index, no_view_means_zeros);
     }
 
+    /// Positions, or position offsets of a morph target; integers need the extension KHR_mesh_quantization.
     [[nodiscard]] std::vector<double> positions(std::size_t index, bool no_view_means_zeros) const {
         const gltf_accessor& a = accessor(index);
         const bool is_whole = a.component != gltf_component::f32 && a.component != gltf_component::u32;
@@ -118,10 +119,11 @@ private:
         }
         std::vector<gltf_matrix> matrices;
         for (std::size_t joint = 0; joint < skin.joints.size(); ++joint) {
-            const std::size_t at = skin.joints[joint];
-            static_cast<void>(node(at));
-            const std::optional<gltf_matrix>& place = places_[at];
-            if (!place) file_.fail(gltf_place("nodes", at) + " is a joint of " + name + ", but not in the scene");
+            const std::size_t index_of_node = skin.joints[joint];
+            static_cast<void>(node(index_of_node));  // rejects an index out of range
+            const std::optional<gltf_matrix>& place = places_[index_of_node];
+            if (!place)
+                file_.fail(gltf_place("nodes", index_of_node) + " is a joint of " + name + ", but not in the scene");
             matrices.push_back(*place);
             if (bind.empty()) continue;
             const Eigen::Map<const Eigen::Matrix4d> inverse(&bind[16 * joint]);
@@ -155,6 +157,7 @@ private:
         std::vector<double> joints;
         std::vector<double> weights;
     };
+    /// The bindings in all sets of a primitive: JOINTS_0 with WEIGHTS_0, and so on.
     [[nodiscard]] std::vector<bindings> bindings_of(const gltf_primitive& primitive, std::size_t vertices,
                                                     const std::string& mesh) const {
         if (primitive.joints.empty() || primitive.joints.size() != primitive.weights.size())
@@ -204,7 +207,8 @@ private:
         return sum / weights;
     }
 
-    /// @returns the number of vertices added
+    /// Adds the vertices of a primitive in world coordinates, after morphing and skinning.
+    /// @returns their number
     std::size_t add_vertices(const gltf_primitive& primitive, const gltf_node& node,
                              const std::vector<gltf_matrix>& joints, const std::string& mesh_name) {
         std::vector<double> points = positions(*primitive.positions, false);
@@ -227,6 +231,7 @@ private:
         return count;
     }
 
+    /// Adds the mesh of a node, if it has one.
     void add_node(const gltf_node& node) {
         if (!node.mesh) return;
         const std::vector<gltf_primitive>& primitives =
@@ -257,6 +262,7 @@ private:
         }
     }
 
+    /// Adds the triangles of a primitive; points, lines and incomplete triangles count as dropped faces.
     void add_faces(gltf_mode mode, const std::vector<std::uint32_t>& corners) {
         const std::size_t count = corners.size();
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {

@@ -14,19 +14,19 @@ constexpr std::size_t chunk_header_bytes = 8;
 constexpr std::uint32_t json_chunk = 0x4e4f534a;    // "JSON"
 constexpr std::uint32_t binary_chunk = 0x004e4942;  // "BIN"
 
-/// A chunk of a .glb file; `take_chunk` removes the first one.
+/// A chunk of a .glb file: its length and type, 4 bytes each, then its bytes. `take_chunk` removes the first one.
 struct chunk {
     std::uint32_t type = 0;
     std::string_view bytes;
 };
 chunk take_chunk(const file_text& file, std::string_view& rest) {
-    const std::string at = std::to_string(file.text.size() - rest.size());
+    const std::string offset = std::to_string(file.text.size() - rest.size());
     if (rest.size() < chunk_header_bytes)
-        file.fail("is not a glTF file: it ends in the header of the chunk at byte " + at);
+        file.fail("is not a glTF file: it ends in the header of the chunk at byte " + offset);
     const std::size_t length = u32_at(rest, 0);
     const chunk taken{u32_at(rest, 4), rest.substr(chunk_header_bytes, length)};
     if (taken.bytes.size() != length)
-        file.fail("is not a glTF file: the chunk at byte " + at + " announces " + std::to_string(length) +
+        file.fail("is not a glTF file: the chunk at byte " + offset + " announces " + std::to_string(length) +
                   " bytes, but the file has " + std::to_string(taken.bytes.size()) + " of them");
     rest.remove_prefix(chunk_header_bytes + length);
     return taken;
@@ -71,15 +71,17 @@ std::string unescaped(std::string_view uri) {
     return text;
 }
 
+/// Decodes a data: URI.
 std::string bytes_of_data(std::string_view uri) {
     constexpr std::string_view mark = ";base64,";
-    const std::size_t at = uri.find(mark);
-    if (at == std::string_view::npos) throw aabb::input_error("is a data: URI without ;base64,");
-    std::optional<std::string> bytes = decoded(uri.substr(at + mark.size()));
+    const std::size_t begin = uri.find(mark);
+    if (begin == std::string_view::npos) throw aabb::input_error("is a data: URI without ;base64,");
+    std::optional<std::string> bytes = decoded(uri.substr(begin + mark.size()));
     if (!bytes) throw aabb::input_error("is a data: URI that is not base64");
     return *std::move(bytes);
 }
 
+/// The bytes of a buffer: in the .glb file, in a data: URI or in a file next to this one.
 /// @param loaded total bytes of the previous buffers, for the memory limit, as many buffers may name one file
 std::string bytes_of(const gltf_buffer& buffer, const file_text& file, std::optional<std::string_view> binary,
                      std::size_t loaded) {
@@ -149,6 +151,7 @@ private:
                    ", which is unknown");
     }
 
+    /// The elements at an offset of a buffer view, if they lie within the view and the view within its buffer.
     [[nodiscard]] elements elements_of(std::size_t index, std::size_t offset, std::size_t count,
                                        std::size_t bytes) const {
         const std::string view_name = gltf_place("bufferViews", index);
@@ -165,14 +168,16 @@ private:
         return {count > 0 ? buffer.data() + view.offset + offset : nullptr, stride, count};
     }
 
-    /// @param where receives the `width` components
-    void read_element(const char* bytes, scalar type, std::size_t width, double* where) const {
+    /// @param components receives `width` numbers
+    void read_element(const char* bytes, scalar type, std::size_t width, double* components) const {
         for (std::size_t k = 0; k < width; ++k) {
-            where[k] = number_at(bytes + k * bytes_of(type), type);
-            if (accessor_.normalized && is_whole(type)) where[k] = std::max(where[k] / greatest(type), -1.0);
+            double& number = components[k];
+            number = number_at(bytes + k * bytes_of(type), type);
+            if (accessor_.normalized && is_whole(type)) number = std::max(number / greatest(type), -1.0);
         }
     }
 
+    /// Replaces the elements that a sparse accessor lists.
     void replace(const gltf_sparse& sparse, scalar type, std::size_t width, std::vector<double>& numbers) const {
         if (sparse.index_component == gltf_component::f32)
             file_.fail(name_ + ".sparse.indices must be of whole numbers, as it has indices");

@@ -17,12 +17,13 @@ constexpr std::string_view quantization = "KHR_mesh_quantization";
 /// Rejects required extensions unless they are supported or affect only the appearance.
 void require_no_extension(const object& root) {
     for (const std::string& name : root.texts("extensionsRequired")) {
-        const auto is_about = [&](std::string_view looks) { return name.find(looks) != std::string::npos; };
+        const auto is_about = [&](std::string_view topic) { return name.find(topic) != std::string::npos; };
         if (!is_about("material") && !is_about("texture") && !is_about("light") && name != quantization)
             root.fail("requires the extension " + in_quotes(name) + ", which is not supported");
     }
 }
 
+/// The transform of a node relative to its parent: a matrix, or translation, rotation and scale.
 gltf_matrix place_of(const object& node) {
     gltf_matrix place;
     if (!node.has("matrix")) {
@@ -100,6 +101,7 @@ gltf_node node_of(const object& node) {
             node.numbers("weights"), node.indices("children"), surface_extension_of(node)};
 }
 
+/// The root nodes of the scene that the file shows.
 std::vector<std::size_t> roots_of(const object& root) {
     const std::vector<object> scenes = root.objects("scenes");
     if (scenes.empty()) root.fail("has no scene");

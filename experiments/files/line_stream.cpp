@@ -115,7 +115,7 @@ struct line_stream::state {
     state(const std::filesystem::path& file, const std::string& name) : source(file, name) {}
 
     /// Reads and decodes another block, and detects the end.
-    void read_on() {
+    void read_block() {
         bytes.clear();
         if (source.read(most_at_once, bytes))
             decoder.add(bytes, text);
@@ -137,16 +137,16 @@ line_stream::line_stream(line_stream&&) noexcept = default;
 bool line_stream::next() {
     state& s = *state_;
     ++s.number;
-    const std::uintmax_t begun = s.read;
+    const std::uintmax_t read_before = s.read;
     std::size_t end = 0;
     std::size_t searched = s.at;
     while ((end = s.text.find('\n', searched)) == std::string::npos && !s.ended) {
-        if (s.read - begun > longest_line)
+        if (s.read - read_before > longest_line)
             fail("the line is longer than " + std::to_string(longest_line) + " bytes; expected text of short lines");
         s.text.erase(0, s.at);
         s.at = 0;
         searched = s.text.size();
-        s.read_on();
+        s.read_block();
     }
     // Valid lines before malformed text are returned first.
     if (end == std::string::npos && !s.decoder.problem().empty()) reject(s.source.name(), s.decoder.problem());

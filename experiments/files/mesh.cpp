@@ -82,7 +82,7 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file) {
     output_file out(file);
     std::string text =
         "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.triangles.size()) + " 0\n";
-    const auto pass_on = [&](std::size_t least) {
+    const auto flush = [&](std::size_t least) {
         if (text.size() < least) return;
         out.write(text);
         text.clear();
@@ -92,13 +92,13 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file) {
             text += aabb::shortest(p[k]);
             text += k < 2 ? ' ' : '\n';
         }
-        pass_on(1U << 16);
+        flush(1U << 16);
     }
     for (const auto& [a, b, c] : mesh.triangles) {
         text += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
-        pass_on(1U << 16);
+        flush(1U << 16);
     }
-    pass_on(0);
+    flush(0);
     out.commit();
 }
 

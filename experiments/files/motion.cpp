@@ -33,6 +33,7 @@ class motion_reader {
 public:
     explicit motion_reader(const file_text& file) : in_(file, '#') {}
 
+    /// The steps in the order of the file.
     [[nodiscard]] std::vector<step> read() {
         while (in_.next_line()) {
             const auto frame = in_.whole<std::uint32_t>("the number of a frame");
@@ -50,6 +51,7 @@ public:
     [[nodiscard]] std::size_t objects() const { return objects_; }
 
 private:
+    /// Advances to the frame of a line; frames must be in order.
     void begin(std::uint32_t frame) {
         if (frame == frame_) return;
         if (frame < frame_)
@@ -68,6 +70,7 @@ private:
         objects_ = placed_.size();
     }
 
+    /// Notes that an object has a pose in the current frame, which must be its only one.
     void place(std::uint32_t object) {
         if (object >= most)
             in_.fail("an object is a number below " + std::to_string(most) + ", not " + std::to_string(object));
@@ -106,7 +109,8 @@ public:
 
     bool next(std::vector<aabb::pose>& poses) override {
         if (frame_ == frames()) return false;
-        for (; at_ < steps_.size() && steps_[at_].frame == frame_; ++at_) poses_[steps_[at_].object] = steps_[at_].pose;
+        for (; next_ < steps_.size() && steps_[next_].frame == frame_; ++next_)
+            poses_[steps_[next_].object] = steps_[next_].pose;
         ++frame_;
         poses = poses_;
         return true;
@@ -114,7 +118,7 @@ public:
 
 private:
     std::vector<step> steps_;
-    std::size_t at_ = 0;
+    std::size_t next_ = 0;  // step
     std::size_t frame_ = 0;
     std::vector<aabb::pose> poses_;  // current, by object
 };

@@ -15,11 +15,11 @@ public:
     /// The next word; empty after the last one.
     [[nodiscard]] std::string_view next() {
         for (;;) {
-            if (goes_on_ && !in_.next_line()) in_.ends("after a backslash");
+            if (is_continued_ && !in_.next_line()) in_.ends("after a backslash");
             std::string_view word = in_.word();
-            goes_on_ = word.ends_with('\\') && !in_.more();
-            if (goes_on_) word.remove_suffix(1);
-            if (!word.empty() || !goes_on_) return word;
+            is_continued_ = word.ends_with('\\') && !in_.more();
+            if (is_continued_) word.remove_suffix(1);
+            if (!word.empty() || !is_continued_) return word;
         }
     }
     void skip() {
@@ -28,16 +28,16 @@ public:
 
 private:
     text_scanner& in_;
-    bool goes_on_ = false;
+    bool is_continued_ = false;
 };
 
 /// The vertex index of "v", "v/vt", "v//vn" or "v/vt/vn", from 0. OBJ counts from 1, or backwards if negative.
-std::uint32_t corner(const text_scanner& in, std::string_view word, std::size_t vertices) {
+std::uint32_t parse_corner(const text_scanner& in, std::string_view word, std::size_t vertices) {
     const std::string_view number = word.substr(0, word.find('/'));
     const std::string_view others = word.substr(number.size());
     const read_number<std::int64_t> parsed(number);
-    if (!parsed.is_one || parsed.out_of_range || others.find_first_not_of("/-0123456789") != std::string_view::npos ||
-        std::ranges::count(others, '/') > 2)
+    if (!parsed.is_number || parsed.out_of_range ||
+        others.find_first_not_of("/-0123456789") != std::string_view::npos || std::ranges::count(others, '/') > 2)
         in.expected("the number of a vertex", word);
     const std::int64_t value = parsed.value;
     if (value == 0) in.fail("a face uses vertex 0, but vertices are counted from 1");
@@ -69,11 +69,11 @@ loaded_mesh read_obj(const file_text& file) {
             for (int k = 0; k < 3; ++k) p[k] = in.coordinate(words.next());
             mesh.add_vertex(p, line);
             for (std::string_view word = words.next(); !word.empty(); word = words.next())
-                if (!read_number<double>(word).is_one) in.expected("the weight or the colour of a vertex", word);
+                if (!read_number<double>(word).is_number) in.expected("the weight or the colour of a vertex", word);
         } else if (statement == "f" || statement == "fo") {  // early versions of the format use "fo"
             corners.clear();
             for (std::string_view word = words.next(); !word.empty(); word = words.next())
-                corners.push_back(corner(in, word, mesh.vertices()));
+                corners.push_back(parse_corner(in, word, mesh.vertices()));
             mesh.add_face(corners, line);
         } else {
             if (std::ranges::find(silent, statement) == std::end(silent)) mesh.skip("statement", statement, 1);

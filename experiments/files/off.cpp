@@ -20,9 +20,9 @@ enum class arrangement : std::uint8_t {
 std::size_t read_keyword(text_scanner& in) {
     if (!in.next_line()) in.ends("before the keyword OFF");
     const std::string_view keyword = in.word();
-    const std::size_t at = keyword.find("OFF");
-    if (at == std::string_view::npos) in.expected("the keyword OFF", keyword);
-    std::string_view before = keyword.substr(0, at);
+    const std::size_t prefix = keyword.find("OFF");
+    if (prefix == std::string_view::npos) in.expected("the keyword OFF", keyword);
+    std::string_view before = keyword.substr(0, prefix);
     std::size_t numbers = 0;
     for (const auto& [mark, length] : {std::pair<std::string_view, std::size_t>{"ST", 2}, {"C", 4}, {"N", 3}})
         if (before.starts_with(mark)) {
@@ -32,32 +32,32 @@ std::size_t read_keyword(text_scanner& in) {
     if (before == "4" || before == "n" || before == "4n") in.fail("only OFF in three dimensions is read");
     if (!before.empty()) in.expected("the keyword OFF", keyword);
     // Some writers omit the blank between the keyword and the first count.
-    in.back_to(keyword.substr(at + 3));
+    in.back_to(keyword.substr(prefix + 3));
     return numbers;
 }
 
 class off_reader {
 public:
-    off_reader(const file_text& file, arrangement how)
-        : in_(file, '#'), name_(file.name), how_(how), mesh_(file.name) {}
+    off_reader(const file_text& file, arrangement expected)
+        : in_(file, '#'), name_(file.name), arrangement_(expected), mesh_(file.name) {}
 
     /// @throws aabb::input_error with file and line if the file does not have this arrangement.
     [[nodiscard]] loaded_mesh read() {
-        const std::size_t numbers_behind = read_keyword(in_);
+        const std::size_t skipped = read_keyword(in_);
         const auto before_counts = [] { return std::string("before the numbers of vertices and faces"); };
-        go_on(before_counts);
+        advance(before_counts);
         const auto vertices = in_.whole<std::uint64_t>("the number of vertices");
-        if (how_ != arrangement::lines) go_on(before_counts);
+        if (arrangement_ != arrangement::lines) advance(before_counts);
         const auto faces = in_.whole<std::uint64_t>("the number of faces");
-        if (how_ != arrangement::lines) {
-            go_on([] { return std::string("before the number of edges"); });
+        if (arrangement_ != arrangement::lines) {
+            advance([] { return std::string("before the number of edges"); });
             static_cast<void>(in_.whole<std::uint64_t>("the number of edges"));
         }
-        for (std::uint64_t v = 0; v < vertices; ++v) read_vertex(v, vertices, numbers_behind);
-        if (how_ == arrangement::face_lines && in_.more())
+        for (std::uint64_t v = 0; v < vertices; ++v) read_vertex(v, vertices, skipped);
+        if (arrangement_ == arrangement::face_lines && in_.more())
             in_.expected("the end of the line after the last vertex", in_.word());
         for (std::uint64_t f = 0; f < faces; ++f) read_face(f, faces);
-        if ((how_ == arrangement::words && in_.more()) || in_.next_line())
+        if ((arrangement_ == arrangement::words && in_.more()) || in_.next_line())
             in_.fail("expected the end of the file after " + counted(vertices, "vertex", "vertices") + " and " +
                      counted(faces, "face") + ", found " + in_quotes(in_.word()));
         reached_end_ = true;
@@ -69,24 +69,25 @@ public:
     [[nodiscard]] bool reached_end() const { return reached_end_; }
 
 private:
-    /// Advances to the next word.
-    void go_on(auto where) {
+    /// Advances to the next word, over line ends.
+    void advance(auto where) {
         if (!in_.more() && !in_.next_line()) in_.ends(where());
     }
 
-    void read_vertex(std::uint64_t index, std::uint64_t count, std::size_t numbers_behind) {
+    /// @param skipped the number of values after the position
+    void read_vertex(std::uint64_t index, std::uint64_t count, std::size_t skipped) {
         const auto where = [&] {
             return "after " + std::to_string(index) + " of " + std::to_string(count) + " vertices";
         };
-        if (how_ == arrangement::lines && !in_.next_line()) in_.ends(where());
+        if (arrangement_ == arrangement::lines && !in_.next_line()) in_.ends(where());
         aabb::vec3f p{};
         for (int k = 0; k < 3; ++k) {
-            if (how_ != arrangement::lines) go_on(where);
+            if (arrangement_ != arrangement::lines) advance(where);
             p[k] = in_.coordinate(in_.word());
         }
-        if (how_ != arrangement::lines)
-            for (std::size_t i = 0; i < numbers_behind; ++i) {
-                go_on(where);
+        if (arrangement_ != arrangement::lines)
+            for (std::size_t i = 0; i < skipped; ++i) {
+                advance(where);
                 static_cast<void>(in_.word());
             }
         mesh_.add_vertex(p, in_.line());
@@ -94,17 +95,17 @@ private:
 
     void read_face(std::uint64_t index, std::uint64_t count) {
         const auto where = [&] { return "after " + std::to_string(index) + " of " + std::to_string(count) + " faces"; };
-        if (how_ == arrangement::words)
-            go_on(where);
+        if (arrangement_ == arrangement::words)
+            advance(where);
         else if (!in_.next_line())
             in_.ends(where());
         const std::size_t line = in_.line();
         const auto corners = in_.whole<std::uint32_t>("the number of corners of a face");
         // A missing or extra number would shift all that follow, and accepting smaller faces would hide that.
-        if (how_ != arrangement::lines && corners < 3) in_.fail("expected at least three corners of a face");
+        if (arrangement_ != arrangement::lines && corners < 3) in_.fail("expected at least three corners of a face");
         corners_.clear();
         for (std::uint32_t i = 0; i < corners; ++i) {
-            if (how_ != arrangement::lines) go_on(where);
+            if (arrangement_ != arrangement::lines) advance(where);
             corners_.push_back(in_.whole<std::uint32_t>("a face of " + std::to_string(corners) + " corners"));
         }
         mesh_.add_face(corners_, line);
@@ -112,20 +113,20 @@ private:
 
     text_scanner in_;
     std::string name_;
-    arrangement how_;
+    arrangement arrangement_;
     bool reached_end_ = false;
     mesh_builder mesh_;
     std::vector<std::uint32_t> corners_;
 };
 
-struct attempt {
+struct read_attempt {
     std::optional<loaded_mesh> loaded;
     std::string rejection;
     bool has_vertex = false;
     bool reached_end = false;
 };
-attempt read_as(const file_text& file, arrangement how) {
-    off_reader reader(file, how);
+read_attempt read_as(const file_text& file, arrangement expected) {
+    off_reader reader(file, expected);
     try {
         return {reader.read(), {}, true, true};
     } catch (const aabb::input_error& error) {
@@ -138,17 +139,17 @@ attempt read_as(const file_text& file, arrangement how) {
 // The format ignores line ends (Geomview's manual, "OFF Files"), but writers nearly always put each vertex and face on
 // its own line. The other arrangements are tried only if that one fails.
 loaded_mesh read_off(const file_text& file) {
-    attempt lines = read_as(file, arrangement::lines);
+    read_attempt lines = read_as(file, arrangement::lines);
     if (lines.loaded) return *std::move(lines.loaded);
-    attempt face_lines = read_as(file, arrangement::face_lines);
-    attempt words = read_as(file, arrangement::words);
+    read_attempt face_lines = read_as(file, arrangement::face_lines);
+    read_attempt words = read_as(file, arrangement::words);
     if (face_lines.loaded && words.loaded && face_lines.loaded->mesh.triangles != words.loaded->mesh.triangles)
         file.fail(
             "can be read in two ways, as numbers after the corners of a face are colours or more faces; expected each "
             "vertex and each face on a line of its own");
-    for (attempt* other : {&face_lines, &words})
+    for (read_attempt* other : {&face_lines, &words})
         if (other->loaded) return *std::move(other->loaded);
-    for (const attempt* failed : {&lines, &face_lines, &words})
+    for (const read_attempt* failed : {&lines, &face_lines, &words})
         if (failed->reached_end) throw aabb::input_error(failed->rejection);
     throw aabb::input_error(lines.has_vertex ? lines.rejection : words.rejection);
 }

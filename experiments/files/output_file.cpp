@@ -45,7 +45,8 @@ struct output_file::state {
         return false;
     }
 
-    void take(int descriptor) {
+    /// Opens a stream on the descriptor, and leaves `file` empty on failure.
+    void open_stream(int descriptor) {
         if (descriptor < 0) return;
         file.reset(fdopen(descriptor, "wb"));
         if (!file) close(descriptor);
@@ -73,11 +74,11 @@ output_file::output_file(const std::filesystem::path& file) : state_(std::make_u
         state_->folder = open(state_->folder_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
         if (state_->folder < 0) state_->fail();
         // An unnamed file vanishes with its process, however that ends. It can be named only through /proc.
-        state_->take(openat(state_->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
+        state_->open_stream(openat(state_->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
         if (state_->file && access(state::link_to(fileno(state_->file.get())).c_str(), F_OK) != 0) state_->file.reset();
         // Not every file system supports unnamed files.
         if (!state_->file && !state_->make_part([&](const char* part) {
-                state_->take(openat(state_->folder, part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+                state_->open_stream(openat(state_->folder, part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
                 return state_->file != nullptr;
             }))
             state_->fail();

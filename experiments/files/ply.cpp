@@ -52,6 +52,7 @@ scalar read_type(text_scanner& in) {
     return entry->type;
 }
 
+/// Reads a property of the header: its type, or those of a list, and its meaning in this element.
 property read_property(text_scanner& in, const element& owner) {
     property p{role::none, scalar::u8, std::nullopt};
     const std::string_view start = in.word();
@@ -270,6 +271,8 @@ private:
     std::uint64_t count_ = 0;
 };
 
+/// Reads all elements in the order of the header, and skips those that are not part of the surface.
+/// @tparam Values `text_values` or `binary_values`
 template <class Values>
 loaded_mesh read_elements(const file_text& file, const header& h, Values values) {
     mesh_builder mesh(file.name);
@@ -311,9 +314,9 @@ loaded_mesh read_elements(const file_text& file, const header& h, Values values)
 // Only the header of a binary file is decoded as text, whatever its line ends; its values must stay as they are.
 loaded_mesh read_ply(const file_text& file) {
     const std::size_t end = std::min(end_of_header(file.text), file.text.size());
-    const file_text top = as_text({file.name, file.text.substr(0, end)});
-    text_scanner of_top(top, '\0');
-    const header h = read_header(of_top);
+    const file_text header_text = as_text({file.name, file.text.substr(0, end)});
+    text_scanner header_scanner(header_text, '\0');
+    const header h = read_header(header_scanner);
     if (h.values != encoding::text)
         return read_elements(
             file, h, binary_values(file.name, std::string_view(file.text).substr(end), h.values == encoding::big));

@@ -114,16 +114,16 @@ int polygon_cutter::project() {
 
 bool polygon_cutter::is_convex(int orientation) const noexcept {
     // Edges of zero length are skipped.
-    const auto stands = [&](const vec3d& a, const vec3d& b) { return !precedes(a, b) && !precedes(b, a); };
+    const auto coincide = [&](const vec3d& a, const vec3d& b) { return !precedes(a, b) && !precedes(b, a); };
     const std::size_t n = corners_.size();
     std::size_t last = n - 1;
-    while (stands(corners_[last].p, corners_[0].p)) --last;
+    while (coincide(corners_[last].p, corners_[0].p)) --last;
     const vec3d* a = &corners_[last].p;
     const vec3d* b = &corners_[0].p;
     std::size_t returns = 0;
     for (std::size_t i = 1; i <= n; ++i) {
         const vec3d& c = corners_[i % n].p;
-        if (stands(*b, c)) continue;
+        if (coincide(*b, c)) continue;
         const int turned = turn(*a, *b, c);
         const bool is_return = precedes(*a, *b) != precedes(*b, c);
         if (turned == -orientation || (turned == 0 && is_return)) return false;
@@ -237,7 +237,7 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
 bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles) {
     link();
     std::size_t left = corners_.size();
-    const auto take = [&](std::uint32_t i) {
+    const auto cut_corner = [&](std::uint32_t i) {
         const corner& b = corners_[i];
         corner& a = corners_[b.before];
         corner& c = corners_[b.next];
@@ -252,7 +252,7 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
     std::uint32_t at = 0;
     for (std::size_t passed = 0; left > 3 && passed < left;)
         if (is_needle(corners_[at])) {
-            take(at);
+            cut_corner(at);
             at = corners_[at].before;
             passed -= std::min<std::size_t>(passed, 2);
         } else {
@@ -270,7 +270,7 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
                               : turned > 0 ? b.kind == ear::clear || (is_second_round && b.kind == ear::touched)
                                            : false;
         if (is_ready) {
-            take(at);
+            cut_corner(at);
             // Skipping a corner avoids a fan of ears around a single corner.
             at = corners_[b.next].next;
             passed = 0;

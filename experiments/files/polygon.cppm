@@ -66,8 +66,10 @@ private:
     [[nodiscard]] int project();
     /// @param orientation the sign of the normal
     [[nodiscard]] bool is_convex(int orientation) const noexcept;
+    /// Rotates the cycle to start at a canonical corner, so that the result does not depend on the first one.
     void begin_at_least_corner();
 
+    /// The sign of the area of the projected triangle: 1 if the path a, b, c turns left.
     [[nodiscard]] int turn(const aabb::vec3d& a, const aabb::vec3d& b, const aabb::vec3d& c) const noexcept;
     /// Lexicographic order of the projected points.
     [[nodiscard]] bool precedes(const aabb::vec3d& a, const aabb::vec3d& b) const noexcept;
@@ -78,6 +80,7 @@ private:
     [[nodiscard]] int turn_at(const corner& b) const noexcept;
     /// Whether the boundary stops or reverses at the corner, so that its triangle has no area.
     [[nodiscard]] bool is_needle(const corner& b) const noexcept;
+    /// Classifies a corner that turns left, by all edges of the boundary that reach the bounding box of its triangle.
     [[nodiscard]] ear kind_of(const corner& b) const noexcept;
 
     std::vector<corner> corners_;

@@ -44,7 +44,7 @@ public:
     bool next(std::vector<aabb::box>& boxes) override {
         if (frame_ == frames_) return false;
         const std::string here = "frame " + std::to_string(frame_);
-        if (!file_.has_read(records_.data(), records_.size() * sizeof(box_record))) reject(name_, "ends in " + here);
+        if (!file_.try_read(records_.data(), records_.size() * sizeof(box_record))) reject(name_, "ends in " + here);
         boxes.resize(records_.size());
         std::ranges::transform(records_, boxes.begin(), unpacked);
         try {
@@ -87,7 +87,7 @@ std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& fil
                          " bytes, but the file has " + std::to_string(size));
     whole_file opened(file, size);
     header h{};
-    if (!opened.has_read(&h, sizeof h)) reject(file, "cannot be read");
+    if (!opened.try_read(&h, sizeof h)) reject(file, "cannot be read");
     if (h.name.back() != 0 || h.type.back() != 0 || h.zero != std::array<std::int32_t, 2>{})
         reject(file, "is not a recording: its header does not hold two names and two zeros");
     if (h.objects < 0 || h.last_frame < 0)

@@ -77,6 +77,7 @@ bool is_keyword(std::string_view word, std::string_view keyword) {
     return std::ranges::equal(word, keyword, [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
 }
 
+/// Reads the text format: solid … facet … outer loop, three vertices, endloop, endfacet … endsolid.
 loaded_mesh read_text(const file_text& file) {
     text_scanner in(file, '\0');
     mesh_builder mesh(file.name);

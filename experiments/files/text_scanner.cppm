@@ -7,6 +7,7 @@ import :file_text;
 
 namespace aabblab {
 
+/// A number parsed from a text.
 template <class Number>
 struct read_number {
     explicit read_number(std::string_view text) {
@@ -14,7 +15,7 @@ struct read_number {
         const bool has_plus = std::floating_point<Number> && text.starts_with('+') && !text.starts_with("+-");
         const char* const end = text.data() + text.size();
         const auto [stopped, error] = std::from_chars(text.data() + has_plus, end, value);
-        is_one = stopped == end && error != std::errc::invalid_argument;
+        is_number = stopped == end && error != std::errc::invalid_argument;
         out_of_range = error == std::errc::result_out_of_range;
         // from_chars does not distinguish underflow, which rounds to zero, from overflow; strtod does.
         if constexpr (std::floating_point<Number>)
@@ -22,7 +23,7 @@ struct read_number {
     }
 
     Number value = 0;
-    bool is_one = false;  ///< whether the whole text is one number
+    bool is_number = false;  ///< whether the whole text is one number
     bool out_of_range = false;
 
 private:
@@ -90,7 +91,7 @@ public:
     [[nodiscard]] Whole whole(const std::string& what) {
         const std::string_view text = word();
         const read_number<Whole> number(text);
-        if (!number.is_one || number.out_of_range) expected(what, text);
+        if (!number.is_number || number.out_of_range) expected(what, text);
         return number.value;
     }
 
@@ -98,7 +99,7 @@ public:
     [[nodiscard]] double number(const std::string& what) {
         const std::string_view text = word();
         const read_number<double> number(text);
-        if (!number.is_one) expected(what, text);
+        if (!number.is_number) expected(what, text);
         if (!std::isfinite(number.value)) fail(in_quotes(text) + " is not a finite number");
         return number.value;
     }
@@ -113,7 +114,7 @@ public:
     /// Parses a coordinate, correctly rounded to float. It is NaN or infinite only if the text is.
     [[nodiscard]] float coordinate(std::string_view text) {
         const read_number<float> number(text);
-        if (!number.is_one) expected("three coordinates", text);
+        if (!number.is_number) expected("three coordinates", text);
         if (number.out_of_range && std::isinf(number.value))
             fail("the coordinate " + in_quotes(text) + " is too large for a float");
         if (std::isfinite(number.value))

@@ -84,7 +84,7 @@ bool are_same_path(const std::string& a, const std::string& b) {
 }
 
 /// Whether the name is a shape or a file with a mesh extension; other files are motions.
-bool names_mesh(const std::string& name) {
+bool is_mesh_name(const std::string& name) {
     if (!is_mesh(name, {})) return false;
     const std::vector<std::string> endings = mesh_endings();
     return !std::filesystem::exists(name) || std::ranges::find(endings, mesh_ending_of(name)) != endings.end();
@@ -177,13 +177,13 @@ void require_two_files(const std::string& a, const std::string& file, const std:
     if (are_same_path(file, other)) throw aabb::input_error(a + " and " + b + " are the same file, " + file);
 }
 
-bool names_config(const std::string& argument) {
+bool is_config_name(const std::string& argument) {
     return argument.ends_with(".toml");
 }
 
 scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     const std::string& first = arguments.front();
-    if (names_config(first))
+    if (is_config_name(first))
         throw aabb::input_error(
             first +
             " is a config, which explain and run take as their only argument; expected a recording, "
@@ -193,12 +193,12 @@ scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
             throw aabb::input_error("a recording is a scene of its own, so give " + first + " alone");
         return {"recording", {{"file", first}}, {}, std::nullopt, {}};
     }
-    if (!names_mesh(first) && arguments.size() > 1) {
+    if (!is_mesh_name(first) && arguments.size() > 1) {
         const std::vector<std::string> meshes(arguments.begin() + 1, arguments.end());
         note_left_out(meshes);
         return {"motion", {{"file", first}}, meshes, std::nullopt, {}};
     }
-    if (std::error_code ignored; !names_mesh(first) && std::filesystem::is_regular_file(first, ignored))
+    if (std::error_code ignored; !is_mesh_name(first) && std::filesystem::is_regular_file(first, ignored))
         throw aabb::input_error(first +
                                 " is neither a recording (.aabbs) nor a mesh; if it is a motion file, its "
                                 "meshes follow it");

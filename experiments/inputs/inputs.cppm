@@ -67,7 +67,7 @@ inline constexpr const char* scene_arguments_help =
     "A recording (.aabbs); one or two meshes (files in OFF, OBJ, PLY, STL or glTF, or shapes), which pass through each "
     "other; or a motion file and its meshes";
 
-[[nodiscard]] bool names_config(const std::string& argument);
+[[nodiscard]] bool is_config_name(const std::string& argument);
 
 /// The scene that the arguments describe.
 /// @throws aabb::input_error if they do not describe a scene.

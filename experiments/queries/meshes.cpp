@@ -144,14 +144,14 @@ query_result result_of(stage_runner& p, const mesh_query& query, const aabb::mes
         p.each_self_pair(0, [&](aabb::index_pair pair) {
             const bool neighbours = share_vertex(m, pair);
             ++(neighbours ? result.neighbours : result.count);
-            if (neighbours ? stored : query.ask != question::count) result.pairs.push_back(pair);
+            if (neighbours ? stored : query.ask != query_kind::count) result.pairs.push_back(pair);
         });
         return result;
     }
     switch (query.ask) {
-        case question::count: result.count = p.count_contacts(); break;
-        case question::pairs: p.detect(); break;
-        case question::first:
+        case query_kind::count: result.count = p.count_contacts(); break;
+        case query_kind::pairs: p.detect(); break;
+        case query_kind::first:
             if (const auto c = p.first_contact()) result.pairs.push_back({c->triangle_a, c->triangle_b});
             break;
     }
@@ -173,7 +173,7 @@ public:
         const std::vector<aabb::mesh>& meshes = scene_.meshes()->meshes;
         if (method_.geometry)
             method_.geometry->take(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
-        if (query_.ask == question::first) result_.first.emplace_back();
+        if (query_.ask == query_kind::first) result_.first.emplace_back();
         if (!query_.neighbours || stored) return take_sorted(of_pose.pairs);
         const std::uint64_t neighbours = for_each_with_neighbours(
             meshes.front(), of_pose.pairs, [&](std::span<const aabb::index_pair> pairs) { take_sorted(pairs); });
@@ -186,12 +186,12 @@ public:
 private:
     void take_sorted(std::span<const aabb::index_pair> pairs) {
         digest_.add(pose_, pairs);
-        if (!rows_ && !method_.geometry && query_.ask != question::first) return;
+        if (!rows_ && !method_.geometry && query_.ask != query_kind::first) return;
         for (const aabb::index_pair pair : pairs) {
             intersecting_pair row{pair, {}};
             if (method_.geometry) row.common = (*method_.geometry)(pair);
             if (rows_) add_row(row);
-            if (query_.ask == question::first) result_.first.back() = row;
+            if (query_.ask == query_kind::first) result_.first.back() = row;
         }
     }
 
@@ -242,7 +242,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     // Within one mesh, pairs that share a vertex may dominate: n triangles around one vertex have n²/2 of them. They
     // are stored only if they are reported and an inexact method may have missed some; with an exact method, they
     // follow from the mesh.
-    const bool stored = query.neighbours && !result.method.exact && query.ask != question::count;
+    const bool stored = query.neighbours && !result.method.exact && query.ask != query_kind::count;
     pair_record record(query, scene, result, rows);
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
         query_result of_pose;
@@ -256,17 +256,17 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
         }
         if (frame >= poses) continue;
         if (query.self) result.neighbours = of_pose.neighbours;
-        if (!query.self && query.ask != question::count) {
+        if (!query.self && query.ask != query_kind::count) {
             for (const aabb::contact& c : searcher->sorted_contacts())
                 of_pose.pairs.push_back({c.triangle_a, c.triangle_b});
             of_pose.count = of_pose.pairs.size();
         }
         result.counts.push_back(of_pose.count);
-        if (query.ask != question::count) record.take(frame, std::move(of_pose), stored);
+        if (query.ask != query_kind::count) record.take(frame, std::move(of_pose), stored);
     }
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);
-    if (query.ask != question::count) result.digest = record.digest();
+    if (query.ask != query_kind::count) result.digest = record.digest();
     return result;
 }
 

@@ -78,7 +78,7 @@ struct frames_result {
 
 /// A query of two meshes, or of one mesh with itself.
 struct mesh_query {
-    question ask = question::pairs;
+    query_kind ask = query_kind::pairs;
     bool self = false;         ///< one mesh with itself: pairs that share a vertex are counted separately
     bool neighbours = false;   ///< whether those pairs are reported too
     bool by_pose = false;      ///< whether rows include the pose

@@ -59,11 +59,11 @@ std::vector<std::string> legend() {
     return {"all ms: build ms, first ms, which is frame 0, and all further frames; of the plays the median.",
             "ratio: all ms over that of the first in the same play, the median, and where it lies with 95 %; -: of "
             "itself, or of too few plays to say.",
-            ms_a_frame_text, build_ms_text};
+            ms_per_frame_text, build_ms_text};
 }
 
 std::string origin() {
-    const kept_costs here = costs_here(aabb::machine_costs());
+    const calibrated_costs here = label_costs(aabb::machine_costs());
     return "aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions;
 }
 
@@ -98,7 +98,7 @@ int recommend(const recommend_request& request) {
     require_fine_clock();
     time_limits limits(request.seconds);
     staged_scene scene(scene_of_arguments(request.what));
-    limits.scene_is_read();
+    limits.note_scene_read();
     std::optional<output_file> page;
     if (request.report) {
         require_no_mesh(*request.report, request.what);

@@ -26,7 +26,7 @@ struct motion_config : scene_size {
     length_unit unit = length_unit::extent;
 };
 /// @param help for `displacement`
-[[nodiscard]] constexpr auto motion_parameters_of(std::string_view help) {
+[[nodiscard]] constexpr auto motion_parameters_with(std::string_view help) {
     return std::tuple_cat(
         size_parameters<scene_size>("how many boxes"),
         std::tuple{
@@ -37,7 +37,7 @@ struct motion_config : scene_size {
                 "space per box)"}});
 }
 inline constexpr auto motion_parameters =
-    motion_parameters_of("displacement of each box per frame, along its path if walls reflect it");
+    motion_parameters_with("displacement of each box per frame, along its path if walls reflect it");
 
 /// `displacement` as a length.
 /// @param extent mean extent of the boxes

@@ -29,7 +29,7 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     const Eigen::Vector3d first = {-half_width, -half_width, extent * (c.height + 0.5)};
     random_source random(seed);
     for (std::uint32_t i = 0; i < c.balls; ++i) {
-        const Eigen::Vector3d offset = {random.within(), random.within(), random.within()};
+        const Eigen::Vector3d offset = {random.signed_unit(), random.signed_unit(), random.signed_unit()};
         const Eigen::Vector3d place = (lattice_cell(i, side).reverse() * gap + offset * perturbation) * extent + first;
         const aabb::pose at = placed(centre_of(bounds), random_rotation(random), place);
         world.bodies.push_back(

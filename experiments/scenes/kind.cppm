@@ -53,7 +53,7 @@ struct scene_kind {
 template <PlaysFile S>
 [[nodiscard]] aabb::config_of<S> with_file(const scene_choice& choice) {
     aabb::config_of<S> config = aabb::configured<S>(choice.settings);
-    config.file = found_file(config.file, choice.folder).string();
+    config.file = resolve_file(config.file, choice.folder).string();
     return config;
 }
 

@@ -112,7 +112,7 @@ std::filesystem::path data_folder() {
     return set != nullptr && *set != '\0' ? set : AABBLAB_DATA_FOLDER;
 }
 
-std::filesystem::path found_file(const std::filesystem::path& name, const std::filesystem::path& folder) {
+std::filesystem::path resolve_file(const std::filesystem::path& name, const std::filesystem::path& folder) {
     std::error_code ignored;
     std::filesystem::path beside = folder / name;
     if (name.empty() || std::filesystem::exists(name, ignored)) return name;

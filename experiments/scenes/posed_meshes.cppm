@@ -37,7 +37,8 @@ namespace aabblab {
 /// A rotation from the uniform distribution.
 [[nodiscard]] inline Eigen::Quaterniond random_rotation(random_source& random) {
     while (true) {
-        const Eigen::Quaterniond q{random.within(), random.within(), random.within(), random.within()};
+        const Eigen::Quaterniond q{random.signed_unit(), random.signed_unit(), random.signed_unit(),
+                                   random.signed_unit()};
         if (square_of(q) <= 1 && square_of(q) > 1e-6) return normalised(q);
     }
 }

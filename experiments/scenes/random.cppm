@@ -27,7 +27,7 @@ public:
     [[nodiscard]] Eigen::Vector3d direction(int axes = 3) {
         while (true) {
             Eigen::Vector3d p = Eigen::Vector3d::Zero();
-            for (int k = 0; k < axes; ++k) p[k] = within();
+            for (int k = 0; k < axes; ++k) p[k] = signed_unit();
             const double square = dot(p, p);
             if (square <= 1 && square >= 1e-6) return p / length_of(p);
         }
@@ -37,7 +37,7 @@ public:
     [[nodiscard]] Eigen::Vector3d point(double width) { return {unit() * width, unit() * width, unit() * width}; }
 
     /// In [-1, 1).
-    [[nodiscard]] double within() { return 2 * unit() - 1; }
+    [[nodiscard]] double signed_unit() { return 2 * unit() - 1; }
 
 private:
     std::mt19937_64 engine_;

@@ -35,10 +35,11 @@ public:
 
 /// The path of a file: as given, else in `folder`.
 /// @throws aabb::input_error if neither exists.
-[[nodiscard]] std::filesystem::path found_file(const std::filesystem::path& name, const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path resolve_file(const std::filesystem::path& name,
+                                                 const std::filesystem::path& folder);
 
 /// Identifies all scenes that differ only in their seed.
-[[nodiscard]] inline scene_choice whatever_seed(scene_choice scene) {
+[[nodiscard]] inline scene_choice without_seed(scene_choice scene) {
     scene.seed.reset();
     return scene;
 }

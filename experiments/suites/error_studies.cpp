@@ -51,7 +51,7 @@ std::vector<std::string> measure_hits_into(const std::filesystem::path& folder, 
 
 }  // namespace
 
-std::string usual_study() {
+std::string default_study() {
     return AABBLAB_ERROR_CONFIGS "/triangle_tests.toml";
 }
 

@@ -55,7 +55,7 @@ void note_idle_engines(const experiment& e) {
 
 /// True if two scenes differ at most in their seeds.
 bool is_same_scene(const scene_choice& a, const scene_choice& b) {
-    return whatever_seed(a) == whatever_seed(b);
+    return without_seed(a) == without_seed(b);
 }
 
 /// The rows of a scene over all its seeds.

@@ -37,7 +37,7 @@ enum class printed { tables, tables_and_counts, nothing };
 [[nodiscard]] bool run_process(const experiment& e, const std::filesystem::path& folder, std::size_t process);
 
 /// The study of triangle tests, the default of `errors`.
-[[nodiscard]] std::string usual_study();
+[[nodiscard]] std::string default_study();
 
 /// The configs in a folder, sorted by name.
 [[nodiscard]] std::vector<std::filesystem::path> configs_in(const std::filesystem::path& folder);
@@ -74,8 +74,8 @@ struct suite_report {
                                            bool quick, bool shown);
 /// Rebuilds the report from the rows in a folder, or from a stored report of earlier versions; empty if there is none.
 /// @throws aabb::input_error if the files have another format.
-[[nodiscard]] std::optional<suite_report> kept_report(const std::filesystem::path& folder);
+[[nodiscard]] std::optional<suite_report> stored_report(const std::filesystem::path& folder);
 /// The pairs of triangles that `validate extreme` uses by default.
-[[nodiscard]] std::string usual_cases();
+[[nodiscard]] std::string default_cases();
 
 }  // namespace aabblab

@@ -114,7 +114,7 @@ named_table table_of(const json_value& j) {
     return t;
 }
 
-suite_report drawn_report(const std::filesystem::path& file) {
+suite_report read_report(const std::filesystem::path& file) {
     const json_value document(file.string(), text_of_file(file), "is not the report of a suite of validate");
     suite_report report{document.needed("paragraphs").texts(), {}, {}, document.needed("failures").texts()};
     for (const json_value& f : document.needed("figures").list()) report.figures.push_back(figure_of(f));
@@ -124,7 +124,7 @@ suite_report drawn_report(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string usual_cases() {
+std::string default_cases() {
     return AABBLAB_CASES;
 }
 
@@ -180,8 +180,8 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     return report;
 }
 
-std::optional<suite_report> kept_report(const std::filesystem::path& folder) {
-    if (std::filesystem::exists(folder / "report.json")) return drawn_report(folder / "report.json");
+std::optional<suite_report> stored_report(const std::filesystem::path& folder) {
+    if (std::filesystem::exists(folder / "report.json")) return read_report(folder / "report.json");
     if (std::filesystem::exists(folder / "extreme.csv")) {
         const std::vector<extreme_row> rows = read_extreme_rows(folder / "extreme.csv");
         // Cases run last: if there are none, the run was interrupted.

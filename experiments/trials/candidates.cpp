@@ -14,26 +14,26 @@ namespace aabblab {
 
 namespace {
 
-/// Takes one stage from the composition.
-void use(candidate& tested, const aabb::composition& c, aabb::stage stage) {
-    for (const aabb::strategy_kind kind : kinds_of(stage)) tested.name[kind] = to_text(c[kind]);
-    tested.exact = tested.exact && is_exact(c, stage);
+/// Sets one stage of a candidate to that of the composition.
+void set_stage(candidate& result, const aabb::composition& c, aabb::stage stage) {
+    for (const aabb::strategy_kind kind : kinds_of(stage)) result.name[kind] = to_text(c[kind]);
+    result.exact = result.exact && is_exact(c, stage);
     if (stage == aabb::stage::global_search) {
-        tested.exact_boxes = is_exact(c, stage);
-        tested.whole_boxes = needs_meshes(c).empty();
-        tested.make_global = [c](aabb::instrumentation counted) { return aabb::compose_global_search(c, counted); };
+        result.exact_boxes = is_exact(c, stage);
+        result.whole_boxes = needs_meshes(c).empty();
+        result.make_global = [c](aabb::instrumentation counted) { return aabb::compose_global_search(c, counted); };
     } else {
-        tested.make_local = [c](aabb::instrumentation counted) { return aabb::compose_local_detection(c, counted); };
+        result.make_local = [c](aabb::instrumentation counted) { return aabb::compose_local_detection(c, counted); };
     }
 }
 
 }  // namespace
 
 candidate candidate_of(const aabb::composition& c, bool meshes) {
-    candidate tested;
-    use(tested, c, aabb::stage::global_search);
-    if (meshes) use(tested, c, aabb::stage::local_detection);
-    return tested;
+    candidate result;
+    set_stage(result, c, aabb::stage::global_search);
+    if (meshes) set_stage(result, c, aabb::stage::local_detection);
+    return result;
 }
 
 candidate candidate_of(const aabb::named_strategies& named, const scene_frames& scene) {
@@ -42,24 +42,24 @@ candidate candidate_of(const aabb::named_strategies& named, const scene_frames& 
         select_for_scene(c, named, traits);
         return c;
     };
-    candidate tested = candidate_of(selected(initial), scene.meshes() != nullptr);
+    candidate result = candidate_of(selected(initial), scene.meshes() != nullptr);
     // The selection runs when the stages are created, so that its time counts as build time.
-    tested.make_global = [selected, initial](aabb::instrumentation counted) mutable {
+    result.make_global = [selected, initial](aabb::instrumentation counted) mutable {
         return aabb::compose_global_search(selected(initial), counted);
     };
-    if (tested.make_local)
-        tested.make_local = [selected, initial](aabb::instrumentation counted) mutable {
+    if (result.make_local)
+        result.make_local = [selected, initial](aabb::instrumentation counted) mutable {
             return aabb::compose_local_detection(selected(initial), counted);
         };
     // The name does not depend on what is selected, so that it is the same for all scenes.
-    tested.name = {};
-    tested.name.engine = candidate_name::automatic;
+    result.name = {};
+    result.name.engine = candidate_name::automatic;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (named[kind])
-            tested.name.engine += " + " +
+            result.name.engine += " + " +
                                   (named[kind]->name == "none" ? std::string(name_of(kind)) + " " : std::string()) +
                                   to_text(*named[kind]);
-    return tested;
+    return result;
 }
 
 aabb::scene_traits traits_of(const scene_frames& scene) {
@@ -69,25 +69,25 @@ aabb::scene_traits traits_of(const scene_frames& scene) {
 
 std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes) {
     if (!engine.searches_boxes && !(meshes && engine.collides_meshes)) return std::nullopt;
-    candidate tested;
-    tested.name.engine = engine.name;
-    tested.exact = engine.exact;
+    candidate result;
+    result.name.engine = engine.name;
+    result.exact = engine.exact;
     if (engine.searches_boxes)
-        tested.make_global = [name = engine.name](aabb::instrumentation) { return aabb::make_box_engine(name); };
+        result.make_global = [name = engine.name](aabb::instrumentation) { return aabb::make_box_engine(name); };
     else
-        use(tested, {}, aabb::stage::global_search);
+        set_stage(result, {}, aabb::stage::global_search);
     if (meshes && engine.collides_meshes)
-        tested.make_local = [name = engine.name](aabb::instrumentation) { return aabb::make_mesh_engine(name); };
+        result.make_local = [name = engine.name](aabb::instrumentation) { return aabb::make_mesh_engine(name); };
     else if (meshes)
-        use(tested, {}, aabb::stage::local_detection);
-    return tested;
+        set_stage(result, {}, aabb::stage::local_detection);
+    return result;
 }
 
 // External engines: third-party programs that read a recording, and write the pairs they find and their times.
 
 namespace {
 
-/// The temporary folder through which the external engines of a scene read its recording and write their results. It is
+/// The temporary folder in which the external engines of a scene find its recording and write their results. It is
 /// created on first use, and removed by the destructor.
 class exchange_folder {
 public:
@@ -200,7 +200,7 @@ public:
     /// malformed
     external_search(const external_engine& engine, exchange_folder& exchange, std::vector<reported_times>& times)
         : place_(engine.place + ": " + exchange.scene_text() + ": "), name_("external engine '" + engine.name + "'") {
-        in_place([&] {
+        with_place([&] {
             run(engine, exchange);
             read_times(times);
             table_.emplace("the pairs of the " + name_, pairs_file_, "frame,a,b");
@@ -213,7 +213,7 @@ public:
     /// Advances to the next frame.
     /// @throws aabb::input_error on rows that are malformed, duplicated, or of an earlier frame
     void update(std::span<const aabb::box>) override {
-        in_place([this] { take_frame(); });
+        with_place([this] { take_frame(); });
     }
     void search(std::vector<aabb::index_pair>& pairs) override {
         pairs.insert(pairs.end(), pairs_.begin(), pairs_.end());
@@ -228,9 +228,9 @@ private:
         aabb::index_pair pair;
     };
 
-    /// Prefixes the errors of `work` with the place.
+    /// Prefixes the errors of `work` with the place in the config.
     template <class Work>
-    void in_place(Work work) const {
+    void with_place(Work work) const {
         try {
             work();
         } catch (const engine_timeout& error) {
@@ -242,6 +242,7 @@ private:
 
     [[noreturn]] void fail(const std::string& sentence) const { throw aabb::input_error("the " + name_ + sentence); }
 
+    /// Runs the engine on the recording of the scene; it writes its pairs and its times to two files.
     void run(const external_engine& engine, exchange_folder& exchange) {
         const std::filesystem::path recording = exchange.recording();
         objects_ = exchange.objects();
@@ -256,12 +257,12 @@ private:
             arguments.push_back(file.string());
         }
         // Without a terminal the engine cannot wait for keyboard input.
-        const child_result ended = run_child(engine.program, arguments,
-                                             {.folder = {},
-                                              .input = "/dev/null",
-                                              .errors = {},
-                                              .kept = true,
-                                              .timeout = std::chrono::seconds(engine.timeout_s)});
+        const program_result ended = run_child(engine.program, arguments,
+                                               {.folder = {},
+                                                .input = "/dev/null",
+                                                .errors = {},
+                                                .kept = true,
+                                                .timeout = std::chrono::seconds(engine.timeout_s)});
         if (ended.timed_out)
             throw engine_timeout("the " + name_ + " was killed: it was still running after " +
                                  std::to_string(engine.timeout_s) + " s, its timeout_s");
@@ -273,6 +274,7 @@ private:
         if (WEXITSTATUS(ended.status) != 0) fail(" ended with status " + std::to_string(WEXITSTATUS(ended.status)));
     }
 
+    /// Reads the reported times, which stand in for measured ones in every ratio.
     void read_times(std::vector<reported_times>& times) const {
         times.clear();
         engine_output table("the times of the " + name_, times_file_, "frame,update_ms,search_ms");
@@ -288,6 +290,7 @@ private:
             throw aabb::input_error("the times of the " + name_ + " end before frame " + std::to_string(times.size()));
     }
 
+    /// Reads the next row, which may belong to a later frame.
     void read_ahead() {
         ahead_.reset();
         if (!table_->next()) return;
@@ -298,6 +301,7 @@ private:
         ahead_ = {frame, aabb::ordered_pair(a, b)};
     }
 
+    /// Collects the pairs of the next frame.
     void take_frame() {
         pairs_.clear();
         for (; ahead_ && ahead_->frame <= frame_; read_ahead()) {
@@ -324,15 +328,15 @@ private:
 };
 
 candidate candidate_of(const external_engine& engine, const std::shared_ptr<exchange_folder>& exchange) {
-    candidate tested;
-    tested.name.engine = engine.name;
-    tested.exact = tested.exact_boxes = engine.exact;
+    candidate result;
+    result.name.engine = engine.name;
+    result.exact = result.exact_boxes = engine.exact;
     const std::shared_ptr times = std::make_unique<std::vector<reported_times>>();
-    tested.reported = times;
-    tested.make_global = [engine, exchange, times](aabb::instrumentation) {
+    result.reported = times;
+    result.make_global = [engine, exchange, times](aabb::instrumentation) {
         return std::make_unique<external_search>(engine, *exchange, *times);
     };
-    return tested;
+    return result;
 }
 
 }  // namespace
@@ -342,19 +346,19 @@ std::vector<candidate> candidates_for(const experiment& e, const scene_choice& s
     std::vector<candidate> candidates;
     std::set<candidate_name> names;
     for (const aabb::composition& c : e.compositions) {
-        // A config rejects it; among all compositions, one that needs meshes is skipped for boxes.
+        // A config that lists such a composition is rejected, but `validate` runs all compositions on every scene.
         if (!meshes && !needs_meshes(c).empty()) continue;
-        candidate tested = candidate_of(c, meshes);
+        candidate composed = candidate_of(c, meshes);
         // For boxes, compositions that differ only in the narrow phase are the same candidate.
-        if (names.insert(tested.name).second) candidates.push_back(std::move(tested));
+        if (names.insert(composed.name).second) candidates.push_back(std::move(composed));
     }
     if (!e.automatic.empty()) {
-        const scene_frames play(scene);
-        for (const aabb::named_strategies& named : e.automatic) candidates.push_back(candidate_of(named, play));
+        const scene_frames frames(scene);
+        for (const aabb::named_strategies& named : e.automatic) candidates.push_back(candidate_of(named, frames));
     }
     for (const std::string& name : e.engines) {
         const auto engine = std::ranges::find(aabb::engines(), name, &aabb::engine_info::name);
-        if (std::optional<candidate> tested = candidate_of(*engine, meshes)) candidates.push_back(*std::move(tested));
+        if (std::optional<candidate> c = candidate_of(*engine, meshes)) candidates.push_back(*std::move(c));
     }
     if (meshes) return candidates;
     const std::shared_ptr exchange = std::make_unique<exchange_folder>(scene);

@@ -5,10 +5,11 @@ import aabb.std;
 
 export namespace aabblab {
 
-/// The candidate at a place of a round. Carry-over effects are balanced: over n rounds of n candidates each candidate
-/// begins one round and, for even n, follows every other candidate once, for odd n about once (Williams, "Experimental
-/// designs balanced for the estimation of residual effects of treatments", 1949).
-[[nodiscard]] constexpr std::size_t in_turn(std::size_t place, std::size_t round, std::size_t candidates) noexcept {
+/// The index of the candidate at a place of a round. Carry-over effects are balanced: over n rounds of n candidates
+/// each candidate begins one round and, for even n, follows every other candidate once, for odd n about once (Williams,
+/// "Experimental designs balanced for the estimation of residual effects of treatments", 1949).
+[[nodiscard]] constexpr std::size_t index_in_round(std::size_t place, std::size_t round,
+                                                   std::size_t candidates) noexcept {
     // 0, 1, -1, 2, -2 and so on.
     const std::size_t offset = place % 2 == 1 ? (place + 1) / 2 : candidates - place / 2;
     return (round + offset) % candidates;
@@ -18,9 +19,10 @@ export namespace aabblab {
 template <class Candidate, class Run>
 void run_round(std::vector<Candidate>& candidates, std::size_t round, Run run) {
     for (std::size_t place = 0; place < candidates.size(); ++place)
-        run(candidates[in_turn(place, round, candidates.size())]);
+        run(candidates[index_in_round(place, round, candidates.size())]);
 }
 
+/// The rounds to run, from `begin` to `end`, and the time for them.
 struct round_limits {
     std::size_t end;
     std::size_t begin = 0;
@@ -32,18 +34,18 @@ struct round_limits {
 
 /// Runs candidates in interleaved rounds, until the limits are reached or no candidate remains.
 /// @param run takes a candidate and the number of the round
-/// @param after is called after each round, with its number; it may remove candidates
+/// @param after_round takes its number; it may remove candidates
 /// @returns the first round that was not run
 template <class Candidate, class Run, class After>
-std::size_t run_rounds(std::vector<Candidate>& candidates, const round_limits& limits, Run run, After after) {
+std::size_t run_rounds(std::vector<Candidate>& candidates, const round_limits& limits, Run run, After after_round) {
     double previous = limits.expected;
     std::size_t round = limits.begin;
     for (; round < limits.end && !candidates.empty(); ++round) {
         const double remaining = limits.left ? limits.left() : std::numeric_limits<double>::infinity();
         if (round >= limits.fewest && remaining <= previous) break;
-        run_round(candidates, round, [&](Candidate& tested) { run(tested, round); });
+        run_round(candidates, round, [&](Candidate& c) { run(c, round); });
         if (limits.left) previous = remaining - limits.left();
-        after(round);
+        after_round(round);
     }
     return round;
 }
@@ -74,7 +76,7 @@ public:
     explicit time_limits(double seconds, std::function<double()> elapsed = since_now())
         : seconds_(seconds), elapsed_(std::move(elapsed)) {}
 
-    void scene_is_read() { reading_ = elapsed_(); }
+    void note_scene_read() { reading_ = elapsed_(); }
     /// The remaining seconds; not positive once the time is over.
     [[nodiscard]] double to_run() const { return std::max(usable * seconds_, reading_ + usable) - elapsed_(); }
     [[nodiscard]] double to_end() const { return std::max(2 * usable * seconds_, reading_ + 2 * usable) - elapsed_(); }

@@ -17,7 +17,7 @@ struct timed_candidate {
 };
 
 /// Reduces a validated row to the metrics that the experiment records.
-row row_of(const experiment& e, const validated_row& v) {
+row recorded_row(const experiment& e, const validated_row& v) {
     row r = v;
     r.experiment = e.name;
     if (!e.records(metric_group::counts)) r.counts = {};
@@ -29,30 +29,29 @@ row row_of(const experiment& e, const validated_row& v) {
     return r;
 }
 
-/// The share of the repeats that one process runs.
-round_limits repeats_of(const experiment& e, std::size_t process) {
+/// The repeats that one process runs: p of P processes runs those from R p / P to R (p + 1) / P.
+round_limits share_of_process(const experiment& e, std::size_t process) {
     const std::size_t repeats = e.records(metric_group::time) ? e.repeats : 1;
     return {.end = repeats * (process + 1) / e.processes, .begin = repeats * process / e.processes};
 }
 
 std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
-    std::vector<row> rows_of_scene;
-    for (const row& r : rows)
-        if (r.scene == scene) rows_of_scene.push_back(r);
-    return rows_of_scene;
+    std::vector<row> matching;
+    std::ranges::copy_if(rows, std::back_inserter(matching), [&](const row& r) { return r.scene == scene; });
+    return matching;
 }
 
 /// The candidates that early stopping does not repeat, since they took too long in the first repeat of the share.
-std::set<candidate_name> given_up(const experiment& e, const round_limits& share, std::span<const row> rows) {
+std::set<candidate_name> stopped_early(const experiment& e, const round_limits& share, std::span<const row> rows) {
     std::set<candidate_name> names;
     if (!e.patience) return names;
     const row_value& whole_ms = measured("whole_ms");
-    double least = std::numeric_limits<double>::infinity();
+    double fastest = std::numeric_limits<double>::infinity();
     for (const row& r : rows)
-        if (r.repeat == share.begin) least = std::min(least, whole_ms(r).value_or(least));
-    const double longest = stopping_rule{.ratio = static_cast<double>(*e.patience)}.hopeless_after(least);
+        if (r.repeat == share.begin) fastest = std::min(fastest, whole_ms(r).value_or(fastest));
+    const double limit = stopping_rule{.ratio = static_cast<double>(*e.patience)}.hopeless_after(fastest);
     for (const row& r : rows)
-        if (r.repeat == share.begin && whole_ms(r).value_or(0) > longest) names.insert(r.name);
+        if (r.repeat == share.begin && whole_ms(r).value_or(0) > limit) names.insert(r.name);
     return names;
 }
 
@@ -63,47 +62,47 @@ void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, con
     const row last = results.rows().back();
     if (last.scene != scene || last.repeat < share.begin || last.repeat >= share.end) return;
     const std::vector<row> rows = rows_of(scene, results.rows());
-    if (last.repeat > share.begin) candidates -= given_up(e, share, rows).size();
+    if (last.repeat > share.begin) candidates -= stopped_early(e, share, rows).size();
     const auto finished = std::ranges::count(rows, last.repeat, &row::repeat);
     if (static_cast<std::size_t>(finished) < candidates) results.drop(scene, last.repeat);
 }
 
+/// The candidates that still lack rows of this share, so that a resumed experiment runs only what is missing.
 std::vector<candidate> unfinished(const experiment& e, std::span<const candidate> candidates, const round_limits& share,
                                   std::span<const row> rows) {
-    const std::set<candidate_name> stopped = given_up(e, share, rows);
+    const std::set<candidate_name> stopped = stopped_early(e, share, rows);
     std::vector<candidate> remaining;
-    for (const candidate& tested : candidates) {
-        if (stopped.contains(tested.name)) continue;
-        const auto finished = std::ranges::count_if(rows, [&](const row& r) {
-            return r.name == tested.name && r.repeat >= share.begin && r.repeat < share.end;
-        });
-        if (static_cast<std::size_t>(finished) < share.end - share.begin) remaining.push_back(tested);
+    for (const candidate& c : candidates) {
+        if (stopped.contains(c.name)) continue;
+        const auto finished = std::ranges::count_if(
+            rows, [&](const row& r) { return r.name == c.name && r.repeat >= share.begin && r.repeat < share.end; });
+        if (static_cast<std::size_t>(finished) < share.end - share.begin) remaining.push_back(c);
     }
     return remaining;
 }
 
 /// Whether a timed run may legitimately find other contacts than the validated one: during validation a reactive scene
 /// follows the ground truth; during a timed run it follows the results of an inexact candidate.
-bool may_diverge(const scene_choice& scene, const candidate& tested) {
-    return !(tested.exact && tested.exact_boxes) && has_meshes(scene) && make_mesh_scene(scene)->reacts();
+bool may_diverge(const scene_choice& scene, const candidate& c) {
+    return !(c.exact && c.exact_boxes) && has_meshes(scene) && make_mesh_scene(scene)->reacts();
 }
 
 /// Times one repeat. The digest is compared again, since code without counters is a separate template instantiation.
 /// @returns a description of what is wrong; empty if the results agree
-std::string time_into(const scene_choice& scene, const asking& how, timed_candidate& timed) {
+std::string time_repeat(const scene_choice& scene, const query_settings& query, timed_candidate& timed) {
     row& r = timed.result;
-    const observation times = observe(scene, *timed.tested, {.asked = how});
+    const observation times = observe(scene, *timed.tested, {.query = query});
     const bool is_external = timed.tested->reported != nullptr;
-    const auto take = [is_external](double wall, double cpu, std::optional<double>& wall_ms,
-                                    std::optional<double>& cpu_ms) {
+    const auto store = [is_external](double wall, double cpu, std::optional<double>& wall_ms,
+                                     std::optional<double>& cpu_ms) {
         wall_ms = wall;
         if (!is_external) cpu_ms = cpu;
     };
-    take(times.build.wall_ms, times.build.cpu_ms, r.build_ms, r.build_cpu_ms);
-    take(times.first.wall_ms(), times.first.cpu_ms(), r.first_ms, r.first_cpu_ms);
-    take(times.rest.update.wall_ms, times.rest.update.cpu_ms, r.update_ms, r.update_cpu_ms);
-    take(times.rest.search.wall_ms, times.rest.search.cpu_ms, r.search_ms, r.search_cpu_ms);
-    take(times.rest.detect.wall_ms, times.rest.detect.cpu_ms, r.detect_ms, r.detect_cpu_ms);
+    store(times.build.wall_ms, times.build.cpu_ms, r.build_ms, r.build_cpu_ms);
+    store(times.first.wall_ms(), times.first.cpu_ms(), r.first_ms, r.first_cpu_ms);
+    store(times.rest.update.wall_ms, times.rest.update.cpu_ms, r.update_ms, r.update_cpu_ms);
+    store(times.rest.search.wall_ms, times.rest.search.cpu_ms, r.search_ms, r.search_cpu_ms);
+    store(times.rest.detect.wall_ms, times.rest.detect.cpu_ms, r.detect_ms, r.detect_cpu_ms);
     std::string wrong = times.wrong;
     if (wrong.empty() && times.digest != r.digest && !may_diverge(scene, *timed.tested))
         wrong = "its digest is " + times.digest + " when timed, but was " + r.digest + " when validated";
@@ -112,14 +111,15 @@ std::string time_into(const scene_choice& scene, const asking& how, timed_candid
 }
 
 /// The candidates that are ready to be timed, and the failures of the others.
-struct admission {
+struct validated_candidates {
     std::vector<timed_candidate> timed;
     std::vector<std::string> failures;
 };
 
-admission validated(const experiment& e, const scene_choice& scene, std::span<const candidate> candidates,
-                    results_folder& results) {
-    admission admitted;
+/// Compares the candidates with the ground truth, and stores its digest and their differences.
+validated_candidates validate(const experiment& e, const scene_choice& scene, std::span<const candidate> candidates,
+                              results_folder& results) {
+    validated_candidates validated;
     const scene_validation validation = validate_scene(scene, candidates);
     results.set_digest(scene, validation.digest);
     std::vector<candidate_name> names;
@@ -129,22 +129,21 @@ admission validated(const experiment& e, const scene_choice& scene, std::span<co
         names.push_back(v.name);
         differences.insert(differences.end(), v.differences.begin(), v.differences.end());
         if (v.failure.empty())
-            admitted.timed.push_back({&candidates[i], row_of(e, v)});
+            validated.timed.push_back({&candidates[i], recorded_row(e, v)});
         else
-            admitted.failures.push_back(v.failure);
+            validated.failures.push_back(v.failure);
     }
     if (e.records(metric_group::error)) results.set_differences(scene, names, differences);
-    return admitted;
+    return validated;
 }
 
 /// Reuses the validation of the first process.
-admission known(std::span<const candidate> candidates, std::span<const row> rows) {
-    admission admitted;
-    for (const candidate& tested : candidates) {
-        const auto before = std::ranges::find(rows, tested.name, &row::name);
-        if (before != rows.end()) admitted.timed.push_back({&tested, *before});
-    }
-    return admitted;
+validated_candidates validated_before(std::span<const candidate> candidates, std::span<const row> rows) {
+    validated_candidates validated;
+    for (const candidate& c : candidates)
+        if (const auto r = std::ranges::find(rows, c.name, &row::name); r != rows.end())
+            validated.timed.push_back({&c, *r});
+    return validated;
 }
 
 /// Shuffles all candidates but the baseline, reproducibly for each scene. In the order of the config, a candidate often
@@ -167,41 +166,41 @@ experiment_record record_of(const experiment& e) {
 std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
                                    std::span<const candidate> candidates, results_folder& results,
                                    std::size_t process) {
-    const round_limits share = repeats_of(e, process);
+    const round_limits share = share_of_process(e, process);
     drop_interrupted_repeat(e, scene, share, candidates.size(), results);
     const std::vector<row> rows = rows_of(scene, results.rows());
     const std::vector<candidate> remaining = unfinished(e, shuffled(candidates, scene), share, rows);
     if (remaining.empty()) return {};
-    auto [timed, failures] = process == 0 ? validated(e, scene, remaining, results) : known(remaining, rows);
+    auto [timed, failures] = process == 0 ? validate(e, scene, remaining, results) : validated_before(remaining, rows);
     progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
-    const std::size_t in_round = timed.size();
-    std::size_t done = 0;
+    const std::size_t runs_per_round = timed.size();
+    std::size_t finished_runs = 0;
     std::set<candidate_name> stopped;  // not repeated any more
-    const auto run = [&](timed_candidate& turn, std::size_t repeat) {
-        shown.at(done++);
-        turn.result.repeat = repeat;
-        turn.result.process = process;
-        if (results.has(turn.result)) return;
+    const auto run = [&](timed_candidate& next, std::size_t repeat) {
+        shown.at(finished_runs++);
+        next.result.repeat = repeat;
+        next.result.process = process;
+        if (results.has(next.result)) return;
         std::string failure;
         try {
-            if (e.records(metric_group::time)) failure = time_into(scene, e.how, turn);
+            if (e.records(metric_group::time)) failure = time_repeat(scene, e.query, next);
         } catch (const engine_timeout& error) {
             // The rows of earlier repeats are kept.
             failures.emplace_back(error.what());
-            stopped.insert(turn.result.name);
+            stopped.insert(next.result.name);
             return;
         }
-        if (failure.empty()) return results.add(turn.result);
-        stopped.insert(turn.result.name);
+        if (failure.empty()) return results.add(next.result);
+        stopped.insert(next.result.name);
         failures.push_back(failure);
-        results.drop(scene, turn.result.name);
+        results.drop(scene, next.result.name);
     };
-    const auto give_up = [&](std::size_t repeat) {
-        stopped.merge(given_up(e, share, rows_of(scene, results.rows())));
+    const auto stop_early = [&](std::size_t repeat) {
+        stopped.merge(stopped_early(e, share, rows_of(scene, results.rows())));
         std::erase_if(timed, [&](const timed_candidate& t) { return stopped.contains(t.result.name); });
-        done = (repeat + 1 - share.begin) * in_round;
+        finished_runs = (repeat + 1 - share.begin) * runs_per_round;
     };
-    run_rounds(timed, share, run, give_up);
+    run_rounds(timed, share, run, stop_early);
     return failures;
 }
 

@@ -21,13 +21,14 @@ bool scene_frames::next() {
     return true;
 }
 
-void scene_frames::tell(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts) {
+void scene_frames::take_results(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts) {
     if (meshes_)
         meshes_->take_contacts(contacts);
     else
         box_scene_->take_pairs(pairs);
 }
 
+/// Compares the presence of every object with the previous frame, so that only changed objects are inserted or removed.
 void scene_frames::note_changes(std::span<const std::uint8_t> present) {
     arrivals_.clear();
     departures_.clear();
@@ -96,6 +97,7 @@ std::vector<aabb::part_bytes> stage_runner::global_bytes() const {
     return parts;
 }
 
+/// The parts of the stage, and the meshes, which it reads but does not own.
 std::vector<aabb::part_bytes> stage_runner::local_bytes() const {
     if (!stages_.local) return {};
     std::vector<aabb::part_bytes> parts = stages_.local->bytes();
@@ -123,30 +125,30 @@ std::optional<double> stage_runner::box_inflation() const {
     double sum = 0;
     const std::uint32_t models = pipeline_->models();
     for (std::uint32_t m = 0; m < models; ++m) {
-        const std::optional<aabb::tree_validation> survey = stages_.local->survey(m);
-        if (!survey) return std::nullopt;
-        sum += survey->area_inflation;
+        const std::optional<aabb::tree_validation> tree = stages_.local->survey(m);
+        if (!tree) return std::nullopt;
+        sum += tree->area_inflation;
     }
     return sum / static_cast<double>(models);
 }
 
-elapsed detect_in(stage_runner& p) {
-    return elapsed_in([&] { p.detect(); });
+elapsed time_detection(stage_runner& runner) {
+    return elapsed_in([&] { runner.detect(); });
 }
 
-void play(scene_frames& scene, stage_runner& p, const std::function<void(const searched_frame&)>& each,
-          std::size_t most, const detecting& detect) {
-    for (std::uint32_t frame = 0; frame < most && scene.next(); ++frame) {
-        phases took{elapsed_in([&] { p.update(); }), elapsed_in([&] { p.search(); }), {}};
+void run_frames(scene_frames& scene, stage_runner& runner, const std::function<void(const searched_frame&)>& on_frame,
+                std::size_t most_frames, const timed_detection& detect) {
+    for (std::uint32_t frame = 0; frame < most_frames && scene.next(); ++frame) {
+        phases took{elapsed_in([&] { runner.update(); }), elapsed_in([&] { runner.search(); }), {}};
         // Sorting within a search, as of column groups, counts as update, as it does for other strategies.
-        const double share = p.share_of_update();
-        const elapsed sorted{share * took.search.wall_ms, share * took.search.cpu_ms};
-        took.update += sorted;
-        took.search += {-sorted.wall_ms, -sorted.cpu_ms};
-        took.detect = detect(p);
-        const searched_frame result{frame, took, p.sorted_pairs(), p.sorted_contacts()};
-        each(result);
-        scene.tell(result.pairs, result.contacts);
+        const double share = runner.share_of_update();
+        const elapsed sorting{share * took.search.wall_ms, share * took.search.cpu_ms};
+        took.update += sorting;
+        took.search += {-sorting.wall_ms, -sorting.cpu_ms};
+        took.detect = detect(runner);
+        const searched_frame result{frame, took, runner.sorted_pairs(), runner.sorted_contacts()};
+        on_frame(result);
+        scene.take_results(result.pairs, result.contacts);
     }
 }
 

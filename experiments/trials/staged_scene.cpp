@@ -23,9 +23,9 @@ enum : int { is_done = 0, has_failed = 1, is_rejected = 2, has_no_memory = 3 };
 /// Precedes the message of an input_error.
 constexpr char rejection_mark = 0;
 
-void write_all(int to, std::string_view text) {
+void write_all(int pipe, std::string_view text) {
     while (!text.empty()) {
-        const ssize_t n = write(to, text.data(), text.size());
+        const ssize_t n = write(pipe, text.data(), text.size());
         if (n < 0 && errno == EINTR) continue;
         // The parent does not read any more.
         if (n <= 0) _exit(has_failed);
@@ -34,21 +34,23 @@ void write_all(int to, std::string_view text) {
 }
 
 /// Makes the kernel kill this process before its parent if memory runs out.
-void offer_to_be_killed() {
+void raise_oom_score() {
     const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
     if (file < 0) return;
     static_cast<void>(!write(file, "1000", 4));
     close(file);
 }
 
-[[noreturn]] void send_all(int to, const std::function<void(const output_sender&)>& work) {
-    offer_to_be_killed();
+/// Does the work in the child process and exits with a status that tells how it ended. The parent reads the output, and
+/// the message of an input_error, from the pipe.
+[[noreturn]] void work_and_exit(int pipe, const std::function<void(const output_sender&)>& work) {
+    raise_oom_score();
     int status = has_failed;
     try {
-        work([to](std::string_view text) { write_all(to, text); });
+        work([pipe](std::string_view text) { write_all(pipe, text); });
         status = is_done;
     } catch (const aabb::input_error& error) {
-        write_all(to, std::string(1, rejection_mark) + error.what());
+        write_all(pipe, std::string(1, rejection_mark) + error.what());
         status = is_rejected;
     } catch (const std::bad_alloc&) {
         status = has_no_memory;
@@ -66,16 +68,16 @@ int milliseconds_until(clock::time_point end) {
     return static_cast<int>(std::clamp(std::ceil(remaining), 1.0, double{std::numeric_limits<int>::max()}));
 }
 
-/// Reads until the other end closes.
+/// Appends to the text until the other end closes.
 /// @returns whether that was before `end`
-bool read_until(int from, clock::time_point end, std::string& text) {
+bool read_until(int pipe, clock::time_point end, std::string& text) {
     std::array<char, 4096> part{};
     while (clock::now() < end) {
-        pollfd pipe_end{from, POLLIN, 0};
-        const int ready = poll(&pipe_end, 1, milliseconds_until(end));
+        pollfd readable{pipe, POLLIN, 0};
+        const int ready = poll(&readable, 1, milliseconds_until(end));
         if (ready < 0 && errno != EINTR) return false;
         if (ready <= 0) continue;
-        const ssize_t n = read(from, part.data(), part.size());
+        const ssize_t n = read(pipe, part.data(), part.size());
         if (n < 0) return false;
         if (n == 0) return true;
         text.append(part.data(), static_cast<std::size_t>(n));
@@ -83,6 +85,7 @@ bool read_until(int from, clock::time_point end, std::string& text) {
     return false;
 }
 
+/// @param status of waitpid
 ending ending_of(int status) {
     if (WIFSIGNALED(status)) return WTERMSIG(status) == SIGKILL ? ending::out_of_memory : ending::failed;
     switch (WEXITSTATUS(status)) {
@@ -93,8 +96,9 @@ ending ending_of(int status) {
     }
 }
 
-// The protocol between child and parent: a line after each frame with the times so far, then a last line with the bytes
-// and the omissions of the stages, without reasons. The first letter is the type of the line.
+// The protocol between child and parent. The first letter is the type of the line; omissions are sent without reasons.
+//   f seconds build frames digest  update search detect (frame 0)  update search detect (later frames)
+//   l bytes omission...
 constexpr char frame_line = 'f';
 constexpr char last_line = 'l';
 
@@ -123,20 +127,21 @@ attempt attempt_from(const child_result& work) {
             seen.digests.push_back(seen.digest);
         } else {
             text >> seen.bytes;
-            for (int what = 0; text >> what;) seen.left_out.push_back({static_cast<aabb::absence>(what)});
+            for (int absence = 0; text >> absence;) seen.left_out.push_back({static_cast<aabb::absence>(absence)});
         }
     }
     return result;
 }
 
+/// Runs a candidate in the child process and sends a line per frame, so that a killed run still has results.
 void send_run(scene_frames& scene, const candidate& tested, std::size_t frames, const output_sender& send) {
-    const auto begin = std::chrono::steady_clock::now();
-    const auto each = [&](const observation& so_far) {
-        send(line_of(so_far, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
+    const auto begin = clock::now();
+    const auto on_frame = [&](const observation& partial) {
+        send(line_of(partial, std::chrono::duration<double>(clock::now() - begin).count()));
     };
-    const observation seen = observe(scene, tested, {.frames = frames, .each = each});
-    std::string last = fmt::format("{} {}", last_line, seen.bytes);
-    for (const aabb::omission& absent : seen.left_out) last += fmt::format(" {}", static_cast<int>(absent.what));
+    const observation whole = observe(scene, tested, {.frames = frames, .on_frame = on_frame});
+    std::string last = fmt::format("{} {}", last_line, whole.bytes);
+    for (const aabb::omission& absent : whole.left_out) last += fmt::format(" {}", static_cast<int>(absent.what));
     send(last + "\n");
 }
 
@@ -157,7 +162,7 @@ child_result run_in_child(const std::function<void(const output_sender&)>& work,
         // The child must not outlive its parent, even if that is killed.
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         close(ends[0]);
-        send_all(ends[1], work);
+        work_and_exit(ends[1], work);
     }
     close(ends[1]);
     const bool is_in_time = child > 0 && read_until(ends[0], end, result.reported);
@@ -168,9 +173,9 @@ child_result run_in_child(const std::function<void(const output_sender&)>& work,
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
     result.end = is_in_time ? ending_of(status) : ending::stopped;
     result.seconds = std::chrono::duration<double>(clock::now() - begin).count();
-    if (const std::size_t at = result.reported.find(rejection_mark); at != std::string::npos) {
-        result.reason = result.reported.substr(at + 1);
-        result.reported.resize(at);
+    if (const std::size_t mark = result.reported.find(rejection_mark); mark != std::string::npos) {
+        result.reason = result.reported.substr(mark + 1);
+        result.reported.resize(mark);
     }
     return result;
 }

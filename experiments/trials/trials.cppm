@@ -58,7 +58,7 @@ public:
     /// Advances to the next frame; false after the last.
     bool next();
     /// Passes the sorted results of this frame to the scene, which may react to them; contacts exist only for meshes.
-    void tell(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
+    void take_results(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
     /// Runs work on this frame. Invalid poses are detected only when they are used: if they come from a file, the
     /// message is prefixed with file and frame.
     template <class Work>
@@ -104,7 +104,7 @@ public:
     stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted);
     stage_runner(stages run_stages, const scene_frames& scene);
 
-    /// The phases of a frame, which are timed separately.
+    /// Execute the phases of a frame, which are timed separately: update of the stages, broad phase, narrow phase.
     /// @throws aabb::input_error with file and frame if poses from a file are rejected.
     void update();
     void search();
@@ -156,7 +156,7 @@ private:
 struct phases {
     elapsed update;
     elapsed search;
-    elapsed detect;  ///< the query that the experiment asks
+    elapsed detect;  ///< the configured query
 
     phases& operator+=(const phases& other) {
         update += other.update;
@@ -178,14 +178,14 @@ struct searched_frame {
     [[nodiscard]] double ms() const { return took.wall_ms(); }
 };
 
-/// Detects the contacts of a frame and returns the time of the query that the experiment asks, which may be another.
-using detecting = std::function<elapsed(stage_runner&)>;
-[[nodiscard]] elapsed detect_in(stage_runner& p);
+/// Detects the contacts of a frame and returns the time of the configured query, which may be another one.
+using timed_detection = std::function<elapsed(stage_runner&)>;
+[[nodiscard]] elapsed time_detection(stage_runner& runner);
 
-/// Runs the remaining frames of a scene, at most `most` of them. `each` receives every frame before the scene reacts to
-/// the results.
-void play(scene_frames& scene, stage_runner& p, const std::function<void(const searched_frame&)>& each,
-          std::size_t most = std::numeric_limits<std::size_t>::max(), const detecting& detect = detect_in);
+/// Runs the remaining frames of a scene, at most `most_frames`. `on_frame` receives each before the scene reacts to it.
+void run_frames(scene_frames& scene, stage_runner& runner, const std::function<void(const searched_frame&)>& on_frame,
+                std::size_t most_frames = std::numeric_limits<std::size_t>::max(),
+                const timed_detection& detect = time_detection);
 
 /// Accumulates the number and the digest of results, frame by frame.
 class tally {
@@ -240,26 +240,26 @@ struct observation {
 /// Explain the columns of these times below a table.
 inline constexpr const char* build_ms_text =
     "build ms: the time to create the stages and build the trees of all meshes, before frame 0.";
-inline constexpr const char* ms_a_frame_text =
+inline constexpr const char* ms_per_frame_text =
     "ms/frame: the mean time per frame after frame 0, in update, search and detection; of frame 0 if it is "
     "the only one.";
 
+/// What to run and to record in an observation.
 struct protocol {
-    asking asked = {};
+    query_settings query = {};
     std::size_t frames = std::numeric_limits<std::size_t>::max();  ///< at most
     aabb::instrumentation counted = aabb::instrumentation::none;
-    /// Receives the observation so far, after each frame.
-    std::function<void(const observation&)> each = nullptr;
+    std::function<void(const observation&)> on_frame = nullptr;  ///< receives the observation so far after each frame
 };
 
 /// Runs a scene from its first frame; the scene reacts to the results. The times of an external engine are those that
 /// it reports itself, which are wall times only.
-[[nodiscard]] observation observe(scene_frames& scene, const candidate& tested, const protocol& how = {});
-[[nodiscard]] observation observe(const scene_choice& scene, const candidate& tested, const protocol& how = {});
+[[nodiscard]] observation observe(scene_frames& scene, const candidate& tested, const protocol& settings = {});
+[[nodiscard]] observation observe(const scene_choice& scene, const candidate& tested, const protocol& settings = {});
 
 // Runs in child processes, since they may exceed their time or memory.
 
-/// How work in a child process ended.
+/// How the work in a child process ended.
 enum class ending : std::uint8_t {
     done,
     stopped,        ///< at its time limit
@@ -306,8 +306,8 @@ public:
     [[nodiscard]] const scene_frames& scene() const { return scene_; }
     /// Runs the first frames, for at most `seconds`.
     /// @param left seconds that remain for all runs together
-    [[nodiscard]] attempt play(const candidate& tested, std::size_t frames, double seconds,
-                               double left = std::numeric_limits<double>::infinity());
+    [[nodiscard]] attempt run(const candidate& tested, std::size_t frames, double seconds,
+                              double left = std::numeric_limits<double>::infinity());
     /// Does other work on the scene, from its first frame.
     [[nodiscard]] child_result in_child(const std::function<void(scene_frames&, const output_sender&)>& work,
                                         double seconds);
@@ -319,21 +319,21 @@ private:
 
 // Interleaved runs.
 
-/// The outcome of interleaved runs, indexed by candidate.
-struct turns {
+/// The results of interleaved runs; the lists are indexed by candidate.
+struct interleaved_runs {
     std::size_t frames = 0;  ///< per run; fewer than the scene has if time was short
     std::size_t rounds = 0;
     std::vector<std::vector<observation>> times;     ///< of finished runs, by round
     std::vector<std::optional<attempt>> broken_off;  ///< the first run, if it did not finish
-    std::vector<bool> hopeless;                      ///< slower than the first candidate by `hopeless_ratio`
+    std::vector<bool> hopeless;                      ///< slower than the baseline by `hopeless_ratio`
 };
 
 /// Runs all candidates on the first frames in interleaved rounds, until time is over. A candidate that is hopelessly
 /// slower than the first, the baseline, stops after one round. If the baseline finishes no frame, no other runs.
-[[nodiscard]] turns run_interleaved(staged_scene& scene, std::span<const candidate> candidates, std::size_t frames,
-                                    std::size_t rounds, const time_limits& limits);
+[[nodiscard]] interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate> candidates,
+                                               std::size_t frames, std::size_t rounds, const time_limits& limits);
 
-/// The indices of the candidates whose pairs differ from those of the first.
+/// The indices of the candidates whose pairs differ from those of the first one, the baseline.
 [[nodiscard]] std::vector<std::size_t> disagreeing(std::span<const std::vector<observation>> times);
 
 /// Times per frame, by round.

@@ -12,67 +12,69 @@ constexpr double greatest_share = 0.25;
 /// A run shorter than this is never hopeless: it costs too little to matter.
 constexpr double hopeless_ms = 100;
 
-bool is_hopeless(const observation& time, const observation& baseline) {
-    return time.whole_ms() > hopeless_ms && time.frame_ms() > hopeless_ratio * baseline.frame_ms();
+bool is_hopeless(const observation& run, const observation& baseline) {
+    return run.whole_ms() > hopeless_ms && run.frame_ms() > hopeless_ratio * baseline.frame_ms();
 }
 
-/// Runs the baseline, on fewer frames if there is no time for all of them.
-attempt first_run(staged_scene& scene, const candidate& tested, std::size_t frames, const time_limits& limits) {
-    attempt first = scene.run(tested, frames, greatest_share * limits.to_run());
+/// Runs the baseline. If its time is over before the last frame, it runs again with the frames that it finished, since
+/// only a run that finishes reports bytes and omissions.
+attempt run_baseline(staged_scene& scene, const candidate& baseline, std::size_t frames, const time_limits& limits) {
+    attempt first = scene.run(baseline, frames, greatest_share * limits.to_run());
     if (first.end != ending::stopped || first.seen.frames == 0) return first;
-    // Bytes and omissions are reported only by a run that finishes.
-    return scene.run(tested, first.seen.frames, 2 * greatest_share * limits.to_run());
+    return scene.run(baseline, first.seen.frames, 2 * greatest_share * limits.to_run());
 }
 
 }  // namespace
 
-turns run_interleaved(staged_scene& scene, std::span<const candidate> candidates, std::size_t frames,
-                      std::size_t rounds, const time_limits& limits) {
+interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate> candidates, std::size_t frames,
+                                 std::size_t rounds, const time_limits& limits) {
     progress shown("runs", rounds * candidates.size());
-    turns result{frames, 0, std::vector<std::vector<observation>>(candidates.size()),
-                 std::vector<std::optional<attempt>>(candidates.size()), std::vector<bool>(candidates.size())};
-    const double before_first = limits.to_run();
-    attempt of_first = first_run(scene, candidates[0], frames, limits);
-    const double first = before_first - limits.to_run();
-    if (of_first.end != ending::done) {
-        result.broken_off[0] = std::move(of_first);
+    interleaved_runs result{frames, 0, std::vector<std::vector<observation>>(candidates.size()),
+                            std::vector<std::optional<attempt>>(candidates.size()),
+                            std::vector<bool>(candidates.size())};
+    const double before = limits.to_run();
+    attempt baseline = run_baseline(scene, candidates[0], frames, limits);
+    const double baseline_seconds = before - limits.to_run();
+    if (baseline.end != ending::done) {
+        result.broken_off[0] = std::move(baseline);
         return result;
     }
-    result.frames = of_first.seen.frames;
-    result.times[0].push_back(std::move(of_first.seen));
+    result.frames = baseline.seen.frames;
+    result.times[0].push_back(std::move(baseline.seen));
     std::vector<std::size_t> running(candidates.size());
     std::iota(running.begin(), running.end(), std::size_t{0});
-    std::size_t done = 0;
+    std::size_t finished_runs = 0;
     const auto run = [&](std::size_t index, std::size_t round) {
-        shown.at(done++);
+        shown.at(finished_runs++);
         if (index == 0 && round == 0) return;
         const double left = limits.to_run();
         const stopping_rule rule{.grace = hopeless_ms / 1000, .share = greatest_share * left, .margin = 2};
-        attempt tried = scene.run(candidates[index], result.frames, rule.longest(first), left);
-        if (tried.end == ending::stopped && !tried.is_out_of_time && rule.longest(first) >= rule.hopeless_after(first))
-            result.hopeless[index] = true;
-        if (tried.end == ending::done)
-            result.times[index].push_back(std::move(tried.seen));
+        const double limit = rule.longest(baseline_seconds);
+        attempt outcome = scene.run(candidates[index], result.frames, limit, left);
+        if (outcome.end == ending::stopped && !outcome.is_out_of_time)
+            result.hopeless[index] = limit >= rule.hopeless_after(baseline_seconds);
+        if (outcome.end == ending::done)
+            result.times[index].push_back(std::move(outcome.seen));
         else if (result.times[index].empty())
-            result.broken_off[index] = std::move(tried);
+            result.broken_off[index] = std::move(outcome);
     };
-    const auto give_up = [&](std::size_t round) {
+    const auto stop_early = [&](std::size_t round) {
         for (const std::size_t index : running)
             if (!result.times[index].empty() && is_hopeless(result.times[index][0], result.times[0][0]))
                 result.hopeless[index] = true;
         std::erase_if(running,
                       [&](std::size_t index) { return result.hopeless[index] || result.times[index].size() <= round; });
-        done = (round + 1) * candidates.size();
+        finished_runs = (round + 1) * candidates.size();
     };
-    result.rounds = run_rounds(running, {.end = rounds, .left = [&] { return limits.to_run(); }}, run, give_up);
+    result.rounds = run_rounds(running, {.end = rounds, .left = [&] { return limits.to_run(); }}, run, stop_early);
     return result;
 }
 
 std::vector<std::size_t> disagreeing(std::span<const std::vector<observation>> times) {
-    std::vector<std::size_t> disagreeing;
+    std::vector<std::size_t> indices;
     for (std::size_t i = 1; i < times.size(); ++i)
-        if (!times[i].empty() && times[i].front().digest != times[0].front().digest) disagreeing.push_back(i);
-    return disagreeing;
+        if (!times[i].empty() && times[i].front().digest != times[0].front().digest) indices.push_back(i);
+    return indices;
 }
 
 std::vector<double> frame_ms_of(std::span<const observation> times) {

@@ -17,7 +17,7 @@ std::string text_of(const aabb::contact& c) {
 
 /// Describes the first difference; empty if there is none.
 template <class T>
-std::string first_of(const aabb::set_difference<T>& d) {
+std::string first_difference(const aabb::set_difference<T>& d) {
     if (d.false_negatives.empty() && d.false_positives.empty()) return {};
     if (d.false_positives.empty() || (!d.false_negatives.empty() && d.false_negatives[0] < d.false_positives[0]))
         return text_of(d.false_negatives[0]) + " is a false negative";
@@ -34,26 +34,28 @@ public:
           runner_(tested, scene, aabb::instrumentation::counters),
           tally_(scene.meshes() != nullptr) {}
 
-    void play(std::size_t frame, const aabb::ground_truth& exact) {
+    /// Runs a frame with work counters, and compares its results with the ground truth.
+    void compare_frame(std::size_t frame, const aabb::ground_truth& truth) {
         runner_.update();
         runner_.search();
         runner_.detect();
         if (frame == 0) first_frame_ = runner_.counters();
         tally_.add(runner_.sorted_pairs(), runner_.sorted_contacts());
         if (candidate_.whole_boxes) {
-            const aabb::set_difference boxes(exact.pairs(), runner_.sorted_pairs());
-            if (candidate_.exact_boxes) note(frame, first_of(boxes));
+            const aabb::set_difference boxes(truth.pairs(), runner_.sorted_pairs());
+            if (candidate_.exact_boxes) record_failure(frame, first_difference(boxes));
             box_false_negatives_ += boxes.false_negatives.size();
             box_false_positives_ += boxes.false_positives.size();
         }
         if (!scene_.meshes()) return;
-        const aabb::set_difference contacts(exact.contacts(), runner_.sorted_contacts());
-        if (candidate_.exact) note(frame, first_of(contacts));
+        const aabb::set_difference contacts(truth.contacts(), runner_.sorted_contacts());
+        if (candidate_.exact) record_failure(frame, first_difference(contacts));
         contact_false_negatives_ += contacts.false_negatives.size();
         contact_false_positives_ += contacts.false_positives.size();
         classify(contacts);
     }
 
+    /// The row of all frames, without times.
     [[nodiscard]] validated_row result() const {
         validated_row v;
         v.scene = choice_;
@@ -74,15 +76,16 @@ public:
             for (const aabb::mesh& m : scene_.meshes()->meshes) *v.triangles += m.triangles.size();
             v.box_inflation = runner_.box_inflation();
         }
-        take_counts(v);
+        fill_counts(v);
         // The memory of an external engine is unknown.
-        if (!candidate_.reported) take_bytes(v);
+        if (!candidate_.reported) fill_bytes(v);
         return v;
     }
 
 private:
-    /// Leaves the counts empty if they are all 0, since engines have no counters.
-    void take_counts(row& r) const {
+    /// Sums the work over the frames after frame 0, or of frame 0 if it is the only one. Leaves the counts empty if
+    /// they are all 0, since engines have no counters.
+    void fill_counts(row& r) const {
         aabb::work_counters work = runner_.counters();
         if (scene_.frames() > 1)
             for (std::size_t i = 0; i < work.counts.size(); ++i) work.counts[i] -= first_frame_.counts[i];
@@ -90,7 +93,8 @@ private:
             std::ranges::copy(work.counts, r.counts.begin());
     }
 
-    void take_bytes(row& r) const {
+    /// Sums the bytes by column; parts without a column of their own belong to the last one, `engine`.
+    void fill_bytes(row& r) const {
         r.bytes.fill(0);
         for (const auto& parts : {runner_.global_bytes(), runner_.local_bytes()})
             for (const aabb::part_bytes& part : parts) {
@@ -100,13 +104,14 @@ private:
             }
     }
 
-    void note(std::size_t frame, const std::string& difference) {
+    void record_failure(std::size_t frame, const std::string& difference) {
         if (!failure_.empty() || difference.empty()) return;
         failure_ = text_of(candidate_.name) + " has a wrong result on " + choice_.kind + " (" +
                    parameters_text(choice_) + "), frame " + std::to_string(frame) + ": " + difference;
     }
 
-    /// Classifies the differences of each pair of objects.
+    /// Classifies the differences of each pair of objects, by the geometry of the triangles. A false positive that is
+    /// reported more than once counts once.
     void classify(const aabb::set_difference<aabb::contact>& contacts) {
         struct triangle_pairs {
             std::vector<aabb::index_pair> false_negatives, false_positives;
@@ -126,6 +131,7 @@ private:
                 scene_.poses()[objects.a], meshes.meshes[meshes.mesh_of[objects.b]], scene_.poses()[objects.b]);
     }
 
+    /// @param what "missing" or "invented", as in differences.csv
     void add_differences(std::vector<difference>& differences, std::string_view what, std::uint64_t boxes,
                          std::span<const std::size_t> classes) const {
         const auto add = [&](std::string_view kind, std::uint64_t count) {
@@ -159,40 +165,40 @@ scene_validation validate_scene(const scene_choice& choice, std::span<const cand
 
 scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
                                 std::span<const candidate> candidates) {
-    aabb::ground_truth exact(scene.objects(), scene.meshes());
-    tally exact_tally(scene.meshes() != nullptr);
+    aabb::ground_truth truth(scene.objects(), scene.meshes());
+    tally truth_tally(scene.meshes() != nullptr);
     std::deque<validated_runner> runners;
     std::vector<validated_row> results(candidates.size());
-    std::vector<std::size_t> places;  // indices of the players among the candidates
+    std::vector<std::size_t> indices;  // of the runners among the candidates
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         try {
             runners.emplace_back(candidates[i], choice, scene);
-            places.push_back(i);
+            indices.push_back(i);
         } catch (const engine_timeout& error) {
             results[i].name = candidates[i].name;
             results[i].failure = error.what();
         }
     }
-    std::optional<aabb::posed_boxes> world;
-    if (scene.meshes()) world.emplace(*scene.meshes());
+    std::optional<aabb::posed_boxes> posed;
+    if (scene.meshes()) posed.emplace(*scene.meshes());
     progress shown("validating " + choice.kind, scene.frames() * (candidates.size() + 1));
     std::size_t done = 0;
     for (std::size_t frame = 0; scene.next(); ++frame) {
-        if (world) scene.in_frame([&] { world->update(scene.poses()); });
-        if (world)
-            exact.play({world->boxes(), scene.poses(), {}, {}});
+        if (posed) scene.in_frame([&] { posed->update(scene.poses()); });
+        if (posed)
+            truth.play({posed->boxes(), scene.poses(), {}, {}});
         else
-            exact.play({scene.boxes(), {}, scene.arrivals(), scene.departures()});
-        exact_tally.add(exact.pairs(), exact.contacts());
+            truth.play({scene.boxes(), {}, scene.arrivals(), scene.departures()});
+        truth_tally.add(truth.pairs(), truth.contacts());
         shown.at(++done);
-        for (validated_runner& p : runners) {
-            p.play(frame, exact);
+        for (validated_runner& r : runners) {
+            r.compare_frame(frame, truth);
             shown.at(++done);
         }
-        scene.tell(exact.pairs(), exact.contacts());
+        scene.take_results(truth.pairs(), truth.contacts());
     }
-    for (std::size_t i = 0; i < runners.size(); ++i) results[places[i]] = runners[i].result();
-    return {scene.objects(), scene.frames(), exact.name(), exact_tally.digest(), std::move(results)};
+    for (std::size_t i = 0; i < runners.size(); ++i) results[indices[i]] = runners[i].result();
+    return {scene.objects(), scene.frames(), truth.name(), truth_tally.digest(), std::move(results)};
 }
 
 }  // namespace aabblab

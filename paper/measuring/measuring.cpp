@@ -68,7 +68,7 @@ std::vector<std::string> run_suites(const std::filesystem::path& folder, bool qu
     // The file of an earlier version would have priority over the rows.
     for (const char* suite : {"extreme", "stiff"}) std::filesystem::remove(folder / suite / "report.json");
     note("the extreme scenes");
-    std::vector<std::string> failures = run_extreme_suite(folder / "extreme", usual_cases(), quick, false).failures;
+    std::vector<std::string> failures = run_extreme_suite(folder / "extreme", default_cases(), quick, false).failures;
     note("the stiff scenes");
     std::ranges::move(run_stiff_suite(folder / "stiff", {}, quick, false).failures, std::back_inserter(failures));
     return failures;
@@ -122,7 +122,7 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
 /// Adds the section of a suite, if it was run.
 void add_suite(std::vector<report_section>& sections, const std::filesystem::path& folder, const std::string& suite,
                const std::string& title, const std::string& about) {
-    const std::optional<suite_report> report = kept_report(folder / suite);
+    const std::optional<suite_report> report = stored_report(folder / suite);
     if (!report) return;
     sections.push_back({suite, title, {about}, report->figures, report->tables});
     std::ranges::copy(report->paragraphs, std::back_inserter(sections.back().paragraphs));

@@ -47,7 +47,7 @@ aabb::cost_model odd_costs() {
 }
 
 std::string text_here() {
-    return text_of(aabblab::costs_here(odd_costs()));
+    return text_of(aabblab::label_costs(odd_costs()));
 }
 
 std::string rejection_of(const std::string& text) {
@@ -125,17 +125,18 @@ TEST_CASE("Every cost is measured, and checked in scenes that it was not fitted 
 }
 
 TEST_CASE("A file of costs reads back as it was written") {
-    aabblab::kept_costs kept = aabblab::costs_here(odd_costs());
+    aabblab::calibrated_costs kept = aabblab::label_costs(odd_costs());
     kept.processor = "a \"processor\" \\ of old";
-    const aabblab::kept_costs read = aabblab::parse_costs(text_of(kept), "costs.toml");
+    const aabblab::calibrated_costs read = aabblab::parse_costs(text_of(kept), "costs.toml");
     CHECK(read.costs == kept.costs);
     CHECK(read.date == kept.date);
-    CHECK(read.serve(kept));
-    for (std::string aabblab::kept_costs::* const part :
-         {&aabblab::kept_costs::version, &aabblab::kept_costs::processor, &aabblab::kept_costs::instructions}) {
-        aabblab::kept_costs other = kept;
+    CHECK(read.applies_to(kept));
+    for (std::string aabblab::calibrated_costs::* const part :
+         {&aabblab::calibrated_costs::version, &aabblab::calibrated_costs::processor,
+          &aabblab::calibrated_costs::instructions}) {
+        aabblab::calibrated_costs other = kept;
         other.*part += " 2";
-        CHECK_FALSE(read.serve(other));
+        CHECK_FALSE(read.applies_to(other));
     }
 }
 
@@ -223,7 +224,7 @@ TEST_CASE("calibrate keeps what it measured, as a table too") {
                              "aabblab calibrate --reset removes it"})
         CHECK(holds(made.out, part));
     check_narrow(made.out.substr(0, made.out.find("wrote ")));
-    const aabblab::kept_costs kept = aabblab::read_costs(user.file());
+    const aabblab::calibrated_costs kept = aabblab::read_costs(user.file());
     CHECK(kept.processor == aabblab::this_machine().processor);
     CHECK(kept.costs != aabb::cost_model{});
     CHECK(holds(user.run({"explain", "icosphere", "icosphere"}).out, kept.date));

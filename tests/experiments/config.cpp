@@ -179,9 +179,9 @@ TEST_CASE("The hash is of what a config says, not of how it is written") {
 TEST_CASE("What is asked of meshes, and with which caches, is read, checked and part of the hash") {
     const std::string meshes =
         "name = \"m\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = [\"icosphere:triangles=80\"]\nframes = 2\n";
-    REQUIRE(parsed(meshes).how == aabblab::asking{});
+    REQUIRE(parsed(meshes).query == aabblab::query_settings{});
     const experiment first = parsed(meshes + "[measure]\nask = \"first\"\ncaches = \"cold\"\n");
-    REQUIRE(first.how == aabblab::asking{aabblab::question::first, true});
+    REQUIRE(first.query == aabblab::query_settings{aabblab::query_kind::first, true});
     REQUIRE(first.notes.size() == 2);
     const std::string plain = aabblab::hash_of(parsed(meshes));
     REQUIRE(aabblab::hash_of(parsed(meshes + "[measure]\nask = \"pairs\"\ncaches = \"warm\"\n")) == plain);

@@ -5,13 +5,13 @@
 import aabblab.picture;
 
 TEST_CASE("a survey measures displacement over the mean extent and the mean spacing") {
-    aabblab::survey seen(4, 3);
+    aabblab::picture_data seen(4, 3);
     const std::vector<std::uint8_t> all(4, 1);
-    seen.see(std::vector<aabb::box>{cube(0, 0, 0), cube(7, 0, 0), cube(0, 7, 0), cube(7, 7, 0)}, all);
+    seen.add_frame(std::vector<aabb::box>{cube(0, 0, 0), cube(7, 0, 0), cube(0, 7, 0), cube(7, 7, 0)}, all);
     REQUIRE_FALSE(seen.displacement_over_extent());
     // The third takes no part, and neither does its way.
-    seen.see(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(99, 99, 99), cube(7, 6, 0)},
-             std::vector<std::uint8_t>{1, 1, 0, 1});
+    seen.add_frame(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(99, 99, 99), cube(7, 6, 0)},
+                   std::vector<std::uint8_t>{1, 1, 0, 1});
     REQUIRE(seen.frames() == 2);
     REQUIRE(*seen.displacement_over_extent() == 1);
     REQUIRE(seen.sides() == aabb::vec3d{8, 8, 0});
@@ -21,16 +21,16 @@ TEST_CASE("a survey measures displacement over the mean extent and the mean spac
     REQUIRE(seen.paths().size() == 4);
     REQUIRE_FALSE(seen.paths()[2][1]);
     // Back again, which is no way either.
-    seen.see(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(0, 0, 0), cube(7, 6, 0)}, all);
+    seen.add_frame(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(0, 0, 0), cube(7, 6, 0)}, all);
     REQUIRE(*seen.displacement_over_extent() == 0.5);
     REQUIRE(seen.paths()[1][1].value() == aabb::vec3d{6.5, 0.5, 0.5});
 }
 
 TEST_CASE("a picture shows each box in the colour of its overlaps") {
-    aabblab::survey seen(5, 2);
+    aabblab::picture_data seen(5, 2);
     const std::vector<aabb::box> boxes = {cube(0, 0, 0), cube(0.5F, 0, 0), cube(5, 0, 5), cube(9, 0, 9), cube(9, 0, 9)};
-    seen.see(boxes, std::vector<std::uint8_t>{1, 1, 1, 1, 0});
-    seen.see(boxes, std::vector<std::uint8_t>{1, 0, 1, 1, 0});
+    seen.add_frame(boxes, std::vector<std::uint8_t>{1, 1, 1, 1, 0});
+    seen.add_frame(boxes, std::vector<std::uint8_t>{1, 0, 1, 1, 0});
     const std::string svg = aabblab::picture_of(seen, {"a name", "a < b & c", "objects=5"});
     REQUIRE(svg.starts_with("<svg xmlns="));
     REQUIRE(svg.ends_with("</svg>\n"));
@@ -50,11 +50,11 @@ TEST_CASE("a picture shows each box in the colour of its overlaps") {
 }
 
 TEST_CASE("of many boxes a picture draws a sample with the largest in it") {
-    aabblab::survey seen(9003, 1);
+    aabblab::picture_data seen(9003, 1);
     std::vector<aabb::box> boxes;
     for (int i = 0; i < 9000; ++i) boxes.push_back(cube(static_cast<float>(i % 100) * 3, 0, static_cast<float>(i)));
     for (int i = 0; i < 3; ++i) boxes.push_back({{-10, 0, 0}, {70, 60, 60}});
-    seen.see(boxes, {});
+    seen.add_frame(boxes, {});
     const std::string svg = aabblab::picture_of(seen, {"many", "", ""});
     REQUIRE(holds(svg, "a sample of 4000 boxes is drawn, huge ones first"));
     const std::string first = svg.substr(0, svg.find("last frame"));
@@ -75,15 +75,15 @@ TEST_CASE("a picture shows the axes that tell most and gives each its own scale 
         {cube(50, 0, 0), "seen along z: x across, y upwards, each with a scale of its own<"},
         {cube(0, 0, 50), "seen along y: x across, z upwards, each with a scale of its own<"},
     }));
-    aabblab::survey seen(2, 1);
-    seen.see(std::vector<aabb::box>{cube(0, 0, 0), far}, {});
+    aabblab::picture_data seen(2, 1);
+    seen.add_frame(std::vector<aabb::box>{cube(0, 0, 0), far}, {});
     const std::string svg = aabblab::picture_of(seen, {"two", "", ""});
     REQUIRE_THAT(svg, Catch::Matchers::ContainsSubstring(said));
 }
 
 TEST_CASE("a picture of what lies far from the origin has an end") {
-    aabblab::survey seen(1, 1);
-    seen.see(std::vector<aabb::box>{{{1e30F, 0, 1e30F}, {1e30F, 0, 1e30F}}}, {});
+    aabblab::picture_data seen(1, 1);
+    seen.add_frame(std::vector<aabb::box>{{{1e30F, 0, 1e30F}, {1e30F, 0, 1e30F}}}, {});
     REQUIRE(count_of("class=\"tick\"", aabblab::picture_of(seen, {"far", "", ""})) < 100);
 }
 

@@ -182,7 +182,7 @@ TEST_CASE("Who finds other pairs than the first of those who play in turn is kno
     const std::vector<aabblab::candidate> all{delayed("a", [] {}).tested, delayed("b", [] {}).tested,
                                               losing("c").tested};
     aabblab::staged_scene staged(short_scene);
-    const aabblab::turns played = aabblab::run_interleaved(staged, all, 4, 2, aabblab::time_limits(20));
+    const aabblab::interleaved_runs played = aabblab::run_interleaved(staged, all, 4, 2, aabblab::time_limits(20));
     CHECK(aabblab::disagreeing(played.times) == std::vector<std::size_t>{2});
 }
 
@@ -249,7 +249,7 @@ TEST_CASE("A race of S seconds ends within 2 S, or 2 seconds after the scene was
     aabblab::time_limits limits(10, [&] { return now; });
     const auto is_near = [](double a, double b) { return std::abs(a - b) < 1e-9; };
     now = 1;
-    limits.scene_is_read();
+    limits.note_scene_read();
     CHECK(is_near(limits.to_run(), 9.5 - 1));
     CHECK(is_near(limits.to_end(), 19 - 1));
     now = 30;
@@ -258,7 +258,7 @@ TEST_CASE("A race of S seconds ends within 2 S, or 2 seconds after the scene was
     now = 0;
     aabblab::time_limits of_much(1, [&] { return now; });
     now = 40;
-    of_much.scene_is_read();
+    of_much.note_scene_read();
     CHECK_BETWEEN(0.9, of_much.to_run(), 1);
     CHECK(is_near(of_much.to_end(), 1.9));
 }
@@ -457,13 +457,13 @@ TEST_CASE("In rounds everybody plays once, begins in turn, and follows each othe
         for (std::size_t round = 0; round < runners; ++round) {
             std::vector<bool> has_run(runners);
             for (std::size_t place = 0; place < runners; ++place) {
-                const std::size_t one = aabblab::in_turn(place, round, runners);
+                const std::size_t one = aabblab::index_in_round(place, round, runners);
                 REQUIRE(one < runners);
                 CHECK_FALSE(has_run[one]);
                 has_run[one] = true;
-                if (place > 0) ++follows[one][aabblab::in_turn(place - 1, round, runners)];
+                if (place > 0) ++follows[one][aabblab::index_in_round(place - 1, round, runners)];
             }
-            CHECK(aabblab::in_turn(0, round, runners) == round);
+            CHECK(aabblab::index_in_round(0, round, runners) == round);
         }
         for (std::size_t a = 0; a < runners; ++a)
             for (std::size_t b = 0; b < runners; ++b)
@@ -498,7 +498,7 @@ TEST_CASE("Those who play in turn begin in turn, and who is hopeless plays once"
     for (const char* name : {"a", "b", "c"})
         all.push_back(noted(delayed(name, sleeping(*name == 'c' ? 250ms : 0ms)).tested, name, file));
     aabblab::staged_scene staged(scene);
-    const aabblab::turns played = aabblab::run_interleaved(staged, all, 4, 3, aabblab::time_limits(60));
+    const aabblab::interleaved_runs played = aabblab::run_interleaved(staged, all, 4, 3, aabblab::time_limits(60));
     CHECK(bytes_of_file(file) == "abcbaab");
     REQUIRE(played.times.size() == 3);
     CHECK(played.times[0].size() == 3);
@@ -514,7 +514,7 @@ TEST_CASE("Those who play in turn have as many frames and rounds as there is tim
         aabblab::staged_scene staged(scene);
         return aabblab::run_interleaved(staged, all, 4, 3, aabblab::time_limits(seconds));
     };
-    const aabblab::turns some =
+    const aabblab::interleaved_runs some =
         turns_of({delayed("first", stuck_in(2)), delayed("stuck", stuck_in(1)), delayed("fast", stuck_in(4))}, 3);
     CHECK(some.frames == 2);
     CHECK(some.times[0].size() == some.rounds);
@@ -522,7 +522,7 @@ TEST_CASE("Those who play in turn have as many frames and rounds as there is tim
     REQUIRE(some.broken_off[1].has_value());
     CHECK(some.broken_off[1]->seen.frames == 1);
     CHECK_FALSE(some.times[2].empty());
-    const aabblab::turns none = turns_of({delayed("first", stuck_in(0)), delayed("fast", stuck_in(4))}, 1);
+    const aabblab::interleaved_runs none = turns_of({delayed("first", stuck_in(0)), delayed("fast", stuck_in(4))}, 1);
     CHECK(none.rounds == 0);
     CHECK(none.times[0].empty());
     CHECK(text_of(none.broken_off[0].value()).starts_with("stopped after "));

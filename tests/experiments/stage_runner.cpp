@@ -91,11 +91,11 @@ aabblab::stages local_only() {
 TEST_CASE("What is asked is answered by each contender, and a wrong answer is told") {
     const aabblab::scene_choice choice{"mesh_pair", {{"frames", "3"}}, {"icosphere:triangles=320"}, 1};
     const std::vector<candidate> candidates = exact_candidates(true);
-    for (const aabblab::question ask : {aabblab::question::count, aabblab::question::first})
+    for (const aabblab::query_kind ask : {aabblab::query_kind::count, aabblab::query_kind::first})
         for (const bool cold : {false, true}) {
             std::string digest;
             for (const candidate& tested : candidates) {
-                const aabblab::observation times = aabblab::observe(choice, tested, {.asked = {ask, cold}});
+                const aabblab::observation times = aabblab::observe(choice, tested, {.query = {ask, cold}});
                 INFO(aabblab::text_of(tested.name) << ": " << times.wrong);
                 CHECK(times.wrong.empty());
                 CHECK(times.rest.detect.wall_ms > 0);
@@ -111,7 +111,7 @@ TEST_CASE("What is asked is answered by each contender, and a wrong answer is to
                                                                                     },
                                                                                 .more_counted = 1});
             };
-            CHECK_FALSE(aabblab::observe(choice, wrong, {.asked = {ask, cold}}).wrong.empty());
+            CHECK_FALSE(aabblab::observe(choice, wrong, {.query = {ask, cold}}).wrong.empty());
         }
 }
 
@@ -136,7 +136,7 @@ TEST_CASE("A scene that reacts to contacts shows every contender the same frames
         scene_frames last = made();
         aabblab::stage_runner tested(candidates[0], last, aabb::instrumentation::none);
         std::set<aabb::index_pair> met;
-        aabblab::play(last, tested, [&](const searched_frame& frame) {
+        aabblab::run_frames(last, tested, [&](const searched_frame& frame) {
             for (const aabb::index_pair& pair : frame.pairs) met.insert(pair);
         });
         CHECK(met == std::set<aabb::index_pair>{{0, 1}, {1, 2}, {2, 3}});
@@ -152,7 +152,7 @@ TEST_CASE("A scene is handed over frame by frame, all of it or the first frames"
         aabblab::stage_runner p(tested, scene, aabb::instrumentation::none);
         std::uint32_t frames = 0;
         std::size_t contacts = 0;
-        aabblab::play(
+        aabblab::run_frames(
             scene, p,
             [&](const searched_frame& frame) {
                 CHECK(frame.number == frames++);

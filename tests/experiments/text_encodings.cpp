@@ -73,7 +73,7 @@ std::string text_of_cases(const std::filesystem::path& file) {
 }
 
 std::string text_of_costs(const std::filesystem::path& file) {
-    const aabblab::kept_costs kept = aabblab::read_costs(file);
+    const aabblab::calibrated_costs kept = aabblab::read_costs(file);
     return kept.processor + " " + kept.instructions + " " + kept.date;
 }
 
@@ -125,7 +125,7 @@ std::vector<text_format> formats() {
          },
          5, "objects = 20", "objects = x"},
         {"cases.toml", cases, text_of_cases, 4, "about = \"a\"", "about = a"},
-        {"costs.toml", aabblab::text_of(aabblab::costs_here({})), text_of_costs, 1, "version =", "versjon ="},
+        {"costs.toml", aabblab::text_of(aabblab::label_costs({})), text_of_costs, 1, "version =", "versjon ="},
         {"results.csv", rows(), text_of_rows, 2, "exact", "right"},
         {"errors.csv", error_rows(), text_of_error_rows, 2, "float", "half"},
     };

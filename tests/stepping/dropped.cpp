@@ -37,7 +37,7 @@ TEST_CASE("dropped balls fall, meet and stay above the floor, whoever finds thei
         std::size_t on_floor = 0;
         std::size_t on_each_other = 0;
         std::vector<std::vector<aabb::pose>> poses;
-        aabblab::play(scene, stage_runner, [&](const aabblab::searched_frame& frame) {
+        aabblab::run_frames(scene, stage_runner, [&](const aabblab::searched_frame& frame) {
             poses.emplace_back(scene.poses().begin(), scene.poses().end());
             for (const aabb::contact& contact : frame.contacts) ++(contact.a == 0 ? on_floor : on_each_other);
             for (const aabb::pose& p : poses.back()) REQUIRE(p.translation[2] > -0.01);
@@ -73,7 +73,7 @@ TEST_CASE("the scene dropped is what symplectic_euler makes of its world") {
     const aabb::composition c;
     aabblab::stage_runner stage_runner(aabblab::candidate_of(c, true), scene, aabb::instrumentation::none);
     std::vector<std::vector<aabb::pose>> played;
-    aabblab::play(scene, stage_runner, [&](const aabblab::searched_frame&) {
+    aabblab::run_frames(scene, stage_runner, [&](const aabblab::searched_frame&) {
         played.emplace_back(scene.poses().begin(), scene.poses().end());
     });
 

@@ -55,7 +55,7 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_sc
     for (const row& r : a) {
         const scene_key seed{r.experiment, r.scene};
         if (b.of(seed, r.name).empty()) continue;
-        const auto [place, is_new] = places.emplace(scene_key{r.experiment, whatever_seed(r.scene)}, scenes.size());
+        const auto [place, is_new] = places.emplace(scene_key{r.experiment, without_seed(r.scene)}, scenes.size());
         if (is_new) scenes.push_back({&r, {}, {}});
         add_once(scenes[place->second].seeds, seed);
         add_once(scenes[place->second].names, r.name);
@@ -269,8 +269,8 @@ comparison compare(const run_results& a, const run_results& b, compared quantiti
         const std::size_t place = report.scenes.size();
         const std::vector<std::string> labels = labels_of(shared.names);
         compared_scene& scene = report.scenes.emplace_back();
-        scene.experiment = shared.first_row->experiment;
-        scene.scene = whatever_seed(shared.first_row->scene);
+        scene.experiment = shared.any->experiment;
+        scene.scene = without_seed(shared.any->scene);
         report.numbers_compared += compare_numbers(shared, of_a, of_b, labels, scene.changed);
         const std::optional<candidate_name> baseline = baseline_of(shared, of_a, of_b);
         if (!baseline) continue;

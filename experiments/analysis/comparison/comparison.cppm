@@ -49,9 +49,10 @@ struct changed_number {
 /// A scene with the seeds that A and B share.
 struct compared_scene {
     std::string experiment;
-    scene_choice scene;    ///< `whatever_seed`
-    std::string baseline;  ///< of `ratios`: the first in A that is timed in both; empty if there is none
-    std::vector<compared_time> ratios, times;
+    scene_choice scene;  ///< `without_seed`
+    std::string base;    ///< denominator of `ratios`: the first in A that is timed in both; empty if there is none
+    std::vector<compared_time> ratios;
+    std::vector<compared_time> times;
     std::vector<changed_number> changed;
 };
 

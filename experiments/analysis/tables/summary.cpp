@@ -138,11 +138,11 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
     std::vector<rows_of_scene> groups;
     std::map<std::pair<std::string, scene_choice>, std::size_t> places;
     for (const row& r : rows) {
-        const auto [place, is_new] = places.emplace(std::pair(r.experiment, whatever_seed(r.scene)), groups.size());
+        const auto [place, is_new] = places.emplace(std::pair(r.experiment, without_seed(r.scene)), groups.size());
         if (is_new) {
             scene_summary& scene = groups.emplace_back().scene;
             scene.experiment = r.experiment;
-            scene.scene = whatever_seed(r.scene);
+            scene.scene = without_seed(r.scene);
             scene.objects = r.objects;
             scene.frames = r.frames;
         }

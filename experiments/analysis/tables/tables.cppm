@@ -79,7 +79,7 @@ struct summary_line {
 /// A scene over all its seeds.
 struct scene_summary {
     std::string experiment;
-    scene_choice scene;                ///< `whatever_seed`
+    scene_choice scene;                ///< `without_seed`
     std::vector<std::uint64_t> seeds;  ///< in the order of the rows
     std::uint64_t objects = 0, frames = 0;
     std::string digest;                          ///< of the ground truth, if there is one seed and an exact line

@@ -50,11 +50,12 @@ public:
             fail_reading();
     }
 
+    /// Unpacks the files below `top`, and rejects anything that results do not contain.
     void unpack(const std::string& top, const std::filesystem::path& into) {
         std::set<std::filesystem::path> places;
         std::size_t folders = 0;
         archive_entry* entry = nullptr;
-        while (has_next(entry)) {
+        while (advance(entry)) {
             const char* pathname = archive_entry_pathname(entry);
             const auto type = archive_entry_filetype(entry);
             std::string name = pathname ? pathname : "";
@@ -70,13 +71,14 @@ public:
             if (!places.insert(place).second) fail("has the file '" + place.string() + "' twice");
             if (places.size() > limits_.files)
                 fail("has more than " + std::to_string(limits_.files) + " files, the limit for results");
-            take(into / place);
+            write_entry(into / place);
         }
         if (places.empty()) fail("is empty");
     }
 
 private:
-    [[nodiscard]] bool has_next(archive_entry*& entry) {
+    /// Advances to the next entry; false after the last.
+    [[nodiscard]] bool advance(archive_entry*& entry) {
         const int result = archive_read_next_header(archive_.get(), &entry);
         if (result == ARCHIVE_EOF) return false;
         if (result != ARCHIVE_OK) fail_reading();
@@ -84,7 +86,8 @@ private:
         return true;
     }
 
-    void take(const std::filesystem::path& file) {
+    /// Writes the contents of the current entry.
+    void write_entry(const std::filesystem::path& file) {
         std::error_code error;
         std::filesystem::create_directories(file.parent_path(), error);
         if (error) fail("cannot be unpacked: " + error.message());
@@ -108,7 +111,7 @@ private:
         if (!begun_) fail("is not an archive of results, which is tar compressed by xz");
         fail(std::string("is damaged or cut off: ") + (reason ? reason : "it cannot be read to its end"));
     }
-    [[noreturn]] void fail(const std::string& what) const { throw aabb::input_error(file_ + " " + what); }
+    [[noreturn]] void fail(const std::string& sentence) const { throw aabb::input_error(file_ + " " + sentence); }
 
     std::string file_;
     archive_limits limits_;

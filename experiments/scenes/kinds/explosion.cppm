@@ -29,7 +29,7 @@ public:
         const double side = cube_root(c.objects);
         boxes_.resize(c.objects);
         for (flying_box& b : boxes_) {
-            for (double& x : b.corner) x = side * random_.within() / 2;
+            for (double& x : b.corner) x = side * random_.signed_unit() / 2;
             const double away = length_of(b.corner);
             b.direction = random_.direction();
             if (away > 0) b.direction = b.corner / away;

@@ -22,7 +22,7 @@ public:
             displacement = 1;
         }
     };
-    static constexpr auto parameters = motion_parameters_of("greatest displacement of a box per frame");
+    static constexpr auto parameters = motion_parameters_with("greatest displacement of a box per frame");
 
     free_fall(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(falling_box)) {
         const double width = std::sqrt(c.objects);

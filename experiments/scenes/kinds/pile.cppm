@@ -19,7 +19,7 @@ public:
         std::uint32_t neighbours = 20;
     };
     static constexpr auto parameters =
-        std::tuple_cat(motion_parameters_of("displacement of each box per frame"),
+        std::tuple_cat(motion_parameters_with("displacement of each box per frame"),
                        std::tuple{aabb::integer_parameter{"neighbours", &config::neighbours, 10U, 50U,
                                                           "mean number of others that a box overlaps"}});
 
@@ -45,7 +45,8 @@ private:
 
     Eigen::Vector3d place_in_heap(double height) {
         while (true) {
-            const Eigen::Vector3d p = {random_.within() * height, random_.within() * height, random_.unit() * height};
+            const Eigen::Vector3d p = {random_.signed_unit() * height, random_.signed_unit() * height,
+                                       random_.unit() * height};
             if (is_in_heap(p, height)) return p;
         }
     }
@@ -68,7 +69,7 @@ private:
         constexpr int samples = 4096;
         int inside = 0;
         for (int i = 0; i < samples; ++i) {
-            const Eigen::Vector3d beside = {random_.within(), random_.within(), random_.within()};
+            const Eigen::Vector3d beside = {random_.signed_unit(), random_.signed_unit(), random_.signed_unit()};
             inside += is_in_heap(place_in_heap(height) + beside, height);
         }
         return static_cast<double>(inside) / samples;

@@ -123,7 +123,7 @@ pair sliver(random_source& random, const format&) {
         const Vector3d along = random.direction();
         const Vector3d off = random.direction();
         const double back = random.unit();
-        const Vector3d start = meeting - along * back + off * (1e-6 * random.within());
+        const Vector3d start = meeting - along * back + off * (1e-6 * random.signed_unit());
         *t = {start, start + along, start + along * random.unit() + off * 1e-6};
     }
     return p;

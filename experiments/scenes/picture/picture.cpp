@@ -106,7 +106,8 @@ svg_box shown(const view_plane& view, const aabb::box& b) {
     return {left, top, std::max(1.0, view.x(b.max[view.across]) - left), std::max(1.0, view.y(b.min[view.up]) - top)};
 }
 
-void add_boxes(svg_picture& to, const view_plane& view, const survey::frame& frame, const frame_drawing& drawing) {
+void add_boxes(svg_picture& to, const view_plane& view, const picture_data::frame& frame,
+               const frame_drawing& drawing) {
     double area = 0;
     svg_picture boxes;
     for (const std::size_t object : drawing.drawn) {
@@ -121,7 +122,7 @@ void add_boxes(svg_picture& to, const view_plane& view, const survey::frame& fra
     for (std::size_t i = 0; i < drawing.huge; ++i) to.rectangle("huge", shown(view, frame.boxes[drawing.drawn[i]]));
 }
 
-svg_picture panel_of(const view_plane& view, std::string_view title, const survey::frame& frame,
+svg_picture panel_of(const view_plane& view, std::string_view title, const picture_data::frame& frame,
                      const frame_drawing& drawing, const std::vector<polylines>& paths) {
     svg_picture panel;
     panel.text("title", {0, -10},
@@ -135,7 +136,7 @@ svg_picture panel_of(const view_plane& view, std::string_view title, const surve
 }
 
 /// Projects a path, which is interrupted while the object is absent.
-polylines drawn_path(const view_plane& view, const survey::path& path) {
+polylines drawn_path(const view_plane& view, const picture_data::path& path) {
     polylines lines;
     bool is_new = true;
     for (const auto& place : path) {
@@ -147,11 +148,11 @@ polylines drawn_path(const view_plane& view, const survey::path& path) {
 }
 
 /// Projects paths until their total length would hide the boxes, but at least one.
-std::vector<polylines> clear_paths(const view_plane& view, std::span<const survey::path> paths) {
+std::vector<polylines> clear_paths(const view_plane& view, std::span<const picture_data::path> paths) {
     const double most = 8 * (view.width + view.height);
     double length = 0;
     std::vector<polylines> clear;
-    for (const survey::path& path : paths) {
+    for (const picture_data::path& path : paths) {
         if (length >= most) break;
         clear.push_back(drawn_path(view, path));
         for (const std::vector<place>& line : clear.back())
@@ -201,7 +202,7 @@ void sample(std::vector<std::size_t>& objects, std::size_t huge) {
     objects.resize(most_boxes);
 }
 
-frame_drawing drawing_of(const survey::frame& frame) {
+frame_drawing drawing_of(const picture_data::frame& frame) {
     frame_drawing drawing;
     const std::unique_ptr<aabb::global_stage> search = aabb::make_box_engine("cgal");
     for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
@@ -224,7 +225,7 @@ frame_drawing drawing_of(const survey::frame& frame) {
     return drawing;
 }
 
-std::vector<std::string> caption_lines(const survey& seen, const picture_caption& caption, const view_plane& view,
+std::vector<std::string> caption_lines(const picture_data& seen, const picture_caption& caption, const view_plane& view,
                                        bool is_sampled) {
     std::vector<std::string> lines;
     for (const std::string& text : {caption.summary, caption.parameters})
@@ -254,7 +255,7 @@ svg_picture legend(std::size_t paths, bool has_huge) {
 
 }  // namespace
 
-std::string picture_of(const survey& seen, const picture_caption& caption) {
+std::string picture_of(const picture_data& seen, const picture_caption& caption) {
     const view_plane view(seen.world(), seen.sides());
     const frame_drawing first = drawing_of(seen.first());
     const frame_drawing last = drawing_of(seen.last());

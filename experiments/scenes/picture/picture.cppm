@@ -7,7 +7,7 @@ import aabb.std;
 export namespace aabblab {
 
 /// Collects the data of a picture, frame by frame.
-class survey {
+class picture_data {
 public:
     [[nodiscard]] static bool takes_part(std::span<const std::uint8_t> present, std::size_t object) {
         return present.empty() || present[object] != 0;
@@ -22,10 +22,10 @@ public:
     using path = std::vector<std::optional<aabb::vec3d>>;
 
     /// @param objects number in the scene
-    /// @param frames number in the scene; `see` must be called for each of them
-    survey(std::size_t objects, std::size_t frames);
+    /// @param frames number in the scene; `add_frame` must be called for each of them
+    picture_data(std::size_t objects, std::size_t frames);
 
-    void see(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present);
+    void add_frame(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present);
 
     [[nodiscard]] std::size_t frames() const { return frames_seen_; }
     [[nodiscard]] const frame& first() const { return first_; }
@@ -63,7 +63,7 @@ private:
 };
 
 /// "mean displacement per frame: 0.1 of the mean extent, 0.063 of the mean spacing"
-[[nodiscard]] std::string displacement_text(const survey& seen);
+[[nodiscard]] std::string displacement_text(const picture_data& seen);
 
 /// The text above the drawing.
 struct picture_caption {
@@ -75,6 +75,6 @@ struct picture_caption {
 /// The first and the last frame as SVG, projected along the narrowest axis of the scene; overlapping boxes have another
 /// colour. Of many boxes, only the largest and a sample of the others are drawn.
 /// @param seen at least one frame
-[[nodiscard]] std::string picture_of(const survey& seen, const picture_caption& caption);
+[[nodiscard]] std::string picture_of(const picture_data& seen, const picture_caption& caption);
 
 }  // namespace aabblab

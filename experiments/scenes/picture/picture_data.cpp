@@ -18,13 +18,14 @@ aabb::vec3d centre_of(const aabb::box& b) {
 
 }  // namespace
 
-survey::survey(std::size_t objects, std::size_t frames) : path_stride_(std::max<std::size_t>(1, frames / most_places)) {
+picture_data::picture_data(std::size_t objects, std::size_t frames)
+    : path_stride_(std::max<std::size_t>(1, frames / most_places)) {
     const std::size_t count = std::min(objects, most_paths);
     for (std::size_t i = 0; i < count; ++i) followed_.push_back(i * objects / count);
     paths_.resize(count);
 }
 
-void survey::see(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present) {
+void picture_data::add_frame(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present) {
     measure(boxes, present);
     extend_paths(boxes, present);
     last_.boxes.assign(boxes.begin(), boxes.end());
@@ -32,7 +33,7 @@ void survey::see(std::span<const aabb::box> boxes, std::span<const std::uint8_t>
     if (frames_seen_++ == 0) first_ = last_;
 }
 
-void survey::measure(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present) {
+void picture_data::measure(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present) {
     const aabb::box* first = nullptr;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (!takes_part(present, i)) continue;
@@ -51,7 +52,7 @@ void survey::measure(std::span<const aabb::box> boxes, std::span<const std::uint
     }
 }
 
-void survey::extend_paths(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present) {
+void picture_data::extend_paths(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present) {
     if (frames_seen_ % path_stride_ != 0) return;
     for (std::size_t p = 0; p < paths_.size(); ++p) {
         const std::size_t object = followed_[p];
@@ -59,27 +60,27 @@ void survey::extend_paths(std::span<const aabb::box> boxes, std::span<const std:
     }
 }
 
-aabb::vec3d survey::sides() const {
+aabb::vec3d picture_data::sides() const {
     aabb::vec3d sides{};
     for (int k = 0; k < 3; ++k)
         if (!is_flat_[static_cast<std::size_t>(k)]) sides[k] = double{world_.max[k]} - double{world_.min[k]};
     return sides;
 }
 
-std::optional<double> survey::displacement_over(double length) const {
+std::optional<double> picture_data::displacement_over(double length) const {
     if (displacements_counted_ == 0 || !(length > 0)) return std::nullopt;
     return displacements_ / static_cast<double>(displacements_counted_) / length;
 }
 
-std::optional<double> survey::displacement_over_extent() const {
+std::optional<double> picture_data::displacement_over_extent() const {
     return displacement_over(boxes_counted_ == 0 ? 0 : extents_ / static_cast<double>(boxes_counted_));
 }
 
-std::optional<double> survey::displacement_over_spacing() const {
+std::optional<double> picture_data::displacement_over_spacing() const {
     return displacement_over(mean_spacing(sides(), last_.boxes.size()));
 }
 
-std::string displacement_text(const survey& seen) {
+std::string displacement_text(const picture_data& seen) {
     const auto shown = [](std::optional<double> value) { return value ? fmt::format("{:.3g}", *value) : "-"; };
     return fmt::format("mean displacement per frame: {} of the mean extent, {} of the mean spacing",
                        shown(seen.displacement_over_extent()), shown(seen.displacement_over_spacing()));
