@@ -27,9 +27,8 @@ void add_strategies(const document& doc, const std::string& key, const node& val
         if (entry.key != "name") parameters.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
     const std::vector<located_text> names = doc.alternatives_of("name", name);
     for (const located_text& strategy : names) doc.at_line(strategy.line, [&] { require({strategy.text, {}}); });
-    std::vector<std::size_t> factors = sizes_of(parameters);
-    factors.push_back(names.size());
-    doc.require_small_product(value.line, "choices of " + key, factors, choices.items().size());
+    doc.require_small_product(value.line, "choices of " + key, sizes_of(parameters, names.size()),
+                              choices.items().size());
     for (const located_text& strategy : names)
         for (const std::vector<aabb::setting>& settings : cartesian_product(parameters)) add({strategy.text, settings});
 }
@@ -112,11 +111,6 @@ std::string text_of(const aabb::composition& c) {
     return to_text(c, aabb::stage::global_search) + " + " + to_text(c, aabb::stage::local_detection);
 }
 
-bool is_rejected(const aabb::composition& c) {
-    return !rejection_of(c, aabb::stage::global_search).empty() ||
-           !rejection_of(c, aabb::stage::local_detection).empty();
-}
-
 /// Rejects duplicates, and combinations that make no sense.
 void add_composition(const document& doc, int line, const aabb::composition& c, unique_list<aabb::composition>& list) {
     for (const aabb::stage stage : {aabb::stage::global_search, aabb::stage::local_detection})
@@ -147,7 +141,9 @@ std::vector<aabb::named_strategies> combinations_of(const document& doc, const n
         const bool is_named = std::ranges::none_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
             return product[kind] && std::ranges::count(strategies[kind].others, product[kind]->name) > 0;
         });
-        return !is_named && is_rejected(aabb::composition(product));
+        const aabb::composition c(product);
+        return !is_named && !(rejection_of(c, aabb::stage::global_search).empty() &&
+                              rejection_of(c, aabb::stage::local_detection).empty());
     });
     return products;
 }
@@ -156,11 +152,6 @@ std::vector<aabb::named_strategies> combinations_of(const document& doc, const n
 void add_compositions(const document& doc, const node& compose, unique_list<aabb::composition>& list) {
     for (const aabb::named_strategies& named : combinations_of(doc, compose, list.items().size()))
         add_composition(doc, compose.line, aabb::composition(named), list);
-}
-
-bool is_automatic(const document& doc, const node& compose) {
-    const node* value = compose.find("auto");
-    return value && doc.flag_of("auto", *value);
 }
 
 /// Selects a composition without a scene, which rejects named strategies that are invalid together in every scene.
@@ -210,7 +201,7 @@ void read_compositions(const document& doc, const node* compose, experiment& e) 
     const auto add = [&](const node& table) {
         doc.require_table("compose", table);
         require_kinds(doc, table);
-        if (is_automatic(doc, table))
+        if (const node* automatic = table.find("auto"); automatic && doc.flag_of("auto", *automatic))
             add_automatic(doc, table, e.automatic);
         else
             add_compositions(doc, table, list);

@@ -31,7 +31,6 @@ std::string header_field(const document& doc, const std::string& key) {
     return doc.text_of(key, doc.required(doc.root(), key, "there is no " + key + "; aabblab calibrate writes it"));
 }
 
-/// Reads one cost, which must be positive.
 double cost_of(const document& doc, const node& table, const aabb::cost_info& cost) {
     const std::string key(cost.name);
     const node& value = doc.required(table, key, "[costs] has no " + key + "; aabblab calibrate writes all");
@@ -41,17 +40,6 @@ double cost_of(const document& doc, const node& table, const aabb::cost_info& co
     if (!(number > 0) || !std::isfinite(number))
         doc.fail(value.line, key + " must be a number above 0" + (value.is_scalar() ? ", not " + value.text : ""));
     return number;
-}
-
-aabb::cost_model costs_in(const document& doc) {
-    const node& table = doc.required(doc.root(), "costs", "there is no [costs]; aabblab calibrate writes it");
-    doc.require_table("costs", table);
-    std::vector<std::string> names;
-    for (const aabb::cost_info& cost : aabb::cost_infos) names.emplace_back(cost.name);
-    doc.require_keys(table, " of [costs]", names);
-    aabb::cost_model costs;
-    for (const aabb::cost_info& cost : aabb::cost_infos) costs.*cost.value = cost_of(doc, table, cost);
-    return costs;
 }
 
 /// The folder in an environment variable; empty if it is unset or relative.
@@ -96,7 +84,12 @@ calibrated_costs parse_costs(const std::string& text, const std::string& file) {
     if (parsed.version != AABBLAB_VERSION) return parsed;
     doc.require_keys(doc.root(), "", {"version", "date", "processor", "instructions", "costs"});
     parsed.date = header_field(doc, "date");
-    parsed.costs = costs_in(doc);
+    const node& table = doc.required(doc.root(), "costs", "there is no [costs]; aabblab calibrate writes it");
+    doc.require_table("costs", table);
+    std::vector<std::string> names;
+    for (const aabb::cost_info& cost : aabb::cost_infos) names.emplace_back(cost.name);
+    doc.require_keys(table, " of [costs]", names);
+    for (const aabb::cost_info& cost : aabb::cost_infos) parsed.costs.*cost.value = cost_of(doc, table, cost);
     return parsed;
 }
 

@@ -272,8 +272,8 @@ std::string text_of_file(const std::filesystem::path& file, std::size_t most, st
     return text_of_file(file, most);
 }
 
-std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys) {
-    std::vector<std::size_t> sizes;
+std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys, std::size_t further) {
+    std::vector<std::size_t> sizes{further};
     for (const auto& [key, values] : keys) sizes.push_back(values.size());
     return sizes;
 }

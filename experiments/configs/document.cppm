@@ -112,7 +112,8 @@ using alternatives = std::pair<std::string, std::vector<located_text>>;
 /// @throws aabb::input_error if the file does not exist, is a folder or cannot be read.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view what);
 
-[[nodiscard]] std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys);
+/// The numbers of alternatives, with that of a further key, as factors of a product.
+[[nodiscard]] std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys, std::size_t further);
 /// The Cartesian product: one alternative per key; the first key varies slowest.
 [[nodiscard]] std::vector<std::vector<aabb::setting>> cartesian_product(const std::vector<alternatives>& keys);
 

@@ -17,7 +17,6 @@ namespace {
 const std::vector<std::string> known_precisions = {"float", "double"};
 constexpr std::uint64_t quick_share = 20;  // a quick run takes 1/20 of the pairs by default
 
-/// The number of pairs per class at this size of the experiment.
 std::uint64_t count_of(const document& doc, const node& pairs, experiment_size size) {
     const node* count = pairs.find("count");
     const node* quick = pairs.find("quick");
@@ -38,11 +37,10 @@ void add_pairs(const document& doc, const std::string& key, const node& written,
     doc.require_table(key, written);
     doc.require_keys(written, " of [[" + key + "]]", {"class", "precision", "count", "quick"});
     std::vector<located_text> classes;
-    if (const node* listed = written.find("class")) {
+    if (const node* listed = written.find("class"))
         classes = doc.alternatives_of("class", *listed);
-    } else {
+    else
         for (const pair_class_info& c : pair_classes()) classes.push_back({std::string(c.name), written.line});
-    }
     std::vector<located_text> precisions{{"float", written.line}};
     if (const node* listed = written.find("precision")) precisions = doc.alternatives_of("precision", *listed);
     const std::uint64_t count = count_of(doc, written, size);
@@ -76,10 +74,9 @@ void require_test_for_doubles(const document& doc, error_study& study) {
 void require_meshes(const document& doc, const node& scene) {
     const node* kinds = scene.find("kind");
     if (!kinds) return;
-    for (const located_text& kind : doc.alternatives_of("kind", *kinds)) {
+    for (const located_text& kind : doc.alternatives_of("kind", *kinds))
         if (std::ranges::count(scene_names(), kind.text) > 0 && !scene_named(kind.text).has_meshes)
             doc.fail(kind.line, kind.text + " is a scene of boxes, which has no triangles");
-    }
 }
 
 /// Reads the curves, which are either all of triangle tests or all of compositions, and share no method.
@@ -156,7 +153,6 @@ experiment whole_of(const document& doc, const error_study& study, experiment_si
     return e;
 }
 
-/// The sets of pairs in all tables of a key.
 std::vector<pair_set> pairs_of(const document& doc, const std::string& key, experiment_size size) {
     const std::span<const node> tables = doc.tables_of(key);
     if (tables.empty()) return {};

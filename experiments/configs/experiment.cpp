@@ -7,9 +7,10 @@ import aabb.validation;
 
 namespace aabblab {
 
-// Defined in compose.cpp and scenes.cpp.
+// Defined in compose.cpp, scenes.cpp and below.
 void read_compositions(const document& doc, const node* compose, experiment& e);
 void read_scenes(const document& doc, experiment_size size, experiment& e);
+void read_measure(const document& doc, experiment_size size, experiment& e);
 
 namespace {
 
@@ -155,6 +156,15 @@ void read_processes(const document& doc, experiment& e) {
         doc.fail(processes->line, "processes must be at most repeats, which is " + std::to_string(e.repeats));
 }
 
+/// Reads everything that depends on the size of the experiment.
+void read_sized(const document& doc, experiment_size size, experiment& e) {
+    e.quick = size == experiment_size::quick;
+    read_measure(doc, size, e);
+    read_processes(doc, e);
+    read_scenes(doc, size, e);
+    read_query(doc, e);
+}
+
 }  // namespace
 
 /// The name of the experiment and of its results folder.
@@ -184,19 +194,6 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     doc.require_keys(*in_quick, " of quick", {"repeats", "processes"});
     if (const node* value = in_quick->find("repeats"); value && quick) e.repeats = doc.integer_of("repeats", *value, 1);
 }
-
-namespace {
-
-/// Reads everything that depends on the size of the experiment.
-void read_sized(const document& doc, experiment_size size, experiment& e) {
-    e.quick = size == experiment_size::quick;
-    read_measure(doc, size, e);
-    read_processes(doc, e);
-    read_scenes(doc, size, e);
-    read_query(doc, e);
-}
-
-}  // namespace
 
 experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);

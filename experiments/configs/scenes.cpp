@@ -120,13 +120,6 @@ std::vector<std::optional<std::uint64_t>> seeds_of(const document& doc, const no
     return seeds;
 }
 
-void add_meshes(aabb::digest& digest, std::span<const aabb::mesh> meshes) {
-    for (const aabb::mesh& m : meshes) {
-        for (const aabb::vec3f& v : m.vertices) digest.add(std::bit_cast<std::array<std::uint32_t, 3>>(v));
-        for (const std::array<std::uint32_t, 3>& triangle : m.triangles) digest.add(triangle);
-    }
-}
-
 /// Digests every frame of a file. Reading to the end also rejects a malformed file before the experiment starts.
 /// @tparam Placed the state of an object per frame, a box or a pose
 template <class Placed>
@@ -140,7 +133,10 @@ void add_frames(aabb::digest& digest, auto& scene, std::size_t objects) {
 void add_content(aabb::digest& digest, const scene_choice& choice, const scene_info& info) {
     if (info.has_meshes) {
         const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
-        add_meshes(digest, scene->meshes);
+        for (const aabb::mesh& m : scene->meshes) {
+            for (const aabb::vec3f& v : m.vertices) digest.add(std::bit_cast<std::array<std::uint32_t, 3>>(v));
+            for (const std::array<std::uint32_t, 3>& triangle : m.triangles) digest.add(triangle);
+        }
         if (info.reads_file) add_frames<aabb::pose>(digest, *scene, scene->mesh_of.size());
     } else {
         const std::unique_ptr<aabb::box_scene> scene = make_box_scene(choice);
@@ -217,9 +213,7 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
         const std::vector<std::string> meshes = meshes_of(doc, scene, notes);
         const std::vector<alternatives> keys = settings_of(doc, scene, info.reads_file);
         const auto seeds = info.reads_file ? std::vector<std::optional<std::uint64_t>>(1) : all_seeds;
-        std::vector<std::size_t> factors = sizes_of(keys);
-        factors.push_back(seeds.size());
-        doc.require_small_product(written.line, "scenes", factors, scenes.items().size());
+        doc.require_small_product(written.line, "scenes", sizes_of(keys, seeds.size()), scenes.items().size());
         for (const std::vector<aabb::setting>& settings : cartesian_product(keys))
             for (const std::optional<std::uint64_t> seed_value : seeds) {
                 written_scene resolved{{kind.text, settings, meshes, seed_value, doc.folder()}, &info, written.line};

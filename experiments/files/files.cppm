@@ -100,7 +100,7 @@ public:
     /// Rejects output for which the disk has no space before anything is written.
     void require_space(double bytes) const;
     void write(const void* data, std::size_t bytes);
-    void write(const std::string& text);
+    void write(const std::string& text) { write(text.data(), text.size()); }
     /// Replaces bytes that are already written; later writes still append.
     void overwrite(std::uint64_t offset, const void* data, std::size_t bytes);
     void commit();

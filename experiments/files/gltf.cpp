@@ -3,6 +3,7 @@ module;
 
 module aabblab.files;
 
+import aabblab.fmt;
 import aabblab.vectors;
 import :gltf_asset;
 import :mesh_builder;
@@ -69,8 +70,8 @@ private:
             std::optional<gltf_matrix>& place = places_[top.node];
             if (place) file_.fail(gltf_place("nodes", top.node) + " occurs more than once in the scene");
             if (!next.extension.empty())
-                file_.fail(gltf_place("nodes", top.node) + " has the extension " + in_quotes(next.extension) +
-                           ", which is not supported");
+                file_.fail(fmt::format("{} has the extension {}, which is not supported", gltf_place("nodes", top.node),
+                                       in_quotes(next.extension)));
             place = combined(top.parent, next.place);
             nodes.push_back(top.node);
             add(next.children, *place);
@@ -113,8 +114,8 @@ private:
             if (a.type != "MAT4" || a.component != gltf_component::f32)
                 fail_accessor(*skin.inverse_bind_matrices, "of floats and MAT4, as it has inverse bind matrices");
             if (a.count < skin.joints.size())
-                file_.fail(name + " has " + std::to_string(skin.joints.size()) + " joints, but " +
-                           std::to_string(a.count) + " inverse bind matrices");
+                file_.fail(
+                    fmt::format("{} has {} joints, but {} inverse bind matrices", name, skin.joints.size(), a.count));
             bind = numbers(*skin.inverse_bind_matrices);
         }
         std::vector<gltf_matrix> matrices;
@@ -140,14 +141,15 @@ private:
                const std::string& mesh) const {
         const auto is_zero = [](double weight) { return weight == 0; };
         if (weights.size() != primitive.targets.size() && !std::ranges::all_of(weights, is_zero))
-            file_.fail(mesh + " has a primitive of " + counted(primitive.targets.size(), "morph target") + ", but " +
-                       counted(weights.size(), "weight"));
+            file_.fail(fmt::format("{} has a primitive of {}, but {}", mesh,
+                                   counted(primitive.targets.size(), "morph target"),
+                                   counted(weights.size(), "weight")));
         for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
             if (!primitive.targets[t] || weights[t] == 0) continue;
             const std::vector<double> offsets = positions(*primitive.targets[t], true);
             if (offsets.size() != points.size())
-                file_.fail(mesh + " has a morph target for a number of vertices other than its own: " +
-                           std::to_string(offsets.size() / 3) + ", not " + std::to_string(points.size() / 3));
+                file_.fail(fmt::format("{} has a morph target for a number of vertices other than its own: {}, not {}",
+                                       mesh, offsets.size() / 3, points.size() / 3));
             for (std::size_t i = 0; i < points.size(); ++i) points[i] += weights[t] * offsets[i];
         }
     }
@@ -161,8 +163,8 @@ private:
     [[nodiscard]] std::vector<bindings> bindings_of(const gltf_primitive& primitive, std::size_t vertices,
                                                     const std::string& mesh) const {
         if (primitive.joints.empty() || primitive.joints.size() != primitive.weights.size())
-            file_.fail(mesh + " has a skin and a primitive of " + std::to_string(primitive.joints.size()) +
-                       " lists of joints and " + std::to_string(primitive.weights.size()) + " of weights");
+            file_.fail(fmt::format("{} has a skin and a primitive of {} lists of joints and {} of weights", mesh,
+                                   primitive.joints.size(), primitive.weights.size()));
         std::vector<bindings> sets;
         for (std::size_t set = 0; set < primitive.joints.size(); ++set) {
             const std::size_t joints = primitive.joints[set];
@@ -176,8 +178,8 @@ private:
             if (w.type != "VEC4" || (w.component != gltf_component::f32 && !is_fraction))
                 fail_accessor(weights, "of floats or normalized numbers and VEC4, as it has weights of joints");
             if (j.count != vertices || w.count != vertices)
-                file_.fail(mesh + " has " + std::to_string(vertices) + " positions, but joints of " +
-                           std::to_string(j.count) + " and weights of " + std::to_string(w.count) + " vertices");
+                file_.fail(fmt::format("{} has {} positions, but joints of {} and weights of {} vertices", mesh,
+                                       vertices, j.count, w.count));
             sets.push_back({numbers(joints), numbers(weights)});
         }
         return sets;
@@ -195,15 +197,15 @@ private:
                 if (weight == 0) continue;
                 const auto joint = static_cast<std::size_t>(set.joints[i]);
                 if (joint >= joints.size())
-                    file_.fail(mesh + " has a vertex that refers to joint " + std::to_string(joint) +
-                               ", counted from 0, but its skin has " + counted(joints.size(), "joint"));
+                    file_.fail(
+                        fmt::format("{} has a vertex that refers to joint {}, counted from 0, but its skin has {}",
+                                    mesh, joint, counted(joints.size(), "joint")));
                 sum += moved(joints[joint], p) * weight;
                 weights += weight;
             }
         // Weights must sum to 1 up to rounding: each may be off by half a step of the coarsest type, which is 1/255.
         if (!(std::abs(weights - 1) <= static_cast<double>(4 * sets.size()) / 255 / 2))
-            file_.fail(mesh + " has a vertex whose weights of joints add up to " + aabb::shortest(weights) +
-                       ", not to 1");
+            file_.fail(mesh + " has a vertex whose joint weights sum to " + aabb::shortest(weights) + ", not 1");
         return sum / weights;
     }
 
@@ -231,7 +233,6 @@ private:
         return count;
     }
 
-    /// Adds the mesh of a node, if it has one.
     void add_node(const gltf_node& node) {
         if (!node.mesh) return;
         const std::vector<gltf_primitive>& primitives =
@@ -245,17 +246,14 @@ private:
                 file_.fail(mesh + " has a primitive of mode " + std::to_string(primitive.mode) + "; modes are 0 to 6");
             const std::size_t first = mesh_.vertices();
             const std::size_t count = add_vertices(primitive, node, joints, mesh);
-            std::vector<std::uint32_t> corners;
-            if (primitive.indices) {
-                corners = indices(*primitive.indices);
-            } else {
-                corners.resize(count);
-                std::iota(corners.begin(), corners.end(), 0U);
-            }
+            std::vector<std::uint32_t> corners(count);
+            std::iota(corners.begin(), corners.end(), 0U);
+            if (primitive.indices) corners = indices(*primitive.indices);
             for (std::uint32_t& corner : corners) {
                 if (corner >= count)
-                    file_.fail(mesh + " has a face that uses vertex " + std::to_string(corner) + ", but there are " +
-                               std::to_string(count) + " vertices, counted from 0");
+                    file_.fail(
+                        fmt::format("{} has a face that uses vertex {}, but there are {} vertices, counted from 0",
+                                    mesh, corner, count));
                 corner += static_cast<std::uint32_t>(first);
             }
             add_faces(static_cast<gltf_mode>(primitive.mode), corners);
@@ -272,9 +270,9 @@ private:
             for (std::size_t i = 0; i < faces; ++i) mesh_.drop();
         };
         switch (mode) {
-            case gltf_mode::points: drop(count); break;
-            case gltf_mode::lines: drop(count / 2); break;
+            case gltf_mode::points:
             case gltf_mode::line_loop: drop(count); break;
+            case gltf_mode::lines: drop(count / 2); break;
             case gltf_mode::line_strip: drop(count > 0 ? count - 1 : 0); break;
             case gltf_mode::triangles:
                 for (std::size_t i = 2; i < count; i += 3) add(i - 2, i - 1, i);

@@ -1,5 +1,6 @@
 module aabblab.files;
 
+import aabblab.fmt;
 import :gltf_asset;
 import :scalar;
 
@@ -26,8 +27,9 @@ chunk take_chunk(const file_text& file, std::string_view& rest) {
     const std::size_t length = u32_at(rest, 0);
     const chunk taken{u32_at(rest, 4), rest.substr(chunk_header_bytes, length)};
     if (taken.bytes.size() != length)
-        file.fail("is not a glTF file: the chunk at byte " + offset + " announces " + std::to_string(length) +
-                  " bytes, but the file has " + std::to_string(taken.bytes.size()) + " of them");
+        file.fail(
+            fmt::format("is not a glTF file: the chunk at byte {} announces {} bytes, but the file has {} of them",
+                        offset, length, taken.bytes.size()));
     rest.remove_prefix(chunk_header_bytes + length);
     return taken;
 }
@@ -71,7 +73,6 @@ std::string unescaped(std::string_view uri) {
     return text;
 }
 
-/// Decodes a data: URI.
 std::string bytes_of_data(std::string_view uri) {
     constexpr std::string_view mark = ";base64,";
     const std::size_t begin = uri.find(mark);
@@ -147,8 +148,7 @@ private:
             case gltf_component::u32: return scalar::u32;
             case gltf_component::f32: return scalar::f32;
         }
-        file_.fail(name_ + " has the componentType " + std::to_string(static_cast<std::size_t>(component)) +
-                   ", which is unknown");
+        file_.fail(fmt::format("{} has the unknown componentType {}", name_, static_cast<std::size_t>(component)));
     }
 
     /// The elements at an offset of a buffer view, if they lie within the view and the view within its buffer.
@@ -177,7 +177,6 @@ private:
         }
     }
 
-    /// Replaces the elements that a sparse accessor lists.
     void replace(const gltf_sparse& sparse, scalar type, std::size_t width, std::vector<double>& numbers) const {
         if (sparse.index_component == gltf_component::f32)
             file_.fail(name_ + ".sparse.indices must be of whole numbers, as it has indices");
@@ -190,8 +189,8 @@ private:
             std::uint32_t index = 0;  // both the format and the machine are little-endian
             std::memcpy(&index, indices[i], bytes_of(index_type));
             if (index >= accessor_.count)
-                file_.fail(name_ + " replaces element " + std::to_string(index) + ", but has " +
-                           std::to_string(accessor_.count) + ", counted from 0");
+                file_.fail(
+                    fmt::format("{} replaces element {}, but has {}, counted from 0", name_, index, accessor_.count));
             read_element(values[i], type, width, &numbers[index * width]);
         }
     }
@@ -211,8 +210,8 @@ gltf_parts gltf_parts_of(const file_text& file) {
     if (const std::uint32_t version = u32_at(rest, 4); version != 2)
         file.fail("is glTF of version " + std::to_string(version) + "; only version 2 is read");
     if (const std::uint32_t length = u32_at(rest, 8); length != rest.size())
-        file.fail("is not a glTF file: its header announces " + std::to_string(length) + " bytes, but the file has " +
-                  std::to_string(rest.size()));
+        file.fail(
+            fmt::format("is not a glTF file: its header announces {} bytes, but the file has {}", length, rest.size()));
     rest.remove_prefix(header_bytes);
     const chunk first = take_chunk(file, rest);
     if (first.type != json_chunk) file.fail("is not a glTF file: its first chunk is not JSON");
@@ -233,8 +232,8 @@ void load_gltf_buffers(gltf_asset& asset, const file_text& file, std::optional<s
             buffer.bytes = bytes_of(buffer, file, i == 0 ? binary : std::nullopt, loaded);
             loaded += buffer.bytes.size();
             if (buffer.bytes.size() < buffer.length)
-                throw aabb::input_error("announces " + std::to_string(buffer.length) + " bytes, but has " +
-                                        std::to_string(buffer.bytes.size()));
+                throw aabb::input_error(
+                    fmt::format("announces {} bytes, but has {}", buffer.length, buffer.bytes.size()));
         } catch (const aabb::input_error& error) {
             file.fail(gltf_place("buffers", i) + ": " + error.what());
         }

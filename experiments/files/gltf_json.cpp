@@ -101,7 +101,6 @@ gltf_node node_of(const object& node) {
             node.numbers("weights"), node.indices("children"), surface_extension_of(node)};
 }
 
-/// The root nodes of the scene that the file shows.
 std::vector<std::size_t> roots_of(const object& root) {
     const std::vector<object> scenes = root.objects("scenes");
     if (scenes.empty()) root.fail("has no scene");

@@ -40,7 +40,6 @@ public:
         for (std::size_t i = 2; i < corners.size(); ++i)
             loaded_.mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
     }
-    /// Counts a face that is not read.
     void drop() { ++loaded_.report.dropped; }
     /// Reports what is ignored: only the visible meshes of a scene are read, in their initial pose.
     void ignore(std::size_t animations, std::size_t hidden_meshes) {

@@ -1,5 +1,6 @@
 module aabblab.files;
 
+import aabblab.fmt;
 import :text_scanner;
 
 namespace aabblab {
@@ -33,7 +34,6 @@ class motion_reader {
 public:
     explicit motion_reader(const file_text& file) : in_(file, '#') {}
 
-    /// The steps in the order of the file.
     [[nodiscard]] std::vector<step> read() {
         while (in_.next_line()) {
             const auto frame = in_.whole<std::uint32_t>("the number of a frame");
@@ -54,11 +54,8 @@ private:
     /// Advances to the frame of a line; frames must be in order.
     void begin(std::uint32_t frame) {
         if (frame == frame_) return;
-        if (frame < frame_)
-            in_.fail("frame " + std::to_string(frame) + " follows frame " + std::to_string(frame_) +
-                     "; frames must be in order");
-        if (frame >= most)
-            in_.fail("a frame is a number below " + std::to_string(most) + ", not " + std::to_string(frame));
+        if (frame < frame_) in_.fail(fmt::format("frame {} follows frame {}; frames must be in order", frame, frame_));
+        if (frame >= most) in_.fail(fmt::format("a frame is a number below {}, not {}", most, frame));
         if (frame_ == 0) require_all_objects();
         frame_ = frame;
     }
@@ -72,12 +69,10 @@ private:
 
     /// Notes that an object has a pose in the current frame, which must be its only one.
     void place(std::uint32_t object) {
-        if (object >= most)
-            in_.fail("an object is a number below " + std::to_string(most) + ", not " + std::to_string(object));
+        if (object >= most) in_.fail(fmt::format("an object is a number below {}, not {}", most, object));
         if (frame_ == 0 && object >= placed_.size()) placed_.resize(object + 1, 0);
         if (object >= placed_.size()) in_.fail("frame 0 has no pose of object " + std::to_string(object));
-        if (placed_[object] == frame_ + 1)
-            in_.fail("object " + std::to_string(object) + " has two poses in frame " + std::to_string(frame_));
+        if (placed_[object] == frame_ + 1) in_.fail(fmt::format("object {} has two poses in frame {}", object, frame_));
         placed_[object] = frame_ + 1;
     }
 
@@ -98,8 +93,7 @@ public:
         steps_ = reader.read();
         meshes = std::move(scene_meshes);
         if (meshes.size() > reader.objects())
-            reject(file, "moves " + std::to_string(reader.objects()) + " objects, but there are " +
-                             std::to_string(meshes.size()) + " meshes");
+            reject(file, fmt::format("moves {} objects, but there are {} meshes", reader.objects(), meshes.size()));
         poses_.resize(reader.objects());
         for (std::size_t object = 0; object < poses_.size(); ++object)
             mesh_of.push_back(static_cast<std::uint32_t>(object % meshes.size()));

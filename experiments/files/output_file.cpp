@@ -102,10 +102,6 @@ void output_file::write(const void* data, std::size_t bytes) {
     if (std::fwrite(data, 1, bytes, state_->file.get()) != bytes) state_->fail();
 }
 
-void output_file::write(const std::string& text) {
-    write(text.data(), text.size());
-}
-
 void output_file::overwrite(std::uint64_t offset, const void* data, std::size_t bytes) {
     std::FILE* const file = state_->file.get();
     if (fseeko(file, static_cast<off_t>(offset), SEEK_SET) != 0) state_->fail();

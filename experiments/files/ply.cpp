@@ -1,5 +1,6 @@
 module aabblab.files;
 
+import aabblab.fmt;
 import :mesh_builder;
 import :scalar;
 import :text_scanner;
@@ -39,6 +40,7 @@ role role_of_vertices(const element& e) {
 }
 
 enum class encoding : std::uint8_t { text, little, big };
+constexpr std::array<std::string_view, 3> encoding_names{"ascii", "binary_little_endian", "binary_big_endian"};
 
 struct header {
     encoding values = encoding::text;
@@ -117,14 +119,9 @@ header read_header(text_scanner& in) {
         const std::string_view word = in.word();
         if (word == "format") {
             const std::string_view values = in.word();
-            if (values == "ascii")
-                h.values = encoding::text;
-            else if (values == "binary_little_endian")
-                h.values = encoding::little;
-            else if (values == "binary_big_endian")
-                h.values = encoding::big;
-            else
-                in.expected("ascii, binary_little_endian or binary_big_endian", values);
+            const auto name = std::ranges::find(encoding_names, values);
+            if (name == encoding_names.end()) in.expected("ascii, binary_little_endian or binary_big_endian", values);
+            h.values = static_cast<encoding>(name - encoding_names.begin());
             has_format = true;
         } else if (word == "element") {
             if (!h.elements.empty()) require_roles(in, h.elements.back());
@@ -150,9 +147,7 @@ public:
     explicit text_values(text_scanner& in) : in_(in) {}
 
     void begin(const element& e, std::uint64_t index) {
-        if (!in_.next_line())
-            in_.ends("after " + std::to_string(index) + " of " + std::to_string(e.count) + " elements " +
-                     in_quotes(e.name));
+        if (!in_.next_line()) in_.ends(fmt::format("after {} of {} elements {}", index, e.count, in_quotes(e.name)));
     }
     [[nodiscard]] float coordinate(scalar) { return in_.coordinate(in_.word()); }
     [[nodiscard]] std::uint32_t whole(scalar) { return in_.whole<std::uint32_t>("a whole number"); }
@@ -213,8 +208,8 @@ public:
     [[nodiscard]] static std::size_t place(std::uint64_t face) { return face; }
     void end() const {
         if (bytes_.find_first_not_of(" \t\r\n") != std::string_view::npos)
-            reject(file_, "continues for " + std::to_string(bytes_.size()) +
-                              " bytes after the last element that its header announces");
+            reject(file_, fmt::format("continues for {} bytes after the last element that its header announces",
+                                      bytes_.size()));
     }
     [[nodiscard]] std::size_t rounded() const { return rounded_; }
     [[nodiscard]] static std::size_t line() { return 0; }
@@ -223,8 +218,8 @@ public:
 private:
     [[nodiscard]] double number(scalar type) {
         if (bytes_.size() < bytes_of(type))
-            reject(file_, "ends in element " + std::to_string(index_) + " of " + std::to_string(element_->count) +
-                              " elements " + in_quotes(element_->name));
+            reject(file_, fmt::format("ends in element {} of {} elements {}", index_, element_->count,
+                                      in_quotes(element_->name)));
         const double value = number_at(&bytes_.front(), type, big_);
         bytes_.remove_prefix(bytes_of(type));
         return value;

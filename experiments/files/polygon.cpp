@@ -69,7 +69,6 @@ polygon_shape polygon_cutter::cut(std::span<const aabb::vec3f> vertices,
     add(triangles.front()[0]);
     add(triangles.front()[1]);
     for (const auto& triangle : triangles) add(triangle[2]);
-
     if (distinct_corners() < 4) return polygon_shape::convex;
     const int orientation = project();
     if (orientation == 0) return polygon_shape::no_normal;
@@ -187,7 +186,6 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
     const vec3d& t2 = corners_[b.next].p;
     const auto [low_x, high_x] = std::minmax({t0[x], t1[x], t2[x]});
     const auto [low_y, high_y] = std::minmax({t0[y], t1[y], t2[y]});
-
     const auto enters = [&](const vec3d& p, const vec3d& q) {
         const auto is_beyond = [&](const vec3d& s, const vec3d& t) { return turn(s, t, p) <= 0 && turn(s, t, q) <= 0; };
         if (is_beyond(t0, t1) || is_beyond(t1, t2) || is_beyond(t2, t0)) return false;
@@ -208,11 +206,9 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
         if (side == 0) side = turn(low, high, t2);
         if (side > 0) winding += is_forward ? 1 : -1;
     };
-
     const auto touches = [&](const vec3d& p) {
         return turn(t0, t1, p) >= 0 && turn(t1, t2, p) >= 0 && turn(t2, t0, p) >= 0 && p != t0 && p != t1 && p != t2;
     };
-
     count_below(t0, t1);
     count_below(t1, t2);
     ear kind = ear::clear;
@@ -247,7 +243,6 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
         a.kind = c.kind = ear::unknown;
         --left;
     };
-
     // Needles are cut first, as they may block ears. Then a corner can become an ear only when a neighbour is cut.
     std::uint32_t at = 0;
     for (std::size_t passed = 0; left > 3 && passed < left;)
@@ -259,7 +254,6 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
             at = corners_[at].next;
             ++passed;
         }
-
     for (std::size_t passed = 0; left > 3;) {
         corner& b = corners_[at];
         // If no clear ear is left, the second round also cuts touched ears and corners in the middle of an edge.

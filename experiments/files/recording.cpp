@@ -1,5 +1,6 @@
 module aabblab.files;
 
+import aabblab.fmt;
 import :file_text;
 
 // The format is Broadmark's (Serpa and Rodrigues, "Broadmark: a testing framework for broad-phase collision detection
@@ -83,25 +84,25 @@ std::array<char, 128> field(const std::string& text, const std::string& otherwis
 std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     if (size < sizeof(header))
-        reject(file, "is not a recording: its header takes " + std::to_string(sizeof(header)) +
-                         " bytes, but the file has " + std::to_string(size));
+        reject(file,
+               fmt::format("is not a recording: its header takes {} bytes, but the file has {}", sizeof(header), size));
     whole_file opened(file, size);
     header h{};
     if (!opened.try_read(&h, sizeof h)) reject(file, "cannot be read");
     if (h.name.back() != 0 || h.type.back() != 0 || h.zero != std::array<std::int32_t, 2>{})
         reject(file, "is not a recording: its header does not hold two names and two zeros");
     if (h.objects < 0 || h.last_frame < 0)
-        reject(file, "its header announces " + std::to_string(h.objects) + " objects and " +
-                         std::to_string(h.last_frame) + " frames; neither can be negative");
+        reject(file, fmt::format("its header announces {} objects and {} frames; neither can be negative", h.objects,
+                                 h.last_frame));
     if (!aabb::is_valid(unpacked(h.world))) reject(file, "the world box in its header is inverted or not finite");
     // Counts boxes, as the announced size in bytes may overflow.
     const std::uint64_t boxes = static_cast<std::uint64_t>(h.objects) * (static_cast<std::uint64_t>(h.last_frame) + 1);
     const std::uint64_t stored = (size - sizeof(header)) / sizeof(box_record);
     if (boxes != stored || (size - sizeof(header)) % sizeof(box_record) != 0)
-        reject(file, "its header announces " + std::to_string(boxes) + " boxes (" + std::to_string(h.objects) +
-                         " objects, " + std::to_string(h.last_frame) + " + 1 frames), but the file has " +
-                         std::to_string(size - sizeof(header)) + " bytes of them, " +
-                         std::to_string(sizeof(box_record)) + " each");
+        reject(file,
+               fmt::format("its header announces {} boxes ({} objects, {} + 1 frames), but the file has {} bytes of "
+                           "them, {} each",
+                           boxes, h.objects, h.last_frame, size - sizeof(header), sizeof(box_record)));
     require_few_empty_frames(file, static_cast<std::size_t>(h.objects), static_cast<std::size_t>(h.last_frame) + 1);
     require_memory(file.string() + ": a frame of " + std::to_string(h.objects) + " boxes",
                    static_cast<double>(h.objects) * (sizeof(box_record) + sizeof(aabb::box)));
@@ -112,8 +113,9 @@ void write_recording(aabb::box_scene& scene, const std::string& name, const std:
                      const std::filesystem::path& file, const std::function<void(std::size_t)>& progress) {
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (scene.objects() > most || scene.frames() > most || scene.frames() == 0)
-        reject(file, "a recording holds at most 2^31 - 1 objects and from 1 to 2^31 - 1 frames, not " +
-                         std::to_string(scene.objects()) + " and " + std::to_string(scene.frames()));
+        reject(file,
+               fmt::format("a recording holds at most 2^31 - 1 objects and from 1 to 2^31 - 1 frames, not {} and {}",
+                           scene.objects(), scene.frames()));
     require_few_empty_frames(file, scene.objects(), scene.frames());
     header h{field(name, "scene"),
              field(type, "boxes"),

@@ -1,5 +1,6 @@
 module aabblab.files;
 
+import aabblab.fmt;
 import :mesh_builder;
 import :scalar;
 import :text_scanner;
@@ -66,11 +67,8 @@ private:
 };
 
 constexpr std::size_t header_bytes = 84;
+constexpr std::size_t count_offset = 80;  // of the number of triangles in the header
 constexpr std::size_t triangle_bytes = 50;
-
-std::uint32_t announced_triangles(std::string_view bytes) {
-    return u32_at(bytes, 80);
-}
 
 /// Compares without case, as writers disagree about the case of keywords.
 bool is_keyword(std::string_view word, std::string_view keyword) {
@@ -92,7 +90,8 @@ loaded_mesh read_text(const file_text& file) {
     while (in.next_line()) {
         const std::string_view word = in.word();
         if (is_keyword(word, "vertex") && in_facet) {
-            const aabb::vec3f p = in.point();
+            aabb::vec3f p{};
+            for (int k = 0; k < 3; ++k) p[k] = in.coordinate(in.word());
             require_end_of_line();
             if (!aabb::is_finite(p)) in.fail("the vertex has a coordinate that is not finite");
             if (count == 3) in.fail("a facet has more than three vertices");
@@ -141,7 +140,7 @@ std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, st
     whole_file opened(file, size);
     std::array<char, header_bytes> header{};
     opened.read(header.data(), header.size());
-    const std::uint32_t count = announced_triangles({header.data(), header.size()});
+    const std::uint32_t count = u32_at({header.data(), header.size()}, count_offset);
     if (size != bytes_of_binary(count)) return {};
     require_memory(file.string() + ": reading it", static_cast<double>(size));
     mesh_builder mesh(file.string());
@@ -188,9 +187,9 @@ loaded_mesh read_stl(const file_text& file) {
     if (size < header_bytes)
         file.fail(
             "is not an STL file: it is neither text that begins with solid nor holds the 84 bytes of a binary header");
-    const std::uint32_t count = announced_triangles(file.text);
-    file.fail("its header announces " + std::to_string(count) + " triangles, which take " +
-              std::to_string(bytes_of_binary(count)) + " bytes, but the file has " + std::to_string(size));
+    const std::uint32_t count = u32_at(file.text, count_offset);
+    file.fail(fmt::format("its header announces {} triangles, which take {} bytes, but the file has {}", count,
+                          bytes_of_binary(count), size));
 }
 
 }  // namespace aabblab

@@ -18,21 +18,15 @@ struct read_number {
         is_number = stopped == end && error != std::errc::invalid_argument;
         out_of_range = error == std::errc::result_out_of_range;
         // from_chars does not distinguish underflow, which rounds to zero, from overflow; strtod does.
-        if constexpr (std::floating_point<Number>)
-            if (out_of_range) value = from_text(text);
+        if constexpr (std::same_as<Number, float>)
+            if (out_of_range) value = std::strtof(std::string(text).c_str(), nullptr);
+        if constexpr (std::same_as<Number, double>)
+            if (out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
     }
 
     Number value = 0;
     bool is_number = false;  ///< whether the whole text is one number
     bool out_of_range = false;
-
-private:
-    [[nodiscard]] static Number from_text(std::string_view text) {
-        if constexpr (std::same_as<Number, float>)
-            return std::strtof(std::string(text).c_str(), nullptr);
-        else
-            return std::strtod(std::string(text).c_str(), nullptr);
-    }
 };
 
 class text_scanner {
@@ -102,13 +96,6 @@ public:
         if (!number.is_number) expected(what, text);
         if (!std::isfinite(number.value)) fail(in_quotes(text) + " is not a finite number");
         return number.value;
-    }
-
-    /// Parses three coordinates like `coordinate`.
-    [[nodiscard]] aabb::vec3f point() {
-        aabb::vec3f p{};
-        for (int k = 0; k < 3; ++k) p[k] = coordinate(word());
-        return p;
     }
 
     /// Parses a coordinate, correctly rounded to float. It is NaN or infinite only if the text is.

@@ -76,13 +76,6 @@ std::vector<std::string> split_numbers(std::string_view line) {
 
 namespace {
 
-/// Also compares paths to files that do not exist yet.
-bool are_same_path(const std::string& a, const std::string& b) {
-    std::error_code ignored;  // a file that does not exist is no conflict
-    return std::filesystem::equivalent(a, b, ignored) ||
-           std::filesystem::weakly_canonical(a) == std::filesystem::weakly_canonical(b);
-}
-
 /// Whether the name is a shape or a file with a mesh extension; other files are motions.
 bool is_mesh_name(const std::string& name) {
     if (!is_mesh(name, {})) return false;
@@ -174,7 +167,10 @@ void require_no_mesh(const std::string& out, const std::vector<std::string>& mes
 }
 
 void require_two_files(const std::string& a, const std::string& file, const std::string& b, const std::string& other) {
-    if (are_same_path(file, other)) throw aabb::input_error(a + " and " + b + " are the same file, " + file);
+    std::error_code ignored;  // files that do not exist yet are compared by their paths
+    if (std::filesystem::equivalent(file, other, ignored) ||
+        std::filesystem::weakly_canonical(file) == std::filesystem::weakly_canonical(other))
+        throw aabb::input_error(a + " and " + b + " are the same file, " + file);
 }
 
 bool is_config_name(const std::string& argument) {

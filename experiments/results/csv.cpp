@@ -6,19 +6,20 @@ namespace aabblab {
 
 namespace {
 
+/// Reads a text record by record.
 class csv_reader {
 public:
     csv_reader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
     /// False if the text ends before the record does.
-    bool take(csv_record& record) {
+    bool read(csv_record& record) {
         record.line = line_;
         do {
             std::string& field = record.fields.emplace_back();
             if (next_is("\"")) {
-                if (!take_quoted(field)) return false;
+                if (!read_quoted(field)) return false;
             } else {
-                take_plain(field);
+                read_plain(field);
             }
         } while (skip(","));
         if (at_ == text_.size()) return false;
@@ -31,19 +32,19 @@ public:
     [[nodiscard]] std::size_t at() const { return at_; }
 
 private:
-    [[nodiscard]] bool next_is(std::string_view what) const { return text_.substr(at_).starts_with(what); }
+    [[nodiscard]] bool next_is(std::string_view text) const { return text_.substr(at_).starts_with(text); }
     /// True at a line feed, with or without carriage returns before it.
     [[nodiscard]] bool is_at_line_end() const {
         const std::size_t end = text_.find_first_not_of('\r', at_);
         return end != std::string_view::npos && text_[end] == '\n';
     }
-    bool skip(std::string_view what) {
-        const bool there = next_is(what);
-        if (there) at_ += what.size();
-        return there;
+    bool skip(std::string_view text) {
+        const bool is_next = next_is(text);
+        if (is_next) at_ += text.size();
+        return is_next;
     }
 
-    void take_plain(std::string& field) {
+    void read_plain(std::string& field) {
         while (at_ < text_.size() && !next_is(",") && !is_at_line_end()) {
             if (next_is("\"")) fail("a quote is in a field that does not begin with one");
             if (next_is("\r"))
@@ -52,7 +53,7 @@ private:
         }
     }
 
-    bool take_quoted(std::string& field) {
+    bool read_quoted(std::string& field) {
         for (++at_; at_ < text_.size(); ++at_) {
             if (skip("\"") && !next_is("\"")) return true;  // a doubled quote stands for one
             if (text_[at_] == '\n') ++line_;
@@ -91,7 +92,7 @@ std::string csv_line(std::span<const std::string> fields) {
 csv_text read_csv(std::string_view text, const std::string& file) {
     csv_text table;
     csv_reader reader(text, file);
-    for (csv_record record; reader.take(record); record = {}) {
+    for (csv_record record; reader.read(record); record = {}) {
         table.records.push_back(std::move(record));
         table.bytes = reader.at();
     }

@@ -90,18 +90,14 @@ results_folder::~results_folder() {
     if (file_) std::fclose(file_);
 }
 
-bool results_folder::has(const row& wanted) const {
-    return keys_.contains(wanted.key());
-}
-
 void results_folder::add(const row& finished) {
     if (std::fputs(csv_of(finished).c_str(), file_) < 0 || std::fflush(file_) != 0) fail_table();
     rows_.push_back(finished);
     keys_.insert(finished.key());
 }
 
-void results_folder::drop_where(const std::function<bool(const row&)>& dropped) {
-    if (std::erase_if(rows_, dropped) == 0) return;
+void results_folder::drop(const std::function<bool(const row&)>& matches) {
+    if (std::erase_if(rows_, matches) == 0) return;
     keys_.clear();
     std::string text = csv_header_of_rows();
     for (const row& r : rows_) {
@@ -112,34 +108,26 @@ void results_folder::drop_where(const std::function<bool(const row&)>& dropped) 
     open_table();
 }
 
-void results_folder::drop(const scene_choice& scene, const candidate_name& name) {
-    drop_where([&](const row& r) { return r.scene == scene && r.name == name; });
-}
-
-void results_folder::drop(const scene_choice& scene, std::uint64_t repeat) {
-    drop_where([&](const row& r) { return r.scene == scene && r.repeat == repeat; });
-}
-
 void results_folder::set_digest(const scene_choice& scene, const std::string& digest) {
     digests_[scene] = digest;
     write_manifest();
 }
 
-void results_folder::set_differences(const scene_choice& scene, std::span<const candidate_name> of,
+void results_folder::set_differences(const scene_choice& scene, std::span<const candidate_name> names,
                                      std::span<const difference> differences) {
     std::erase_if(differences_,
-                  [&](const difference& d) { return d.scene == scene && std::ranges::find(of, d.name) != of.end(); });
+                  [&](const difference& d) { return d.scene == scene && std::ranges::count(names, d.name) > 0; });
     differences_.insert(differences_.end(), differences.begin(), differences.end());
     write_file(folder_ / "differences.csv", csv_of(differences_));
 }
 
 void results_folder::seal() {
-    results_seal seals{seal_of(folder_ / "results.csv"), std::nullopt, {}};
+    results_seal checksums{seal_of(folder_ / "results.csv"), std::nullopt, {}};
     if (const std::filesystem::path table = folder_ / "differences.csv"; std::filesystem::exists(table))
-        seals.differences = seal_of(table);
+        checksums.differences = seal_of(table);
     for (const row& r : rows_)
-        if (std::ranges::find(seals.candidates, r.name) == seals.candidates.end()) seals.candidates.push_back(r.name);
-    write_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_, seals));
+        if (std::ranges::count(checksums.candidates, r.name) == 0) checksums.candidates.push_back(r.name);
+    write_file(folder_ / "manifest.json", manifest_text(experiment_, date_, digests_, checksums));
 }
 
 void results_folder::open_table() {

@@ -93,18 +93,18 @@ results_seal seal_in(const json_value& seal) {
 }
 
 /// A parsed manifest, which may have been edited.
-struct read_in {
+struct parsed_manifest {
     json_value content;
     json raw;  ///< preserves the order of members, for checksums
 };
 
-read_in read_json(const std::filesystem::path& file) {
+parsed_manifest read_json(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file))
         throw aabb::input_error(file.string() + " does not exist; results without it cannot be used");
     const std::string text = text_of_file(file);
-    const char* const otherwise = "is not a manifest of results";
-    json_value content(file.string(), text, otherwise);
-    if (!content.has("build") || !content.has("config")) throw aabb::input_error(file.string() + " " + otherwise);
+    const char* const rejection = "is not a manifest of results";
+    json_value content(file.string(), text, rejection);
+    if (!content.has("build") || !content.has("config")) throw aabb::input_error(file.string() + " " + rejection);
     return {std::move(content), json::parse(text)};
 }
 
@@ -115,7 +115,7 @@ json json_of(const std::string& value) {
 }
 
 /// The scenes of a manifest in order, with the digests of the ground truth, which may be empty.
-std::vector<std::pair<scene_choice, std::string>> scenes_in(const read_in& manifest) {
+std::vector<std::pair<scene_choice, std::string>> scenes_in(const parsed_manifest& manifest) {
     std::vector<std::pair<scene_choice, std::string>> scenes;
     for (const json_value& scene : manifest.content.objects("scenes")) {
         scene_choice choice{scene.text("kind").value_or(""), {}, {}, scene.index("seed")};
@@ -181,7 +181,7 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
 }
 
 sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
-    const read_in manifest = read_json(file);
+    const parsed_manifest manifest = read_json(file);
     sealed_manifest result{manifest.content.text("experiment").value_or(""), scenes_in(manifest), std::nullopt};
     const std::optional<json_value> seal = manifest.content.member("seal");
     if (!seal) return result;
@@ -193,7 +193,7 @@ sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
 }
 
 std::string rejection_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
-    const read_in previous = read_json(manifest);
+    const parsed_manifest previous = read_json(manifest);
     const std::string where = "the results in " + manifest.parent_path().string();
     if (previous.content.needed("config").text("hash") != e.hash)
         return where + " are of another config or size, or of other meshes or recordings";
@@ -216,7 +216,7 @@ std::string rejection_to_resume(const std::filesystem::path& manifest, const exp
 std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::path& file, const experiment_record& e) {
     if (const std::string rejection = rejection_to_resume(file, e); !rejection.empty())
         throw aabb::input_error(rejection + "; --out DIR puts new ones elsewhere");
-    const read_in previous = read_json(file);
+    const parsed_manifest previous = read_json(file);
     scene_digests digests;
     for (auto& [scene, digest] : scenes_in(previous))
         if (!digest.empty()) digests[std::move(scene)] = std::move(digest);
@@ -228,7 +228,7 @@ std::string build_description() {
 }
 
 manifest_summary read_manifest(const std::filesystem::path& folder) {
-    const read_in manifest = read_json(folder / "manifest.json");
+    const parsed_manifest manifest = read_json(folder / "manifest.json");
     const json_value build = manifest.content.needed("build");
     const json_value config = manifest.content.needed("config");
     manifest_summary summary{.date = manifest.content.text("date").value_or(""),

@@ -58,10 +58,10 @@ struct row {
     /// Sums over the frames after frame 0, or of frame 0 if it is the only one.
     std::array<std::optional<std::uint64_t>, aabb::work_names.size()> counts;
     std::array<std::optional<std::uint64_t>, byte_columns.size()> bytes;
-    std::optional<std::uint64_t> false_negatives;  ///< false negatives: pairs or contacts of the ground truth
-    std::optional<std::uint64_t> false_positives;  ///< false positives
-    std::optional<double> box_inflation;           ///< surface area of a tree's boxes over that of tight boxes, less 1
-    std::string status;                            ///< "exact" or "inexact"
+    std::optional<std::uint64_t> false_negatives;  ///< of contacts, or of pairs in scenes of boxes
+    std::optional<std::uint64_t> false_positives;
+    std::optional<double> box_inflation;  ///< surface area of a tree's boxes over that of tight boxes, less 1
+    std::string status;                   ///< "exact" or "inexact"
 
     /// Equal keys identify the same measurement.
     [[nodiscard]] std::string key() const;
@@ -138,24 +138,22 @@ public:
     /// The reason why results were replaced; empty if none were.
     [[nodiscard]] const std::string& replaced() const { return replaced_; }
     [[nodiscard]] std::span<const row> rows() const { return rows_; }
-    [[nodiscard]] bool has(const row& wanted) const;
+    [[nodiscard]] bool has(const row& wanted) const { return keys_.contains(wanted.key()); }
 
     /// Appends a row and flushes the file.
     void add(const row& finished);
-    /// Deletes the rows of a candidate, or of a repeat, in a scene.
-    void drop(const scene_choice& scene, const candidate_name& name);
-    void drop(const scene_choice& scene, std::uint64_t repeat);
+    /// Deletes the rows that match, and rewrites the file.
+    void drop(const std::function<bool(const row&)>& matches);
     /// Records the digest of the ground truth of a scene in the manifest.
     void set_digest(const scene_choice& scene, const std::string& digest);
     /// Replaces the differences of these candidates in this scene.
-    void set_differences(const scene_choice& scene, std::span<const candidate_name> of,
+    void set_differences(const scene_choice& scene, std::span<const candidate_name> names,
                          std::span<const difference> differences);
     /// Seals a finished experiment: adds checksums to the manifest, by which missing or altered rows are detected
     /// later. Opening the results again removes the seal.
     void seal();
 
 private:
-    void drop_where(const std::function<bool(const row&)>& dropped);
     void open_table();
     void write_manifest() const;
     [[noreturn]] void fail_table() const;

@@ -87,10 +87,10 @@ constexpr std::array<std::string_view, 1> later_columns{"restarts"};
 
 /// "column 3 is 'x'; expected 'seed'"
 std::string first_difference(const std::vector<std::string>& names, const std::vector<std::string>& expected) {
-    const auto [is, should_be] = std::ranges::mismatch(names, expected);
-    return "column " + std::to_string(is - names.begin() + 1) +
-           (is == names.end() ? " is missing" : " is '" + is->substr(0, longest_quote) + "'") + "; expected " +
-           (should_be == expected.end() ? "no more" : "'" + *should_be + "'");
+    const auto [name, wanted] = std::ranges::mismatch(names, expected);
+    return "column " + std::to_string(name - names.begin() + 1) +
+           (name == names.end() ? " is missing" : " is '" + name->substr(0, longest_quote) + "'") + "; expected " +
+           (wanted == expected.end() ? "no more" : "'" + *wanted + "'");
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ struct motion_config : scene_size {
     double displacement = 0.1;
     length_unit unit = length_unit::extent;
 };
-/// @param help for `displacement`
+/// @param help the text for `displacement`
 [[nodiscard]] constexpr auto motion_parameters_with(std::string_view help) {
     return std::tuple_cat(
         size_parameters<scene_size>("how many boxes"),

@@ -61,19 +61,22 @@ void keep_deepest(std::vector<depth_of_vertex>& depths) {
     if (deepest != depths.end()) depths = {*deepest};
 }
 
-contact_force springs_at(const contact_law& law, std::span<const depth_of_vertex> depths, const Vector3d& approach) {
+/// Sums springs with dashpots: force (k d - c n·v) n and energy k d²/2 for a compression d along the normal n.
+contact_force spring_force(const contact_law& law, std::span<const depth_of_vertex> depths, const Vector3d& approach) {
     Vector3d force = Vector3d::Zero();
     double energy = 0;
-    for (const depth_of_vertex& at : depths) {
-        const double compressed = at.depth + law.rest;
-        force += at.normal * (law.stiffness * compressed - law.damping * dot(at.normal, approach));
+    for (const depth_of_vertex& vertex : depths) {
+        const double compressed = vertex.depth + law.rest;
+        force += vertex.normal * (law.stiffness * compressed - law.damping * dot(vertex.normal, approach));
         energy += law.stiffness * compressed * compressed / 2;
     }
     return {from_eigen(force), energy};
 }
 
-contact_force pressure(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
-                       const placed_mesh& second, const Vector3d& approach) {
+/// The force -(k + c A·v/|A|) A of `contact_geometry::shared_volume`, where the area A = ½ Σ p × q sums the segments pq
+/// in which pairs of triangles intersect.
+contact_force pressure_force(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
+                             const placed_mesh& second, const Vector3d& approach) {
     Vector3d area = Vector3d::Zero();  // of the second body's surface inside the first, along its outward normal
     std::optional<Vector3d> origin;
     for (const aabb::contact& c : contacts) {
@@ -101,15 +104,14 @@ struct half_space {
 
 using polygon = std::vector<Vector3d>;
 
-half_space below(const corners& t) {
-    const Vector3d normal = normal_of(t);
-    return {normal, dot(normal, t[0])};
-}
-
+/// The half-spaces below the first triangles of a mesh; those of all triangles bound a convex mesh.
 std::vector<half_space> half_spaces_of(const placed_mesh& m, std::uint32_t most) {
     std::vector<half_space> half_spaces;
-    for (std::uint32_t t = 0; t < std::min(most, m.mesh->triangle_count()); ++t)
-        half_spaces.push_back(below(corners_of(m, t)));
+    for (std::uint32_t i = 0; i < std::min(most, m.mesh->triangle_count()); ++i) {
+        const corners t = corners_of(m, i);
+        const Vector3d normal = normal_of(t);
+        half_spaces.push_back({normal, dot(normal, t[0])});
+    }
     return half_spaces;
 }
 
@@ -166,13 +168,13 @@ aabb::triangle3d placed_mesh::triangle(std::uint32_t index) const {
 contact_force force_of(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
                        const placed_mesh& second, const aabb::vec3d& approach) {
     if (law.geometry == contact_geometry::shared_volume)
-        return pressure(law, contacts, first, second, in_eigen(approach));
+        return pressure_force(law, contacts, first, second, in_eigen(approach));
     std::vector<depth_of_vertex> depths = depths_of(contacts, first, second, law.rest);
     if (law.geometry == contact_geometry::deepest_vertex)
         keep_deepest(depths);
     else
         keep_deepest_of_each(depths);
-    return springs_at(law, depths, in_eigen(approach));
+    return spring_force(law, depths, in_eigen(approach));
 }
 
 double overlap_volume(const placed_mesh& first, bool is_floor, const placed_mesh& second) {

@@ -45,7 +45,7 @@ private:
     }
 };
 
-/// Notes each idle engine once per kind of scene.
+/// Notes each engine that cannot run, once per kind of scene.
 void note_idle_engines(const experiment& e) {
     std::set<std::string> kinds;
     for (const scene_choice& scene : e.scenes)
@@ -53,16 +53,10 @@ void note_idle_engines(const experiment& e) {
             for (const std::string& sentence : idle_engines(e, scene, scene.kind)) note(sentence);
 }
 
-/// True if two scenes differ at most in their seeds.
-bool is_same_scene(const scene_choice& a, const scene_choice& b) {
-    return without_seed(a) == without_seed(b);
-}
-
 /// The rows of a scene over all its seeds.
 std::vector<row> rows_of_all_seeds(const scene_choice& scene, std::span<const row> rows) {
-    std::vector<row> matching;
-    for (const row& r : rows)
-        if (is_same_scene(r.scene, scene)) matching.push_back(r);
+    std::vector<row> matching(rows.begin(), rows.end());
+    std::erase_if(matching, [&](const row& r) { return without_seed(r.scene) != without_seed(scene); });
     return matching;
 }
 
@@ -86,19 +80,19 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
 
 /// Prints one table per baseline, because scenes of boxes and of meshes have different ones.
 void print_overall(std::span<const scene_summary> scenes) {
-    std::map<candidate_name, std::vector<scene_summary>> alike;
-    for (const scene_summary& scene : scenes) alike[scene.lines[0].name].push_back(scene);
-    for (const auto& [base, group] : alike)
+    std::map<candidate_name, std::vector<scene_summary>> by_baseline;
+    for (const scene_summary& scene : scenes) by_baseline[scene.lines[0].name].push_back(scene);
+    for (const auto& [baseline, group] : by_baseline)
         if (const table overall = overall_table_of(group); group.size() > 1 && !overall.rows.empty())
             print(fmt::format(
                 "{} scenes with the baseline {},\nratio: the geometric mean of the ratios to it, fastest first; "
                 "regret: the "
                 "ratio\nover the least one of an exact result in each scene, the median and the worst\n\n{}\n",
-                group.size(), text_of(base), to_text(overall, output_width())));
+                group.size(), text_of(baseline), to_text(overall, output_width())));
 }
 
 /// Multi-threaded compositions must not be pinned to one processor.
-bool takes_several_threads(const experiment& e) {
+bool is_multi_threaded(const experiment& e) {
     return std::ranges::any_of(every_composition(e), [](const aabb::composition& c) {
         return std::ranges::any_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
             return std::ranges::any_of(c[kind].settings,
@@ -115,7 +109,7 @@ void run_scenes(
     const std::function<void(const std::string&)>& report,
     const std::function<void(std::size_t)>& finished = [](std::size_t) {}) {
     std::optional<idlest_processor> pinned;
-    if (e.records(metric_group::time) && !takes_several_threads(e)) pinned.emplace();
+    if (e.records(metric_group::time) && !is_multi_threaded(e)) pinned.emplace();
     for (std::size_t i = 0; i < e.scenes.size(); ++i) {
         const scene_choice& scene = e.scenes[i];
         std::ranges::for_each(run_scene(e, scene, candidates_for(e, scene), results, process), report);
@@ -145,14 +139,14 @@ experiment open_experiment(const std::string& config, bool quick) {
     return e;
 }
 
-std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& called) {
+std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& scene_name) {
     std::vector<std::string> sentences;
     for (const aabb::engine_info& engine : aabb::engines())
         if (std::ranges::find(e.engines, engine.name) != e.engines.end() && !candidate_of(engine, has_meshes(scene)))
-            sentences.push_back(engine.name + " does not run on " + called + ": it does not search boxes");
+            sentences.push_back(engine.name + " does not run on " + scene_name + ": it does not search boxes");
     for (const external_engine& engine : e.externals)
         if (has_meshes(scene))
-            sentences.push_back(engine.name + " does not run on " + called + ": it takes only boxes");
+            sentences.push_back(engine.name + " does not run on " + scene_name + ": it takes only boxes");
     return sentences;
 }
 
@@ -177,7 +171,9 @@ std::vector<std::string> run_experiment(const experiment& e, const std::filesyst
             // Print a scene as soon as its last seed is finished.
             run_scenes(e, results, 0, report, [&](std::size_t i) {
                 const scene_choice& scene = e.scenes[i];
-                if (shown != printed::nothing && (i + 1 == e.scenes.size() || !is_same_scene(scene, e.scenes[i + 1])))
+                const bool is_last_seed =
+                    i + 1 == e.scenes.size() || without_seed(scene) != without_seed(e.scenes[i + 1]);
+                if (shown != printed::nothing && is_last_seed)
                     print_scenes(e, summarise(rows_of_all_seeds(scene, results.rows())), shown);
             });
             results.seal();
@@ -197,13 +193,13 @@ std::vector<std::string> run_experiment(const experiment& e, const std::filesyst
 
 bool run_process(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
     results_folder results(folder, record_of(e), existing_results::resume);
-    bool right = true;
+    bool succeeded = true;
     run_scenes(e, results, process, [&](const std::string& failure) {
         print(failure + "\n");
         flush_output();
-        right = false;
+        succeeded = false;
     });
-    return right;
+    return succeeded;
 }
 
 }  // namespace aabblab

@@ -16,9 +16,9 @@ export namespace aabblab {
 [[nodiscard]] experiment open_experiment(const std::string& config, bool quick);
 
 /// A sentence for each engine that cannot run in a scene.
-/// @param called the description of the scene in these sentences
+/// @param scene_name the noun for the scene in these sentences
 [[nodiscard]] std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene,
-                                                    const std::string& called);
+                                                    const std::string& scene_name);
 
 /// The output of a running experiment: a table per scene and one over all scenes at the end, with or without the work
 /// of each composition, or nothing.

@@ -34,7 +34,7 @@ suite_report report_of(std::span<const extreme_row> rows) {
     return {memory_in(rows), {}, tables_of(rows), failures_in(rows)};
 }
 
-/// One table per quantity.
+/// Sorts the rows of a study into one table per quantity.
 std::vector<named_table> tables_of(const stiff_study& study, const stiff_result& result) {
     std::vector<named_table> tables;
     for (const stiff_row& r : result.rows) {

@@ -7,6 +7,7 @@ module;
 module aabblab.trials;
 
 import aabblab.files;
+import aabblab.fmt;
 import aabblab.pair_output;
 import aabblab.processes;
 
@@ -55,10 +56,9 @@ candidate candidate_of(const aabb::named_strategies& named, const scene_frames& 
     result.name = {};
     result.name.engine = candidate_name::automatic;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        if (named[kind])
-            result.name.engine += " + " +
-                                  (named[kind]->name == "none" ? std::string(name_of(kind)) + " " : std::string()) +
-                                  to_text(*named[kind]);
+        if (const auto& choice = named[kind])
+            result.name.engine +=
+                (choice->name == "none" ? fmt::format(" + {} ", name_of(kind)) : " + ") + to_text(*choice);
     return result;
 }
 
@@ -92,9 +92,6 @@ namespace {
 class exchange_folder {
 public:
     explicit exchange_folder(scene_choice scene) : scene_(std::move(scene)) {}
-    exchange_folder(const exchange_folder&) = delete;
-    exchange_folder& operator=(const exchange_folder&) = delete;
-    ~exchange_folder() = default;
 
     /// "brownian (objects=1000 seed=1)"
     [[nodiscard]] std::string scene_text() const { return scene_.kind + " (" + parameters_text(scene_) + ")"; }
@@ -264,11 +261,11 @@ private:
                                                 .kept = true,
                                                 .timeout = std::chrono::seconds(engine.timeout_s)});
         if (ended.timed_out)
-            throw engine_timeout("the " + name_ + " was killed: it was still running after " +
-                                 std::to_string(engine.timeout_s) + " s, its timeout_s");
+            throw engine_timeout(fmt::format("the {} was killed: it was still running after {} s, its timeout_s", name_,
+                                             engine.timeout_s));
         if (ended.rejected == ENOENT && engine.program.find('/') == std::string::npos)
-            fail(": there is no program " + engine.program + " in PATH; write ./" + engine.program +
-                 " for one in the folder of the config");
+            fail(fmt::format(": there is no program {0} in PATH; write ./{0} for one in the folder of the config",
+                             engine.program));
         if (ended.rejected != 0) fail(": " + engine.program + " cannot be started: " + std::strerror(ended.rejected));
         if (!WIFEXITED(ended.status)) fail(" was terminated by signal " + std::to_string(WTERMSIG(ended.status)));
         if (WEXITSTATUS(ended.status) != 0) fail(" ended with status " + std::to_string(WEXITSTATUS(ended.status)));
@@ -301,20 +298,20 @@ private:
         ahead_ = {frame, aabb::ordered_pair(a, b)};
     }
 
-    /// Collects the pairs of the next frame.
     void take_frame() {
         pairs_.clear();
         for (; ahead_ && ahead_->frame <= frame_; read_ahead()) {
             if (ahead_->frame < frame_)
-                table_->fail("this row of frame " + std::to_string(ahead_->frame) + " follows one of frame " +
-                             std::to_string(frame_) +
-                             "; expected rows sorted by frame, from 0 on, in any order within a frame");
+                table_->fail(
+                    fmt::format("this row of frame {} follows one of frame {}; expected rows sorted by frame, "
+                                "from 0 on, in any order within a frame",
+                                ahead_->frame, frame_));
             pairs_.push_back(ahead_->pair);
         }
         sort_rows(pairs_);
         if (const auto twice = std::ranges::adjacent_find(pairs_); twice != pairs_.end())
-            throw aabb::input_error("the pairs of the " + name_ + " contain " + std::to_string(twice->a) + " " +
-                                    std::to_string(twice->b) + " twice in frame " + std::to_string(frame_));
+            throw aabb::input_error(
+                fmt::format("the pairs of the {} contain {} {} twice in frame {}", name_, twice->a, twice->b, frame_));
         ++frame_;
     }
 

@@ -64,7 +64,8 @@ void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, con
     const std::vector<row> rows = rows_of(scene, results.rows());
     if (last.repeat > share.begin) candidates -= stopped_early(e, share, rows).size();
     const auto finished = std::ranges::count(rows, last.repeat, &row::repeat);
-    if (static_cast<std::size_t>(finished) < candidates) results.drop(scene, last.repeat);
+    if (static_cast<std::size_t>(finished) < candidates)
+        results.drop([&](const row& r) { return r.scene == scene && r.repeat == last.repeat; });
 }
 
 /// The candidates that still lack rows of this share, so that a resumed experiment runs only what is missing.
@@ -193,7 +194,7 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
         if (failure.empty()) return results.add(next.result);
         stopped.insert(next.result.name);
         failures.push_back(failure);
-        results.drop(scene, next.result.name);
+        results.drop([&](const row& r) { return r.scene == scene && r.name == next.result.name; });
     };
     const auto stop_early = [&](std::size_t repeat) {
         stopped.merge(stopped_early(e, share, rows_of(scene, results.rows())));

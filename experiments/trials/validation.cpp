@@ -1,5 +1,6 @@
 module aabblab.trials;
 
+import aabblab.fmt;
 import aabblab.progress;
 
 namespace aabblab {
@@ -7,12 +8,11 @@ namespace aabblab {
 namespace {
 
 std::string text_of(const aabb::index_pair& pair) {
-    return "the pair " + std::to_string(pair.a) + " " + std::to_string(pair.b);
+    return fmt::format("the pair {} {}", pair.a, pair.b);
 }
 
 std::string text_of(const aabb::contact& c) {
-    return "the contact of objects " + std::to_string(c.a) + " " + std::to_string(c.b) + " in their triangles " +
-           std::to_string(c.triangle_a) + " " + std::to_string(c.triangle_b);
+    return fmt::format("the contact of objects {} {} in their triangles {} {}", c.a, c.b, c.triangle_a, c.triangle_b);
 }
 
 /// Describes the first difference; empty if there is none.

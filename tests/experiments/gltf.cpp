@@ -378,7 +378,7 @@ TEST_CASE("glTF: a skinned mesh stands where its joints are") {
 
     const std::vector<std::pair<skin, std::string>> wrong = {
         {{.weights = {0.5F, 0, 0, 0, 0, 1, 0, 0, 0.5F, 0.5F, 0, 0}},
-         "meshes[0] has a vertex whose weights of joints add up to 0.5, not to 1"},
+         "meshes[0] has a vertex whose joint weights sum to 0.5, not 1"},
         {{.joints = {7, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}},
          "meshes[0] has a vertex that refers to joint 7, counted from 0, but its skin has 2 joints"},
         {{.joint_type = 5120}, "accessors[1] must be of whole numbers and VEC4, as it has joints"},

@@ -86,7 +86,6 @@ private:
         return true;
     }
 
-    /// Writes the contents of the current entry.
     void write_entry(const std::filesystem::path& file) {
         std::error_code error;
         std::filesystem::create_directories(file.parent_path(), error);

@@ -131,9 +131,8 @@ number_table::number_table(const std::filesystem::path& file, std::string_view h
     : file_(file), text_(std::string(header) + "\n") {}
 
 void number_table::add(std::initializer_list<std::uint32_t> row, std::string_view further) {
-    constexpr std::size_t block = 1U << 16U;
     fmt::format_to(std::back_inserter(text_), "{}{}{}\n", fmt::join(row, ","), further.empty() ? "" : ",", further);
-    if (text_.size() < block) return;
+    if (text_.size() < 1U << 16U) return;
     file_.write(text_);
     text_.clear();
 }

@@ -20,14 +20,9 @@ public:
     static constexpr std::array<std::string_view, 2> default_meshes = {"square", "icosphere:triangles=80"};
     static constexpr std::size_t most_meshes = 2;
 
-    struct config {
-        std::uint32_t balls = 216;
+    struct config : dropped_config {
         std::uint32_t frames = 1000;
         double step = 0.001;
-        double height = 0.5;
-        double speed = 0;
-        double depth = 0.001;
-        double loss = 0;
         scaling normalise = scaling::yes;
     };
     static constexpr std::tuple parameters{
@@ -48,7 +43,7 @@ public:
         require_memory("dropped with " + std::to_string(c.balls) + " balls",
                        c.balls * (sizeof(body) + sizeof(aabb::pose) + 9 * sizeof(double) + sizeof(std::uint32_t)));
         if (c.normalise == scaling::yes) normalise(meshes[1]);
-        world_ = dropped_world({c.balls, c.height, c.speed, c.depth, c.loss}, meshes, seed);
+        world_ = dropped_world(c, meshes, seed);
         state_ = world_.start();
         acceleration_.resize(state_.position.size());
         mesh_of = world_.mesh_of();

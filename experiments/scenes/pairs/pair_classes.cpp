@@ -37,8 +37,7 @@ triangle any_triangle(random_source& random) {
 }
 
 pair any_pair(random_source& random) {
-    const triangle a = any_triangle(random);
-    return {a, any_triangle(random)};
+    return {any_triangle(random), any_triangle(random)};
 }
 
 /// A point in the plane of a triangle, inside or near it.
@@ -48,18 +47,16 @@ Vector3d near_triangle(random_source& random, const triangle& t) {
     return t[0] + (t[1] - t[0]) * u + (t[2] - t[0]) * v;
 }
 
-/// A point with integer coordinates from 0 to `most`.
+/// A point with integer coordinates from 0 to `most`. As everywhere here, braces are evaluated from left to right.
 Vector3d lattice_point(random_source& random, std::uint32_t most) {
     const auto coordinate = [&] { return static_cast<double>(random.below(most + 1)); };
-    // Braces are evaluated from left to right.
     return Vector3d{coordinate(), coordinate(), coordinate()};
 }
 triangle lattice_triangle(random_source& random, std::uint32_t most) {
     return {lattice_point(random, most), lattice_point(random, most), lattice_point(random, most)};
 }
 pair lattice_pair(random_source& random, std::uint32_t most) {
-    const triangle a = lattice_triangle(random, most);
-    return {a, lattice_triangle(random, most)};
+    return {lattice_triangle(random, most), lattice_triangle(random, most)};
 }
 
 /// The second triangle lies in the plane of the first, up to rounding and one unit in the last place.

@@ -49,9 +49,6 @@ struct view_plane {
         scale[up] = height / length[up];
     }
 
-    /// Whether there is no room for another panel beside this one.
-    [[nodiscard]] bool is_wide() const { return width > panel_side; }
-
     /// Pixels from the left edge of the panel, and from its upper edge.
     [[nodiscard]] double x(double value) const { return (value - least[across]) * scale[across]; }
     [[nodiscard]] double y(double value) const { return height - (value - least[up]) * scale[up]; }
@@ -100,7 +97,7 @@ void add_axes(svg_picture& to, const view_plane& view) {
 }
 
 /// The rectangle of a box, at least one pixel wide and high so that it stays visible.
-svg_box shown(const view_plane& view, const aabb::box& b) {
+svg_box rectangle_of(const view_plane& view, const aabb::box& b) {
     const double left = view.x(b.min[view.across]);
     const double top = view.y(b.max[view.up]);
     return {left, top, std::max(1.0, view.x(b.max[view.across]) - left), std::max(1.0, view.y(b.min[view.up]) - top)};
@@ -111,7 +108,7 @@ void add_boxes(svg_picture& to, const view_plane& view, const picture_data::fram
     double area = 0;
     svg_picture boxes;
     for (const std::size_t object : drawing.drawn) {
-        const svg_box r = shown(view, frame.boxes[object]);
+        const svg_box r = rectangle_of(view, frame.boxes[object]);
         area += r.width * r.height;
         boxes.rectangle(drawing.overlapping[object] != 0 ? "overlapping" : "apart", r);
     }
@@ -119,9 +116,11 @@ void add_boxes(svg_picture& to, const view_plane& view, const picture_data::fram
     const double depth = area / (view.width * view.height);
     to.group(boxes, {{"fill-opacity", std::clamp(0.6 / depth, 0.03, 0.35)},
                      {"stroke-opacity", std::clamp(1.5 / depth, 0.1, 0.8)}});
-    for (std::size_t i = 0; i < drawing.huge; ++i) to.rectangle("huge", shown(view, frame.boxes[drawing.drawn[i]]));
+    for (std::size_t i = 0; i < drawing.huge; ++i)
+        to.rectangle("huge", rectangle_of(view, frame.boxes[drawing.drawn[i]]));
 }
 
+/// The drawing of one frame, with its axes and paths.
 svg_picture panel_of(const view_plane& view, std::string_view title, const picture_data::frame& frame,
                      const frame_drawing& drawing, const std::vector<polylines>& paths) {
     svg_picture panel;
@@ -202,6 +201,7 @@ void sample(std::vector<std::size_t>& objects, std::size_t huge) {
     objects.resize(most_boxes);
 }
 
+/// Finds the overlapping boxes of a frame by CGAL, and selects the boxes to draw.
 frame_drawing drawing_of(const picture_data::frame& frame) {
     frame_drawing drawing;
     const std::unique_ptr<aabb::global_stage> search = aabb::make_box_engine("cgal");
@@ -225,13 +225,13 @@ frame_drawing drawing_of(const picture_data::frame& frame) {
     return drawing;
 }
 
-std::vector<std::string> caption_lines(const picture_data& seen, const picture_caption& caption, const view_plane& view,
+std::vector<std::string> caption_lines(const picture_data& data, const picture_caption& caption, const view_plane& view,
                                        bool is_sampled) {
     std::vector<std::string> lines;
     for (const std::string& text : {caption.summary, caption.parameters})
         for (const std::string& line : lines_of(text, line_length)) lines.push_back(line);
-    lines.push_back(fmt::format("{}, {}; {}", counted(seen.first().boxes.size(), "object"),
-                                counted(seen.frames(), "frame"), displacement_text(seen)));
+    lines.push_back(fmt::format("{}, {}; {}", counted(data.first().boxes.size(), "object"),
+                                counted(data.frames(), "frame"), displacement_text(data)));
     lines.push_back(fmt::format(
         "seen along {}: {} across, {} upwards{}{}", name_of_axis(3 - view.across - view.up), name_of_axis(view.across),
         name_of_axis(view.up), view.equal_scales ? "" : ", each with a scale of its own",
@@ -255,28 +255,28 @@ svg_picture legend(std::size_t paths, bool has_huge) {
 
 }  // namespace
 
-std::string picture_of(const picture_data& seen, const picture_caption& caption) {
-    const view_plane view(seen.world(), seen.sides());
-    const frame_drawing first = drawing_of(seen.first());
-    const frame_drawing last = drawing_of(seen.last());
+std::string picture_of(const picture_data& data, const picture_caption& caption) {
+    const view_plane view(data.world(), data.sides());
+    const frame_drawing first = drawing_of(data.first());
+    const frame_drawing last = drawing_of(data.last());
     const bool is_sampled = std::max(first.present, last.present) > most_boxes;
-
     svg_picture picture;
     picture.style(style);
     picture.text("name", {left_margin, 32}, caption.name);
     double y = 58;
-    for (const std::string& line : caption_lines(seen, caption, view, is_sampled)) {
+    for (const std::string& line : caption_lines(data, caption, view, is_sampled)) {
         picture.text("", {left_margin, y}, line);
         y += line_height;
     }
-    const std::vector<polylines> paths = clear_paths(view, seen.paths());
+    const std::vector<polylines> paths = clear_paths(view, data.paths());
     picture.put({left_margin, y + 6}, legend(paths.size(), first.huge + last.huge > 0));
     const place left = {left_margin, y + 46};
     const double panel_height = view.height + bottom_margin;
-    const place right = view.is_wide() ? place{left.x, left.y + panel_height + gap}
-                                       : place{left.x + panel_side + left_margin + gap, left.y};
-    picture.put(left, panel_of(view, "first frame (0)", seen.first(), first, {}));
-    picture.put(right, panel_of(view, fmt::format("last frame ({})", seen.frames() - 1), seen.last(), last, paths));
+    // There is no room for another panel beside a wide one.
+    const place right = view.width > panel_side ? place{left.x, left.y + panel_height + gap}
+                                                : place{left.x + panel_side + left_margin + gap, left.y};
+    picture.put(left, panel_of(view, "first frame (0)", data.first(), first, {}));
+    picture.put(right, panel_of(view, fmt::format("last frame ({})", data.frames() - 1), data.last(), last, paths));
     return picture.file(2 * (panel_side + left_margin + gap), std::round(right.y + panel_height + 16), 13);
 }
 

@@ -63,7 +63,7 @@ private:
 };
 
 /// "mean displacement per frame: 0.1 of the mean extent, 0.063 of the mean spacing"
-[[nodiscard]] std::string displacement_text(const picture_data& seen);
+[[nodiscard]] std::string displacement_text(const picture_data& data);
 
 /// The text above the drawing.
 struct picture_caption {
@@ -74,7 +74,7 @@ struct picture_caption {
 
 /// The first and the last frame as SVG, projected along the narrowest axis of the scene; overlapping boxes have another
 /// colour. Of many boxes, only the largest and a sample of the others are drawn.
-/// @param seen at least one frame
-[[nodiscard]] std::string picture_of(const picture_data& seen, const picture_caption& caption);
+/// @param data of at least one frame
+[[nodiscard]] std::string picture_of(const picture_data& data, const picture_caption& caption);
 
 }  // namespace aabblab

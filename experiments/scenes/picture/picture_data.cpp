@@ -80,10 +80,10 @@ std::optional<double> picture_data::displacement_over_spacing() const {
     return displacement_over(mean_spacing(sides(), last_.boxes.size()));
 }
 
-std::string displacement_text(const picture_data& seen) {
+std::string displacement_text(const picture_data& data) {
     const auto shown = [](std::optional<double> value) { return value ? fmt::format("{:.3g}", *value) : "-"; };
     return fmt::format("mean displacement per frame: {} of the mean extent, {} of the mean spacing",
-                       shown(seen.displacement_over_extent()), shown(seen.displacement_over_spacing()));
+                       shown(data.displacement_over_extent()), shown(data.displacement_over_spacing()));
 }
 
 }  // namespace aabblab

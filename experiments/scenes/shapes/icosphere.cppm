@@ -30,18 +30,10 @@ private:
     // Cyclic permutations of (0, ±1, ±golden ratio).
     [[nodiscard]] static std::array<Eigen::Vector3d, 12> corners() {
         const double g = (1 + std::sqrt(5.0)) / 2;
-        return {{{-1, g, 0},
-                 {1, g, 0},
-                 {-1, -g, 0},
-                 {1, -g, 0},
-                 {0, -1, g},
-                 {0, 1, g},
-                 {0, -1, -g},
-                 {0, 1, -g},
-                 {g, 0, -1},
-                 {g, 0, 1},
-                 {-g, 0, -1},
-                 {-g, 0, 1}}};
+        using point = Eigen::Vector3d;
+        return {point(-1, g, 0), point(1, g, 0), point(-1, -g, 0), point(1, -g, 0),
+                point(0, -1, g), point(0, 1, g), point(0, -1, -g), point(0, 1, -g),
+                point(g, 0, -1), point(g, 0, 1), point(-g, 0, -1), point(-g, 0, 1)};
     }
     static constexpr std::array<std::array<std::uint32_t, 3>, 20> faces = {
         {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
