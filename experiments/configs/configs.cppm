@@ -138,9 +138,9 @@ struct calibrated_costs {
     std::string instructions;  ///< the instruction set of the build, such as "AVX-512"
     aabb::cost_model costs;
 
-    /// Whether the costs apply to `here`: same version, processor and instruction set.
-    [[nodiscard]] bool applies_to(const calibrated_costs& here) const {
-        return version == here.version && processor == here.processor && instructions == here.instructions;
+    /// Whether the costs apply to `current`: same version, processor and instruction set.
+    [[nodiscard]] bool applies_to(const calibrated_costs& current) const {
+        return version == current.version && processor == current.processor && instructions == current.instructions;
     }
 };
 

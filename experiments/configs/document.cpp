@@ -84,7 +84,7 @@ int line_of_failed_assertion(std::string_view text) {
         return false;
     };
     std::vector<std::size_t> ends;  // line ends
-    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string_view::npos;) ends.push_back(++at);
+    for (std::size_t end = 0; (end = text.find('\n', end)) != std::string_view::npos;) ends.push_back(++end);
     const auto first = std::ranges::partition_point(ends, [&](std::size_t end) { return !fails(end); });
     return static_cast<int>(first - ends.begin()) + 1;
 }
@@ -103,13 +103,13 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     const std::string triple(3, quote[0]);
     const bool lines = text.substr(begin).starts_with(triple);
     const std::string_view closing = lines ? triple : quote;
-    for (std::size_t at = begin + closing.size(); at < text.size(); ++at) {
-        if (text[at] == '\\' && quote == "\"")
-            ++at;
-        else if (text.substr(at).starts_with(closing))
-            return end_of_quotes(text, at + closing.size(), lines ? 2 : 0) - 1;
-        else if (text[at] == '\n' && !lines)
-            return at - 1;
+    for (std::size_t i = begin + closing.size(); i < text.size(); ++i) {
+        if (text[i] == '\\' && quote == "\"")
+            ++i;
+        else if (text.substr(i).starts_with(closing))
+            return end_of_quotes(text, i + closing.size(), lines ? 2 : 0) - 1;
+        else if (text[i] == '\n' && !lines)
+            return i - 1;
     }
     return text.size();
 }
@@ -119,14 +119,14 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
 int line_of_long_key(std::string_view text) {
     const auto joins = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '\t'; };
     std::size_t parts = 1;
-    for (std::size_t at = 0; at < text.size(); ++at) {
-        const char c = text[at];
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
         if (c == '.') {
-            if (++parts > most_parts) return static_cast<int>(std::ranges::count(text.substr(0, at), '\n')) + 1;
+            if (++parts > most_parts) return static_cast<int>(std::ranges::count(text.substr(0, i), '\n')) + 1;
         } else if (c == '"' || c == '\'') {
-            at = end_of_string(text, at);
+            i = end_of_string(text, i);
         } else if (c == '#') {
-            at = std::min(text.find('\n', at), text.size()) - 1;
+            i = std::min(text.find('\n', i), text.size()) - 1;
         } else if (!joins(static_cast<unsigned char>(c))) {
             parts = 1;
         }
@@ -141,24 +141,24 @@ const node* node::find(std::string_view wanted) const {
     return entry == items.end() ? nullptr : &*entry;
 }
 
-document::document(const std::string& as_written, std::string file, std::size_t most, std::string_view what)
+document::document(const std::string& as_written, std::string file, std::size_t most, std::string_view noun)
     : file_(std::move(file)) {
     const std::string text = without_returns_at_ends(as_written);
     if (text.size() > most)
         throw aabb::input_error(file_ + " is longer than " + std::to_string(most) + " bytes, the limit for " +
-                                std::string(what));
+                                std::string(noun));
     if (const int line = line_of_long_key(text))
         fail(line, "a key has more than " + std::to_string(most_parts) + " parts");
     try {
         root_ = to_node(toml::parse(text, file_));
         root_.line = 1;
     } catch (const toml::parse_error& error) {
-        const toml::source_position& at = error.source().begin;
+        const toml::source_position& position = error.source().begin;
         if (error.description().find("redefine existing string 'compose'") != std::string_view::npos)
-            fail(static_cast<int>(at.line),
+            fail(static_cast<int>(position.line),
                  "compose is already a name, so it cannot be a table too; write [[compose]] with auto = true in place "
                  "of compose = \"auto\"");
-        throw aabb::input_error(file_ + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
+        throw aabb::input_error(file_ + ":" + std::to_string(position.line) + ":" + std::to_string(position.column) +
                                 ": this is not TOML: " + std::string(error.description()));
     } catch (const failed_toml_assertion&) {
         fail(line_of_failed_assertion(text), "this is not TOML");
@@ -173,10 +173,10 @@ void document::fail_type(const std::string& key, const node& value, std::string_
     fail(value.line, key + " is " + std::string(name_of(value.kind)) + "; expected " + std::string(expected));
 }
 
-void document::require_keys(const node& table, const std::string& of, const std::vector<std::string>& known) const {
+void document::require_keys(const node& table, const std::string& owner, const std::vector<std::string>& known) const {
     for (const node& entry : table.items)
         if (std::ranges::find(known, entry.key) == known.end())
-            fail(entry.line, aabb::unknown_name("key" + of, entry.key, known));
+            fail(entry.line, aabb::unknown_name("key" + owner, entry.key, known));
 }
 
 void document::require_table(const std::string& key, const node& value) const {
@@ -246,29 +246,29 @@ std::vector<located_text> document::alternatives_of(const std::string& key, cons
     if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");
     if (value.items.empty()) fail(value.line, key + " is an empty list; expected at least one value");
     std::vector<located_text> values;
-    std::set<std::string_view> seen;
+    std::set<std::string_view> distinct;
     for (const node& item : value.items) {
         if (!item.is_scalar()) fail_type("an entry of " + key, item, "a value");
-        if (!seen.insert(item.text).second) fail(item.line, key + " lists '" + item.text + "' twice");
+        if (!distinct.insert(item.text).second) fail(item.line, key + " lists '" + item.text + "' twice");
         values.push_back({item.text, item.line});
     }
     return values;
 }
 
-void document::require_small_product(int line, std::string_view of, std::span<const std::size_t> factors,
+void document::require_small_product(int line, std::string_view noun, std::span<const std::size_t> factors,
                                      std::size_t more) const {
     auto products = static_cast<double>(more);
     products += std::accumulate(factors.begin(), factors.end(), 1.0, std::multiplies{});
     if (products > static_cast<double>(most_products))
-        fail(line, "the lists multiply to more than " + std::to_string(most_products) + " " + std::string(of) +
+        fail(line, "the lists multiply to more than " + std::to_string(most_products) + " " + std::string(noun) +
                        ", the limit for a config");
 }
 
-std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view what) {
+std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view noun) {
     if (!std::filesystem::exists(file))
-        throw aabb::input_error(file.string() + " does not exist; expected " + std::string(what));
+        throw aabb::input_error(file.string() + " does not exist; expected " + std::string(noun));
     if (std::filesystem::is_directory(file))
-        throw aabb::input_error(file.string() + " is a folder; expected " + std::string(what));
+        throw aabb::input_error(file.string() + " is a folder; expected " + std::string(noun));
     return text_of_file(file, most);
 }
 

@@ -32,10 +32,10 @@ struct located_text {
 class document {
 public:
     /// @param most the maximum length in bytes
-    /// @param what the kind of document, for messages
+    /// @param noun the kind of document, for messages
     /// @throws aabb::input_error with line and column on malformed TOML, too long a text or too deeply nested keys.
     document(const std::string& text, std::string file, std::size_t most = longest_config,
-             std::string_view what = "a config");
+             std::string_view noun = "a config");
 
     [[nodiscard]] const node& root() const { return root_; }
     [[nodiscard]] const std::string& file() const { return file_; }
@@ -57,8 +57,9 @@ public:
         }
     }
 
-    /// Rejects unknown keys of a table. `of` names what the keys belong to, as in " of [measure]".
-    void require_keys(const node& table, const std::string& of, const std::vector<std::string>& known) const;
+    /// Rejects unknown keys of a table.
+    /// @param owner follows "key" in messages, as in " of [measure]"
+    void require_keys(const node& table, const std::string& owner, const std::vector<std::string>& known) const;
     void require_table(const std::string& key, const node& value) const;
     /// The value of a required key; without it, the table is rejected with the sentence.
     [[nodiscard]] const node& required(const node& table, std::string_view key, const std::string& sentence) const;
@@ -75,10 +76,10 @@ public:
     /// @returns the names in it; nullopt if the list has no such entry
     [[nodiscard]] std::optional<std::vector<located_text>> take_others(node& list) const;
     /// Rejects a product that is too large before it is expanded, as a short config can describe an enormous one.
-    /// @param of the noun for the products in the message, as in "compositions"
+    /// @param noun the noun for the products in the message, as in "compositions"
     /// @param factors the lengths of the lists
     /// @param more the number of products that exist already
-    void require_small_product(int line, std::string_view of, std::span<const std::size_t> factors,
+    void require_small_product(int line, std::string_view noun, std::span<const std::size_t> factors,
                                std::size_t more) const;
 
 private:
@@ -108,9 +109,9 @@ private:
 using alternatives = std::pair<std::string, std::vector<located_text>>;
 
 /// Reads a file up to one byte beyond `most`, so that the caller can detect that it is too long.
-/// @param what the kind of file, for messages
+/// @param noun the kind of file, for messages
 /// @throws aabb::input_error if the file does not exist, is a folder or cannot be read.
-[[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view what);
+[[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most, std::string_view noun);
 
 /// The numbers of alternatives, with that of a further key, as factors of a product.
 [[nodiscard]] std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys, std::size_t further);

@@ -13,10 +13,10 @@ struct written_choice {
     Choice& choice;
 };
 template <class Choice>
-std::string written(const written_choice<Choice>& from) {
+std::string field_text(const written_choice<Choice>& from) {
     return to_text(from.choice);
 }
-bool taken(const written_choice<aabb::strategy_choice>& to, const std::string& text) {
+bool parse_field(const written_choice<aabb::strategy_choice>& to, const std::string& text) {
     to.choice = aabb::parse_strategy(text);
     return true;
 }

@@ -26,11 +26,11 @@ std::array<std::string, 2> different_sizes(double a, double b) {
     return {fmt::format("{:.0f} bytes", a), fmt::format("{:.0f} bytes", b)};
 }
 
-void require_memory(const std::string& what, double bytes) {
+void require_memory(const std::string& work, double bytes) {
     const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
     if (bytes <= memory) return;
     const auto [needed, available] = different_sizes(bytes, memory);
-    throw aabb::input_error(what + " would take " + needed + " of memory, but this machine has " + available);
+    throw aabb::input_error(work + " would take " + needed + " of memory, but this machine has " + available);
 }
 
 std::size_t size_of_file(const std::filesystem::path& file) {

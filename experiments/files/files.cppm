@@ -59,7 +59,7 @@ private:
 
 /// Rejects work that does not fit into the machine's memory before anything is allocated.
 /// @throws aabb::input_error that names the work and its size.
-void require_memory(const std::string& what, double bytes);
+void require_memory(const std::string& work, double bytes);
 
 /// The file's extension in lower case, which selects the mesh format.
 [[nodiscard]] std::string mesh_ending_of(const std::filesystem::path& file);

@@ -25,13 +25,13 @@ chunk take_chunk(const file_text& file, std::string_view& rest) {
     if (rest.size() < chunk_header_bytes)
         file.fail("is not a glTF file: it ends in the header of the chunk at byte " + offset);
     const std::size_t length = u32_at(rest, 0);
-    const chunk taken{u32_at(rest, 4), rest.substr(chunk_header_bytes, length)};
-    if (taken.bytes.size() != length)
+    const chunk first{u32_at(rest, 4), rest.substr(chunk_header_bytes, length)};
+    if (first.bytes.size() != length)
         file.fail(
             fmt::format("is not a glTF file: the chunk at byte {} announces {} bytes, but the file has {} of them",
-                        offset, length, taken.bytes.size()));
+                        offset, length, first.bytes.size()));
     rest.remove_prefix(chunk_header_bytes + length);
-    return taken;
+    return first;
 }
 
 /// The value of a base64 digit; -1 for any other character.

@@ -63,14 +63,14 @@ public:
     }
 
     /// Counts parts of the file that are not read, by their name in the file.
-    void skip(std::string_view what, std::string_view name, std::size_t count) {
+    void skip(std::string_view kind, std::string_view name, std::size_t count) {
         constexpr std::size_t most_names = 8;
         auto& skipped = loaded_.report.skipped;
         const auto part = std::ranges::find(skipped, name, &skipped_parts::name);
         if (part != skipped.end())
             part->count += count;
         else if (skipped.size() < most_names)
-            skipped.push_back({what, std::string(name), count});
+            skipped.push_back({kind, std::string(name), count});
         else
             loaded_.report.skipped_others += count;
     }

@@ -80,9 +80,9 @@ property read_property(text_scanner& in, const element& owner) {
 
 /// Requires that an element has each necessary property exactly once.
 void require_roles(const text_scanner& in, const element& e) {
-    const auto require = [&](role wanted, const std::string& what) {
+    const auto require = [&](role wanted, const std::string& noun) {
         if (std::ranges::count(e.properties, wanted, &property::meaning) != 1)
-            in.fail("the element " + e.name + " must have one " + what);
+            in.fail("the element " + e.name + " must have one " + noun);
     };
     if (e.name == "vertex") {
         require(role::x, "property x");
@@ -97,12 +97,12 @@ void require_roles(const text_scanner& in, const element& e) {
 /// of the header end in carriage returns alone, a following line feed already belongs to the binary values.
 std::size_t end_of_header(std::string_view bytes) {
     constexpr std::string_view last = "end_header";
-    const auto is_line_end = [&](std::size_t at) { return bytes[at] == '\n' || bytes[at] == '\r'; };
+    const auto is_line_end = [&](std::size_t i) { return bytes[i] == '\n' || bytes[i] == '\r'; };
     const std::size_t first_end = std::min(bytes.find_first_of("\r\n"), bytes.size());
     const bool of_returns = bytes.substr(first_end, 1) == "\r" && bytes.substr(first_end + 1, 1) != "\n";
-    for (std::size_t at = bytes.find(last); at != std::string_view::npos; at = bytes.find(last, at + 1)) {
-        if (at == 0 || !is_line_end(at - 1)) continue;
-        const std::size_t end = bytes.find_first_not_of(" \t", at + last.size());
+    for (std::size_t i = bytes.find(last); i != std::string_view::npos; i = bytes.find(last, i + 1)) {
+        if (i == 0 || !is_line_end(i - 1)) continue;
+        const std::size_t end = bytes.find_first_not_of(" \t", i + last.size());
         if (end == std::string_view::npos || !is_line_end(end)) continue;
         return end + (!of_returns && bytes.substr(end).starts_with("\r\n") ? 2 : 1);
     }
@@ -224,8 +224,8 @@ private:
         bytes_.remove_prefix(bytes_of(type));
         return value;
     }
-    [[noreturn]] void fail(const std::string& what) const {
-        reject(file_, element_->name + " " + std::to_string(index_) + " " + what);
+    [[noreturn]] void fail(const std::string& sentence) const {
+        reject(file_, element_->name + " " + std::to_string(index_) + " " + sentence);
     }
 
     std::string file_;

@@ -232,20 +232,20 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
 
 bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles) {
     link();
-    std::size_t left = corners_.size();
+    std::size_t remaining = corners_.size();
     const auto cut_corner = [&](std::uint32_t i) {
         const corner& b = corners_[i];
         corner& a = corners_[b.before];
         corner& c = corners_[b.next];
-        triangles[triangles.size() + 2 - left] = {a.vertex, b.vertex, c.vertex};
+        triangles[triangles.size() + 2 - remaining] = {a.vertex, b.vertex, c.vertex};
         a.next = b.next;
         c.before = b.before;
         a.kind = c.kind = ear::unknown;
-        --left;
+        --remaining;
     };
     // Needles are cut first, as they may block ears. Then a corner can become an ear only when a neighbour is cut.
     std::uint32_t at = 0;
-    for (std::size_t passed = 0; left > 3 && passed < left;)
+    for (std::size_t passed = 0; remaining > 3 && passed < remaining;)
         if (is_needle(corners_[at])) {
             cut_corner(at);
             at = corners_[at].before;
@@ -254,10 +254,10 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
             at = corners_[at].next;
             ++passed;
         }
-    for (std::size_t passed = 0; left > 3;) {
+    for (std::size_t passed = 0; remaining > 3;) {
         corner& b = corners_[at];
         // If no clear ear is left, the second round also cuts touched ears and corners in the middle of an edge.
-        const bool is_second_round = passed >= left;
+        const bool is_second_round = passed >= remaining;
         const int turned = turn_at(b);
         if (turned > 0 && (b.kind == ear::unknown || (is_second_round && b.kind == ear::touched))) b.kind = kind_of(b);
         const bool is_ready = turned == 0  ? is_second_round || is_needle(b)
@@ -270,7 +270,7 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
             passed = 0;
         } else {
             at = b.next;
-            if (++passed > 2 * left) return false;
+            if (++passed > 2 * remaining) return false;
         }
     }
     const corner& last = corners_[at];

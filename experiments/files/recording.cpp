@@ -44,14 +44,14 @@ public:
 
     bool next(std::vector<aabb::box>& boxes) override {
         if (frame_ == frames_) return false;
-        const std::string here = "frame " + std::to_string(frame_);
-        if (!file_.try_read(records_.data(), records_.size() * sizeof(box_record))) reject(name_, "ends in " + here);
+        const std::string place = "frame " + std::to_string(frame_);
+        if (!file_.try_read(records_.data(), records_.size() * sizeof(box_record))) reject(name_, "ends in " + place);
         boxes.resize(records_.size());
         std::ranges::transform(records_, boxes.begin(), unpacked);
         try {
             aabb::require_valid(boxes);
         } catch (const aabb::input_error& error) {
-            reject(name_, here + ": " + error.what());
+            reject(name_, place + ": " + error.what());
         }
         ++frame_;
         return true;

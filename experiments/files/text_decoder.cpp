@@ -50,8 +50,8 @@ bool is_plain(std::string_view bytes) {
     const std::size_t first = bytes.find('\r');
     if (first == std::string_view::npos) return true;
     if (bytes.substr(0, first).find('\n') != std::string_view::npos) return true;
-    const std::size_t behind = bytes.find_first_not_of('\r', first);
-    return behind != std::string_view::npos && bytes[behind] == '\n';
+    const std::size_t next = bytes.find_first_not_of('\r', first);
+    return next != std::string_view::npos && bytes[next] == '\n';
 }
 
 }  // namespace
@@ -191,8 +191,8 @@ decoded_text decoded(std::string bytes) {
     constexpr std::size_t piece = 65'536;
     text_decoder decoder;
     decoded_text result;
-    for (std::size_t at = 0; at < bytes.size(); at += piece)
-        decoder.add(std::string_view(bytes).substr(at, piece), result.text);
+    for (std::size_t offset = 0; offset < bytes.size(); offset += piece)
+        decoder.add(std::string_view(bytes).substr(offset, piece), result.text);
     decoder.finish(result.text);
     result.problem = decoder.problem();
     return result;

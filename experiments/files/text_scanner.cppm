@@ -74,26 +74,26 @@ public:
     [[noreturn]] void fail(const std::string& sentence) const {
         reject(file_ + ":" + std::to_string(number_), sentence);
     }
-    [[noreturn]] void expected(const std::string& what, std::string_view actual) const {
-        fail("expected " + what + ", found " + (actual.empty() ? "the end of the line" : in_quotes(actual)));
+    [[noreturn]] void expected(const std::string& noun, std::string_view actual) const {
+        fail("expected " + noun + ", found " + (actual.empty() ? "the end of the line" : in_quotes(actual)));
     }
     /// Reports a file that ends too early.
     [[noreturn]] void ends(const std::string& where) const { reject(file_, "ends " + where); }
 
     /// Parses an integer in the range of its type.
     template <std::integral Whole>
-    [[nodiscard]] Whole whole(const std::string& what) {
+    [[nodiscard]] Whole whole(const std::string& noun) {
         const std::string_view text = word();
         const read_number<Whole> number(text);
-        if (!number.is_number || number.out_of_range) expected(what, text);
+        if (!number.is_number || number.out_of_range) expected(noun, text);
         return number.value;
     }
 
     /// Parses a finite number, correctly rounded to double.
-    [[nodiscard]] double number(const std::string& what) {
+    [[nodiscard]] double number(const std::string& noun) {
         const std::string_view text = word();
         const read_number<double> number(text);
-        if (!number.is_number) expected(what, text);
+        if (!number.is_number) expected(noun, text);
         if (!std::isfinite(number.value)) fail(in_quotes(text) + " is not a finite number");
         return number.value;
     }

@@ -46,63 +46,63 @@ struct all_digits {
 
 // Formatting of fields; a table adds overloads for types of its own.
 
-[[nodiscard]] inline std::string written(const std::string& text) {
+[[nodiscard]] inline std::string field_text(const std::string& text) {
     return text;
 }
 template <std::integral Number>
-[[nodiscard]] std::string written(Number number) {
+[[nodiscard]] std::string field_text(Number number) {
     return std::to_string(number);
 }
-[[nodiscard]] inline std::string written(double number) {
+[[nodiscard]] inline std::string field_text(double number) {
     std::array<char, 64> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed, 6).ptr;
     return {text.data(), end};
 }
 template <class Value>
-[[nodiscard]] std::string written(const one_of_words<Value>& word) {
+[[nodiscard]] std::string field_text(const one_of_words<Value>& word) {
     return std::string(word.words[static_cast<std::size_t>(word.value)]);
 }
 template <class Number>
-[[nodiscard]] std::string written(const all_digits<Number>& number) {
+[[nodiscard]] std::string field_text(const all_digits<Number>& number) {
     return aabb::shortest(number.value);
 }
 template <class T>
-[[nodiscard]] std::string written(const std::optional<T>& value) {
-    return value ? written(*value) : "";
+[[nodiscard]] std::string field_text(const std::optional<T>& value) {
+    return value ? field_text(*value) : "";
 }
 
 /// @returns false if the field is not a valid value
-[[nodiscard]] inline bool taken(std::string& to, const std::string& text) {
-    to = text;
+[[nodiscard]] inline bool parse_field(std::string& value, const std::string& text) {
+    value = text;
     return true;
 }
 template <class Number>
     requires std::is_arithmetic_v<Number>
-[[nodiscard]] bool taken(Number& to, const std::string& text) {
+[[nodiscard]] bool parse_field(Number& value, const std::string& text) {
     const char* end = text.data() + text.size();
-    if (std::from_chars(text.data(), end, to) != std::from_chars_result{end, std::errc{}}) return false;
-    if constexpr (std::is_floating_point_v<Number>) return std::isfinite(to);
+    if (std::from_chars(text.data(), end, value) != std::from_chars_result{end, std::errc{}}) return false;
+    if constexpr (std::is_floating_point_v<Number>) return std::isfinite(value);
     return true;
 }
 [[nodiscard]] inline double number_or_nan(const std::string& text) {
     double number = 0;
-    return taken(number, text) ? number : std::nan("");
+    return parse_field(number, text) ? number : std::nan("");
 }
 template <class Value>
-[[nodiscard]] bool taken(const one_of_words<Value>& to, const std::string& text) {
-    const auto match = std::ranges::find(to.words, text);
-    if (match == to.words.end()) return false;
-    to.value = static_cast<Value>(match - to.words.begin());
+[[nodiscard]] bool parse_field(const one_of_words<Value>& word, const std::string& text) {
+    const auto match = std::ranges::find(word.words, text);
+    if (match == word.words.end()) return false;
+    word.value = static_cast<Value>(match - word.words.begin());
     return true;
 }
 template <class Number>
-[[nodiscard]] bool taken(const all_digits<Number>& to, const std::string& text) {
-    return taken(to.value, text) && to.value > 0;
+[[nodiscard]] bool parse_field(const all_digits<Number>& number, const std::string& text) {
+    return parse_field(number.value, text) && number.value > 0;
 }
 template <class T>
-[[nodiscard]] bool taken(std::optional<T>& to, const std::string& text) {
-    to.reset();
-    return text.empty() || taken(to.emplace(), text);
+[[nodiscard]] bool parse_field(std::optional<T>& value, const std::string& text) {
+    value.reset();
+    return text.empty() || parse_field(value.emplace(), text);
 }
 
 /// The description of valid values in messages.
@@ -129,7 +129,7 @@ template <class Row, class Columns>
 template <class Row, class Columns>
 [[nodiscard]] std::vector<std::string> fields_of(const Row& r, Columns columns) {
     std::vector<std::string> fields;
-    columns(r, [&](const std::string&, const auto& value) { fields.push_back(written(value)); });
+    columns(r, [&](const std::string&, const auto& value) { fields.push_back(field_text(value)); });
     return fields;
 }
 
@@ -159,17 +159,19 @@ template <class Row, class Columns, class OnRow>
     require_header(file, records[0], names_of<Row>(columns, absent));
     for (const auto& [fields, line] : records.subspan(1)) {
         const std::string place = file + ":" + std::to_string(line) + ": ";
-        std::size_t at = 0;
+        std::size_t next = 0;
         columns(rows.emplace_back(), [&](const std::string& name, auto&& value) {
             if (std::ranges::find(absent, name) != absent.end()) return;
-            if (at >= fields.size()) throw aabb::input_error(place + "the column " + name + " is missing");
-            if (!taken(value, fields[at]))
-                throw aabb::input_error(place + name + " must be " + expected_of(value) + ", not '" + fields[at] + "'");
-            if (name.ends_with("_ms") && fields[at].starts_with('-'))
-                throw aabb::input_error(place + name + " is a time, which is not below 0, as '" + fields[at] + "' is");
-            ++at;
+            if (next >= fields.size()) throw aabb::input_error(place + "the column " + name + " is missing");
+            if (!parse_field(value, fields[next]))
+                throw aabb::input_error(place + name + " must be " + expected_of(value) + ", not '" + fields[next] +
+                                        "'");
+            if (name.ends_with("_ms") && fields[next].starts_with('-'))
+                throw aabb::input_error(place + name + " is a time, which is not below 0, as '" + fields[next] +
+                                        "' is");
+            ++next;
         });
-        if (at != fields.size()) throw aabb::input_error(place + "there are more fields than columns");
+        if (next != fields.size()) throw aabb::input_error(place + "there are more fields than columns");
         on_row(rows.back(), line);
     }
     return rows;

@@ -29,7 +29,7 @@ public:
         return true;
     }
 
-    [[nodiscard]] std::size_t at() const { return at_; }
+    [[nodiscard]] std::size_t offset() const { return at_; }
 
 private:
     [[nodiscard]] bool next_is(std::string_view text) const { return text_.substr(at_).starts_with(text); }
@@ -94,7 +94,7 @@ csv_text read_csv(std::string_view text, const std::string& file) {
     csv_reader reader(text, file);
     for (csv_record record; reader.read(record); record = {}) {
         table.records.push_back(std::move(record));
-        table.bytes = reader.at();
+        table.bytes = reader.offset();
     }
     return table;
 }

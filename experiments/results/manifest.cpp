@@ -19,7 +19,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-const machine& here() {
+const machine& host() {
     static const machine detected = this_machine();
     return detected;
 }
@@ -31,15 +31,15 @@ json build() {
     return {{"version", AABBLAB_VERSION}, {"commit", AABBLAB_COMMIT},
             {"dirty", AABBLAB_DIRTY},     {"compiler", AABBLAB_COMPILER},
             {"flags", AABBLAB_FLAGS},     {"build_type", AABBLAB_BUILD_TYPE},
-            {"cpu", here().processor},    {"caches", here().caches},
+            {"cpu", host().processor},    {"caches", host().caches},
             {"engines", AABBLAB_ENGINES}, {"program", digest}};
 }
 
 /// Further properties of the machine, which may change during an experiment without invalidating its times.
 json surroundings() {
-    json properties{{"processors", here().processors}, {"kernel", here().kernel}, {"libc", here().libc}};
-    if (here().governor) properties["governor"] = *here().governor;
-    if (here().hypervisor) properties["hypervisor"] = *here().hypervisor;
+    json properties{{"processors", host().processors}, {"kernel", host().kernel}, {"libc", host().libc}};
+    if (host().governor) properties["governor"] = *host().governor;
+    if (host().hypervisor) properties["hypervisor"] = *host().hypervisor;
     return properties;
 }
 

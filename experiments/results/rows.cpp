@@ -69,11 +69,11 @@ constexpr auto columns_of_difference = [](auto& d, auto field) {
 };
 
 template <class Scene>
-std::string written(const parameters_of<Scene>& parameters) {
+std::string field_text(const parameters_of<Scene>& parameters) {
     return parameters_json(parameters.scene);
 }
-bool taken(const parameters_of<scene_choice>& to, const std::string& text) {
-    return set_parameters(to.scene, text);
+bool parse_field(const parameters_of<scene_choice>& parameters, const std::string& text) {
+    return set_parameters(parameters.scene, text);
 }
 std::string expected_of(const parameters_of<scene_choice>&) {
     return "a JSON object of settings";

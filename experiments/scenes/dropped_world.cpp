@@ -31,9 +31,9 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     for (std::uint32_t i = 0; i < c.balls; ++i) {
         const Eigen::Vector3d offset = {random.signed_unit(), random.signed_unit(), random.signed_unit()};
         const Eigen::Vector3d place = (lattice_cell(i, side).reverse() * gap + offset * perturbation) * extent + first;
-        const aabb::pose at = placed(centre_of(bounds), random_rotation(random), place);
+        const aabb::pose p = placed(centre_of(bounds), random_rotation(random), place);
         world.bodies.push_back(
-            {.mesh = 1, .position = at.translation, .velocity = {0, 0, -c.speed}, .mass = 1, .rotation = at.rotation});
+            {.mesh = 1, .position = p.translation, .velocity = {0, 0, -c.speed}, .mass = 1, .rotation = p.rotation});
     }
     return world;
 }

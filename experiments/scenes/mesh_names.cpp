@@ -74,10 +74,10 @@ struct ordered_name {
 ordered_name split_name(std::string_view name, const std::filesystem::path& folder) {
     constexpr std::string_view key = "order=";
     if (is_there(name, folder)) return {name, {}};
-    for (std::size_t at = name.find(key); at != std::string_view::npos; at = name.find(key, at + 1)) {
-        const std::string_view before = name.substr(0, at);
+    for (std::size_t begin = name.find(key); begin != std::string_view::npos; begin = name.find(key, begin + 1)) {
+        const std::string_view before = name.substr(0, begin);
         if (!before.ends_with(':') && !(before.ends_with(',') && before.find(':') != std::string_view::npos)) continue;
-        const std::string_view build = name.substr(at + key.size());
+        const std::string_view build = name.substr(begin + key.size());
         if (build.find_first_of(":,") != std::string_view::npos)
             throw aabb::input_error(
                 "order=BUILD must end the name of a mesh and takes no parameters, as in "

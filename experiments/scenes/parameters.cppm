@@ -21,8 +21,8 @@ template <class Config>
 enum class scaling : unsigned char { yes, no };
 
 template <class Config>
-[[nodiscard]] constexpr auto normalise_parameter(std::string_view what) {
-    return aabb::choice_parameter{"normalise", &Config::normalise, std::array<std::string_view, 2>{"yes", "no"}, what};
+[[nodiscard]] constexpr auto normalise_parameter(std::string_view help) {
+    return aabb::choice_parameter{"normalise", &Config::normalise, std::array<std::string_view, 2>{"yes", "no"}, help};
 }
 
 }  // namespace aabblab

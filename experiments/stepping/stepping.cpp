@@ -159,10 +159,10 @@ auto vector_at(std::span<double> values, std::size_t body) {
 aabb::triangle3d placed_mesh::triangle(std::uint32_t index) const {
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(pose.rotation.data());
     const aabb::triangle3f local = mesh->triangle(index);
-    const auto at = [&](int i) {
+    const auto corner = [&](int i) {
         return from_eigen(product(rotation, in_eigen(local[i])) + in_eigen(pose.translation));
     };
-    return {{at(0), at(1), at(2)}};
+    return {{corner(0), corner(1), corner(2)}};
 }
 
 contact_force force_of(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,

@@ -14,10 +14,10 @@ struct any_number {
     Number& value;
 };
 template <class Number>
-std::string written(const any_number<Number>& number) {
+std::string field_text(const any_number<Number>& number) {
     return fifteen_digits(number.value);
 }
-bool taken(const any_number<double>& to, const std::string& text) {
+bool parse_field(const any_number<double>& to, const std::string& text) {
     const char* const end = text.data() + text.size();
     return std::from_chars(text.data(), end, to.value) == std::from_chars_result{end, std::errc{}};
 }

@@ -124,16 +124,16 @@ private:
 /// Reads the CSV output of an external engine row by row.
 class engine_output {
 public:
-    /// @param what describes the rows in messages: "the pairs of the external engine 'NAME'"
+    /// @param noun the noun for the rows in messages: "the pairs of the external engine 'NAME'"
     /// @param columns the expected first line
     /// @throws aabb::input_error if the file is missing or its header differs. All member functions that read throw it.
-    engine_output(std::string what, const std::filesystem::path& file, std::string columns)
-        : what_(std::move(what)), columns_(std::move(columns)) {
+    engine_output(std::string noun, const std::filesystem::path& file, std::string columns)
+        : noun_(std::move(noun)), columns_(std::move(columns)) {
         if (!std::filesystem::exists(file))
-            throw aabb::input_error(what_ + " are missing: the engine did not write the file");
-        if (std::filesystem::is_directory(file)) throw aabb::input_error(what_ + " are a folder; expected a file");
-        in_.emplace(file, what_);
-        if (!next()) throw aabb::input_error(what_ + " are an empty file; expected the line " + columns_);
+            throw aabb::input_error(noun_ + " are missing: the engine did not write the file");
+        if (std::filesystem::is_directory(file)) throw aabb::input_error(noun_ + " are a folder; expected a file");
+        in_.emplace(file, noun_);
+        if (!next()) throw aabb::input_error(noun_ + " are an empty file; expected the line " + columns_);
         if (text_ != columns_) fail("expected the line " + columns_);
     }
 
@@ -153,9 +153,9 @@ public:
         return true;
     }
     /// A number below `end`.
-    [[nodiscard]] std::uint32_t number(std::size_t column, std::string_view noun, std::size_t end) const {
+    [[nodiscard]] std::uint32_t number(std::size_t column, std::string_view singular, std::size_t end) const {
         const std::optional<std::uint32_t> value = parsed<std::uint32_t>(column);
-        if (!value || *value >= end) fail("expected " + std::string(noun) + " below " + std::to_string(end));
+        if (!value || *value >= end) fail("expected " + std::string(singular) + " below " + std::to_string(end));
         return *value;
     }
     [[nodiscard]] double milliseconds(std::size_t column) const {
@@ -169,7 +169,7 @@ public:
         constexpr std::size_t longest_quote = 60;  // since a row may have any length
         std::string row(text_.substr(0, longest_quote));
         if (text_.size() > longest_quote) row += "…";
-        throw aabb::input_error(what_ + ", line " + std::to_string(in_->number()) + ", '" + row + "': " + sentence);
+        throw aabb::input_error(noun_ + ", line " + std::to_string(in_->number()) + ", '" + row + "': " + sentence);
     }
 
 private:
@@ -181,7 +181,7 @@ private:
         return error == std::errc() && rest == text.data() + text.size() ? std::optional(value) : std::nullopt;
     }
 
-    std::string what_, columns_;
+    std::string noun_, columns_;
     std::optional<line_stream> in_;
     std::string_view text_;
     std::vector<std::string_view> fields_;  // views into text_
@@ -309,9 +309,9 @@ private:
             pairs_.push_back(ahead_->pair);
         }
         sort_rows(pairs_);
-        if (const auto twice = std::ranges::adjacent_find(pairs_); twice != pairs_.end())
-            throw aabb::input_error(
-                fmt::format("the pairs of the {} contain {} {} twice in frame {}", name_, twice->a, twice->b, frame_));
+        if (const auto duplicate = std::ranges::adjacent_find(pairs_); duplicate != pairs_.end())
+            throw aabb::input_error(fmt::format("the pairs of the {} contain {} {} twice in frame {}", name_,
+                                                duplicate->a, duplicate->b, frame_));
         ++frame_;
     }
 

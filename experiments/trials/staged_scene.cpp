@@ -103,11 +103,12 @@ constexpr char frame_line = 'f';
 constexpr char last_line = 'l';
 
 /// @param seconds since the run began
-std::string line_of(const observation& seen, double seconds) {
+std::string line_of(const observation& partial, double seconds) {
     std::ostringstream text;
     text.precision(17);
-    text << frame_line << ' ' << seconds << ' ' << seen.build.wall_ms << ' ' << seen.frames << ' ' << seen.digest;
-    for (const phases* const took : {&seen.first, &seen.rest})
+    text << frame_line << ' ' << seconds << ' ' << partial.build.wall_ms << ' ' << partial.frames << ' '
+         << partial.digest;
+    for (const phases* const took : {&partial.first, &partial.rest})
         text << ' ' << took->update.wall_ms << ' ' << took->search.wall_ms << ' ' << took->detect.wall_ms;
     text << '\n';
     return text.str();
@@ -192,11 +193,11 @@ child_result staged_scene::in_child(const std::function<void(scene_frames&, cons
         seconds);
 }
 
-attempt staged_scene::run(const candidate& tested, std::size_t frames, double seconds, double left) {
+attempt staged_scene::run(const candidate& tested, std::size_t frames, double seconds, double remaining) {
     attempt result = attempt_from(
         in_child([&](scene_frames& scene, const output_sender& send) { send_run(scene, tested, frames, send); },
-                 std::min(seconds, left)));
-    result.is_out_of_time = result.end == ending::stopped && left <= seconds;
+                 std::min(seconds, remaining)));
+    result.is_out_of_time = result.end == ending::stopped && remaining <= seconds;
     return result;
 }
 

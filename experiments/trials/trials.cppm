@@ -305,9 +305,9 @@ public:
     [[nodiscard]] const scene_choice& choice() const { return choice_; }
     [[nodiscard]] const scene_frames& scene() const { return scene_; }
     /// Runs the first frames, for at most `seconds`.
-    /// @param left seconds that remain for all runs together
+    /// @param remaining seconds for all runs together
     [[nodiscard]] attempt run(const candidate& tested, std::size_t frames, double seconds,
-                              double left = std::numeric_limits<double>::infinity());
+                              double remaining = std::numeric_limits<double>::infinity());
     /// Does other work on the scene, from its first frame.
     [[nodiscard]] child_result in_child(const std::function<void(scene_frames&, const output_sender&)>& work,
                                         double seconds);

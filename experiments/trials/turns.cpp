@@ -47,10 +47,10 @@ interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate>
     const auto run = [&](std::size_t index, std::size_t round) {
         shown.at(finished_runs++);
         if (index == 0 && round == 0) return;
-        const double left = limits.to_run();
-        const stopping_rule rule{.grace = hopeless_ms / 1000, .share = greatest_share * left, .margin = 2};
+        const double remaining = limits.to_run();
+        const stopping_rule rule{.grace = hopeless_ms / 1000, .share = greatest_share * remaining, .margin = 2};
         const double limit = rule.longest(baseline_seconds);
-        attempt outcome = scene.run(candidates[index], result.frames, limit, left);
+        attempt outcome = scene.run(candidates[index], result.frames, limit, remaining);
         if (outcome.end == ending::stopped && !outcome.is_out_of_time)
             result.hopeless[index] = limit >= rule.hopeless_after(baseline_seconds);
         if (outcome.end == ending::done)

@@ -182,7 +182,7 @@ scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
     std::optional<aabb::posed_boxes> posed;
     if (scene.meshes()) posed.emplace(*scene.meshes());
     progress shown("validating " + choice.kind, scene.frames() * (candidates.size() + 1));
-    std::size_t done = 0;
+    std::size_t finished_runs = 0;
     for (std::size_t frame = 0; scene.next(); ++frame) {
         if (posed) scene.in_frame([&] { posed->update(scene.poses()); });
         if (posed)
@@ -190,10 +190,10 @@ scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
         else
             truth.play({scene.boxes(), {}, scene.arrivals(), scene.departures()});
         truth_tally.add(truth.pairs(), truth.contacts());
-        shown.at(++done);
+        shown.at(++finished_runs);
         for (validated_runner& r : runners) {
             r.compare_frame(frame, truth);
-            shown.at(++done);
+            shown.at(++finished_runs);
         }
         scene.take_results(truth.pairs(), truth.contacts());
     }

@@ -23,7 +23,7 @@ struct digit {
     std::size_t shift;
     std::uint32_t mask;
 
-    [[nodiscard]] std::size_t of(const auto& row) const { return words_of(row)[word] >> shift & mask; }
+    [[nodiscard]] std::size_t value_in(const auto& row) const { return words_of(row)[word] >> shift & mask; }
 };
 
 /// The digits that cover all bits in which the rows differ, most significant first.
@@ -59,7 +59,7 @@ void sort_by(std::span<const digit> digits, std::span<Row> rows) {
     if (digits.empty()) return;
     const digit d = digits.front();
     std::array<std::size_t, digit::values> ends{};
-    for (const Row& row : rows) ++ends[d.of(row)];
+    for (const Row& row : rows) ++ends[d.value_in(row)];
     std::array<std::size_t, digit::values> next{};
     std::exclusive_scan(ends.begin(), ends.end(), next.begin(), std::size_t{0});
     std::inclusive_scan(ends.begin(), ends.end(), ends.begin());
@@ -67,7 +67,7 @@ void sort_by(std::span<const digit> digits, std::span<Row> rows) {
     for (std::size_t value = 0; value <= d.mask; ++value)
         while (next[value] < ends[value]) {
             Row row = rows[next[value]];
-            for (std::size_t target = d.of(row); target != value; target = d.of(row))
+            for (std::size_t target = d.value_in(row); target != value; target = d.value_in(row))
                 std::swap(row, rows[next[target]++]);
             rows[next[value]++] = row;
         }

@@ -34,11 +34,11 @@ struct noise_sphere {
         m.vertices.push_back(waves.surface({0, 0, -1}));
 
         const std::uint32_t south = rings * around + 1;
-        const auto at = [=](std::uint32_t ring, std::uint32_t i) { return 1 + ring * around + i % around; };
-        for (std::uint32_t i = 0; i < around; ++i) m.triangles.push_back({0, at(0, i), at(0, i + 1)});
-        add_bands(m, rings - 1, around, at);
+        const auto index_of = [=](std::uint32_t ring, std::uint32_t i) { return 1 + ring * around + i % around; };
+        for (std::uint32_t i = 0; i < around; ++i) m.triangles.push_back({0, index_of(0, i), index_of(0, i + 1)});
+        add_bands(m, rings - 1, around, index_of);
         for (std::uint32_t i = 0; i < around; ++i)
-            m.triangles.push_back({at(rings - 1, i), south, at(rings - 1, i + 1)});
+            m.triangles.push_back({index_of(rings - 1, i), south, index_of(rings - 1, i + 1)});
         return m;
     }
 

@@ -47,11 +47,11 @@ inline void add_quad(aabb::mesh& m, std::uint32_t a, std::uint32_t b, std::uint3
 }
 
 /// Adds the bands of triangles between consecutive rings.
-/// @param at the index of a vertex by ring and position, which may be one past the last
-void add_bands(aabb::mesh& m, std::uint32_t bands, std::uint32_t around, auto at) {
+/// @param index_of the index of a vertex by ring and position, which may be one past the last
+void add_bands(aabb::mesh& m, std::uint32_t bands, std::uint32_t around, auto index_of) {
     for (std::uint32_t ring = 0; ring < bands; ++ring)
         for (std::uint32_t i = 0; i < around; ++i)
-            add_quad(m, at(ring, i), at(ring + 1, i), at(ring + 1, i + 1), at(ring, i + 1));
+            add_quad(m, index_of(ring, i), index_of(ring + 1, i), index_of(ring + 1, i + 1), index_of(ring, i + 1));
 }
 
 }  // namespace aabblab

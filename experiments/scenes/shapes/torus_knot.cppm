@@ -25,8 +25,8 @@ struct torus_knot {
         for (std::uint32_t ring = 0; ring < rings; ++ring)
             for (std::uint32_t i = 0; i < around; ++i)
                 m.vertices.push_back(surface(static_cast<double>(ring) / rings, static_cast<double>(i) / around));
-        const auto at = [=](std::uint32_t ring, std::uint32_t i) { return ring % rings * around + i % around; };
-        add_bands(m, rings, around, at);
+        const auto index_of = [=](std::uint32_t ring, std::uint32_t i) { return ring % rings * around + i % around; };
+        add_bands(m, rings, around, index_of);
         return m;
     }
 
