@@ -163,7 +163,7 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
         stiff_result result;
         {
             progress done("running " + std::string(study.name), 1000);
-            result = study.play(
+            result = study.run(
                 {quick, default_candidate(), [&](double share) { done.at(static_cast<std::size_t>(1000 * share)); }});
         }
         add_study(report, study, result);
