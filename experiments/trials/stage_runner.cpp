@@ -125,7 +125,7 @@ std::optional<double> stage_runner::box_inflation() const {
     double sum = 0;
     const std::uint32_t models = pipeline_->models();
     for (std::uint32_t m = 0; m < models; ++m) {
-        const std::optional<aabb::tree_validation> tree = stages_.local->survey(m);
+        const std::optional<aabb::tree_validation> tree = stages_.local->validate_tree(m);
         if (!tree) return std::nullopt;
         sum += tree->area_inflation;
     }

@@ -186,9 +186,9 @@ scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
     for (std::size_t frame = 0; scene.next(); ++frame) {
         if (posed) scene.in_frame([&] { posed->update(scene.poses()); });
         if (posed)
-            truth.play({posed->boxes(), scene.poses(), {}, {}});
+            truth.compute({posed->boxes(), scene.poses(), {}, {}});
         else
-            truth.play({scene.boxes(), {}, scene.arrivals(), scene.departures()});
+            truth.compute({scene.boxes(), {}, scene.arrivals(), scene.departures()});
         truth_tally.add(truth.pairs(), truth.contacts());
         shown.at(++finished_runs);
         for (validated_runner& r : runners) {

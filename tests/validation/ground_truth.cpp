@@ -33,13 +33,13 @@ TEST_CASE("the exact pairs are those of the objects that are there") {
         ground_truth exact(objects, nullptr);
         std::vector<box> boxes(objects, box{{0, 0, 0}, {1, 1, 1}});
         const std::vector<std::uint32_t> first = {2, 0};
-        exact.play({boxes, {}, first, {}});
+        exact.compute({boxes, {}, first, {}});
         REQUIRE(exact.pairs() == std::vector<index_pair>{{0, 2}});
         const std::vector<std::uint32_t> one = {1};
-        exact.play({boxes, {}, one, {}});
+        exact.compute({boxes, {}, one, {}});
         REQUIRE(exact.pairs() == std::vector<index_pair>{{0, 1}, {0, 2}, {1, 2}});
         const std::vector<std::uint32_t> none = {0};
-        exact.play({boxes, {}, {}, none});
+        exact.compute({boxes, {}, {}, none});
         REQUIRE(exact.pairs() == std::vector<index_pair>{{1, 2}});
         REQUIRE(exact.contacts().empty());
     }
@@ -54,7 +54,7 @@ TEST_CASE("the exact contacts follow meshes that deform, and do not depend on th
         const auto x = static_cast<float>(2 * i);
         apart.push_back({{x, 0, 0}, {x + 1, 1, 1}});
     }
-    exact.play({apart, poses, {}, {}});
+    exact.compute({apart, poses, {}, {}});
     REQUIRE(exact.pairs().empty());
     REQUIRE(exact.contacts().size() > 20);
     REQUIRE(exact.contacts() == contacts_by_brute_force(scene));
@@ -62,7 +62,7 @@ TEST_CASE("the exact contacts follow meshes that deform, and do not depend on th
     // Large enough to reach the third object.
     for (vec3f& v : scene.meshes[0].vertices)
         for (int k = 0; k < 3; ++k) v[k] *= 5;
-    exact.play({apart, poses, {}, {}});
+    exact.compute({apart, poses, {}, {}});
     REQUIRE(exact.contacts() != before);
     REQUIRE(exact.contacts().back().b == 2);
     REQUIRE(exact.contacts() == contacts_by_brute_force(scene));
