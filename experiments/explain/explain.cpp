@@ -58,7 +58,7 @@ std::string explained(scene_frames& scene, const candidate& tested) {
     if (scene.meshes())
         text += text_of("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
     std::vector<std::string> planned;
-    for (const aabb::stage_plan& plan : p.plans()) planned.push_back(to_text(plan.measures_table));
+    for (const aabb::stage_plan& plan : p.plans()) planned.push_back(to_text(plan.told));
     text += indented_all("planned from what was seen", planned);
     std::vector<std::string> left_out;
     for (const aabb::omission& absent : omissions_of(name, p.left_out())) left_out.push_back(to_text(absent));
@@ -72,7 +72,7 @@ void explain_candidate(staged_scene& scene, const candidate& tested, const time_
     // A candidate rejects only invalid input.
     if (work.end == ending::rejected) throw aabb::input_error(work.reason);
     print(indented("  ", text_of(tested.name)));
-    print(work.end == ending::done ? work.measures_table : indented("    ", "its bytes and plans: " + reason_of(work)));
+    print(work.end == ending::done ? work.reported : indented("    ", "its bytes and plans: " + reason_of(work)));
 }
 
 /// Lists parts of the config that do not apply to the scene.
@@ -98,7 +98,7 @@ void explain_measures(staged_scene& scene, const time_limits& limits) {
     unmeasured.rows = {{"objects", grouped(scene.scene().objects())},
                        {"frames", grouped(scene.scene().frames())},
                        {"all else", reason_of(work)}};
-    print((work.end == ending::done ? work.measures_table : to_text(unmeasured, output_width())) + "\n");
+    print((work.end == ending::done ? work.reported : to_text(unmeasured, output_width())) + "\n");
 }
 
 void print_selected(const std::vector<aabb::selected_strategy>& selected) {

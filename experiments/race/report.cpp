@@ -88,7 +88,7 @@ std::string measures_page(staged_scene& scene, double seconds) {
     const child_result measured = scene.in_child(
         [](scene_frames& run, const output_sender& send) { send(to_html(measures_table(measure_scene(run)))); },
         seconds);
-    return measured.end == ending::done ? measured.measures_table
+    return measured.end == ending::done ? measured.reported
                                         : "<p>There was no time to measure what the scene is like.</p>\n";
 }
 
