@@ -43,7 +43,7 @@ void require_standard_streams() {
         // open() returns the lowest free number, which is that of this stream.
         if (open("/dev/null", O_RDWR) != stream) throw aabb::input_error("/dev/null cannot be opened");
     }
-    if (is_closed) throw aabb::input_error("standard output is closed; nothing could be printed");
+    if (is_closed) throw aabb::input_error("standard output is closed, so nothing can be printed");
 }
 
 /// Prints the error after all earlier output.
@@ -64,7 +64,9 @@ int main_of(int argc, char** argv) {
     try {
         require_standard_streams();
         CLI::App program(
-            "AABB Lab: collision detection with axis-aligned bounding boxes, composed, proved and measured", "aabblab");
+            "AABB Lab composes methods of collision detection with axis-aligned bounding boxes, validates them, and "
+            "measures what they cost",
+            "aabblab");
         program.set_version_flag("--version", "aabblab " AABBLAB_VERSION, "Print the version");
         program.set_help_flag("-h,--help", "Print this help");
         program.require_subcommand(0, 1);
@@ -72,13 +74,14 @@ int main_of(int argc, char** argv) {
         add_commands({program, status});
         // Set last, so that commands do not inherit it.
         program.footer(
-            "With the script aabblab at the root of the source tree also:\n"
+            "Further commands of the script aabblab at the root of the source tree:\n"
             "  test                        Build and run every test\n"
-            "  data                        Fetch the real meshes\n"
-            "  benchmark                   Time each stage, elementary test and build alone\n"
-            "  paper                       The report of a reproduction as a PDF\n"
-            "aabblab COMMAND --help tells the options of a command.\n"
-            "Exit status: 0; 1 when a check failed, or collide --exit-code finds an intersection; 2 on bad input.");
+            "  data                        Download the mesh files of the experiments\n"
+            "  benchmark                   Time each stage, elementary test and build separately\n"
+            "  paper                       Write the report of a reproduction as a PDF\n"
+            "aabblab COMMAND --help lists the options of a command.\n"
+            "Exit status: 0 on success; 1 if a check fails, or collide --exit-code finds an intersection; 2 on invalid "
+            "input.");
         // Costs are loaded before every command except calibrate, which must run even if the file is malformed.
         program.parse_complete_callback([&] {
             if (!program.got_subcommand("calibrate")) use_calibrated_costs();
@@ -95,9 +98,9 @@ int main_of(int argc, char** argv) {
         const std::string path = error.path1().string();
         return fail(bad_input, (path.empty() ? "" : path + ": ") + error.code().message());
     } catch (const std::bad_alloc&) {
-        return fail(bad_input, "this does not fit into memory");
+        return fail(bad_input, "out of memory: the input or its result does not fit into memory");
     } catch (const std::length_error&) {
-        return fail(bad_input, "this does not fit into memory");
+        return fail(bad_input, "out of memory: the input or its result does not fit into memory");
     } catch (const std::exception& error) {
         return fail(check_failed, std::string("internal error: ") + error.what());
     }

@@ -303,11 +303,11 @@ struct cost_group_info {
 };
 
 const std::array<cost_group_info, 6> cost_groups{
-    {{"lists of neighbours", {&m::search_box, &m::search_pair, &m::keep_box, &m::watch_box, &m::test_pair}},
+    {{"Verlet lists", {&m::search_box, &m::search_pair, &m::keep_box, &m::watch_box, &m::test_pair}},
      {"axial cut", {&m::list_entry, &m::cut_entry, &m::cut_subset, &m::cut_test}},
      {"columns", {&m::column_entry, &m::column, &m::column_test}},
-     {"trees by median", {&m::median_triangle}},
-     {"trees by sah", {&m::sah_triangle}},
+     {"median builds", {&m::median_triangle}},
+     {"SAH builds", {&m::sah_triangle}},
      {"queries", {&m::node_visit}}}};
 
 /// The observations of a group, of scenes used for the fit and of held-out scenes.
@@ -326,7 +326,7 @@ std::vector<group_observations> counted_and_timed(std::vector<trial> trials, dou
     for (trial& t : trials)
         for (piece& p : t.run_frames(aabb::instrumentation::counters))
             t.observations.emplace_back(p.group, timed_work{t.scene, std::move(p.work), {}});
-    progress shown("seconds of measuring", static_cast<std::size_t>(seconds));
+    progress shown("seconds of measurement", static_cast<std::size_t>(seconds));
     const auto time = [&](trial& t, std::size_t) {
         const std::vector<piece> timed = t.run_frames(aabb::instrumentation::none);
         for (std::size_t p = 0; p < timed.size(); ++p) t.observations[p].second.ns.push_back(timed[p].ns);

@@ -26,7 +26,7 @@ struct atlas_request {
 int run(const atlas_request& request) {
     outlive_reader();
     if (request.source && !request.judge)
-        throw aabb::input_error(*request.source + " is named, but only --judge takes results that are there");
+        throw aabb::input_error(*request.source + " is given, but only --judge reads existing results");
     const std::filesystem::path out = request.folder();
     std::vector<std::string> failures;
     if (!request.judge) failures = measure_atlas(out, request.quick);
@@ -46,11 +46,11 @@ int run(const atlas_request& request) {
         return 0;
     });
     write_atlas(out, atlas);
-    print(
-        "Who is the fastest in how many scenes, of a frame after the first; shown where\n"
-        "the second is slower beyond noise, and as fast where it may not be:\n" +
-        to_text(winners_table(atlas), output_width()) + "\n");
-    print("In times as long as the fastest of each scene, of the same:\n" +
+    print_paragraph(
+        "Scenes in which each candidate is the fastest, by time per frame after the first; shown: the second is slower "
+        "beyond noise; as fast: another is faster, but not beyond noise");
+    print(to_text(winners_table(atlas), output_width()) + "\n");
+    print("The same time, relative to the fastest candidate of each scene\n" +
           to_text(regrets_table(atlas, span_of_time::frame), output_width()) + "\n");
     for (const judged_statement& s : judged_statements(atlas))
         print_paragraph(fmt::format("{}: {} Here: {}. ({})", s.id, s.says, text_of(s.verdict), s.source));
@@ -62,15 +62,16 @@ int run(const atlas_request& request) {
 
 void add_atlas(const command_parser& program) {
     const command_parser command = program.add_command(
-        "atlas", "Which composition or engine wins in which scene, and what it costs to use one everywhere");
+        "atlas",
+        "Map which composition or engine is the fastest in which scene, and what it costs to use one everywhere");
     auto& request = command.calls(run);
-    command.flag("--quick", &request.quick, "Small scenes, few repeats: a minute in place of half an hour");
-    command.flag("--judge", &request.judge, "Measure nothing: make the maps of results that are there");
+    command.flag("--quick", &request.quick, "Use small scenes and few repeats: a minute instead of half an hour");
+    command.flag("--judge", &request.judge, "Measure nothing: draw the maps of existing results");
     command.optional_argument(
         "RESULTS", &request.source,
-        "With --judge: an archive or a folder of results, also of reproduce, in place of the folder of --out");
+        "With --judge: an archive or a folder of results, of atlas or reproduce, instead of the folder of --out");
     command.option("--out DIR", &request.out,
-                   "Folder of results and maps (default results/atlas; with --quick results/atlas-quick; of RESULTS "
+                   "Folder of results and maps (default results/atlas; with --quick results/atlas-quick; with RESULTS "
                    "results/atlas-judged)");
 }
 

@@ -21,7 +21,7 @@ struct calibrate_request {
 std::filesystem::path file_of(const calibrate_request& request) {
     const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : calibrated_costs_file();
     if (file.empty())
-        throw aabb::input_error("neither XDG_CONFIG_HOME nor HOME names a folder; --out FILE says where costs go");
+        throw aabb::input_error("neither XDG_CONFIG_HOME nor HOME names a folder; give --out FILE for the costs");
     return file;
 }
 
@@ -38,7 +38,7 @@ table table_of(const calibration& fit) {
 }
 
 table checks_of(const calibration& fit) {
-    table t{{{"predicted in other scenes", false}, {"times"}, {"median off by"}, {"worst"}}, {}};
+    table t{{{"predicted in held-out scenes", false}, {"times"}, {"median factor"}, {"worst"}}, {}};
     for (const group_check& check : fit.checks)
         t.rows.push_back({std::string(check.group), std::to_string(check.found.observations),
                           fmt::format("{:.2f}", check.found.median), fmt::format("{:.2f}", check.found.worst)});
@@ -63,22 +63,24 @@ void calibrate(const calibrate_request& request) {
     const calibrated_costs kept = label_costs(fit.costs);
     out.write(text_of(kept));
     out.commit();
-    print(kept.processor + ", " + kept.instructions + "; times as processor time\n\n");
+    print(kept.processor + ", " + kept.instructions + "; costs are processor times\n\n");
     print(to_text(table_of(fit), output_width()) + "\n");
     print(to_text(checks_of(fit), output_width()) + "\n");
     print("wrote " + file.string() +
-          (request.out ? "\n" : ", which is used from now on;\naabblab calibrate --reset removes it\n"));
+          (request.out ? "\n" : ", which commands use from now on;\naabblab calibrate --reset removes it\n"));
 }
 
 }  // namespace
 
 void add_calibrate(const command_parser& program) {
     const command_parser command = program.add_command(
-        "calibrate", "Measure what elementary work takes on this machine, and keep it: what strategies plan by");
+        "calibrate",
+        "Measure the costs of elementary operations on this machine, and store them for strategies to plan with");
     auto& request = command.calls<calibrate_request>(calibrate);
-    const parsed_option quick = command.flag("--quick", &request.quick, "In about 20 seconds in place of two minutes");
-    const parsed_option out = command.option("--out FILE", &request.out, "Write it there, not where it is used");
-    command.flag("--reset", &request.reset, "Remove what was kept: costs are as shipped again")
+    const parsed_option quick = command.flag("--quick", &request.quick, "Take about 20 seconds instead of two minutes");
+    const parsed_option out =
+        command.option("--out FILE", &request.out, "Write the costs to this file, from which they are not used");
+    command.flag("--reset", &request.reset, "Remove the stored costs: the shipped ones are used again")
         .excludes(quick)
         .excludes(out);
 }

@@ -62,18 +62,18 @@ void classify(const classify_request& request) {
 }  // namespace
 
 void add_classify(const command_parser& program) {
-    const command_parser command =
-        program.add_command("classify", "Do two triangles intersect, and in what? One pair a line, one answer a line");
+    const command_parser command = program.add_command(
+        "classify", "Test whether triangles intersect, and in what: reads a pair per line, writes a result per line");
     auto& request = command.calls(classify);
     command.argument("FILE", &request.file,
-                     "18 numbers a line, decimal or C99 hexadecimal, with blanks or commas between; - reads standard "
+                     "18 numbers per line, decimal or C99 hexadecimal, separated by blanks or commas; - is standard "
                      "input; # begins a comment");
     command.option("--triangle R", &request.triangle,
-                   "Triangle test (default exact), or one of a library that `list` shows");
+                   "Triangle test (default exact): a strategy, or a library test that `list` shows");
     command.flag("--double", &request.keep_doubles, "Keep the numbers as doubles instead of rounding to float");
     command.flag("--geometry", &request.geometry,
-                 "What the two have in common in place of 0 or 1: kind, number of corners, corners, and the error of a "
-                 "coordinate on each axis");
+                 "Write the intersection instead of 0 or 1: its kind, the number of its corners, the corners, and the "
+                 "error of a coordinate on each axis");
 }
 
 }  // namespace aabblab

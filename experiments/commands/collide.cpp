@@ -105,7 +105,7 @@ void print_text(const collide_request& request, const mesh_result& result) {
     std::ranges::nth_element(ms, ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2));
     print(fmt::format("{}: built in {:.3f} ms, searched in {:.3f} ms{}", result.method.text(), result.build_ms,
                       ms[ms.size() / 2], ms.size() == 1 ? "" : fmt::format(" (median of {})", ms.size())));
-    if (result.bytes_per_triangle) print(fmt::format(", {:.1f} bytes a triangle", *result.bytes_per_triangle));
+    if (result.bytes_per_triangle) print(fmt::format(", {:.1f} bytes per triangle", *result.bytes_per_triangle));
     std::string bytes;
     for (const aabb::part_bytes& part : result.bytes)
         if (part.bytes > 0) bytes += fmt::format("{} {} {}", bytes.empty() ? "" : ",", part.part, grouped(part.bytes));
@@ -123,15 +123,16 @@ void require_sense(const collide_request& request) {
         if (request.self != "true" && std::ranges::find(choices, request.self) == choices.end())
             throw aabb::input_error(aabb::unknown_name("value of --self", request.self, choices));
         reject_if(request.b.has_value(),
-                  "--self holds one mesh against itself, so give no second one; to leave neighbours out, --self=apart");
+                  "--self finds self-intersections of one mesh, so give no second one; --self=apart excludes adjacent "
+                  "triangles");
         reject_if(request.poses[0] || request.poses[1] || request.poses_of_b,
-                  "--self holds a mesh against itself, so poses change nothing; leave them away");
-        reject_if(request.first, "--self finds every pair, so --first does not go with it; --count does");
+                  "--self finds self-intersections, which no pose changes; omit the poses");
+        reject_if(request.first, "--self finds every pair, so --first cannot be combined with it; --count can");
     }
-    reject_if(request.poses[1] && request.poses_of_b, "--pose-b and --poses both say where B is; give one of them");
-    reject_if(request.first && request.count, "--first and --count ask for different things");
-    reject_if(request.count && request.out, "--count keeps no pairs, so there is nothing for --out");
-    reject_if(request.geometry && request.count, "--count keeps no pairs, so --geometry does not go with it");
+    reject_if(request.poses[1] && request.poses_of_b, "--pose-b and --poses both set the pose of B; give one of them");
+    reject_if(request.first && request.count, "--first and --count exclude each other");
+    reject_if(request.count && request.out, "--count stores no pairs, so --out has nothing to write");
+    reject_if(request.geometry && request.count, "--count stores no pairs, so --geometry cannot be combined with it");
     reject_if(request.geometry && !request.out && !request.first,
               "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair");
 }
@@ -167,37 +168,39 @@ int collide(const collide_request& request) {
 
 void add_collide(const command_parser& program) {
     const command_parser command =
-        program.add_command("collide", "Local detection of two meshes: every pair of intersecting triangles");
+        program.add_command("collide", "Run the narrow phase on two meshes: find every pair of intersecting triangles");
     auto& request = command.calls(collide);
-    command.argument("A", &request.a,
-                     "Mesh file (OFF, OBJ, PLY, STL, glTF), or a shape as in torus_knot:triangles=20000; with "
-                     ":order=sah behind a file, or ,order=sah behind a shape's parameters, its triangles stand in the "
-                     "order of a tree's leaves");
-    command.optional_argument("B", &request.b, "The other one");
+    command.argument(
+        "A", &request.a,
+        "Mesh file (OFF, OBJ, PLY, STL, glTF), or a shape as in torus_knot:triangles=20000; :order=sah after a file, "
+        "or ,order=sah after the parameters of a shape, sorts its triangles by the leaves of a tree");
+    command.optional_argument("B", &request.b, "The other mesh");
     command.option("--pose-a M", &request.poses[0],
-                   "Where A is: 12 numbers, the rows of [R t], with commas between (default: as it is)");
-    command.option("--pose-b M", &request.poses[1], "Where B is");
-    command.option("--poses FILE", &request.poses_of_b,
-                   "Search with B at each pose of this file, one a line, as --pose-b takes it; trees are built once");
+                   "Pose of A: 12 numbers, the rows of [R t], separated by commas (default: the identity)");
+    command.option("--pose-b M", &request.poses[1], "Pose of B");
+    command.option(
+        "--poses FILE", &request.poses_of_b,
+        "Search with B at each pose of this file, which has one per line, as for --pose-b; trees are built once");
     request.method.add_to(command, "build, tree and triangle test");
     command.flag("--self [=apart]", &request.self,
-                 "Hold A against itself; pairs that share a vertex are counted apart, with --self=apart also left out "
-                 "of the pairs");
+                 "Find self-intersections of A; pairs that share a vertex are counted separately, and --self=apart "
+                 "also excludes them from the pairs");
     command.flag("--first", &request.first, "Stop at the first pair found");
-    command.flag("--count", &request.count, "Only count the pairs");
+    command.flag("--count", &request.count, "Count the pairs without storing them");
     const auto take_repeats = [&request](const std::string& text) {
         request.repeats =
-            parse_whole(text, 1, 1'000'000, "--repeat is how often to search: a whole number from 1 to 1,000,000");
+            parse_whole(text, 1, 1'000'000, "--repeat is the number of searches: a whole number from 1 to 1,000,000");
     };
-    command.option("--repeat N", take_repeats, "Search so often, at all poses in turn; each time is told (--json)");
+    command.option("--repeat N", take_repeats,
+                   "Repeat the search N times, at all poses in turn; --json lists every time");
     command.option("--out FILE", &request.out,
-                   "Write the pairs, rows a,b (with --self a,b,shared_vertices, with --self=apart a,b, with --poses "
-                   "pose,a,b), to this CSV file");
+                   "CSV file for the pairs: rows a,b, with --self a,b,shared_vertices, with --self=apart a,b, with "
+                   "--poses pose,a,b");
     command.flag("--geometry", &request.geometry,
-                 "Add to each pair what its triangles have in common, in the world: kind, corners, error");
-    command.flag("--exit-code", &request.exit_code,
-                 "End with status 1 where anything intersects, as diff does; with --self, triangles that share no "
-                 "vertex");
+                 "Add the intersection of its triangles to each pair, in world coordinates: kind, corners, error");
+    command.flag(
+        "--exit-code", &request.exit_code,
+        "Exit with status 1 if anything intersects, as diff does; with --self, if triangles that share no vertex do");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

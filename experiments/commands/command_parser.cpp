@@ -14,8 +14,8 @@ namespace {
 void require_alone(const CLI::App& command, const CLI::App& inner) {
     for (const CLI::Option* option : command.get_options())
         if (option->count() > 0)
-            throw aabb::input_error(command.get_name() + ": " + option->get_name() + " has no part in '" +
-                                    inner.get_name() + "'; what it takes stands behind its name");
+            throw aabb::input_error(command.get_name() + ": " + option->get_name() + " does not apply to '" +
+                                    inner.get_name() + "', whose own options follow its name");
 }
 
 /// Splits "--out FILE" into the names of the option and the placeholder of its value.

@@ -16,12 +16,13 @@ int run(const compare_request& request) {
 
 void add_compare(const command_parser& program) {
     const command_parser command = program.add_command(
-        "compare", "Two results folders, of two commits or machines: which ratios, answers, counts and bytes changed");
+        "compare",
+        "Compare two results folders, of two commits or machines: which ratios, results, counts and bytes changed");
     auto& request = command.calls(run);
-    command.argument("A", &request.a, "Folder of results, of an experiment or of several");
-    command.argument("B", &request.b, "Another, which is compared with it");
-    command.flag("--times", &request.times, "Compare milliseconds too; of one machine only");
-    command.flag("--all", &request.all, "List what is unchanged or undecided too");
+    command.argument("A", &request.a, "Results folder of one experiment or several");
+    command.argument("B", &request.b, "Results folder that is compared with A");
+    command.flag("--times", &request.times, "Also compare milliseconds, if both folders are of one machine");
+    command.flag("--all", &request.all, "Also list what is unchanged or undecided");
 }
 
 }  // namespace aabblab

@@ -8,12 +8,12 @@ namespace aabblab {
 
 namespace {
 
-/// The default of a kind: "bucket, or what goes with what is named", "as it serves the scene".
+/// The default of a kind: "bucket, or what fits the named strategies", "selected for the scene".
 std::string usual_of(aabb::strategy_kind kind) {
-    if (aabb::depends_on_scene(kind)) return "as it serves the scene";
+    if (aabb::depends_on_scene(kind)) return "selected for the scene";
     const aabb::strategy_kind_info& info = info_of(kind);
     const std::string text(info.fallback);
-    return info.default_with == info.fallback ? text : text + ", or what goes with what is named";
+    return info.default_with == info.fallback ? text : text + ", or what fits the named strategies";
 }
 
 /// The options of a stage: "--sort, --partition and --sweep".
@@ -33,24 +33,24 @@ void method_options::add_to(const command_parser& command, const std::string& in
             command.option(
                 fmt::format("--{} S", name_of(kind)), &values_[kind],
                 fmt::format("One of {} (default {}), as in NAME:parameter=value", names_in_line(kind), usual_of(kind)));
-    command.option("--engine E", &engine_, "Reference system in place of " + in_place);
-    command.footer("aabblab list has every strategy with its parameters.");
+    command.option("--engine E", &engine_, "Reference engine instead of " + in_place);
+    command.footer("aabblab list shows every strategy with its parameters.");
 }
 
 search_choice method_options::choice(bool geometry) const {
     if (geometry && engine_)
-        throw aabb::input_error("--geometry is constructed by the triangle test, so --engine does not go with it");
+        throw aabb::input_error("--geometry needs a triangle test, so --engine cannot be combined with it");
     const auto is_set = [&](aabb::strategy_kind kind) { return values_[kind].has_value(); };
     if (engine_ && std::ranges::any_of(kinds_of(stages_.back()), is_set))
-        throw aabb::input_error(fmt::format("--engine stands in for {}, so give it {}", option_names(stages_.back()),
+        throw aabb::input_error(fmt::format("--engine replaces {}, so give it {}", option_names(stages_.back()),
                                             stages_.size() == 1 ? "alone" : "without them"));
     search_choice choice{stages_, {}, engine_, geometry};
     for (const aabb::stage stage : stages_)
         for (const aabb::strategy_kind kind : kinds_of(stage)) {
             if (!is_set(kind)) continue;
             if (*values_[kind] == "auto")
-                throw aabb::input_error(
-                    fmt::format("--{} auto: leave it out, since what is not named is selected", name_of(kind)));
+                throw aabb::input_error(fmt::format(
+                    "--{} auto: omit the option, since strategies that are not named are selected", name_of(kind)));
             choice.named[kind] = aabb::parse_strategy(*values_[kind]);
         }
     static_cast<void>(method_of(choice, {}));

@@ -37,7 +37,7 @@ std::string text_of(const contacts_request& request, const search_method& method
            fmt::format("{} of triangles in {} of objects ({} of boxes), digest {}\n",
                        counted(result.contacts, "contact"), counted(result.object_pairs, "contact"),
                        counted(result.pairs, "pair"), result.digest) +
-           fmt::format("{}: built in {:.3f} ms, {:.3f} ms a frame (mean of all)\n", method.text(), result.build_ms,
+           fmt::format("{}: built in {:.3f} ms, {:.3f} ms per frame (mean)\n", method.text(), result.build_ms,
                        result.mean_ms());
 }
 
@@ -63,18 +63,19 @@ void find_contacts(const contacts_request& request) {
 
 void add_contacts(const command_parser& program) {
     const command_parser command = program.add_command(
-        "contacts", "Both stages on meshes that a file moves: the triangles in contact, by frame and pair of objects");
+        "contacts",
+        "Run both phases on moving meshes: find the intersecting triangles of each frame and pair of objects");
     auto& request = command.calls(find_contacts);
     command.argument("MOTION", &request.motion,
-                     "Text file; a line is a frame, an object and 12 numbers, the rows of its pose [R t]");
-    command.argument("MESH", &request.meshes,
-                     "Mesh files (OFF, OBJ, PLY, STL, glTF) or shapes; object i is mesh i, from the first again when "
-                     "they run out");
+                     "Text file with a line per frame and object: the two, and 12 numbers, the rows of the pose [R t]");
+    command.argument(
+        "MESH", &request.meshes,
+        "Mesh files (OFF, OBJ, PLY, STL, glTF) or shapes; object i has mesh i modulo the number of meshes");
     request.method.add_to(command, "build, tree and triangle test");
     command.option("--out FILE", &request.out,
-                   "Write the contacts, rows frame,object_a,object_b,triangle_a,triangle_b, to this CSV file");
+                   "CSV file for the contacts: rows frame,object_a,object_b,triangle_a,triangle_b");
     command.flag("--geometry", &request.geometry,
-                 "Add to each contact what its triangles have in common, in the world: kind, corners, error");
+                 "Add the intersection of its triangles to each contact, in world coordinates: kind, corners, error");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

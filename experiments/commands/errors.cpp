@@ -25,7 +25,7 @@ int run(const errors_request& request) {
     if (!study.hits.empty()) say("intersections.csv");
     if (!study.curves.empty()) {
         say(study.whole ? "results.csv" : "errors.csv");
-        print("A plot for each set is in " + visible((folder / "figures").string()) + "\n");
+        print("A plot of each set is in " + visible((folder / "figures").string()) + "\n");
     }
     return failures.empty() ? 0 : 1;
 }
@@ -33,14 +33,14 @@ int run(const errors_request& request) {
 }  // namespace
 
 void add_errors(const command_parser& program) {
-    const command_parser command =
-        program.add_command("errors", "Error against run time: what methods get wrong, and the time they take or save");
+    const command_parser command = program.add_command(
+        "errors", "Compare error with run time: the wrong results of methods, and the time that they take");
     auto& request = command.calls(run);
     command.optional_argument(
         "CONFIG", &request.config,
-        "Methods, and what they are held against (default experiments/configs/errors/triangle_tests.toml)");
-    command.option("--out DIR", &request.out, "Folder of table and plots (default results/errors-NAME)");
-    command.flag("--quick", &request.quick, "Fewer pairs, for a first look");
+        "Config of a study: methods and input (default experiments/configs/errors/triangle_tests.toml)");
+    command.option("--out DIR", &request.out, "Folder of tables and plots (default results/errors-NAME)");
+    command.flag("--quick", &request.quick, "Use fewer pairs, for a first look");
 }
 
 }  // namespace aabblab

@@ -6,15 +6,17 @@ import aabblab.inputs;
 namespace aabblab {
 
 void add_explain(const command_parser& program) {
-    const command_parser command = program.add_command(
-        "explain", "What a scene is like, which composition it gets and why, its bytes, and what is left out");
+    const command_parser command = program.add_command("explain",
+                                                       "Explain a scene: its measures, the composition that is "
+                                                       "selected and why, its memory, and what each choice saves");
     auto& request = command.calls(explain);
-    command.argument(
-        "WHAT", &request.what,
-        std::string("Config of an experiment (.toml), for what it composes; or, for auto: ") + scene_arguments_help);
+    command.argument("WHAT", &request.what,
+                     std::string("Config of an experiment (.toml), whose compositions are explained; or a scene, for "
+                                 "which auto selects one: ") +
+                         scene_arguments_help);
     command.option(
-        "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "play"); },
-        "How long to play each scene (default 60); it says what there was no time for");
+        "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },
+        "Time for each scene (default 60); what does not fit into it is listed as not finished");
 }
 
 }  // namespace aabblab

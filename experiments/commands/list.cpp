@@ -168,11 +168,11 @@ void list(const list_request& request) {
 
 void add_list(const command_parser& program) {
     const command_parser command =
-        program.add_command("list", "Strategies with their parameters, engines, scenes and metrics");
+        program.add_command("list", "List strategies with their parameters, engines, scenes and metrics");
     auto& request = command.calls(list);
     command.optional_argument("KIND", &request.kind,
-                              fmt::format("List these only: one of {}", fmt::join(section_names(), ", ")));
-    command.flag("--json", &request.json, "Print it as JSON");
+                              fmt::format("List only this kind: one of {}", fmt::join(section_names(), ", ")));
+    command.flag("--json", &request.json, "Print the list as JSON");
 }
 
 }  // namespace aabblab

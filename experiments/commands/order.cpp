@@ -22,7 +22,7 @@ void write_ordered(const order_request& request) {
     require_known(aabb::strategy_kind::build, build);
     const std::string ending = mesh_ending_of(request.out);
     if (ending != ".off")
-        throw aabb::input_error(fmt::format("order writes OFF, so --out ends in .off, not '{}'", ending));
+        throw aabb::input_error(fmt::format("order writes OFF, so --out must end in .off, not '{}'", ending));
     require_no_mesh(request.out, {request.mesh});
     std::optional<number_table> numbers;
     if (request.numbers) {
@@ -36,26 +36,24 @@ void write_ordered(const order_request& request) {
     if (!numbers) return;
     for (std::uint32_t t = 0; t < reordered.triangles.size(); ++t) numbers->add({t, reordered.triangles[t]});
     numbers->commit();
-    print(fmt::format("wrote {}: which triangle each one was\n", visible(*request.numbers)));
+    print(fmt::format("wrote {}: the original index of each triangle\n", visible(*request.numbers)));
 }
 
 }  // namespace
 
 void add_order(const command_parser& program) {
-    const command_parser command =
-        program.add_command("order", "Write a mesh in the order of a tree's leaves, for smaller trees");
+    const command_parser command = program.add_command(
+        "order", "Sort the triangles of a mesh by the leaves of a tree, which makes its trees smaller");
     auto& request = command.calls(write_ordered);
     command.argument("MESH", &request.mesh, "Mesh file (OFF, OBJ, PLY, STL, glTF) or shape");
-    command.option(
-        "--build S", &request.build,
-        "The build that makes the leaves: one of " + names_in_line(aabb::strategy_kind::build) + " (default sah)");
-    command.option("--out FILE", &request.out, "The mesh to write (.off)").required();
-    command.option("--numbers FILE", &request.numbers,
-                   "Write which triangle of MESH each one was, rows triangle,was, to this CSV file");
+    command.option("--build S", &request.build,
+                   "Build of the tree: one of " + names_in_line(aabb::strategy_kind::build) + " (default sah)");
+    command.option("--out FILE", &request.out, "Mesh file to write (.off)").required();
+    command.option("--numbers FILE", &request.numbers, "CSV file for the original indices: rows triangle,was");
     command.footer(
-        "The build file_order with the tree implicit:vertices=fetched takes 1.2 bytes a triangle of such a mesh, in "
-        "collide, contacts and configs. There FILE:order=BUILD, or SHAPE:triangles=N,order=BUILD, stands for it "
-        "without a file. Put in order again, triangles move again: a build also goes by where they stood.");
+        "For such a mesh, the build file_order with the tree implicit:vertices=fetched takes 1.2 bytes per triangle. "
+        "collide, contacts and configs also accept FILE:order=BUILD and SHAPE:triangles=N,order=BUILD, which need no "
+        "file. Sorting again changes the order again, because a build depends on the original order.");
 }
 
 }  // namespace aabblab

@@ -32,7 +32,7 @@ std::string text_of(const pairs_request& request, const search_method& method, c
         fmt::format("{}: {}, {}\n{}, digest {}\n", visible(request.recording), counted(result.objects, "object"),
                     counted(result.ms.size(), "frame"), counted(result.pairs, "overlapping pair"), result.digest);
     // The mean, not the median: a Verlet list is rebuilt in few frames and reused in all others.
-    if (!result.ms.empty()) text += fmt::format("{}: {:.4g} ms a frame (mean)\n", method.text(), result.mean_ms());
+    if (!result.ms.empty()) text += fmt::format("{}: {:.4g} ms per frame (mean)\n", method.text(), result.mean_ms());
     return text;
 }
 
@@ -53,11 +53,11 @@ void find_pairs(const pairs_request& request) {
 
 void add_pairs(const command_parser& program) {
     const command_parser command =
-        program.add_command("pairs", "Global search on a recording: every pair of overlapping boxes");
+        program.add_command("pairs", "Run the broad phase on a recording: find every pair of overlapping boxes");
     auto& request = command.calls(find_pairs);
     command.argument("SCENE", &request.recording, "Recording of boxes (.aabbs)");
-    request.method.add_to(command, "all of these");
-    command.option("--out FILE", &request.out, "Write the pairs, rows frame,a,b, to this CSV file");
+    request.method.add_to(command, "these strategies");
+    command.option("--out FILE", &request.out, "CSV file for the pairs: rows frame,a,b");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

@@ -7,15 +7,14 @@ namespace aabblab {
 
 void add_recommend(const command_parser& program) {
     const command_parser command = program.add_command(
-        "recommend",
-        "Which composition or engine is the fastest in a scene, from a race that drops the hopeless early");
+        "recommend", "Find the fastest composition or engine for a scene, with early stopping of slow candidates");
     auto& request = command.calls(recommend);
     command.argument("WHAT", &request.what, scene_arguments_help);
     command.option(
-        "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "race"); },
-        "How long to race (default 60): it ends within twice that, or 2 s after the scene is read where that is "
-        "later; who takes longer is stopped");
-    command.option("--report FILE.html", &request.report, "Write all of it as a page, too");
+        "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },
+        "Time for all runs (default 60). The command ends within twice that, or 2 s after the scene is read if that is "
+        "later; slower runs are stopped");
+    command.option("--report FILE.html", &request.report, "Also write the results as a page");
 }
 
 }  // namespace aabblab

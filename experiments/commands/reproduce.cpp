@@ -5,19 +5,19 @@ import aabblab.measuring;
 namespace aabblab {
 
 void add_reproduce(const command_parser& program) {
-    const command_parser command =
-        program.add_command("reproduce", "Every table, figure and claim of the paper, with a verdict");
+    const command_parser command = program.add_command(
+        "reproduce", "Reproduce every table, figure and claim of the paper, with a verdict on each claim");
     auto& request = command.calls(reproduce);
-    command.flag("--quick", &request.quick, "Small scenes, few repeats: some minutes in place of most of an hour");
+    command.flag("--quick", &request.quick,
+                 "Use small scenes and few repeats: some minutes instead of most of an hour");
     command.flag("--judge", &request.judge,
-                 "Measure nothing: judge results that are there, of whatever build or machine, and write the report "
-                 "anew");
+                 "Measure nothing: judge existing results, of any build or machine, and write their report");
     command.optional_argument("RESULTS", &request.sources,
-                              "With --judge: archives or folders of results, in place of the folder of --out");
+                              "With --judge: archives or folders of results, instead of the folder of --out");
     command.option("--out DIR", &request.out,
-                   "Folder of results and report (default results/reproduce; of RESULTS results/reproduce-judged)");
+                   "Folder of results and report (default results/reproduce; with RESULTS results/reproduce-judged)");
     command.option("--archive FILE", &request.archive,
-                   "Also pack all that --judge needs into one file, a tar compressed by xz");
+                   "Also pack everything that --judge needs into one file, a tar compressed by xz");
 }
 
 }  // namespace aabblab

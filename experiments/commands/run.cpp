@@ -29,7 +29,7 @@ int run(const run_request& request) {
         run_experiment(e, folder, request.resume ? existing_results::resume : existing_results::reject,
                        "the same command with --resume", request.counts ? printed::tables_and_counts : printed::tables);
     print("Every repeat is a row of " + visible((folder / "results.csv").string()) +
-          ",\nevery line of a scene's table one of " + visible((folder / "summary.csv").string()) + "\n");
+          ",\nevery composition of a scene a row of " + visible((folder / "summary.csv").string()) + "\n");
     return failures.empty() ? 0 : 1;
 }
 
@@ -37,13 +37,13 @@ int run(const run_request& request) {
 
 void add_run(const command_parser& program) {
     const command_parser command =
-        program.add_command("run", "One experiment: scenes x compositions, validated, then timed");
+        program.add_command("run", "Run an experiment: validate, then time, every composition in every scene");
     auto& request = command.calls(run);
     command.argument("CONFIG", &request.config, "Config of the experiment (.toml)");
     command.option("--out DIR", &request.out, "Folder of the results (default results/NAME, or results/NAME-quick)");
-    command.flag("--quick", &request.quick, "What the config says under quick, for a first look");
-    command.flag("--resume", &request.resume, "Skip what is finished in the folder already");
-    command.flag("--counts", &request.counts, "Also print the work of each composition and the bytes of its parts");
+    command.flag("--quick", &request.quick, "Apply the settings under quick in the config, for a first look");
+    command.flag("--resume", &request.resume, "Skip runs whose results are in the folder already");
+    command.flag("--counts", &request.counts, "Also print the work of each composition, and the bytes of its parts");
     // Internal: run starts itself with this option for each process of the config.
     command.option("--process", &request.process, "").hidden();
 }

@@ -90,12 +90,11 @@ void require_poses_suffice(const scene_info& kind, const scene_choice& choice, c
     for (std::uint32_t m = 0; m < scene.meshes.size(); ++m)
         if (scene.deforms(m))
             throw aabb::input_error(kind.name +
-                                    " deforms its meshes, so poses alone, as --motion writes them, are not it");
+                                    " deforms its meshes, which the poses that --motion writes do not describe");
     if (std::ranges::find(kind.parameters, "normalise", &aabb::parameter_info::name) == kind.parameters.end()) return;
     const auto scaled = std::ranges::find(choice.settings, "normalise", &aabb::setting::name);
     if (scaled == choice.settings.end() || scaled->value != "no")
-        throw aabb::input_error(
-            "--motion writes poses of meshes as they are in their files, so give --normalise no with it");
+        throw aabb::input_error("--motion writes poses of unscaled meshes, so give --normalise no with it");
 }
 
 std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_choice& choice, motion_file* motion) {
@@ -133,8 +132,7 @@ void require_ending(const std::string& option, const std::optional<std::string>&
     if (!file) return;
     const std::filesystem::path extension = std::filesystem::path(*file).extension();
     if (!extension.empty() && extension != ending)
-        throw aabb::input_error(option + " takes a name that ends in " + ending + ", not '" + *file + "': it writes " +
-                                what);
+        throw aabb::input_error(option + " must end in " + ending + ", not '" + *file + "': it writes " + what);
 }
 
 void require_outputs(const scene_request& request) {
@@ -144,11 +142,11 @@ void require_outputs(const scene_request& request) {
         require_no_mesh(file, request.meshes);
         if (input != request.settings.end() && input->second) require_other_file(file, *input->second);
     }
-    if (outputs.empty()) throw aabb::input_error("scene: expected --out, --motion or --picture, the file to write");
+    if (outputs.empty()) throw aabb::input_error("scene: expected --out, --motion or --picture, a file to write");
     for (std::size_t i = 0; i < outputs.size(); ++i)
         for (std::size_t j = i + 1; j < outputs.size(); ++j)
             require_two_files(outputs[i].first, outputs[i].second, outputs[j].first, outputs[j].second);
-    require_ending("--out", request.out, ".aabbs", "a recording; aabblab pairs writes the pairs of one as CSV");
+    require_ending("--out", request.out, ".aabbs", "a recording; aabblab pairs writes the pairs of a recording as CSV");
     require_ending("--picture", request.picture, ".svg", "a picture");
 }
 
@@ -166,7 +164,7 @@ void write_scene(const scene_request& request) {
     observed_scene scene(make_scene(kind, choice, motion ? &*motion : nullptr));
     note_left_out(choice.meshes);
     {
-        progress shown("frames played", scene.frames());
+        progress shown("frames", scene.frames());
         if (request.out) {
             const std::string type = choice.seed ? fmt::format("aabblab, seed {}", *choice.seed) : "aabblab";
             write_recording(scene, request.kind, type, *request.out, [&](std::size_t done) { shown.at(done); });
@@ -206,26 +204,26 @@ void add_parameters(const command_parser& command, scene_request& request) {
             if (const auto [at, is_new] = request.settings.try_emplace(p.name); is_new)
                 command.option(option_names(p.name) + " V", &at->second, "").hidden();
     command.footer(
-        "`aabblab list scenes` has the scenes and their parameters, which are options here: --n 500 or --objects 500, "
-        "--displacement 0.2.");
+        "`aabblab list scenes` shows the scenes and their parameters. Each parameter is an option: --n 500 or "
+        "--objects 500, --displacement 0.2.");
 }
 
 }  // namespace
 
 void add_scene(const command_parser& program) {
-    const command_parser command =
-        program.add_command("scene", "Write a scene as a recording of boxes, or as a picture");
+    const command_parser command = program.add_command(
+        "scene", "Generate a scene, and write it as a recording of boxes, as motion or as a picture");
     auto& request = command.calls(write_scene);
-    command.argument("NAME", &request.kind, "One of the scenes that 'aabblab list scenes' shows");
+    command.argument("NAME", &request.kind, "A scene that 'aabblab list scenes' shows");
     add_parameters(command, request);
     command
         .option("--mesh MESH", &request.meshes,
                 "Mesh file (OFF, OBJ, PLY, STL, glTF) or shape, for scenes of meshes; may be repeated")
         .one_value_at_a_time();
     command.option("--seed S", &request.seed, "Whole number: the same seed gives the same scene (default 1)");
-    command.option("--out FILE", &request.out, "The recording to write (.aabbs)");
-    command.option("--motion FILE", &request.motion, "The motion file to write, for `contacts`: the poses of meshes");
-    command.option("--picture FILE", &request.picture, "The picture to write (.svg): the first and the last frame");
+    command.option("--out FILE", &request.out, "Recording to write (.aabbs)");
+    command.option("--motion FILE", &request.motion, "Motion file to write, for `contacts`: the poses of the meshes");
+    command.option("--picture FILE", &request.picture, "Picture to write (.svg): the first and the last frame");
 }
 
 }  // namespace aabblab

@@ -51,14 +51,14 @@ struct validate_request {
 int validate(const validate_request& request) {
     outlive_reader();
     if (request.quick && !request.config)
-        throw aabb::input_error("--quick takes what a config says under quick, so it needs CONFIG");
+        throw aabb::input_error("--quick applies the settings under quick in a config, so it needs CONFIG");
     const experiment e = request.config ? open_experiment(*request.config, request.quick) : built_in_experiment();
     std::size_t wrong = 0;
     for (const scene_choice& scene : e.scenes) {
         const scene_validation result = validate_scene(scene, candidates_for(e, scene));
-        print(heading_of(scene) + ", all pairs of " + std::to_string(result.frames) + " frames against " +
+        print(heading_of(scene) + ", all pairs of " + std::to_string(result.frames) + " frames compared with " +
               result.exact_by + ", digest " + result.digest + "\n\n");
-        table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"answer", false}}, {}};
+        table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"result", false}}, {}};
         for (const validated_row& v : result.candidates) {
             t.rows.push_back({text_of(v.name), std::to_string(v.candidates),
                               v.contacts ? std::to_string(*v.contacts) : "-", result_of(v)});
@@ -77,11 +77,12 @@ int validate(const validate_request& request) {
 
 void add_validate(const command_parser& program) {
     const command_parser command = program.add_command(
-        "validate", "Exactness of every composition of an experiment, or of all there are, against the references");
+        "validate",
+        "Compare the results of every composition of an experiment, or of all compositions, with the ground truth");
     auto& request = command.calls(validate);
     command.optional_argument("CONFIG", &request.config,
-                              "Config of the experiment (.toml); without one, every composition");
-    command.flag("--quick", &request.quick, "What the config says under quick, for a first look");
+                              "Config of the experiment (.toml); without it, every composition is validated");
+    command.flag("--quick", &request.quick, "Apply the settings under quick in the config, for a first look");
 }
 
 }  // namespace aabblab

@@ -19,20 +19,21 @@ int validate_extreme(const extreme_request& request) {
     const std::filesystem::path folder =
         request.out.value_or(request.quick ? "results/extreme-quick" : "results/extreme");
     const suite_report report = run_extreme_suite(folder, request.cases, request.quick, true);
-    print("\nEvery answer is in " + visible((folder / "extreme.csv").string()) + "\n");
-    print(report.failures.empty() ? "All that must be exact is exact, and what must be refused is refused.\n"
-                                  : std::to_string(report.failures.size()) + " answers are not what they must be.\n");
+    print("\nEvery result is in " + visible((folder / "extreme.csv").string()) + "\n");
+    print(report.failures.empty()
+              ? "Everything that must be exact is exact, and everything that must be rejected is rejected.\n"
+              : std::to_string(report.failures.size()) + " results are not as expected.\n");
     return report.failures.empty() ? 0 : 1;
 }
 
 }  // namespace
 
 void add_validate_extreme(const command_parser& program) {
-    const command_parser command = program.command("validate")
-                                       .add_command("extreme",
-                                                    "Every composition and engine where exactness is hardest: extreme "
-                                                    "scenes, bad input, other arithmetic, and "
-                                                    "pairs of triangles that were found hard");
+    const command_parser command =
+        program.command("validate")
+            .add_command("extreme",
+                         "Validate every composition and engine where exactness is hardest: extreme scenes, invalid "
+                         "input, other floating-point modes, and hard pairs of triangles");
     command.footer([] {
         std::string text = "Scenes:\n";
         for (const aabb::extreme_scene& scene : all_extreme_scenes(aabb::extreme_size::full).scenes)
@@ -43,7 +44,7 @@ void add_validate_extreme(const command_parser& program) {
     command.option("--cases FILE", &request.cases, "Pairs of triangles (default validation/cases/triangles.toml)");
     command.option("--out DIR", &request.out,
                    "Folder of extreme.csv (default results/extreme, with --quick results/extreme-quick)");
-    command.flag("--quick", &request.quick, "Default parameters only, and fewer coincident triangles");
+    command.flag("--quick", &request.quick, "Use only default parameters, and fewer coincident triangles");
 }
 
 }  // namespace aabblab

@@ -19,7 +19,7 @@ int validate_stiff(const stiff_request& request) {
     const suite_report report = run_stiff_suite(folder, request.studies, request.quick, true);
     print(report.failures.empty() ? "Everything is as expected.\n"
                                   : std::to_string(report.failures.size()) + " values are not as expected.\n");
-    print("Every number is in " + visible(folder.string()) + ", a file a study,\nevery plot in " +
+    print("Every number is in " + visible(folder.string()) + ", in one file per study,\nevery plot in " +
           visible((folder / "figures").string()) + "\n");
     return report.failures.empty() ? 0 : 1;
 }
@@ -27,17 +27,17 @@ int validate_stiff(const stiff_request& request) {
 }  // namespace
 
 void add_validate_stiff(const command_parser& program) {
-    const command_parser command =
-        program.command("validate")
-            .add_command("stiff",
-                         "Bodies stepped in time through detection, held against closed forms and published results");
+    const command_parser command = program.command("validate")
+                                       .add_command("stiff",
+                                                    "Simulate bodies that are in contact, and compare their motion "
+                                                    "with closed forms and published results");
     auto& request = command.calls(validate_stiff);
     std::string names;
     for (const stiff_study& study : stiff_studies()) names += (names.empty() ? "" : ", ") + std::string(study.name);
-    command.optional_argument("STUDY", &request.studies, "Some of the studies, without any all of them: " + names);
+    command.optional_argument("STUDY", &request.studies, "Studies to run (default all): " + names);
     command.option("--out DIR", &request.out,
                    "Folder of tables and plots (default results/stiff, with --quick results/stiff-quick)");
-    command.flag("--quick", &request.quick, "Fewer and shorter, for a first look");
+    command.flag("--quick", &request.quick, "Run fewer and shorter simulations, for a first look");
 }
 
 }  // namespace aabblab

@@ -53,13 +53,12 @@ std::string explained(scene_frames& scene, const candidate& tested) {
     stage_runner p(tested, scene, aabb::instrumentation::none);
     run_frames(scene, p, [](const searched_frame&) {}, explained_frames);
     const candidate_name& name = tested.name;
-    std::string text = text_of("global search", text_of(name, aabb::stage::global_search), p.global_bytes());
-    text += text_of(scene.meshes() ? "between stages" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
-    if (scene.meshes())
-        text += text_of("local detection", text_of(name, aabb::stage::local_detection), p.local_bytes());
+    std::string text = text_of("broad phase", text_of(name, aabb::stage::global_search), p.global_bytes());
+    text += text_of(scene.meshes() ? "between phases" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
+    if (scene.meshes()) text += text_of("narrow phase", text_of(name, aabb::stage::local_detection), p.local_bytes());
     std::vector<std::string> planned;
     for (const aabb::stage_plan& plan : p.plans()) planned.push_back(to_text(plan.told));
-    text += indented_all("planned from what was seen", planned);
+    text += indented_all("plans from earlier frames", planned);
     std::vector<std::string> left_out;
     for (const aabb::omission& absent : omissions_of(name, p.left_out())) left_out.push_back(to_text(absent));
     return text + indented_all("left out", left_out);
@@ -82,7 +81,7 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
     std::string kinds;
     for (const aabb::strategy_kind kind : kinds_of(aabb::stage::local_detection))
         kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));
-    print("  " + kinds + " have no part in this scene: it has no meshes\n");
+    print("  " + kinds + " do not apply to this scene: it has no meshes\n");
 }
 
 /// Prints the scene and its measures, unless its input is invalid.
@@ -97,7 +96,7 @@ void explain_measures(staged_scene& scene, const time_limits& limits) {
     table unmeasured = empty_table({"measured", ""});
     unmeasured.rows = {{"objects", grouped(scene.scene().objects())},
                        {"frames", grouped(scene.scene().frames())},
-                       {"all else", reason_of(work)}};
+                       {"the rest", reason_of(work)}};
     print((work.end == ending::done ? work.reported : to_text(unmeasured, output_width())) + "\n");
 }
 
@@ -128,7 +127,7 @@ bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named,
 bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& limits) {
     explain_measures(scene, limits);
     if (const std::size_t frames = scene.scene().frames(); frames > explained_frames)
-        print(fmt::format("  bytes are those after {} of {} frames; run tells those after the last\n", explained_frames,
+        print(fmt::format("  bytes after {} of {} frames; run reports those after the last\n", explained_frames,
                           grouped(frames)));
     explain_unused(e, scene.choice());
     flush_output();
@@ -163,8 +162,8 @@ int explain(const explain_request& request) {
         time_limits limits(request.seconds);
         // A scene that cannot be created is reported before any output.
         staged_scene scene(choice);
-        limits.note_scene_read();
-        if (&choice == e.scenes.data()) print(wrapped("strategies plan by " + costs_in_force()) + "\n\n");
+        limits.scene_is_read();
+        if (&choice == e.scenes.data()) print(wrapped("strategies plan with " + costs_in_force()) + "\n\n");
         same &= explain_scene(e, scene, limits);
     }
     return same ? 0 : 1;

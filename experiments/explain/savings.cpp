@@ -89,7 +89,7 @@ std::string more(std::uint64_t bytes, std::uint64_t than) {
 /// Prints for each omission of the first variant, the selected one, the fastest variant without it and its extra cost.
 void print_omissions(std::span<const variant> variants) {
     const std::vector<observation>& times = variants[0].times;
-    table t{{{"left out", false}, {"is had with", false}, {"ms/frame"}, {"bytes"}}, {}};
+    table t{{{"left out", false}, {"available with", false}, {"ms/frame"}, {"bytes"}}, {}};
     for (const aabb::absence what : omitted_by(variants[0])) {
         t.rows.push_back({to_text(what), "-", "-", "-"});
         const variant* with = fastest_with(what, variants.subspan(1));
@@ -99,9 +99,9 @@ void print_omissions(std::span<const variant> variants) {
                          fmt::format("{:.5f}{}", median_ms(with->times) - median_ms(times), open ? "?" : ""),
                          more(with->times.back().bytes, times.back().bytes)};
     }
-    print("what is left out saves, against the fastest way of having it\n");
+    print("savings of what is left out, compared with the fastest variant that has it\n");
     print_broken(t, 0);
-    print(wrapped("-: none that was played has it. Below 0: having it takes less. ?: as above.") + "\n");
+    print(wrapped("-: no variant that ran has it. Below 0: the variant takes less. ?: as above.") + "\n");
 }
 
 candidate with_counters(candidate tested) {
@@ -149,7 +149,8 @@ bool print_disagreements(const std::vector<variant>& variants) {
     for (const variant& v : variants) times.push_back(v.times);
     const std::vector<std::size_t> wrong = disagreeing(times);
     for (const std::size_t i : wrong)
-        print_paragraph(called(variants[i]) + " finds other pairs than what is selected: one of the two is wrong.");
+        print_paragraph(called(variants[i]) +
+                        " finds other pairs than the selected composition: one of the two is wrong.");
     return wrong.empty();
 }
 
@@ -192,7 +193,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     if (outcome.times[0].empty()) {
         const attempt& selected_run = *outcome.broken_off[0];
         if (selected_run.end == ending::rejected) throw aabb::input_error(selected_run.reason);
-        print_paragraph("what each choice saves is not known; as selected: " + text_of(selected_run) +
+        print_paragraph("the savings of each choice are unknown; as selected: " + text_of(selected_run) +
                         (selected_run.end == ending::stopped ? "; increase --seconds" : "") + ".");
         return true;
     }
@@ -202,26 +203,29 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
         variants[i].is_hopeless = outcome.hopeless[i];
     }
 
-    table t = empty_table({"kind", "in its place"}, {"ms/frame", "ratio", "range"});
+    table t = empty_table({"kind", "replaced by"}, {"ms/frame", "ratio", "range"});
     t.columns.push_back({"build ms", true, 2});
     t.columns.push_back({"bytes", true, 1});
     for (std::size_t i = 0; i < in_table; ++i) add_row(t, variants[i], variants[0]);
-    print_paragraph(fmt::format("what each choice saves: one kind at a time in another way, all in turn, {} of {}",
-                                counted(outcome.rounds, "round"), counted(outcome.frames, "frame")));
+    print_paragraph(fmt::format(
+        "savings of each choice: one strategy is replaced at a time, and the variants run interleaved, in {} of {}",
+        counted(outcome.rounds, "round"), counted(outcome.frames, "frame")));
     print(to_text(t, output_width()) + "\n");
     print_unfinished(variants);
-    if (!alone.empty()) print_paragraph(alone + ": nothing else can be composed with the rest.");
+    if (!alone.empty()) print_paragraph(alone + ": no other strategy can be composed with the rest.");
     if (!is_small)
-        print_paragraph(fmt::format("With more than {} only kinds that stand apart are tried in other ways.",
-                                    counted(most_objects_of_any, "object")));
-    print_paragraph(ms_per_frame_text);
+        print_paragraph(
+            fmt::format("With more than {}, only prepare and build are replaced: slow strategies of other kinds would "
+                        "take minutes.",
+                        counted(most_objects_of_any, "object")));
+    print_paragraph(ms_a_frame_text);
     print_paragraph(fmt::format(
-        "ratio: ms/frame over that of what is selected in the same round, the median; range: the least and the "
-        "greatest; ?: the range comes within 3 % of 1, so that the rounds leave it open; > {:.0f}: seen in one "
-        "round.",
+        "ratio: ms/frame relative to the selected composition in the same round, the median; range: the least and the "
+        "greatest ratio; ?: undecided, since the range comes within 3 % of 1; > {:.0f}: measured in one round.",
         hopeless_ratio));
     print_paragraph(build_ms_text);
-    print_paragraph("bytes: held after the last of these frames; counters: the same with all work counted.");
+    print_paragraph(
+        "bytes: allocated after the last of these frames; counters: as selected, but with all work counted.");
     print("\n");
     print_omissions(variants);
     const bool same = print_disagreements(variants);

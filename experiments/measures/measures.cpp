@@ -193,19 +193,20 @@ table measures_table(const scene_measures& m) {
     for (std::size_t k = 0; k < 3; ++k)
         if (m.present > 2 && o[k] > 0.999 * static_cast<double>(m.present - 1))
             add("flat axis", std::string(1, "xyz"[k]));
-    add("size ratio",
-        (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") + ", longest edge over the median one");
-    add("density", fmt::format("{:.3g} overlapping pairs an object", m.pairs_an_object));
-    add("clustering", fmt::format("{:.3g} times the pairs of evenly spread boxes", m.clustering));
+    add("size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
+                          ", the longest edge over the median longest edge");
+    add("density", fmt::format("{:.3g} overlapping pairs per object", m.pairs_an_object));
+    add("clustering", fmt::format("{:.3g} times the pairs of uniformly distributed boxes", m.clustering));
     if (!m.motion) return measured;
     const double unit = m.boxes.typical_extent > 0 ? m.boxes.typical_extent : 1;
     const char* unit_name = m.boxes.typical_extent > 0 ? "typical extents" : "units";
-    add("displacement", fmt::format("{:.3g} {} a frame, a mean", m.motion->displacement / unit, unit_name));
+    add("displacement", fmt::format("{:.3g} {} per frame, the mean", m.motion->displacement / unit, unit_name));
     add("relative",
-        fmt::format("{:.3g} {}, the greatest beyond what all move alike", m.motion->relative / unit, unit_name));
-    add("inversions", fmt::format("{:.3g} an object and frame", m.motion->inversions));
+        fmt::format("{:.3g} {}, the greatest beyond the common motion", m.motion->relative / unit, unit_name));
+    add("inversions", fmt::format("{:.3g} per object and frame", m.motion->inversions));
     add("at rest", fmt::format("{:.3g} % of the objects", 100 * m.motion->at_rest));
-    if (m.turnover > 0) add("turnover", fmt::format("{:.3g} % of the objects come or go in a frame", 100 * m.turnover));
+    if (m.turnover > 0)
+        add("turnover", fmt::format("{:.3g} % of the objects appear or disappear per frame", 100 * m.turnover));
     return measured;
 }
 

@@ -48,7 +48,7 @@ struct scene_measures {
 /// Measures a scene that exists already and is at its first frame.
 [[nodiscard]] scene_measures measure_scene(scene_frames& scene);
 
-/// The rows that are printed: "displacement", "0.031 of a mean extent a frame".
+/// The rows that are printed: "displacement", "0.031 typical extents per frame, the mean".
 [[nodiscard]] table measures_table(const scene_measures& m);
 
 /// "brownian (objects=1000, …)"

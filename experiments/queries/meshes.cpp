@@ -178,7 +178,7 @@ public:
         const std::uint64_t neighbours = for_each_with_neighbours(
             meshes.front(), of_pose.pairs, [&](std::span<const aabb::index_pair> pairs) { take_sorted(pairs); });
         if (neighbours != of_pose.neighbours)
-            throw defect(fmt::format("{} finds {} pairs of triangles that share a vertex, and there are {}",
+            throw defect(fmt::format("{} finds {} pairs of triangles that share a vertex, but there are {}",
                                      method_.name, of_pose.neighbours, neighbours));
     }
     [[nodiscard]] std::string digest() const { return digest_.text(); }

@@ -12,12 +12,12 @@ namespace {
 /// "takes 1.31 times as long (1.25-1.36)"
 std::string beside_winner(const racer& r) {
     if (!r.has_range())
-        return fmt::format("takes {:.2f} times as long, in {}, too few to say how sure that is", r.ratio(),
-                           counted(r.times.size(), "play"));
+        return fmt::format("takes {:.2f} times as long, in {}, too few for a confidence interval", r.ratio(),
+                           counted(r.times.size(), "repeat"));
     const auto [low, high] = r.ratio_range();
     const std::string range = fmt::format("({:.2f}-{:.2f})", low, high);
     return low > 1 ? fmt::format("takes {:.2f} times as long {}", r.ratio(), range)
-                   : fmt::format("is as fast, as far as {} plays tell {}", r.times.size(), range);
+                   : fmt::format("is as fast within the noise of {} repeats {}", r.times.size(), range);
 }
 
 /// Describes `auto`, unless it is first or second and therefore described already.
@@ -28,7 +28,7 @@ std::string of_automatic(const race_result& race) {
     const auto dropped = std::ranges::find_if(race.dropped, is_automatic);
     if (dropped == race.dropped.end()) return "";
     if (dropped->broken_off) return fmt::format("{}: {}.", dropped->name, text_of(*dropped->broken_off));
-    return fmt::format("{} was dropped after {}: {:.2f} times as long as the fastest.", dropped->name,
+    return fmt::format("{} was dropped after {}: it took {:.2f} times as long as the fastest.", dropped->name,
                        counted(dropped->last->frames, "frame"), dropped->behind);
 }
 
@@ -63,7 +63,7 @@ std::string options_of(const candidate_name& name) {
     std::string text;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
         if (!name[kind].empty()) text += fmt::format(" --{} {}", name_of(kind), name[kind]);
-    return "To name it:" + (name.engine.empty() ? text : " --engine " + name.engine);
+    return "Options that select it:" + (name.engine.empty() ? text : " --engine " + name.engine);
 }
 
 /// "25 frames", "the first 4 of 1,000 frames", "the first of 61 frames"
@@ -99,7 +99,7 @@ std::vector<std::string> what_would_change_it(const race_result& race) {
         parts.push_back(fmt::format("with fewer than about {:.0f} frames it would be {}", below, with_fewer->name));
     if (with_more)
         parts.push_back(fmt::format("with more than about {:.0f} frames it would be {}", above, with_more->name));
-    if (parts.empty()) parts.emplace_back("no other is shown to be faster over fewer frames, nor over more");
+    if (parts.empty()) parts.emplace_back("no other candidate is shown to be faster with fewer or more frames");
     return parts;
 }
 
@@ -110,16 +110,15 @@ std::vector<std::string> what_was_left(const race_result& race) {
         std::ranges::count_if(race.dropped, [](const racer& r) { return r.broken_off && r.broken_off->seconds == 0; });
     if (not_run > 0)
         sentences.push_back(fmt::format("There was no time for {}; increase --seconds.",
-                                        counted(static_cast<std::size_t>(not_run), "other")));
+                                        counted(static_cast<std::size_t>(not_run), "candidate")));
     if (race.is_validated()) return sentences;
     const racer& winner = race.finalists.front();
     sentences.push_back(
         race.validated > 0
             ? fmt::format(
-                  "Only the first {} compared with the exact pairs: CGAL takes longer than there was time.",
+                  "Only the first {} compared with the ground truth: CGAL did not finish in time.",
                   race.validated == 1 ? "of these frames was" : grouped(race.validated) + " of these frames were")
-            : "No candidate was compared with the exact pairs: CGAL fails to find them, or takes longer than there "
-              "was time.");
+            : "No candidate was compared with the ground truth: CGAL failed, or did not finish in time.");
     for (const racer& other : race.finalists)
         if (other.last->digest != winner.last->digest)
             sentences.push_back(fmt::format("{} finds other pairs than {}.", other.name, winner.name));
@@ -138,7 +137,7 @@ std::vector<std::string> advice_of(const race_result& race) {
     if (std::string sentence = of_automatic(race); !sentence.empty()) sentences.push_back(std::move(sentence));
     if (std::string options = options_of(winner.tested.name); !options.empty()) sentences.push_back(std::move(options));
     for (const racer& r : race.wrong)
-        sentences.push_back(fmt::format("{} is out of the race: it does not find the exact pairs.", r.name));
+        sentences.push_back(fmt::format("{} is rejected: its pairs differ from the ground truth.", r.name));
     for (std::string& sentence : what_was_left(race)) sentences.push_back(std::move(sentence));
     return sentences;
 }

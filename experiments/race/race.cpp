@@ -109,7 +109,7 @@ private:
     /// has too many frames, it continues with the number that the first successful candidate finished.
     /// @returns whether any candidate finished
     bool run_all(std::size_t& frames, double margin, bool is_first_round) {
-        progress shown("racing over " + counted(frames, "frame"), running_.size());
+        progress shown("candidates over " + counted(frames, "frame"), running_.size());
         const double kept = is_first_round ? (1 - share_of_first_round) * whole_ : 0;
         double least = std::numeric_limits<double>::infinity();
         std::size_t done = 0;
@@ -234,7 +234,7 @@ private:
         std::size_t frames = result_.frames;
         while (frames > result_.final_frames && !final_fits(frames))
             frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);
-        progress shown("racing to the end", most_repeats);
+        progress shown("repeats of the final", most_repeats);
         const std::vector<racer> before = running_;
         bool is_cut = false;  // time is over within a repeat, which is discarded
         const auto run = [&](racer& r, std::size_t) {
@@ -271,7 +271,7 @@ private:
     void take_back(std::vector<racer> before) {
         const auto finalists = std::span(result_.dropped).last(before.size());
         if (std::ranges::any_of(finalists, [](const racer& r) { return r.broken_off->end != ending::stopped; }))
-            throw aabb::input_error("nothing plays this scene to its end");
+            throw aabb::input_error("no candidate finishes this scene");
         result_.dropped.resize(result_.dropped.size() - before.size());
         running_ = std::move(before);
     }
@@ -297,7 +297,7 @@ private:
         const auto first_wrong = std::stable_partition(running_.begin(), running_.end(), agrees);
         result_.wrong.assign(std::move_iterator(first_wrong), std::move_iterator(running_.end()));
         running_.erase(first_wrong, running_.end());
-        if (running_.empty()) throw std::runtime_error("nobody finds the exact pairs of this scene");
+        if (running_.empty()) throw std::runtime_error("no candidate finds the exact pairs of this scene");
     }
 
     staged_scene& scene_;

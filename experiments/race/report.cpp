@@ -56,10 +56,10 @@ table unfinished_table_of(const race_result& race) {
 }
 
 std::vector<std::string> legend() {
-    return {"all ms: build ms, first ms, which is frame 0, and all further frames; of the plays the median.",
-            "ratio: all ms over that of the first in the same play, the median, and where it lies with 95 %; -: of "
-            "itself, or of too few plays to say.",
-            ms_per_frame_text, build_ms_text};
+    return {"all ms: build ms, first ms (frame 0) and the time of all further frames; the median of the repeats.",
+            "ratio: all ms relative to the fastest candidate in the same repeat, the median, with its 95 % confidence "
+            "interval; -: the fastest itself, or too few repeats.",
+            ms_a_frame_text, build_ms_text};
 }
 
 std::string origin() {
@@ -76,9 +76,9 @@ std::string page_of(const std::string& scene, const race_result& race, const std
     report.add_html(measured);
     report.add(dropped_table_of(race));
     report.paragraph(
-        "Dropped: after so many frames, who took so many times as long as the fastest, over all frames and in those "
-        "after the first; or how a play ended that did not come to its end. Strategies play with their default "
-        "parameters.");
+        "Dropped: a candidate was stopped after this many frames, since it took this many times as long as the "
+        "fastest, both in total and per frame after the first; or its run did not finish. Strategies have their "
+        "default parameters.");
     report.paragraph(origin());
     return report.html();
 }
@@ -88,8 +88,7 @@ std::string measures_page(staged_scene& scene, double seconds) {
     const child_result measured = scene.in_child(
         [](scene_frames& run, const output_sender& send) { send(to_html(measures_table(measure_scene(run)))); },
         seconds);
-    return measured.end == ending::done ? measured.reported
-                                        : "<p>There was no time to measure what the scene is like.</p>\n";
+    return measured.end == ending::done ? measured.reported : "<p>There was no time to measure the scene.</p>\n";
 }
 
 }  // namespace
@@ -109,10 +108,11 @@ int recommend(const recommend_request& request) {
     const race_result race = run_race(scene, starters(scene.scene()), limits);
     const std::string name = heading_of(scene.choice());
     print_paragraph(name + ": " + counted(race.objects, "object") + ", " + counted(race.frames, "frame"));
-    print(fmt::format("{} of {} raced to the end; {:.0f} % of the frames that all would have played\n\n",
-                      race.finalists.size(), race.finalists.size() + race.dropped.size() + race.wrong.size(),
-                      100 * static_cast<double>(race.played) / static_cast<double>(race.of)));
-    print(to_text(table_of(race), output_width()) + "\n");
+    print_paragraph(
+        fmt::format("{} of {} candidates reached the final; early stopping reduced the frames that ran to {:.0f} %",
+                    race.finalists.size(), race.finalists.size() + race.dropped.size() + race.wrong.size(),
+                    100 * static_cast<double>(race.played) / static_cast<double>(race.of)));
+    print("\n" + to_text(table_of(race), output_width()) + "\n");
     for (const std::string& line : legend()) print_paragraph(line);
     print("\n");
     if (const table unfinished = unfinished_table_of(race); !unfinished.rows.empty())

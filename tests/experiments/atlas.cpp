@@ -221,5 +221,5 @@ TEST_CASE("atlas --judge makes maps of results that are there, and says where th
     }
     CHECK(run_refused({"atlas", "--judge", folder / "gone"}).err ==
           "aabblab: " + (folder / "gone").string() + " is not there\n");
-    CHECK(holds(run_program({"atlas", folder / "map"}).err, "only --judge takes results that are there"));
+    CHECK(holds(run_program({"atlas", folder / "map"}).err, "only --judge reads existing results"));
 }

@@ -107,7 +107,7 @@ TEST_CASE("Measures are told with their digits grouped, and what cannot be told 
     m.triangles = 12'345;
     std::string text;
     for (const auto& row : aabblab::reported(m).rows) text += row[0] + " " + row[1] + "\n";
-    for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, longest edge"})
+    for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, the longest edge"})
         CHECK(holds(text, line));
 }
 
@@ -149,13 +149,14 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     for (const char* part :
          {"objects       200\n", "frames        81, of which the first 4 are measured\n",
           "at rest       0 % of the objects\n", "counters of all work  ", "prepare    neighbour_list  frames follow",
-          "    planned from what was seen\n", "one column, cut nowhere", " pairs, of boxes grown by ", "as selected",
-          "split_large", "axial_cut", "build, tree, triangle have no part in this scene"})
+          "    plans from earlier frames\n", "one column, cut nowhere", " pairs, of boxes grown by ", "as selected",
+          "split_large", "axial_cut", "build, tree, triangle do not apply to this scene"})
         CHECK(holds(reported.out, part));
     CHECK_FALSE(holds(reported.out, "canonical"));
     // columns take no other sweep.
-    for (const char* part : {"\nsweep: nothing else can be composed with the rest.\n", "\nratio: ms/frame over",
-                             "\nms/frame: the mean time per frame", "\nbuild ms: the time to create"})
+    for (const char* part :
+         {"\nsweep: no other strategy can be composed with the rest.\n", "\nratio: ms/frame relative",
+          "\nms/frame: update, search", "\nbuild ms: the stages are made"})
         CHECK(holds(reported.out, part));
     check_narrow(reported.out);
     CHECK(holds(run_program({"explain", file, file}).err, "a recording is a scene of its own"));
@@ -218,10 +219,10 @@ TEST_CASE("explain says what it did not get to in its time") {
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "brownian", "--n", "4000", "--frames", "4", "--density", "1e6", "--out", file});
     const program_result reported = run_well({"explain", file, "--seconds", "0.01"});
-    for (const char* part : {"objects   4,000\n", "all else  stopped after ",
+    for (const char* part : {"objects   4,000\n", "the rest  stopped after ",
                              "prepare    neighbour_list  frames follow", "stopped after "})
         CHECK(holds(reported.out, part));
-    CHECK(holds(run_program({"explain", file, "--seconds", "0"}).err, "is how long to play: a number above 0"));
+    CHECK(holds(run_program({"explain", file, "--seconds", "0"}).err, "is how long to run: a number above 0"));
 }
 
 TEST_CASE("explain says what is wrong with a name before anything else") {
@@ -253,7 +254,7 @@ TEST_CASE("pairs and collide say what they selected") {
     CHECK(holds(run_program({"pairs", file, "--prepare", "none"}).out, "\nbucket + columns + simd: "));
     // The usual sort does not go with it.
     CHECK(holds(run_program({"pairs", file, "--sweep", "incremental"}).out, "insertion + none + incremental: "));
-    CHECK(holds(run_program({"pairs", file, "--sort", "auto"}).err, "--sort auto: leave it out"));
+    CHECK(holds(run_program({"pairs", file, "--sort", "auto"}).err, "--sort auto: omit the option"));
     const std::vector<std::string> meshes{"icosphere:triangles=80", "torus_knot:triangles=96"};
     CHECK(holds(run_program({"collide", meshes[0], meshes[1]}).out, "\nimplicit:vertices=fetched + exact: "));
     CHECK(holds(run_program({"collide", meshes[0], meshes[1], "--repeat", "100"}).out, "\nsah + implicit + exact: "));

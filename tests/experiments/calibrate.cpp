@@ -163,7 +163,8 @@ TEST_CASE("What is wrong in a file of costs is said with its line") {
 
 TEST_CASE("The program plans by the costs that are kept, and says so") {
     const configured shipped;
-    CHECK(shipped.run({"explain", "icosphere", "icosphere"}).out.starts_with("strategies plan by costs as shipped\n"));
+    CHECK(
+        shipped.run({"explain", "icosphere", "icosphere"}).out.starts_with("strategies plan with costs as shipped\n"));
     REQUIRE(shipped.run_experiment().status == 0);
     CHECK(shipped.costs_of_run()["source"] == "shipped");
     CHECK(shipped.costs_of_run()["ns"]["search_pair"] == aabb::cost_model{}.search_pair);
@@ -172,7 +173,7 @@ TEST_CASE("The program plans by the costs that are kept, and says so") {
     const program_result explained = kept.run({"explain", "icosphere", "icosphere"});
     CHECK(explained.status == 0);
     CHECK(explained.err.empty());
-    CHECK(explained.out.starts_with("strategies plan by costs calibrated 20"));
+    CHECK(explained.out.starts_with("strategies plan with costs calibrated 20"));
     CHECK(holds(explained.out, kept.file().string()));
     REQUIRE(kept.run_experiment().status == 0);
     const nlohmann::json costs = kept.costs_of_run();
@@ -197,7 +198,7 @@ TEST_CASE("Costs of another processor, instruction set or version are left alone
         CHECK(explained.status == 0);
         CHECK(is_one_sentence(explained.err));
         CHECK(holds(explained.err, "costs are as shipped until aabblab calibrate measures them here"));
-        CHECK(explained.out.starts_with("strategies plan by costs as shipped\n"));
+        CHECK(explained.out.starts_with("strategies plan with costs as shipped\n"));
     }
 }
 
@@ -220,7 +221,7 @@ TEST_CASE("calibrate keeps what it measured, as a table too") {
     const program_result made = user.run({"calibrate", "--quick"});
     INFO(made.err);
     REQUIRE(made.status == 0);
-    for (const char* part : {"cost ", "shipped", "95 %", "cut_subset ", "ns/visit", "lists of neighbours", "worst",
+    for (const char* part : {"cost ", "shipped", "95 %", "cut_subset ", "ns/visit", "Verlet lists", "worst",
                              "aabblab calibrate --reset removes it"})
         CHECK(holds(made.out, part));
     check_narrow(made.out.substr(0, made.out.find("wrote ")));
@@ -242,6 +243,6 @@ TEST_CASE("calibrate says where costs cannot be kept, before it measures") {
     user.folder.write("file", "");
     as_refused(user.run({"calibrate", "--quick", "--out", (user.folder / "file/costs.toml").string()}));
     CHECK(holds(run_command({"env", "-u", "HOME", "-u", "XDG_CONFIG_HOME", AABBLAB_UNDER_TEST, "calibrate"}).err,
-                "--out FILE says where costs go"));
+                "give --out FILE for the costs"));
     CHECK(user.run({"calibrate", "--reset", "--quick"}).status == 2);
 }

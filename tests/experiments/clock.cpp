@@ -29,8 +29,8 @@ TEST_CASE("On a clock that goes in steps of 15 ms, what is to be timed is refuse
         CHECK(result.status == 2);
         CHECK(result.out.empty());
         CHECK(
-            result.err.ends_with("aabblab: the clock of this machine goes in steps of 15.0 ms, too long for what is "
-                                 "to be timed; at most 0.0100 ms are needed\n"));
+            result.err.ends_with("aabblab: the clock of this machine has a resolution of 15.0 ms, too coarse for "
+                                 "these times; at most 0.0100 ms is required\n"));
         CHECK(folder.files() == files);
     }
     // Whose times are not what is asked for.

@@ -71,8 +71,8 @@ TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, 
     const std::filesystem::path out = folder / "results";
     const program_result ran = run_program({"validate", "extreme", "--quick", "--cases", file, "--out", out});
     CHECK(ran.status == 1);
-    CHECK(holds(ran.err, "aabblab: exact in double on lie: reports that they intersect\n"));
-    CHECK(holds(ran.out, "answers are not what they must be.\n"));
+    CHECK(holds(ran.err, "aabblab: exact in double on lie: says that they intersect\n"));
+    CHECK(holds(ran.out, "results are not as expected.\n"));
     // Nothing but the lie is wrong.
     CHECK(holds(ran.out, "crossing      1      4 WRONG"));
     for (const std::string scene : {"lattice  ", "flushed_boxes", "same_place", "upward_meshes", "pairs_zero_area"})
@@ -100,8 +100,8 @@ TEST_CASE("What stands before or behind validate extreme and has no part in it i
     const std::string file = folder.write("c.toml", "[[case]]\nname = 1\n");
     const auto said = [](const std::vector<std::string>& arguments) { return run_refused(arguments).err; };
     CHECK(said({"validate", "--quick", "extreme", "--cases", file}) ==
-          "aabblab: validate: --quick has no part in 'extreme'; what it takes stands behind its name\n");
-    CHECK(said({"validate", file, "extreme"}).starts_with("aabblab: validate: CONFIG has no part in 'extreme'"));
+          "aabblab: validate: --quick does not apply to 'extreme', whose own options follow its name\n");
+    CHECK(said({"validate", file, "extreme"}).starts_with("aabblab: validate: CONFIG does not apply to 'extreme'"));
     CHECK(said({"validate", "extreme", "--cases", file}) ==
           "aabblab: " + file + ":2: name is a number; expected a name\n");
     CHECK(said({"validate", "extreme", "--qiuck"}) ==

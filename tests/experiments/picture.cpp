@@ -154,8 +154,8 @@ TEST_CASE("scene refuses pictures that it cannot write and leaves no file behind
     rejected({"--out", file, "--picture", same}, "--out and --picture are the same file");
     rejected({"--out", file, "--picture", nowhere}, "scene.svg: cannot be written");
     rejected({"--picture", folder / "sub"}, "it is a folder");
-    rejected({"--out", folder / "x.csv"}, "--out takes a name that ends in .aabbs, not '" +
-                                              (folder / "x.csv").string() +
-                                              "': it writes a recording; aabblab pairs writes the pairs of one as CSV");
-    rejected({"--picture", folder / "x.png"}, "--picture takes a name that ends in .svg");
+    rejected({"--out", folder / "x.csv"},
+             "--out must end in .aabbs, not '" + (folder / "x.csv").string() +
+                 "': it writes a recording; aabblab pairs writes the pairs of a recording as CSV");
+    rejected({"--picture", folder / "x.png"}, "--picture must end in .svg");
 }

@@ -72,7 +72,7 @@ TEST_CASE("The program prints its version and its help") {
         REQUIRE(holds(help.out, std::string("\n  ") + command + " "));
     REQUIRE(holds(run_program({"pairs", "--help"}).out, "--sweep"));
     for (const char* command : {"pairs", "collide", "contacts"})
-        REQUIRE(holds(run_program({command, "--help"}).out, "aabblab list has every strategy"));
+        REQUIRE(holds(run_program({command, "--help"}).out, "aabblab list shows every strategy"));
 }
 
 TEST_CASE("Help and list fit the width they are given, 80 characters without a terminal") {

@@ -174,8 +174,8 @@ TEST_CASE("Who finds other pairs than CGAL does not win a race") {
     REQUIRE(race.finalists.size() == 1);
     CHECK(race.finalists.front().name == "right");
     CHECK(holds(race.wrong, "wrong"));
-    CHECK(aabblab::advice_of(race).back() == "wrong is out of the race: it does not find the exact pairs.");
-    CHECK_THROWS_WITH(race_of(short_scene, {all.back()}, 2), "nobody finds the exact pairs of this scene");
+    CHECK(aabblab::advice_of(race).back() == "wrong is rejected: its pairs differ from the ground truth.");
+    CHECK_THROWS_WITH(race_of(short_scene, {all.back()}, 2), "no candidate finds the exact pairs of this scene");
 }
 
 TEST_CASE("Who finds other pairs than the first of those who play in turn is known") {
@@ -308,8 +308,9 @@ TEST_CASE("Who did not end is not recommended where anybody did, and all are nam
     const auto not_run = std::ranges::count_if(
         race.dropped, [](const racer& r) { return text_of(r.broken_off.value()) == "not run: no time was left"; });
     CHECK_BETWEEN(0, not_run, 12);
-    CHECK(std::ranges::count(aabblab::advice_of(race), "There was no time for " + std::to_string(not_run) + " other" +
-                                                           (not_run > 1 ? "s" : "") + "; increase --seconds.") == 1);
+    CHECK(std::ranges::count(aabblab::advice_of(race), "There was no time for " + std::to_string(not_run) +
+                                                           " candidate" + (not_run > 1 ? "s" : "") +
+                                                           "; increase --seconds.") == 1);
 }
 
 TEST_CASE("A race that is refused a frame says why, as the command says it") {
@@ -368,7 +369,7 @@ TEST_CASE("Order and ratio of finalists are of what they took in the same repeat
 }
 
 TEST_CASE("What would change the answer of a race is told where the repeats show it") {
-    const std::string nobody = "; no other is shown to be faster over fewer frames, nor over more.";
+    const std::string nobody = "; no other candidate is shown to be faster with fewer or more frames.";
     // The sentence that says what to use ends so.
     const auto ends_so = [](std::vector<racer> finalists, const std::string& end, std::size_t frames = 100) {
         return aabblab::advice_of(ended(std::move(finalists), frames)).front().ends_with(end);
@@ -394,17 +395,15 @@ TEST_CASE("What would change the answer of a race is told where the repeats show
 
 TEST_CASE("Of a few plays it is not said how sure a ratio is, and of CGAL how far it came") {
     aabblab::race_result race = ended({finished("winner", {1, 1}), finished("other", {2, 2})}, 2);
-    CHECK(
-        aabblab::advice_of(race).front() ==
-        "Use winner: 1 ms for 2 frames; the next, other, takes 2.00 times as long, in 2 plays, too few to say how sure "
-        "that is.");
+    CHECK(aabblab::advice_of(race).front() ==
+          "Use winner: 1 ms for 2 frames; the next, other, takes 2.00 times as long, in 2 repeats, too few for a "
+          "confidence interval.");
     race.validated = 1;
     CHECK(aabblab::advice_of(race).back() ==
-          "Only the first of these frames was compared with the exact pairs: CGAL takes longer than there was time.");
+          "Only the first of these frames was compared with the ground truth: CGAL did not finish in time.");
     race.validated = 0;
     CHECK(aabblab::advice_of(race).back() ==
-          "No candidate was compared with the exact pairs: CGAL fails to find them, or takes longer than there was "
-          "time.");
+          "No candidate was compared with the ground truth: CGAL failed, or did not finish in time.");
 }
 
 TEST_CASE("The answer of a race can be named") {
@@ -416,10 +415,10 @@ TEST_CASE("The answer of a race can be named") {
     aabblab::candidate_name ours;
     ours[aabb::strategy_kind::prepare] = "none";
     ours[aabb::strategy_kind::partition] = "axial_cut:axes=3";
-    CHECK(named(ours) == "To name it: --prepare none --partition axial_cut:axes=3");
+    CHECK(named(ours) == "Options that select it: --prepare none --partition axial_cut:axes=3");
     aabblab::candidate_name engine = ours;
     engine.engine = "embree";
-    CHECK(named(engine) == "To name it: --engine embree");
+    CHECK(named(engine) == "Options that select it: --engine embree");
     aabblab::candidate_name automatic;
     automatic.engine = "auto";
     CHECK(named(automatic).starts_with("Use winner"));
@@ -438,13 +437,13 @@ TEST_CASE("How auto did in a race is told as far as the repeats tell") {
     noisy.tested.name = automatic.tested.name;
     const racer even = finished("even", {2, 2, 2, 2, 2, 2, 2});
     const racer odd = finished("odd", {2.01, 2.01, 2.01, 2.01, 2.01, 2.01, 2.01});
-    CHECK(reported(ended({even, odd, noisy}, 2), "auto (= x) is as fast, as far as 7 plays tell ("));
+    CHECK(reported(ended({even, odd, noisy}, 2), "auto (= x) is as fast within the noise of 7 repeats ("));
     aabblab::race_result without = ended({winner, second});
     automatic.last = automatic.times.front();
     automatic.last->frames = 8;
     automatic.behind = 1.5;
     without.dropped.push_back(automatic);
-    CHECK(reported(without, "auto (= x) was dropped after 8 frames: 1.50 times as long as the fastest."));
+    CHECK(reported(without, "auto (= x) was dropped after 8 frames: it took 1.50 times as long as the fastest."));
     without.dropped.back().broken_off = aabblab::attempt{aabblab::ending::stopped, {}, "", 2.1};
     CHECK(reported(without, "auto (= x): stopped after 2.1 s."));
 }
@@ -583,16 +582,16 @@ TEST_CASE("recommend ranks, says what to use, and writes a page") {
     CHECK(holds(reported.out, "300 objects, 9 frames\n"));
     CHECK_FALSE(holds(reported.out, "finds other pairs"));
     const std::string html = bytes_of_file(page);
-    for (const char* part : {"<p>Use ", "overlapping pairs an object", "dropped", "all_axes", "<p>aabblab "})
+    for (const char* part : {"<p>Use ", "overlapping pairs per object", "dropped", "all_axes", "<p>aabblab "})
         CHECK(holds(html, part));
     for (const char* part :
-         {"\nratio: all ms over", "\nms/frame: the mean time per frame", "\nbuild ms: the time to create"})
+         {"\nratio: all ms relative", "\nms/frame: update, search", "\nbuild ms: the stages are made"})
         CHECK(holds(reported.out, part));
     check_narrow(reported.out.substr(reported.out.find("\nUse ") + 1));
     for (const char* seconds : {"0", "-1", "inf", "nan", "1e7", "x", ""}) {
         CHECK(holds(
             run_refused({"recommend", file, "--seconds", seconds}).err,
-            "--seconds is how long to race: a number above 0, at most 1,000,000, not '" + std::string(seconds) + "'"));
+            "--seconds is how long to run: a number above 0, at most 1,000,000, not '" + std::string(seconds) + "'"));
     }
     CHECK(run_program({"recommend", folder / "none.aabbs"}).status == 2);
     const std::string one = folder / "one.aabbs";

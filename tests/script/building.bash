@@ -38,7 +38,7 @@ export PATH=$work/bin WORK=$work
 
 # ---- Where nothing is built -------------------------------------------------------------------------------------------
 
-expect 'the commands' 0 '^  reproduce  +Every table, figure and claim' checkout/aabblab --help
+expect 'the commands' 0 '^  reproduce  +Reproduce every table, figure and claim' checkout/aabblab --help
 holds 'the same without a word' test "$(checkout/aabblab)" = "$(checkout/aabblab -h)"
 expect 'the options of a command' 0 '^Usage: aabblab run ' checkout/aabblab run --help
 expect 'of what it is given' 0 '^Usage: aabblab run ' checkout/aabblab run config.toml -h

@@ -34,9 +34,9 @@ double step_of(double (*clock)()) {
 void require_fine_clock() {
     const double step = std::max(step_of(wall_ms), step_of(thread_cpu_ms));
     if (step > longest_step_ms)
-        throw aabb::input_error("the clock of this machine goes in steps of " + three_digits(step) +
-                                " ms, too long for what is to be timed; at most " + three_digits(longest_step_ms) +
-                                " ms are needed");
+        throw aabb::input_error("the clock of this machine has a resolution of " + three_digits(step) +
+                                " ms, too coarse for these times; at most " + three_digits(longest_step_ms) +
+                                " ms is required");
 }
 
 double thread_cpu_ms() {
