@@ -19,7 +19,7 @@ namespace {
 constexpr int check_failed = 1;
 constexpr int bad_input = 2;
 
-void run(CLI::App& program, int argc, char** argv) {
+void parse_and_run(CLI::App& program, int argc, char** argv) {
     try {
         program.parse(argc, argv);
         require_command(program);
@@ -35,7 +35,7 @@ void run(CLI::App& program, int argc, char** argv) {
 
 /// Opens closed standard streams as /dev/null; else a file opened later would take their number and get their output.
 /// @throws aabb::input_error if standard output is closed.
-void require_standard_streams() {
+void open_standard_streams() {
     bool is_closed = false;
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (fcntl(stream, F_GETFD) >= 0) continue;
@@ -47,7 +47,7 @@ void require_standard_streams() {
 }
 
 /// Prints the error after all earlier output.
-int fail(int status, const std::string& sentence) {
+int report_error(int status, const std::string& sentence) {
     try {
         flush_output();
     } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
@@ -57,12 +57,12 @@ int fail(int status, const std::string& sentence) {
     return status;
 }
 
-int main_of(int argc, char** argv) {
+int run_program(int argc, char** argv) {
     std::signal(SIGCHLD, SIG_DFL);  // if inherited as ignored, waitpid could not report a status
     std::signal(SIGPIPE, SIG_IGN);  // print() handles a closed pipe by its error EPIPE
     int status = 0;
     try {
-        require_standard_streams();
+        open_standard_streams();
         CLI::App program(
             "AABB Lab composes methods of collision detection with axis-aligned bounding boxes, validates them, and "
             "measures what they cost",
@@ -86,23 +86,23 @@ int main_of(int argc, char** argv) {
         program.parse_complete_callback([&] {
             if (!program.got_subcommand("calibrate")) use_calibrated_costs();
         });
-        run(program, argc, argv);
+        parse_and_run(program, argc, argv);
         return status;
     } catch (const output_closed&) {
         return status;
     } catch (const aabb::input_error& error) {
-        return fail(bad_input, error.what());
+        return report_error(bad_input, error.what());
     } catch (const defect& error) {
-        return fail(check_failed, error.what());
+        return report_error(check_failed, error.what());
     } catch (const std::filesystem::filesystem_error& error) {
         const std::string path = error.path1().string();
-        return fail(bad_input, (path.empty() ? "" : path + ": ") + error.code().message());
+        return report_error(bad_input, (path.empty() ? "" : path + ": ") + error.code().message());
     } catch (const std::bad_alloc&) {
-        return fail(bad_input, "out of memory: the input or its result does not fit into memory");
+        return report_error(bad_input, "out of memory: the input or its result does not fit into memory");
     } catch (const std::length_error&) {
-        return fail(bad_input, "out of memory: the input or its result does not fit into memory");
+        return report_error(bad_input, "out of memory: the input or its result does not fit into memory");
     } catch (const std::exception& error) {
-        return fail(check_failed, std::string("internal error: ") + error.what());
+        return report_error(check_failed, std::string("internal error: ") + error.what());
     }
 }
 
@@ -111,5 +111,5 @@ int main_of(int argc, char** argv) {
 }  // namespace aabblab
 
 int main(int argc, char** argv) {
-    return aabblab::main_of(argc, argv);
+    return aabblab::run_program(argc, argv);
 }

@@ -19,7 +19,7 @@ double objects(const scene_measures& m) {
     return static_cast<double>(m.objects);
 }
 double pairs(const scene_measures& m) {
-    return objects(m) * m.pairs_an_object;
+    return objects(m) * m.pairs_per_object;
 }
 /// The relative motion of neighbouring boxes in typical extents, at most 1.
 double renewed(const scene_measures& m) {

@@ -68,7 +68,7 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
         const auto text = [](double value) { return fmt::format("{:.4g}", value); };
         std::vector<std::string> cells{scene.scene.kind,
                                        settings_text(scene.scene),
-                                       text(m.pairs_an_object),
+                                       text(m.pairs_per_object),
                                        m.motion ? text(m.motion->inversions) : "",
                                        m.motion ? text(m.motion->at_rest) : "",
                                        text(m.clustering),

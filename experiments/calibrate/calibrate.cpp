@@ -19,7 +19,7 @@ namespace {
 enum class cost_group : unsigned char { lists, cut, columns, median, sah, queries };
 
 /// A part of a run whose work belongs to one group.
-struct piece {
+struct measured_part {
     cost_group group;
     std::vector<double> work;  ///< valid if the run counts it
     double ns;                 ///< valid if the run does not count
@@ -29,7 +29,7 @@ struct piece {
 struct trial {
     std::string scene;
     bool held_out;  ///< used to check the fit, not for it
-    std::function<std::vector<piece>(aabb::instrumentation)> run_frames;
+    std::function<std::vector<measured_part>(aabb::instrumentation)> run_frames;
     std::vector<std::pair<cost_group, timed_work>> observations = {};  ///< by piece
 };
 
@@ -76,13 +76,13 @@ struct box_run {
 std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentation counted) {
     const costs_in_scope costs(run.planned_by);
     scene_frames scene(std::make_unique<aabb::known_boxes>(*run.frames));
-    stage_runner p(candidate_of(run.composed, false), scene, counted);
+    stage_runner runner(candidate_of(run.composed, false), scene, counted);
     aabb::work_counters before;
     std::vector<frame_sample> samples;
-    run_frames(scene, p, [&](const searched_frame& frame) {
+    run_frames(scene, runner, [&](const searched_frame& frame) {
         frame_sample sample{
             1e6 * (frame.took.update.cpu_ms + frame.took.search.cpu_ms), static_cast<double>(frame.pairs.size()), {}};
-        const aabb::work_counters work = p.counters();
+        const aabb::work_counters work = runner.counters();
         for (std::size_t k = 0; k < work.counts.size(); ++k) sample.work.counts[k] = work.counts[k] - before.counts[k];
         before = work;
         samples.push_back(sample);
@@ -91,7 +91,7 @@ std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentatio
 }
 
 /// Earlier frames are not representative: nothing is sorted, planned or kept between frames yet.
-constexpr std::size_t first_usual = 2;
+constexpr std::size_t warm_up_frames = 2;
 
 /// The means over every `step`-th frame from `first` on.
 frame_sample mean_of(const std::vector<frame_sample>& frames, std::size_t first, std::size_t step) {
@@ -125,38 +125,38 @@ struct generated_scene {
 /// The work of a mean frame: first the kinds with a cost, then kinds that no strategy plans by, with a constant 1.
 using work_of_frame = std::function<std::vector<double>(const frame_sample&)>;
 
-trial usual_frames(const generated_scene& scene, cost_group group, const aabb::composition& c,
-                   const aabb::cost_model& planned_by, work_of_frame work) {
+trial trial_of_frames(const generated_scene& scene, cost_group group, const aabb::composition& c,
+                      const aabb::cost_model& planned_by, work_of_frame work) {
     return {scene.name, scene.held_out,
             [group, run = box_run{scene.frames, c, planned_by}, work = std::move(work)](aabb::instrumentation counted) {
-                const frame_sample mean = mean_of(sample_frames(run, counted), first_usual, 1);
-                return std::vector{piece{group, work(mean), mean.ns}};
+                const frame_sample mean = mean_of(sample_frames(run, counted), warm_up_frames, 1);
+                return std::vector{measured_part{group, work(mean), mean.ns}};
             }};
 }
 
 /// A Verlet list that is rebuilt in every even frame and reused in every odd one.
-trial built_and_reused(const generated_scene& scene) {
+trial trial_of_verlet_list(const generated_scene& scene) {
     aabb::composition c;
     c[aabb::strategy_kind::prepare] = {"neighbour_list", {{"every", "2"}}};
     return {scene.name, scene.held_out,
             [n = scene.n, run = box_run{scene.frames, c, {}}](aabb::instrumentation counted) {
                 const std::vector<frame_sample> samples = sample_frames(run, counted);
-                const frame_sample built = mean_of(samples, first_usual, 2);
-                const frame_sample reused = mean_of(samples, first_usual + 1, 2);
+                const frame_sample built = mean_of(samples, warm_up_frames, 2);
+                const frame_sample reused = mean_of(samples, warm_up_frames + 1, 2);
                 // Reuse of a list tests each of its pairs and does not search.
                 assert(counted == aabb::instrumentation::none ||
                        (built.work[aabb::work::subsets] > 0 && reused.work[aabb::work::subsets] == 0));
                 const double listed = reused.count(aabb::work::box_tests);
-                return std::vector{piece{cost_group::lists, {n, listed, n, n, listed}, built.ns},
-                                   piece{cost_group::lists, {0, 0, 0, n, listed}, reused.ns}};
+                return std::vector{measured_part{cost_group::lists, {n, listed, n, n, listed}, built.ns},
+                                   measured_part{cost_group::lists, {0, 0, 0, n, listed}, reused.ns}};
             }};
 }
 
 void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
-    trials.push_back(usual_frames(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
+    trials.push_back(trial_of_frames(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
         return std::vector<double>{n, mean.pairs, 0, 0, 0};
     }));
-    trials.push_back(built_and_reused(scene));
+    trials.push_back(trial_of_verlet_list(scene));
 }
 
 /// @param lists the number of sorted lists: one per cut axis, and one for the sweep
@@ -166,14 +166,15 @@ void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, con
     c[aabb::strategy_kind::sort] = {sort, {}};
     c[aabb::strategy_kind::partition] = partition;
     c[aabb::strategy_kind::sweep] = {"one_axis", {}};
-    trials.push_back(usual_frames(scene, cost_group::cut, c, {}, [listed = scene.n * lists](const frame_sample& mean) {
-        return std::vector<double>{listed,
-                                   mean.count(aabb::work::subset_copies),
-                                   mean.count(aabb::work::subsets),
-                                   mean.count(aabb::work::box_tests),
-                                   mean.pairs,
-                                   1};
-    }));
+    trials.push_back(
+        trial_of_frames(scene, cost_group::cut, c, {}, [listed = scene.n * lists](const frame_sample& mean) {
+            return std::vector<double>{listed,
+                                       mean.count(aabb::work::subset_copies),
+                                       mean.count(aabb::work::subsets),
+                                       mean.count(aabb::work::box_tests),
+                                       mean.pairs,
+                                       1};
+        }));
 }
 
 void add_cut_trials(std::vector<trial>& trials, const generated_scene& scene) {
@@ -193,15 +194,16 @@ void add_column_trial(std::vector<trial>& trials, const generated_scene& scene, 
                       const aabb::cost_model& planned_by) {
     aabb::composition c;
     c[aabb::strategy_kind::partition] = {"columns", {{"axes", axes}}};
-    trials.push_back(usual_frames(scene, cost_group::columns, c, planned_by, [n = scene.n](const frame_sample& mean) {
-        // Copies are not counted if there is a single column.
-        return std::vector<double>{std::max(n, mean.count(aabb::work::subset_copies)),
-                                   mean.count(aabb::work::subsets),
-                                   mean.count(aabb::work::box_tests) / double{aabb::simd::width},
-                                   n,
-                                   mean.pairs,
-                                   1};
-    }));
+    trials.push_back(
+        trial_of_frames(scene, cost_group::columns, c, planned_by, [n = scene.n](const frame_sample& mean) {
+            // Copies are not counted if there is a single column.
+            return std::vector<double>{std::max(n, mean.count(aabb::work::subset_copies)),
+                                       mean.count(aabb::work::subsets),
+                                       mean.count(aabb::work::box_tests) / double{aabb::simd::width},
+                                       n,
+                                       mean.pairs,
+                                       1};
+        }));
 }
 
 /// Adds trials with more and with fewer columns than are optimal, so that the fit can separate their costs.
@@ -219,7 +221,7 @@ void add_column_trials(std::vector<trial>& trials, const generated_scene& scene)
     add_column_trial(trials, scene, "0", {});
 }
 
-scene_choice moving(const char* kind, std::size_t objects, const char* displacement, std::size_t frames) {
+scene_choice moving_boxes(const char* kind, std::size_t objects, const char* displacement, std::size_t frames) {
     return {kind,
             {{"objects", std::to_string(objects)}, {"displacement", displacement}, {"frames", std::to_string(frames)}},
             {}};
@@ -230,8 +232,8 @@ std::size_t frames_for(std::size_t objects) {
     return objects < 1000 ? 41 : objects < 10'000 ? 17 : 9;
 }
 
-void add_trial(std::vector<trial>& trials, const scene_choice& choice, bool held_out, const std::string& build,
-               cost_group group) {
+void add_mesh_trial(std::vector<trial>& trials, const scene_choice& choice, bool held_out, const std::string& build,
+                    cost_group group) {
     const auto triangles = static_cast<double>(traits_of(scene_frames(choice)).triangles);
     aabb::composition c;
     c[aabb::strategy_kind::build] = {build, {}};
@@ -239,18 +241,18 @@ void add_trial(std::vector<trial>& trials, const scene_choice& choice, bool held
                           const observation result = observe(choice, candidate_of(c, true), {.counted = counted});
                           const auto visits = static_cast<double>(result.work[aabb::work::node_visits]);
                           const double queries = result.first.detect.cpu_ms + result.rest.detect.cpu_ms;
-                          return std::vector{piece{group, {triangles}, 1e6 * result.build.cpu_ms},
-                                             piece{cost_group::queries, {visits}, 1e6 * queries}};
+                          return std::vector{measured_part{group, {triangles}, 1e6 * result.build.cpu_ms},
+                                             measured_part{cost_group::queries, {visits}, 1e6 * queries}};
                       }});
 }
 
 /// Adds trials of two meshes, one of which passes through the other.
-void add_trials(std::vector<trial>& trials, const std::string& standing, const std::string& passing,
-                std::size_t triangles, bool held_out) {
+void add_mesh_trials(std::vector<trial>& trials, const std::string& standing, const std::string& passing,
+                     std::size_t triangles, bool held_out) {
     const std::string size = ":triangles=" + std::to_string(triangles);
     const scene_choice choice{"mesh_pair", {{"frames", "10"}}, {standing + size, passing + size}};
-    add_trial(trials, choice, held_out, "median", cost_group::median);
-    add_trial(trials, choice, held_out, "sah", cost_group::sah);
+    add_mesh_trial(trials, choice, held_out, "median", cost_group::median);
+    add_mesh_trial(trials, choice, held_out, "sah", cost_group::sah);
 }
 
 std::vector<trial> box_trials(calibration_size size) {
@@ -262,13 +264,13 @@ std::vector<trial> box_trials(calibration_size size) {
         for (const char* kind : kinds)
             for (const std::size_t n : objects)
                 for (const char* displacement : displacements)
-                    add_list_trials(trials, {moving(kind, n, displacement, frames_for(n)), held_out});
+                    add_list_trials(trials, {moving_boxes(kind, n, displacement, frames_for(n)), held_out});
     };
     const auto add_searches = [&](const std::vector<const char*>& kinds, const sizes& objects, bool held_out) {
         constexpr std::size_t few_frames = 6;
         for (const char* kind : kinds)
             for (const std::size_t n : objects) {
-                const generated_scene scene(moving(kind, n, "0.05", few_frames), held_out);
+                const generated_scene scene(moving_boxes(kind, n, "0.05", few_frames), held_out);
                 add_cut_trials(trials, scene);
                 add_column_trials(trials, scene);
             }
@@ -287,11 +289,11 @@ std::vector<trial> mesh_trials(calibration_size size) {
     const bool quick = size == calibration_size::quick;
     std::vector<trial> trials;
     for (const std::size_t triangles : quick ? sizes{3000, 20'000} : sizes{3000, 20'000, 80'000}) {
-        add_trials(trials, "noise_sphere", "torus_knot", triangles, false);
-        add_trials(trials, "icosphere", "noise_sphere", triangles, false);
+        add_mesh_trials(trials, "noise_sphere", "torus_knot", triangles, false);
+        add_mesh_trials(trials, "icosphere", "noise_sphere", triangles, false);
     }
     for (const std::size_t triangles : quick ? sizes{8000} : sizes{8000, 40'000})
-        add_trials(trials, "torus_knot", "icosphere", triangles, true);
+        add_mesh_trials(trials, "torus_knot", "icosphere", triangles, true);
     return trials;
 }
 
@@ -317,18 +319,18 @@ struct group_observations {
 };
 
 /// Counts the work of every trial, then times all trials in interleaved rounds until the time is over.
-std::vector<group_observations> counted_and_timed(std::vector<trial> trials, double seconds) {
+std::vector<group_observations> observe_trials(std::vector<trial> trials, double seconds) {
     constexpr std::size_t fewest_repeats = 3;
     constexpr std::size_t most_repeats = 25;
     const auto remaining = [seconds, began = std::chrono::steady_clock::now()] {
         return seconds - std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     };
     for (trial& t : trials)
-        for (piece& p : t.run_frames(aabb::instrumentation::counters))
+        for (measured_part& p : t.run_frames(aabb::instrumentation::counters))
             t.observations.emplace_back(p.group, timed_work{t.scene, std::move(p.work), {}});
     progress shown("seconds of measurement", static_cast<std::size_t>(seconds));
     const auto time = [&](trial& t, std::size_t) {
-        const std::vector<piece> timed = t.run_frames(aabb::instrumentation::none);
+        const std::vector<measured_part> timed = t.run_frames(aabb::instrumentation::none);
         for (std::size_t p = 0; p < timed.size(); ++p) t.observations[p].second.ns.push_back(timed[p].ns);
         shown.at(static_cast<std::size_t>(seconds - std::max(0.0, remaining())));
     };
@@ -347,7 +349,7 @@ std::vector<group_observations> counted_and_timed(std::vector<trial> trials, dou
 calibration calibrate(calibration_size size, double seconds) {
     std::vector<trial> trials = box_trials(size);
     std::ranges::move(mesh_trials(size), std::back_inserter(trials));
-    const std::vector<group_observations> observed = counted_and_timed(std::move(trials), seconds);
+    const std::vector<group_observations> observed = observe_trials(std::move(trials), seconds);
     // A cost of nearly 0 means that noise hid it: nothing is free.
     constexpr double least_share = 0.01;
     calibration result;

@@ -54,21 +54,22 @@ double median_of(std::vector<double> values) {
 
 /// The Huber weight of each observation: 1 for usual residuals, smaller for outliers.
 std::vector<double> weights_of(std::span<const timed_work> observations, const Eigen::VectorXd& costs) {
-    constexpr double usual = 1.345;  // standard deviations: 95 % efficient for normal errors
+    constexpr double threshold_in_deviations = 1.345;  // standard deviations: 95 % efficient for normal errors
     constexpr double deviations_per_median = 1.4826;
     constexpr double least_scale = 1e-9;
     std::vector<double> residuals;
     for (const timed_work& o : observations) residuals.push_back(std::abs(work_of(o).dot(costs) / median_of(o.ns) - 1));
-    const double threshold = usual * std::max(least_scale, deviations_per_median * median_of(residuals));
+    const double threshold =
+        threshold_in_deviations * std::max(least_scale, deviations_per_median * median_of(residuals));
     std::vector<double> weights;
     for (const double r : residuals) weights.push_back(r <= threshold ? 1 : threshold / r);
     return weights;
 }
 
 /// Normal equations that can be bootstrapped. Whole scenes are resampled, in the role of processes.
-class drawn_equations {
+class resampled_equations {
 public:
-    drawn_equations(std::span<const timed_work> observations, std::span<const double> weights)
+    resampled_equations(std::span<const timed_work> observations, std::span<const double> weights)
         : count_(static_cast<Eigen::Index>(observations.front().work.size())) {
         std::map<std::string, std::vector<std::size_t>> scenes;
         for (std::size_t o = 0; o < observations.size(); ++o) scenes[observations[o].scene].push_back(o);
@@ -82,7 +83,7 @@ public:
                 for (const std::size_t o : places) own.add(observations[o], observations[o].ns[repeat], weights[o]);
                 for (Eigen::Index i = 0; i < count_; ++i) {
                     sums_[static_cast<std::size_t>(i)].add(scene, 0, own.sums[i]);
-                    for (Eigen::Index j = 0; j <= i; ++j) products_[place(i, j)].add(scene, 0, own.products(i, j));
+                    for (Eigen::Index j = 0; j <= i; ++j) products_[index_of(i, j)].add(scene, 0, own.products(i, j));
                 }
             }
             ++scene;
@@ -95,13 +96,13 @@ public:
         for (Eigen::Index i = 0; i < count_; ++i) {
             equations.sums[i] = drawn.mean_of(sums_[static_cast<std::size_t>(i)]);
             for (Eigen::Index j = 0; j <= i; ++j)
-                equations.products(i, j) = equations.products(j, i) = drawn.mean_of(products_[place(i, j)]);
+                equations.products(i, j) = equations.products(j, i) = drawn.mean_of(products_[index_of(i, j)]);
         }
         return equations;
     }
 
 private:
-    [[nodiscard]] std::size_t place(Eigen::Index i, Eigen::Index j) const {
+    [[nodiscard]] std::size_t index_of(Eigen::Index i, Eigen::Index j) const {
         return static_cast<std::size_t>(i * count_ + j);
     }
 
@@ -125,7 +126,7 @@ std::vector<estimate> fit_costs(std::span<const timed_work> observations) {
         descend(equations, costs);
         weights = weights_of(observations, costs);
     }
-    const drawn_equations equations(observations, weights);
+    const resampled_equations equations(observations, weights);
     std::vector<estimate> estimates;
     for (Eigen::Index k = 0; k < count; ++k) {
         estimates.push_back(bootstrap(equations.size(), [&](const resample& drawn) {

@@ -64,7 +64,7 @@ void add_atlas(const command_parser& program) {
     const command_parser command = program.add_command(
         "atlas",
         "Map which composition or engine is the fastest in which scene, and what it costs to use one everywhere");
-    auto& request = command.calls(run);
+    auto& request = command.set_action(run);
     command.flag("--quick", &request.quick, "Use small scenes and few repeats: a minute instead of half an hour");
     command.flag("--judge", &request.judge, "Measure nothing: draw the maps of existing results");
     command.optional_argument(

@@ -64,7 +64,7 @@ void classify(const classify_request& request) {
 void add_classify(const command_parser& program) {
     const command_parser command = program.add_command(
         "classify", "Test whether triangles intersect, and in what: reads a pair per line, writes a result per line");
-    auto& request = command.calls(classify);
+    auto& request = command.set_action(classify);
     command.argument("FILE", &request.file,
                      "18 numbers per line, decimal or C99 hexadecimal, separated by blanks or commas; - is standard "
                      "input; # begins a comment");

@@ -96,10 +96,10 @@ void print_results(const collide_request& request, const mesh_result& result) {
 }
 
 void print_text(const collide_request& request, const mesh_result& result) {
-    const auto named = [&](const std::string& mesh, std::size_t i) {
+    const auto description_of = [&](const std::string& mesh, std::size_t i) {
         return visible(mesh) + " (" + counted(result.triangles[i], "triangle") + ")";
     };
-    print(named(request.a, 0) + " against " + (request.b ? named(*request.b, 1) : "itself") + "\n");
+    print(description_of(request.a, 0) + " against " + (request.b ? description_of(*request.b, 1) : "itself") + "\n");
     print_results(request, result);
     std::vector<double> ms = result.query_ms;
     std::ranges::nth_element(ms, ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2));
@@ -112,7 +112,7 @@ void print_text(const collide_request& request, const mesh_result& result) {
     print("\nbytes:" + bytes + "\n");
 }
 
-void require_sense(const collide_request& request) {
+void reject_contradictions(const collide_request& request) {
     const auto reject_if = [](bool condition, const char* sentence) {
         if (condition) throw aabb::input_error(sentence);
     };
@@ -137,7 +137,7 @@ void require_sense(const collide_request& request) {
               "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair");
 }
 
-std::optional<number_table> rows_of(const collide_request& request) {
+std::optional<number_table> open_rows(const collide_request& request) {
     if (!request.out) return std::nullopt;
     require_no_mesh(*request.out, request.meshes());
     if (request.poses_of_b) require_other_file(*request.out, *request.poses_of_b);
@@ -147,14 +147,14 @@ std::optional<number_table> rows_of(const collide_request& request) {
 }
 
 int collide(const collide_request& request) {
-    require_sense(request);
+    reject_contradictions(request);
     const search_choice choice = request.method.choice(request.geometry);
-    const aabb::pose of_a = pose_of(request.poses[0], "--pose-a");
-    given_poses of_b{{pose_of(request.poses[1], "--pose-b")}, {}, {}};
-    if (request.poses_of_b) of_b = read_poses(*request.poses_of_b);
-    std::optional<number_table> rows = rows_of(request);
-    const mesh_result result = search_meshes(request.query(), choice, read_meshes(request.meshes()), of_a,
-                                             std::move(of_b), rows ? &*rows : nullptr);
+    const aabb::pose pose_a = pose_of(request.poses[0], "--pose-a");
+    given_poses poses_b{{pose_of(request.poses[1], "--pose-b")}, {}, {}};
+    if (request.poses_of_b) poses_b = read_poses(*request.poses_of_b);
+    std::optional<number_table> rows = open_rows(request);
+    const mesh_result result = search_meshes(request.query(), choice, read_meshes(request.meshes()), pose_a,
+                                             std::move(poses_b), rows ? &*rows : nullptr);
     if (rows) rows->commit();
     if (request.json)
         print_json(request, result);
@@ -169,7 +169,7 @@ int collide(const collide_request& request) {
 void add_collide(const command_parser& program) {
     const command_parser command =
         program.add_command("collide", "Run the narrow phase on two meshes: find every pair of intersecting triangles");
-    auto& request = command.calls(collide);
+    auto& request = command.set_action(collide);
     command.argument(
         "A", &request.a,
         "Mesh file (OFF, OBJ, PLY, STL, glTF), or a shape as in torus_knot:triangles=20000; :order=sah after a file, "

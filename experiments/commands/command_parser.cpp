@@ -11,15 +11,15 @@ namespace aabblab {
 namespace {
 
 /// Rejects options of the outer command, which would be ignored silently.
-void require_alone(const CLI::App& command, const CLI::App& inner) {
+void reject_outer_options(const CLI::App& command, const CLI::App& subcommand) {
     for (const CLI::Option* option : command.get_options())
         if (option->count() > 0)
             throw aabb::input_error(command.get_name() + ": " + option->get_name() + " does not apply to '" +
-                                    inner.get_name() + "', whose own options follow its name");
+                                    subcommand.get_name() + "', whose own options follow its name");
 }
 
 /// Splits "--out FILE" into the names of the option and the placeholder of its value.
-std::pair<std::string, std::string> without_value(const std::string& names) {
+std::pair<std::string, std::string> split_placeholder(const std::string& names) {
     const std::size_t blank = names.find(' ');
     return {names.substr(0, blank), blank == std::string::npos ? "" : names.substr(blank + 1)};
 }
@@ -62,7 +62,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
 }
 
 /// The syntax of a strategy's parameter, if a strategy that the command accepts has one of this name; else empty.
-std::string option_with(const std::string& parameter, const std::vector<std::string>& options) {
+std::string option_of_parameter(const std::string& parameter, const std::vector<std::string>& options) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         const std::string option = "--" + std::string(name_of(kind));
         if (std::ranges::find(options, option) == options.end()) continue;
@@ -76,11 +76,11 @@ std::string option_with(const std::string& parameter, const std::vector<std::str
 
 /// The command with its parents: "aabblab validate extreme".
 std::string full_name(const CLI::App& command) {
-    const CLI::App* const above = command.get_parent();
-    return (above == nullptr ? "" : full_name(*above) + " ") + command.get_name();
+    const CLI::App* const parent = command.get_parent();
+    return (parent == nullptr ? "" : full_name(*parent) + " ") + command.get_name();
 }
 
-std::string see_help_of(const CLI::App& command) {
+std::string hint_at_help_of(const CLI::App& command) {
     return "; see " + full_name(command) + " --help";
 }
 
@@ -88,10 +88,10 @@ std::string see_help_of(const CLI::App& command) {
 std::string unknown_name(const std::string& what, const std::string& name, const std::vector<std::string>& known,
                          const CLI::App& command) {
     const std::string sentence = aabb::unknown_name(what, name, known);
-    return sentence == aabb::unknown_name(what, name, {}) ? sentence + see_help_of(command) : sentence;
+    return sentence == aabb::unknown_name(what, name, {}) ? sentence + hint_at_help_of(command) : sentence;
 }
 
-std::string unknown_option(const CLI::App& command, const std::string& argument) {
+std::string rejection_of_option(const CLI::App& command, const std::string& argument) {
     std::string name = argument.substr(0, argument.find('='));
     name.erase(0, name.find_first_not_of('-'));
     std::ranges::replace(name, '-', '_');
@@ -99,14 +99,14 @@ std::string unknown_option(const CLI::App& command, const std::string& argument)
         if (const auto names = aabb::strategy_names(kind); std::ranges::find(names, name) != names.end())
             return "'" + name + "' is a strategy; write --" + std::string(name_of(kind)) + " " + name;
     const std::vector<std::string> options = option_names(command);
-    if (const std::string option = option_with(name, options); !option.empty())
+    if (const std::string option = option_of_parameter(name, options); !option.empty())
         return "'" + name + "' is a parameter of a strategy, as in " + option;
     return unknown_name("option", argument.substr(0, argument.find('=')), options, command);
 }
 
-std::string unexpected(const CLI::App& program, const CLI::App& command, const std::string& argument) {
-    if (argument.size() > 1 && argument[0] == '-') return unknown_option(command, argument);
-    if (&command != &program) return "unexpected argument '" + argument + "'" + see_help_of(command);
+std::string rejection_of_argument(const CLI::App& program, const CLI::App& command, const std::string& argument) {
+    if (argument.size() > 1 && argument[0] == '-') return rejection_of_option(command, argument);
+    if (&command != &program) return "unexpected argument '" + argument + "'" + hint_at_help_of(command);
     std::vector<std::string> names = command_names(program);
     const std::vector<std::string> of_script = {"test", "data", "benchmark", "paper"};
     if (std::ranges::find(of_script, argument) != of_script.end())
@@ -138,12 +138,13 @@ parsed_option parsed_option::hidden() const {
 }
 
 command_parser command_parser::add_command(const std::string& name, const std::string& help) const {
-    CLI::App* const inner = command_->add_subcommand(name, help);
+    CLI::App* const subcommand = command_->add_subcommand(name, help);
     if (command_->get_parent() != nullptr) {
         command_->require_subcommand(0, 1);
-        inner->preparse_callback([above = command_, inner](std::size_t) { require_alone(*above, *inner); });
+        subcommand->preparse_callback(
+            [parent = command_, subcommand](std::size_t) { reject_outer_options(*parent, *subcommand); });
     }
-    return {*inner, *status_};
+    return {*subcommand, *status_};
 }
 
 command_parser command_parser::command(const std::string& name) const {
@@ -162,7 +163,7 @@ parsed_option command_parser::optional_argument(const std::string& name, const o
 
 parsed_option command_parser::option(const std::string& names, const option_value& value,
                                      const std::string& help) const {
-    const std::pair<std::string, std::string> parts = without_value(names);
+    const std::pair<std::string, std::string> parts = split_placeholder(names);
     const auto add = [&]<class Value>(const Value& to) {
         if constexpr (std::is_pointer_v<Value>)
             return command_->add_option(parts.first, *to, help);
@@ -175,7 +176,7 @@ parsed_option command_parser::option(const std::string& names, const option_valu
 
 parsed_option command_parser::flag(const std::string& name, std::variant<bool*, std::string*> value,
                                    const std::string& help) const {
-    const std::pair<std::string, std::string> parts = without_value(name);
+    const std::pair<std::string, std::string> parts = split_placeholder(name);
     CLI::Option* const option = std::visit([&](auto* to) { return command_->add_flag(parts.first, *to, help); }, value);
     return parsed_option(parts.second.empty() ? *option : *option->option_text(parts.second));
 }
@@ -209,8 +210,9 @@ std::string rejection_of(const CLI::App& program, const CLI::ParseError& error) 
     const CLI::App& command = *innermost;
     // Unknown arguments are reported first, as a typing error often causes the parser's own error.
     if (const auto rest = command.remaining(); !rest.empty())
-        return prefix + unexpected(program, command, rest.front());
-    if (const auto rest = program.remaining(); !rest.empty()) return unexpected(program, program, rest.front());
+        return prefix + rejection_of_argument(program, command, rest.front());
+    if (const auto rest = program.remaining(); !rest.empty())
+        return rejection_of_argument(program, program, rest.front());
     const std::string message = error.what();
     // Replaces the parser's count of values, as each option takes one, and names hidden options, which it omits.
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
@@ -224,7 +226,7 @@ std::string rejection_of(const CLI::App& program, const CLI::ParseError& error) 
 
 void require_command(const CLI::App& program) {
     if (!program.get_subcommands().empty()) return;
-    throw aabb::input_error("expected a command" + see_help_of(program));
+    throw aabb::input_error("expected a command" + hint_at_help_of(program));
 }
 
 }  // namespace aabblab

@@ -49,7 +49,7 @@ public:
     /// Sets the action of the command, which receives the request after the whole command line has been parsed. Invalid
     /// input throws aabb::input_error, which ends the program with status 2.
     template <class Request, class Result>
-    Request& calls(Result (*act)(const Request&)) const {
+    Request& set_action(Result (*act)(const Request&)) const {
         const auto request = std::make_shared<Request>();
         callback([request, act] {
             if constexpr (std::is_void_v<Result>) {

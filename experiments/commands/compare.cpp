@@ -18,7 +18,7 @@ void add_compare(const command_parser& program) {
     const command_parser command = program.add_command(
         "compare",
         "Compare two results folders, of two commits or machines: which ratios, results, counts and bytes changed");
-    auto& request = command.calls(run);
+    auto& request = command.set_action(run);
     command.argument("A", &request.a, "Results folder of one experiment or several");
     command.argument("B", &request.b, "Results folder that is compared with A");
     command.flag("--times", &request.times, "Also compare milliseconds, if both folders are of one machine");

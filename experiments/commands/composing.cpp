@@ -9,7 +9,7 @@ namespace aabblab {
 namespace {
 
 /// The default of a kind: "bucket, or what fits the named strategies", "selected for the scene".
-std::string usual_of(aabb::strategy_kind kind) {
+std::string default_text(aabb::strategy_kind kind) {
     if (aabb::depends_on_scene(kind)) return "selected for the scene";
     const aabb::strategy_kind_info& info = info_of(kind);
     const std::string text(info.fallback);
@@ -27,13 +27,13 @@ std::string option_names(aabb::stage stage) {
 
 }  // namespace
 
-void method_options::add_to(const command_parser& command, const std::string& in_place) {
+void method_options::add_to(const command_parser& command, const std::string& replaced) {
     for (const aabb::stage stage : stages_)
         for (const aabb::strategy_kind kind : kinds_of(stage))
-            command.option(
-                fmt::format("--{} S", name_of(kind)), &values_[kind],
-                fmt::format("One of {} (default {}), as in NAME:parameter=value", names_in_line(kind), usual_of(kind)));
-    command.option("--engine E", &engine_, "Reference engine instead of " + in_place);
+            command.option(fmt::format("--{} S", name_of(kind)), &values_[kind],
+                           fmt::format("One of {} (default {}), as in NAME:parameter=value", listed_names(kind),
+                                       default_text(kind)));
+    command.option("--engine E", &engine_, "Reference engine instead of " + replaced);
     command.footer("aabblab list shows every strategy with its parameters.");
 }
 
@@ -57,7 +57,7 @@ search_choice method_options::choice(bool geometry) const {
     return choice;
 }
 
-std::string names_in_line(aabb::strategy_kind kind) {
+std::string listed_names(aabb::strategy_kind kind) {
     return fmt::format("{}", fmt::join(aabb::strategy_names(kind), ", "));
 }
 

@@ -14,8 +14,8 @@ class method_options {
 public:
     explicit method_options(std::vector<aabb::stage> stages) : stages_(std::move(stages)) {}
 
-    /// @param in_place what an engine replaces, for the help
-    void add_to(const command_parser& command, const std::string& in_place);
+    /// @param replaced what an engine replaces, for the help
+    void add_to(const command_parser& command, const std::string& replaced);
     /// @param geometry whether to construct the intersections of triangles, too
     /// @throws aabb::input_error on an unknown strategy or parameter, on a strategy that the engine replaces, and on an
     /// invalid combination, so that all of these are rejected before any file is read.
@@ -28,6 +28,6 @@ private:
 };
 
 /// The names of a kind's strategies, "median, mean, …", for help texts.
-[[nodiscard]] std::string names_in_line(aabb::strategy_kind kind);
+[[nodiscard]] std::string listed_names(aabb::strategy_kind kind);
 
 }  // namespace aabblab

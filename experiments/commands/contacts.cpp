@@ -65,7 +65,7 @@ void add_contacts(const command_parser& program) {
     const command_parser command = program.add_command(
         "contacts",
         "Run both phases on moving meshes: find the intersecting triangles of each frame and pair of objects");
-    auto& request = command.calls(find_contacts);
+    auto& request = command.set_action(find_contacts);
     command.argument("MOTION", &request.motion,
                      "Text file with a line per frame and object: the two, and 12 numbers, the rows of the pose [R t]");
     command.argument(

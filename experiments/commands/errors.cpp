@@ -35,7 +35,7 @@ int run(const errors_request& request) {
 void add_errors(const command_parser& program) {
     const command_parser command = program.add_command(
         "errors", "Compare error with run time: the wrong results of methods, and the time that they take");
-    auto& request = command.calls(run);
+    auto& request = command.set_action(run);
     command.optional_argument(
         "CONFIG", &request.config,
         "Config of a study: methods and input (default experiments/configs/errors/triangle_tests.toml)");

@@ -9,7 +9,7 @@ void add_explain(const command_parser& program) {
     const command_parser command = program.add_command("explain",
                                                        "Explain a scene: its measures, the composition that is "
                                                        "selected and why, its memory, and what each choice saves");
-    auto& request = command.calls(explain);
+    auto& request = command.set_action(explain);
     command.argument("WHAT", &request.what,
                      std::string("Config of an experiment (.toml), whose compositions are explained; or a scene, for "
                                  "which auto selects one: ") +

@@ -21,7 +21,7 @@ struct list_request {
 };
 
 /// A named item of the list, as text and as JSON.
-struct listed {
+struct list_item {
     std::string name;
     std::string summary;
     std::span<const aabb::parameter_info> parameters;
@@ -32,8 +32,8 @@ struct listed {
 struct section {
     std::string name;
     std::string heading;  ///< follows the name in text
-    std::vector<listed> entries;
-    std::vector<listed> left_out = {};  ///< items that this build lacks
+    std::vector<list_item> entries;
+    std::vector<list_item> left_out = {};  ///< items that this build lacks
 };
 
 json json_of(std::span<const aabb::parameter_info> parameters) {
@@ -61,8 +61,8 @@ std::string summary_of(const metric& m) {
 }
 
 /// An item with those properties of its kind that scripts may need.
-listed listed_of(const auto& info) {
-    listed item{std::string(info.name), summary_of(info), {}, {{"name", info.name}, {"summary", info.summary}}};
+list_item item_of(const auto& info) {
+    list_item item{std::string(info.name), summary_of(info), {}, {{"name", info.name}, {"summary", info.summary}}};
     json& members = item.members;
     if constexpr (requires { info.engine; }) members["engine"] = info.engine;
     if constexpr (requires { info.searches_boxes; }) members["searches_boxes"] = info.searches_boxes;
@@ -85,35 +85,35 @@ listed listed_of(const auto& info) {
     return item;
 }
 
-std::vector<listed> all_of(const auto& infos) {
-    std::vector<listed> items;
-    for (const auto& info : infos) items.push_back(listed_of(info));
+std::vector<list_item> items_of(const auto& infos) {
+    std::vector<list_item> items;
+    for (const auto& info : infos) items.push_back(item_of(info));
     return items;
 }
 
 std::vector<section> sections() {
     std::vector<section> list;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
-        list.push_back({std::string(name_of(kind)), "", all_of(aabb::strategies(kind))});
-    list.push_back({"engines", "", all_of(aabb::engines())});
+        list.push_back({std::string(name_of(kind)), "", items_of(aabb::strategies(kind))});
+    list.push_back({"engines", "", items_of(aabb::engines())});
     for (const auto& e : aabb::left_out_engines()) {
         const json members = {{"name", e.name}, {"not_found", e.library}};
         const std::string summary = "left out: " + e.library + " was not found when this was built";
         list.back().left_out.push_back({e.name, summary, {}, members});
     }
     list.push_back({"library_tests", ", triangle tests of engines' libraries, for classify and errors",
-                    all_of(aabb::library_tests())});
-    list.push_back({"integrators", ", of validate stiff", all_of(integrators())});
+                    items_of(aabb::library_tests())});
+    list.push_back({"integrators", ", of validate stiff", items_of(integrators())});
     for (const std::string_view name : left_out_integrators()) {
         const char* summary =
             "left out: its library was not found when this was built; ./aabblab validate stiff installs it";
         list.back().left_out.push_back({std::string(name), summary, {}, {}});
     }
-    list.push_back({"scenes", "", all_of(scene_kinds())});
-    list.push_back({"shapes", ", in place of a mesh file", all_of(shapes())});
-    list.push_back({"pairs", " of triangles, for errors", all_of(pair_classes())});
-    list.push_back({"recorded", ", for metrics of each", all_of(metric_groups)});
-    list.push_back({"metrics", "", all_of(metrics())});
+    list.push_back({"scenes", "", items_of(scene_kinds())});
+    list.push_back({"shapes", ", in place of a mesh file", items_of(shapes())});
+    list.push_back({"pairs", " of triangles, for errors", items_of(pair_classes())});
+    list.push_back({"recorded", ", for metrics of each", items_of(metric_groups)});
+    list.push_back({"metrics", "", items_of(metrics())});
     return list;
 }
 
@@ -125,8 +125,8 @@ std::vector<std::string> section_names() {
 
 void print_text(const section& part) {
     print(part.name + part.heading + "\n");
-    for (const std::vector<listed>& items : {part.entries, part.left_out})
-        for (const listed& item : items) {
+    for (const std::vector<list_item>& items : {part.entries, part.left_out})
+        for (const list_item& item : items) {
             print(entry("  " + item.name, item.summary));
             for (const aabb::parameter_info& p : item.parameters)
                 print(entry(fmt::format("    {}={}", p.name, p.fallback.empty() ? "…" : p.fallback),
@@ -135,17 +135,17 @@ void print_text(const section& part) {
         }
 }
 
-json json_of(const std::vector<listed>& entries) {
+json json_of(const std::vector<list_item>& entries) {
     json array = json::array();
-    for (const listed& item : entries) array.push_back(item.members);
+    for (const list_item& item : entries) array.push_back(item.members);
     return array;
 }
 
 json json_of(const std::vector<section>& sections) {
     json root;
     for (const section& part : sections) {
-        const auto is_it = [&](aabb::strategy_kind kind) { return name_of(kind) == part.name; };
-        const bool is_kind = std::ranges::any_of(aabb::strategy_kinds, is_it);
+        const auto has_name = [&](aabb::strategy_kind kind) { return name_of(kind) == part.name; };
+        const bool is_kind = std::ranges::any_of(aabb::strategy_kinds, has_name);
         (is_kind ? root["strategies"] : root)[part.name] = json_of(part.entries);
         if (part.name == "engines") root["engines_left_out"] = json_of(part.left_out);
     }
@@ -169,7 +169,7 @@ void list(const list_request& request) {
 void add_list(const command_parser& program) {
     const command_parser command =
         program.add_command("list", "List strategies with their parameters, engines, scenes and metrics");
-    auto& request = command.calls(list);
+    auto& request = command.set_action(list);
     command.optional_argument("KIND", &request.kind,
                               fmt::format("List only this kind: one of {}", fmt::join(section_names(), ", ")));
     command.flag("--json", &request.json, "Print the list as JSON");

@@ -44,10 +44,10 @@ void write_ordered(const order_request& request) {
 void add_order(const command_parser& program) {
     const command_parser command = program.add_command(
         "order", "Sort the triangles of a mesh by the leaves of a tree, which makes its trees smaller");
-    auto& request = command.calls(write_ordered);
+    auto& request = command.set_action(write_ordered);
     command.argument("MESH", &request.mesh, "Mesh file (OFF, OBJ, PLY, STL, glTF) or shape");
     command.option("--build S", &request.build,
-                   "Build of the tree: one of " + names_in_line(aabb::strategy_kind::build) + " (default sah)");
+                   "Build of the tree: one of " + listed_names(aabb::strategy_kind::build) + " (default sah)");
     command.option("--out FILE", &request.out, "Mesh file to write (.off)").required();
     command.option("--numbers FILE", &request.numbers, "CSV file for the original indices: rows triangle,was");
     command.footer(

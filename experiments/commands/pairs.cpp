@@ -54,7 +54,7 @@ void find_pairs(const pairs_request& request) {
 void add_pairs(const command_parser& program) {
     const command_parser command =
         program.add_command("pairs", "Run the broad phase on a recording: find every pair of overlapping boxes");
-    auto& request = command.calls(find_pairs);
+    auto& request = command.set_action(find_pairs);
     command.argument("SCENE", &request.recording, "Recording of boxes (.aabbs)");
     request.method.add_to(command, "these strategies");
     command.option("--out FILE", &request.out, "CSV file for the pairs: rows frame,a,b");

@@ -8,7 +8,7 @@ namespace aabblab {
 void add_recommend(const command_parser& program) {
     const command_parser command = program.add_command(
         "recommend", "Find the fastest composition or engine for a scene, with early stopping of slow candidates");
-    auto& request = command.calls(recommend);
+    auto& request = command.set_action(recommend);
     command.argument("WHAT", &request.what, scene_arguments_help);
     command.option(
         "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },

@@ -7,7 +7,7 @@ namespace aabblab {
 void add_reproduce(const command_parser& program) {
     const command_parser command = program.add_command(
         "reproduce", "Reproduce every table, figure and claim of the paper, with a verdict on each claim");
-    auto& request = command.calls(reproduce);
+    auto& request = command.set_action(reproduce);
     command.flag("--quick", &request.quick,
                  "Use small scenes and few repeats: some minutes instead of most of an hour");
     command.flag("--judge", &request.judge,

@@ -38,7 +38,7 @@ int run(const run_request& request) {
 void add_run(const command_parser& program) {
     const command_parser command =
         program.add_command("run", "Run an experiment: validate, then time, every composition in every scene");
-    auto& request = command.calls(run);
+    auto& request = command.set_action(run);
     command.argument("CONFIG", &request.config, "Config of the experiment (.toml)");
     command.option("--out DIR", &request.out, "Folder of the results (default results/NAME, or results/NAME-quick)");
     command.flag("--quick", &request.quick, "Apply the settings under quick in the config, for a first look");

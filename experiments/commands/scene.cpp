@@ -61,21 +61,21 @@ private:
 class observed_scene final : public aabb::box_scene {
 public:
     explicit observed_scene(std::unique_ptr<aabb::box_scene> scene)
-        : scene_(std::move(scene)), survey_(scene_->objects(), scene_->frames()) {}
+        : scene_(std::move(scene)), observations_(scene_->objects(), scene_->frames()) {}
 
     [[nodiscard]] std::size_t objects() const override { return scene_->objects(); }
     [[nodiscard]] std::size_t frames() const override { return scene_->frames(); }
     bool next(std::vector<aabb::box>& boxes) override {
         if (!scene_->next(boxes)) return false;
-        survey_.add_frame(boxes, scene_->present());
+        observations_.see(boxes, scene_->present());
         return true;
     }
     [[nodiscard]] std::span<const std::uint8_t> present() const override { return scene_->present(); }
-    [[nodiscard]] const picture_data& observations() const { return survey_; }
+    [[nodiscard]] const survey& observations() const { return observations_; }
 
 private:
     std::unique_ptr<aabb::box_scene> scene_;
-    picture_data survey_;
+    survey observations_;
 };
 
 /// The seed option, else 1 if the kind has a seed.
@@ -127,8 +127,8 @@ std::vector<std::pair<std::string, std::string>> outputs_of(const scene_request&
 }
 
 /// Requires the usual extension, which other programs rely on, unless the file is a pipe or a device.
-void require_ending(const std::string& option, const std::optional<std::string>& file, const std::string& ending,
-                    const std::string& what) {
+void require_extension(const std::string& option, const std::optional<std::string>& file, const std::string& ending,
+                       const std::string& what) {
     if (!file) return;
     const std::filesystem::path extension = std::filesystem::path(*file).extension();
     if (!extension.empty() && extension != ending)
@@ -146,8 +146,9 @@ void require_outputs(const scene_request& request) {
     for (std::size_t i = 0; i < outputs.size(); ++i)
         for (std::size_t j = i + 1; j < outputs.size(); ++j)
             require_two_files(outputs[i].first, outputs[i].second, outputs[j].first, outputs[j].second);
-    require_ending("--out", request.out, ".aabbs", "a recording; aabblab pairs writes the pairs of a recording as CSV");
-    require_ending("--picture", request.picture, ".svg", "a picture");
+    require_extension("--out", request.out, ".aabbs",
+                      "a recording; aabblab pairs writes the pairs of a recording as CSV");
+    require_extension("--picture", request.picture, ".svg", "a picture");
 }
 
 void write_scene(const scene_request& request) {
@@ -213,7 +214,7 @@ void add_parameters(const command_parser& command, scene_request& request) {
 void add_scene(const command_parser& program) {
     const command_parser command = program.add_command(
         "scene", "Generate a scene, and write it as a recording of boxes, as motion or as a picture");
-    auto& request = command.calls(write_scene);
+    auto& request = command.set_action(write_scene);
     command.argument("NAME", &request.kind, "A scene that 'aabblab list scenes' shows");
     add_parameters(command, request);
     command

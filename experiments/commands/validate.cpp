@@ -79,7 +79,7 @@ void add_validate(const command_parser& program) {
     const command_parser command = program.add_command(
         "validate",
         "Compare the results of every composition of an experiment, or of all compositions, with the ground truth");
-    auto& request = command.calls(validate);
+    auto& request = command.set_action(validate);
     command.optional_argument("CONFIG", &request.config,
                               "Config of the experiment (.toml); without it, every composition is validated");
     command.flag("--quick", &request.quick, "Apply the settings under quick in the config, for a first look");

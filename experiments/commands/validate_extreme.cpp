@@ -40,7 +40,7 @@ void add_validate_extreme(const command_parser& program) {
             text += entry(scene.name, scene.summary);
         return text.substr(0, text.size() - 1);  // the parser prints the last line end
     });
-    auto& request = command.calls(validate_extreme);
+    auto& request = command.set_action(validate_extreme);
     command.option("--cases FILE", &request.cases, "Pairs of triangles (default validation/cases/triangles.toml)");
     command.option("--out DIR", &request.out,
                    "Folder of extreme.csv (default results/extreme, with --quick results/extreme-quick)");

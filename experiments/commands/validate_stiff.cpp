@@ -31,7 +31,7 @@ void add_validate_stiff(const command_parser& program) {
                                        .add_command("stiff",
                                                     "Simulate bodies that are in contact, and compare their motion "
                                                     "with closed forms and published results");
-    auto& request = command.calls(validate_stiff);
+    auto& request = command.set_action(validate_stiff);
     std::string names;
     for (const stiff_study& study : stiff_studies()) names += (names.empty() ? "" : ", ") + std::string(study.name);
     command.optional_argument("STUDY", &request.studies, "Studies to run (default all): " + names);

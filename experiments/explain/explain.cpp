@@ -27,7 +27,7 @@ std::string indented(std::string_view before, const std::string& paragraph) {
     return hanging(before, paragraph) + "\n";
 }
 
-std::string indented_all(std::string_view heading, const std::vector<std::string>& sentences) {
+std::string indented_list(std::string_view heading, const std::vector<std::string>& sentences) {
     std::string text = sentences.empty() ? "" : fmt::format("    {}\n", heading);
     for (const std::string& sentence : sentences) text += indented("      ", sentence);
     return text;
@@ -47,26 +47,27 @@ std::string text_of(const candidate_name& name, aabb::stage stage) {
 }
 
 /// Two frames, so that buffers have grown and data that is kept between frames exists.
-constexpr std::size_t explained_frames = 2;
+constexpr std::size_t frames_before_bytes = 2;
 
-std::string explained(scene_frames& scene, const candidate& tested) {
-    stage_runner p(tested, scene, aabb::instrumentation::none);
-    run_frames(scene, p, [](const searched_frame&) {}, explained_frames);
+std::string explanation_of(scene_frames& scene, const candidate& tested) {
+    stage_runner runner(tested, scene, aabb::instrumentation::none);
+    run_frames(scene, runner, [](const searched_frame&) {}, frames_before_bytes);
     const candidate_name& name = tested.name;
-    std::string text = text_of("broad phase", text_of(name, aabb::stage::global_search), p.global_bytes());
-    text += text_of(scene.meshes() ? "between phases" : "found pairs", "", {{"buffers", p.buffer_bytes()}});
-    if (scene.meshes()) text += text_of("narrow phase", text_of(name, aabb::stage::local_detection), p.local_bytes());
+    std::string text = text_of("broad phase", text_of(name, aabb::stage::global_search), runner.global_bytes());
+    text += text_of(scene.meshes() ? "between phases" : "found pairs", "", {{"buffers", runner.buffer_bytes()}});
+    if (scene.meshes())
+        text += text_of("narrow phase", text_of(name, aabb::stage::local_detection), runner.local_bytes());
     std::vector<std::string> planned;
-    for (const aabb::stage_plan& plan : p.plans()) planned.push_back(to_text(plan.told));
-    text += indented_all("plans from earlier frames", planned);
+    for (const aabb::stage_plan& plan : runner.plans()) planned.push_back(to_text(plan.told));
+    text += indented_list("plans from earlier frames", planned);
     std::vector<std::string> left_out;
-    for (const aabb::omission& absent : omissions_of(name, p.left_out())) left_out.push_back(to_text(absent));
-    return text + indented_all("left out", left_out);
+    for (const aabb::omission& absent : omissions_of(name, runner.left_out())) left_out.push_back(to_text(absent));
+    return text + indented_list("left out", left_out);
 }
 
-void explain_candidate(staged_scene& scene, const candidate& tested, const time_limits& limits) {
+void print_candidate(staged_scene& scene, const candidate& tested, const time_limits& limits) {
     const child_result work =
-        scene.in_child([&](scene_frames& frames, const output_sender& send) { send(explained(frames, tested)); },
+        scene.in_child([&](scene_frames& frames, const output_sender& send) { send(explanation_of(frames, tested)); },
                        share_of_part * limits.to_run());
     // A candidate rejects only invalid input.
     if (work.end == ending::rejected) throw aabb::input_error(work.reason);
@@ -75,7 +76,7 @@ void explain_candidate(staged_scene& scene, const candidate& tested, const time_
 }
 
 /// Lists parts of the config that do not apply to the scene.
-void explain_unused(const experiment& e, const scene_choice& scene) {
+void print_unused(const experiment& e, const scene_choice& scene) {
     for (const std::string& sentence : idle_engines(e, scene, "this scene")) print("  " + sentence + "\n");
     if (has_meshes(scene)) return;
     std::string kinds;
@@ -85,7 +86,7 @@ void explain_unused(const experiment& e, const scene_choice& scene) {
 }
 
 /// Prints the scene and its measures, unless its input is invalid.
-void explain_measures(staged_scene& scene, const time_limits& limits) {
+void print_measures(staged_scene& scene, const time_limits& limits) {
     const child_result work = scene.in_child(
         [](scene_frames& frames, const output_sender& send) {
             send(to_text(measures_table(measure_scene(frames)), output_width()));
@@ -104,7 +105,7 @@ void print_selected(const std::vector<aabb::selected_strategy>& selected) {
     table t{{{"selected", false}, {"", false}, {"because", false}}, {}};
     for (const aabb::selected_strategy& s : selected)
         t.rows.push_back({std::string(name_of(s.kind)), to_text(s.choice), s.rule});
-    print_broken(t, 2);
+    print_wrapped_table(t, 2);
 }
 
 /// Explains the selection and what it saves.
@@ -118,32 +119,32 @@ bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named,
             return info_of(s.kind).stage == aabb::stage::local_detection;
         });
     print_selected(selected);
-    explain_candidate(scene, candidate_of(c, meshes), limits);
+    print_candidate(scene, candidate_of(c, meshes), limits);
     print("\n");
     flush_output();
     return print_savings(scene, c, limits);
 }
 
 bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& limits) {
-    explain_measures(scene, limits);
-    if (const std::size_t frames = scene.scene().frames(); frames > explained_frames)
-        print(fmt::format("  bytes after {} of {} frames; run reports those after the last\n", explained_frames,
+    print_measures(scene, limits);
+    if (const std::size_t frames = scene.scene().frames(); frames > frames_before_bytes)
+        print(fmt::format("  bytes after {} of {} frames; run reports those after the last\n", frames_before_bytes,
                           grouped(frames)));
-    explain_unused(e, scene.choice());
+    print_unused(e, scene.choice());
     flush_output();
-    bool same = true;
+    bool agree = true;
     for (const aabb::named_strategies& named : e.automatic) {
-        same &= explain_automatic(scene, named, limits);
+        agree &= explain_automatic(scene, named, limits);
         print("\n");
     }
     const std::vector<candidate> candidates = candidates_for(e, scene.choice());
     for (const candidate& tested : candidates) {
         if (tested.name.is_automatic()) continue;
-        explain_candidate(scene, tested, limits);
+        print_candidate(scene, tested, limits);
         flush_output();
     }
     if (candidates.size() > e.automatic.size()) print("\n");
-    return same;
+    return agree;
 }
 
 }  // namespace
@@ -157,27 +158,27 @@ int explain(const explain_request& request) {
         e.scenes.push_back(scene_of_arguments(request.what));
     }
     if (!e.automatic.empty()) require_fine_clock();
-    bool same = true;
+    bool agree = true;
     for (const scene_choice& choice : e.scenes) {
         time_limits limits(request.seconds);
         // A scene that cannot be created is reported before any output.
         staged_scene scene(choice);
         limits.scene_is_read();
         if (&choice == e.scenes.data()) print(wrapped("strategies plan with " + costs_in_force()) + "\n\n");
-        same &= explain_scene(e, scene, limits);
+        agree &= explain_scene(e, scene, limits);
     }
-    return same ? 0 : 1;
+    return agree ? 0 : 1;
 }
 
-void print_broken(const table& t, std::size_t column) {
-    std::size_t beside = 0;
+void print_wrapped_table(const table& t, std::size_t column) {
+    std::size_t other_widths = 0;
     for (std::size_t other = 0; other < t.columns.size(); ++other) {
         if (other == column) continue;
         std::size_t widest = t.columns[other].name.size();
         for (const std::vector<std::string>& row : t.rows) widest = std::max(widest, row[other].size());
-        beside += 2 + widest;
+        other_widths += 2 + widest;
     }
-    const std::size_t room = std::max(output_width(), beside + 20) - beside;
+    const std::size_t room = std::max(output_width(), other_widths + 20) - other_widths;
     table broken{t.columns, {}};
     for (std::vector<std::string> cells : t.rows) {
         std::istringstream lines(wrapped(cells[column], room));

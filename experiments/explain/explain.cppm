@@ -34,6 +34,6 @@ namespace aabblab {
 [[nodiscard]] bool print_savings(staged_scene& scene, const aabb::composition& selected, const time_limits& limits);
 
 /// Prints a table with the cells of one column wrapped, so that it fits the width of the output.
-void print_broken(const table& t, std::size_t column);
+void print_wrapped_table(const table& t, std::size_t column);
 
 }  // namespace aabblab

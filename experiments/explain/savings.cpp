@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t most_frames = 40;
 constexpr std::size_t rounds = 5;
 /// With more objects, the slower sort and sweep strategies would take minutes.
-constexpr std::size_t most_objects_of_any = 20'000;
+constexpr std::size_t most_objects_of_all_kinds = 20'000;
 
 /// A composition that runs in the same rounds as the selected one.
 struct variant {
@@ -29,7 +29,7 @@ struct variant {
 };
 
 /// Its name without a column for the kind.
-std::string called(const variant& v) {
+std::string label_of(const variant& v) {
     return v.name == "none" ? v.kind + " none" : v.name;
 }
 
@@ -82,7 +82,7 @@ const variant* fastest_with(aabb::absence what, std::span<const variant> variant
     return fastest;
 }
 
-std::string more(std::uint64_t bytes, std::uint64_t than) {
+std::string difference_text(std::uint64_t bytes, std::uint64_t than) {
     return bytes < than ? "-" + grouped(than - bytes) : grouped(bytes - than);
 }
 
@@ -95,12 +95,12 @@ void print_omissions(std::span<const variant> variants) {
         const variant* with = fastest_with(what, variants.subspan(1));
         if (!with) continue;
         const bool open = paired_ratio_of(frame_ms_of(with->times), frame_ms_of(times)).may_be_same();
-        t.rows.back() = {to_text(what), called(*with),
+        t.rows.back() = {to_text(what), label_of(*with),
                          fmt::format("{:.5f}{}", median_ms(with->times) - median_ms(times), open ? "?" : ""),
-                         more(with->times.back().bytes, times.back().bytes)};
+                         difference_text(with->times.back().bytes, times.back().bytes)};
     }
     print("savings of what is left out, compared with the fastest variant that has it\n");
-    print_broken(t, 0);
+    print_wrapped_table(t, 0);
     print(wrapped("-: no variant that ran has it. Below 0: the variant takes less. ?: as above.") + "\n");
 }
 
@@ -113,7 +113,7 @@ candidate with_counters(candidate tested) {
     return tested;
 }
 
-std::vector<std::string> ratio_cells(const variant& v, std::span<const observation> selected) {
+std::vector<std::string> ratio_cells_of(const variant& v, std::span<const observation> selected) {
     if (v.is_hopeless) return {fmt::format("> {:.0f}", hopeless_ratio), "-"};
     if (v.times.empty()) return {"-", "-"};
     const paired_ratio ratio = paired_ratio_of(frame_ms_of(v.times), frame_ms_of(selected));
@@ -123,7 +123,7 @@ std::vector<std::string> ratio_cells(const variant& v, std::span<const observati
 
 void add_row(table& t, const variant& v, const variant& selected) {
     const std::vector<std::string> ratio =
-        &v == &selected ? std::vector<std::string>{"1", "-"} : ratio_cells(v, selected.times);
+        &v == &selected ? std::vector<std::string>{"1", "-"} : ratio_cells_of(v, selected.times);
     if (v.times.empty()) {
         t.rows.push_back({v.kind, v.name, "-", ratio[0], ratio[1], "-", "-"});
         return;
@@ -137,7 +137,7 @@ void add_row(table& t, const variant& v, const variant& selected) {
 void print_unfinished(const std::vector<variant>& variants) {
     table t{{{"not finished", false}, {"", false}}, {}};
     for (const variant& v : variants)
-        if (v.broken_off) t.rows.push_back({called(v), text_of(*v.broken_off)});
+        if (v.broken_off) t.rows.push_back({label_of(v), text_of(*v.broken_off)});
     if (!t.rows.empty()) print(to_text(t, output_width()) + "\n");
 }
 
@@ -149,7 +149,7 @@ bool print_disagreements(const std::vector<variant>& variants) {
     for (const variant& v : variants) times.push_back(v.times);
     const std::vector<std::size_t> wrong = disagreeing(times);
     for (const std::size_t i : wrong)
-        print_paragraph(called(variants[i]) +
+        print_paragraph(label_of(variants[i]) +
                         " finds other pairs than the selected composition: one of the two is wrong.");
     return wrong.empty();
 }
@@ -172,17 +172,18 @@ std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
     const scene_frames& scene = staged.scene();
     const bool meshes = scene.meshes() != nullptr;
-    const bool is_small = scene.objects() <= most_objects_of_any;
+    const bool is_small = scene.objects() <= most_objects_of_all_kinds;
     std::vector<variant> variants{{"", "as selected", candidate_of(selected, meshes)}};
     std::vector<variant> by_settings;
-    std::string alone;  // kinds without any other strategy that fits the composition
+    std::string without_alternative;  // kinds without any other strategy that fits the composition
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
         if (!is_small && !info_of(kind).apart) continue;
         const std::vector<variant> of_kind = variants_by_strategy(selected, kind, meshes);
         variants.insert(variants.end(), of_kind.begin(), of_kind.end());
         std::ranges::move(variants_by_settings(selected, kind, meshes), std::back_inserter(by_settings));
-        if (of_kind.empty()) alone += (alone.empty() ? "" : ", ") + std::string(name_of(kind));
+        if (of_kind.empty())
+            without_alternative += (without_alternative.empty() ? "" : ", ") + std::string(name_of(kind));
     }
     variants.push_back({"", "counters of all work", with_counters(variants.front().tested)});
     const std::size_t in_table = variants.size();
@@ -212,12 +213,13 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
         counted(outcome.rounds, "round"), counted(outcome.frames, "frame")));
     print(to_text(t, output_width()) + "\n");
     print_unfinished(variants);
-    if (!alone.empty()) print_paragraph(alone + ": no other strategy can be composed with the rest.");
+    if (!without_alternative.empty())
+        print_paragraph(without_alternative + ": no other strategy can be composed with the rest.");
     if (!is_small)
         print_paragraph(
             fmt::format("With more than {}, only prepare and build are replaced: slow strategies of other kinds would "
                         "take minutes.",
-                        counted(most_objects_of_any, "object")));
+                        counted(most_objects_of_all_kinds, "object")));
     print_paragraph(ms_a_frame_text);
     print_paragraph(fmt::format(
         "ratio: ms/frame relative to the selected composition in the same round, the median; range: the least and the "
@@ -228,9 +230,9 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
         "bytes: allocated after the last of these frames; counters: as selected, but with all work counted.");
     print("\n");
     print_omissions(variants);
-    const bool same = print_disagreements(variants);
+    const bool agree = print_disagreements(variants);
     flush_output();
-    return same;
+    return agree;
 }
 
 }  // namespace aabblab

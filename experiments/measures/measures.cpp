@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t frames_measured = 4;
 
-constexpr std::array of_motion{&motion_measures::displacement, &motion_measures::relative, &motion_measures::at_rest,
-                               &motion_measures::inversions};
+constexpr std::array motion_members{&motion_measures::displacement, &motion_measures::relative_displacement,
+                                    &motion_measures::at_rest, &motion_measures::inversions};
 
 struct recorded_frame {
     std::vector<aabb::box> boxes;
@@ -34,7 +34,7 @@ void add_motion(scene_measures& m, recorded_frame before, recorded_frame after, 
         before.present[id] = after.present[id] = before.present[id] && after.present[id];
     const motion_measures motion = measure_motion(before.present_boxes(), after.present_boxes(), axis);
     if (!m.motion) m.motion = motion_measures{0, 0, 0, 0};
-    for (const auto member : of_motion) *m.motion.*member += motion.*member;
+    for (const auto member : motion_members) *m.motion.*member += motion.*member;
 }
 
 /// Counts overlapping pairs of intervals, as the complement of the pairs in which one ends before the other begins.
@@ -121,7 +121,7 @@ motion_measures measure_motion(std::span<const aabb::box> before, std::span<cons
             least = std::min(least, lower);
             most = std::max(most, upper);
         }
-        m.relative = std::max(m.relative, (most - least) / 2);
+        m.relative_displacement = std::max(m.relative_displacement, (most - least) / 2);
     }
     for (std::size_t i = 0; i < before.size(); ++i) {
         displacements += std::sqrt(squares[i]);
@@ -143,15 +143,16 @@ scene_measures measure_scene(scene_frames& scene) {
     m.objects = scene.objects();
     m.frames = scene.frames();
     if (scene.meshes()) m.triangles = traits_of(scene).triangles;
-    stage_runner p(candidate_of(aabb::composition(), scene.meshes() != nullptr), scene, aabb::instrumentation::none);
+    stage_runner runner(candidate_of(aabb::composition(), scene.meshes() != nullptr), scene,
+                        aabb::instrumentation::none);
     recorded_frame before;
     std::size_t axis = 0;
     double changes = 0;
-    std::size_t followed = 0;
+    std::size_t frame_pairs = 0;
     run_frames(
-        scene, p,
+        scene, runner,
         [&](const searched_frame& frame) {
-            recorded_frame current{{p.boxes().begin(), p.boxes().end()}, before.present};
+            recorded_frame current{{runner.boxes().begin(), runner.boxes().end()}, before.present};
             current.present.resize(current.boxes.size(), scene.meshes() != nullptr);
             for (const std::uint32_t id : scene.arrivals()) current.present[id] = true;
             for (const std::uint32_t id : scene.departures()) current.present[id] = false;
@@ -159,22 +160,23 @@ scene_measures measure_scene(scene_frames& scene) {
                 const std::vector<aabb::box> boxes = current.present_boxes();
                 m.boxes = measure_boxes(boxes);
                 m.present = boxes.size();
-                m.pairs_an_object = static_cast<double>(frame.pairs.size()) /
-                                    static_cast<double>(std::max<std::size_t>(boxes.size(), 1));
+                m.pairs_per_object = static_cast<double>(frame.pairs.size()) /
+                                     static_cast<double>(std::max<std::size_t>(boxes.size(), 1));
                 m.clustering =
                     m.boxes.expected_pairs > 0 ? static_cast<double>(frame.pairs.size()) / m.boxes.expected_pairs : 0;
                 axis = static_cast<std::size_t>(std::ranges::min_element(m.boxes.overlaps) - m.boxes.overlaps.begin());
             } else {
                 add_motion(m, before, current, axis);
                 changes += static_cast<double>(scene.arrivals().size() + scene.departures().size());
-                ++followed;
+                ++frame_pairs;
             }
             before = std::move(current);
         },
         frames_measured);
-    if (followed > 0) {
-        for (const auto member : of_motion) *m.motion.*member /= static_cast<double>(followed);
-        m.turnover = changes / static_cast<double>(followed) / static_cast<double>(std::max<std::size_t>(m.objects, 1));
+    if (frame_pairs > 0) {
+        for (const auto member : motion_members) *m.motion.*member /= static_cast<double>(frame_pairs);
+        m.turnover =
+            changes / static_cast<double>(frame_pairs) / static_cast<double>(std::max<std::size_t>(m.objects, 1));
     }
     return m;
 }
@@ -195,14 +197,14 @@ table measures_table(const scene_measures& m) {
             add("flat axis", std::string(1, "xyz"[k]));
     add("size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
                           ", the longest edge over the median longest edge");
-    add("density", fmt::format("{:.3g} overlapping pairs per object", m.pairs_an_object));
+    add("density", fmt::format("{:.3g} overlapping pairs per object", m.pairs_per_object));
     add("clustering", fmt::format("{:.3g} times the pairs of uniformly distributed boxes", m.clustering));
     if (!m.motion) return measured;
     const double unit = m.boxes.typical_extent > 0 ? m.boxes.typical_extent : 1;
     const char* unit_name = m.boxes.typical_extent > 0 ? "typical extents" : "units";
     add("displacement", fmt::format("{:.3g} {} per frame, the mean", m.motion->displacement / unit, unit_name));
-    add("relative",
-        fmt::format("{:.3g} {}, the greatest beyond the common motion", m.motion->relative / unit, unit_name));
+    add("relative", fmt::format("{:.3g} {}, the greatest beyond the common motion",
+                                m.motion->relative_displacement / unit, unit_name));
     add("inversions", fmt::format("{:.3g} per object and frame", m.motion->inversions));
     add("at rest", fmt::format("{:.3g} % of the objects", 100 * m.motion->at_rest));
     if (m.turnover > 0)

@@ -20,10 +20,10 @@ struct box_measures {
 
 /// Measures of the motion of the same boxes between two consecutive frames.
 struct motion_measures {
-    double displacement = 0;  ///< mean displacement of the centres
-    double relative = 0;      ///< largest displacement along any axis, minus the common motion
-    double at_rest = 1;       ///< share of unchanged boxes
-    double inversions = 0;    ///< per object, along the axis of least overlap
+    double displacement = 0;           ///< mean displacement of the centres
+    double relative_displacement = 0;  ///< largest displacement along any axis, minus the common motion
+    double at_rest = 1;                ///< share of unchanged boxes
+    double inversions = 0;             ///< per object, along the axis of least overlap
 };
 /// @param axis along which inversions are counted
 [[nodiscard]] motion_measures measure_motion(std::span<const aabb::box> before, std::span<const aabb::box> after,
@@ -36,7 +36,7 @@ struct scene_measures {
     std::size_t present = 0;                ///< objects in frame 0
     std::optional<std::size_t> triangles;   ///< of all meshes; empty for boxes
     box_measures boxes;                     ///< of frame 0
-    double pairs_an_object = 0;             ///< overlapping pairs per object in frame 0
+    double pairs_per_object = 0;            ///< overlapping pairs per object in frame 0
     double clustering = 0;                  ///< pairs of frame 0 over `expected_pairs`
     std::optional<motion_measures> motion;  ///< empty for a single frame
     double turnover = 0;                    ///< share of the objects that appear or disappear per frame

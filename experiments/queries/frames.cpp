@@ -78,10 +78,10 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
         method.name += (method.name.empty() ? "" : ", ") + (by_engine ? *choice.engine : to_text(c, stage));
         method.exact &= by_engine ? aabb::is_exact_engine(*choice.engine) : is_exact(c, stage);
         if (stage == aabb::stage::global_search)
-            method.made.global =
+            method.run_stages.global =
                 by_engine ? aabb::make_box_engine(*choice.engine) : aabb::compose_global_search(c, uncounted);
         else
-            method.made.local =
+            method.run_stages.local =
                 by_engine ? aabb::make_mesh_engine(*choice.engine) : aabb::compose_local_detection(c, uncounted);
     }
     if (choice.geometry) method.geometry.emplace(c[aabb::strategy_kind::triangle]);
@@ -93,7 +93,7 @@ frames_result search_frames(scene_frames& scene, search_method& method, number_t
     frames_result result;
     result.objects = scene.objects();
     std::optional<stage_runner> searcher;
-    result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(method.made), scene); });
+    result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(method.run_stages), scene); });
     progress shown("frames searched", scene.frames());
     tally totals(meshes);
     run_frames(scene, *searcher, [&](const searched_frame& frame) {

@@ -88,8 +88,8 @@ bool share_vertex(const aabb::mesh& m, aabb::index_pair pair) {
 /// @param others sorted pairs that share no vertex
 /// @param take receives the sorted pairs of each triangle in turn
 /// @returns the number of pairs that share a vertex
-std::uint64_t for_each_with_neighbours(const aabb::mesh& m, std::span<const aabb::index_pair> others,
-                                       const std::function<void(std::span<const aabb::index_pair>)>& take) {
+std::uint64_t merge_adjacent_pairs(const aabb::mesh& m, std::span<const aabb::index_pair> others,
+                                   const std::function<void(std::span<const aabb::index_pair>)>& take) {
     mesh_neighbours neighbours(m);
     std::uint64_t count = 0;
     std::vector<aabb::index_pair> pairs;  // of one triangle
@@ -138,21 +138,21 @@ struct query_result {
 };
 
 /// @param stored whether pairs that share a vertex are stored
-query_result result_of(stage_runner& p, const mesh_query& query, const aabb::mesh& m, bool stored) {
+query_result result_of(stage_runner& runner, const mesh_query& query, const aabb::mesh& m, bool stores_adjacent) {
     query_result result;
     if (query.self) {
-        p.each_self_pair(0, [&](aabb::index_pair pair) {
+        runner.each_self_pair(0, [&](aabb::index_pair pair) {
             const bool neighbours = share_vertex(m, pair);
             ++(neighbours ? result.neighbours : result.count);
-            if (neighbours ? stored : query.ask != query_kind::count) result.pairs.push_back(pair);
+            if (neighbours ? stores_adjacent : query.ask != question::count) result.pairs.push_back(pair);
         });
         return result;
     }
     switch (query.ask) {
-        case query_kind::count: result.count = p.count_contacts(); break;
-        case query_kind::pairs: p.detect(); break;
-        case query_kind::first:
-            if (const auto c = p.first_contact()) result.pairs.push_back({c->triangle_a, c->triangle_b});
+        case question::count: result.count = runner.count_contacts(); break;
+        case question::pairs: runner.detect(); break;
+        case question::first:
+            if (const auto c = runner.first_contact()) result.pairs.push_back({c->triangle_a, c->triangle_b});
             break;
     }
     return result;
@@ -166,20 +166,20 @@ public:
         : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
 
     /// @param stored whether the pairs include those that share a vertex
-    void take(std::uint32_t pose, query_result of_pose, bool stored) {
+    void take(std::uint32_t pose, query_result pose_result, bool stores_adjacent) {
         pose_ = pose;
-        sort_rows(of_pose.pairs);
-        require_each_once(of_pose.pairs, method_.name);
+        sort_rows(pose_result.pairs);
+        require_each_once(pose_result.pairs, method_.name);
         const std::vector<aabb::mesh>& meshes = scene_.meshes()->meshes;
         if (method_.geometry)
             method_.geometry->take(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
-        if (query_.ask == query_kind::first) result_.first.emplace_back();
-        if (!query_.neighbours || stored) return take_sorted(of_pose.pairs);
-        const std::uint64_t neighbours = for_each_with_neighbours(
-            meshes.front(), of_pose.pairs, [&](std::span<const aabb::index_pair> pairs) { take_sorted(pairs); });
-        if (neighbours != of_pose.neighbours)
+        if (query_.ask == question::first) result_.first.emplace_back();
+        if (!query_.neighbours || stores_adjacent) return take_sorted(pose_result.pairs);
+        const std::uint64_t neighbours = merge_adjacent_pairs(
+            meshes.front(), pose_result.pairs, [&](std::span<const aabb::index_pair> pairs) { take_sorted(pairs); });
+        if (neighbours != pose_result.neighbours)
             throw defect(fmt::format("{} finds {} pairs of triangles that share a vertex, but there are {}",
-                                     method_.name, of_pose.neighbours, neighbours));
+                                     method_.name, pose_result.neighbours, neighbours));
     }
     [[nodiscard]] std::string digest() const { return digest_.text(); }
 
@@ -237,32 +237,34 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     mesh_result result;
     result.method = method_of(choice, traits);
     std::optional<stage_runner> searcher;
-    result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(result.method.made), scene); });
+    result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(result.method.run_stages), scene); });
     for (const aabb::mesh& m : scene.meshes()->meshes) result.triangles.push_back(m.triangle_count());
     // Within one mesh, pairs that share a vertex may dominate: n triangles around one vertex have n²/2 of them. They
     // are stored only if they are reported and an inexact method may have missed some; with an exact method, they
     // follow from the mesh.
-    const bool stored = query.neighbours && !result.method.exact && query.ask != query_kind::count;
+    const bool stores_adjacent = query.neighbours && !result.method.exact && query.ask != question::count;
     pair_record record(query, scene, result, rows);
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
-        query_result of_pose;
+        query_result pose_result;
         try {
             searcher->update();
             searcher->search();
-            const auto ask = [&] { of_pose = result_of(*searcher, query, scene.meshes()->meshes.front(), stored); };
+            const auto ask = [&] {
+                pose_result = result_of(*searcher, query, scene.meshes()->meshes.front(), stores_adjacent);
+            };
             result.query_ms.push_back(milliseconds_of(ask));
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(fmt::format("{}{}: {}", of_b.place_of(frame % poses), query.between, error.what()));
         }
         if (frame >= poses) continue;
-        if (query.self) result.neighbours = of_pose.neighbours;
-        if (!query.self && query.ask != query_kind::count) {
+        if (query.self) result.neighbours = pose_result.neighbours;
+        if (!query.self && query.ask != question::count) {
             for (const aabb::contact& c : searcher->sorted_contacts())
-                of_pose.pairs.push_back({c.triangle_a, c.triangle_b});
-            of_pose.count = of_pose.pairs.size();
+                pose_result.pairs.push_back({c.triangle_a, c.triangle_b});
+            pose_result.count = pose_result.pairs.size();
         }
-        result.counts.push_back(of_pose.count);
-        if (query.ask != query_kind::count) record.take(frame, std::move(of_pose), stored);
+        result.counts.push_back(pose_result.count);
+        if (query.ask != question::count) record.take(frame, std::move(pose_result), stores_adjacent);
     }
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);

@@ -48,7 +48,7 @@ struct search_choice {
 struct search_method {
     std::string name;
     bool exact = true;
-    stages made;
+    stages run_stages;
     std::optional<hit_geometry> geometry;
 
     /// "cgal", "fcl (inexact)".

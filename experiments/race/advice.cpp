@@ -10,7 +10,7 @@ namespace aabblab {
 namespace {
 
 /// "takes 1.31 times as long (1.25-1.36)"
-std::string beside_winner(const racer& r) {
+std::string ratio_text(const racer& r) {
     if (!r.has_range())
         return fmt::format("takes {:.2f} times as long, in {}, too few for a confidence interval", r.ratio(),
                            counted(r.times.size(), "repeat"));
@@ -21,20 +21,20 @@ std::string beside_winner(const racer& r) {
 }
 
 /// Describes `auto`, unless it is first or second and therefore described already.
-std::string of_automatic(const race_result& race) {
+std::string sentence_about_auto(const race_result& race) {
     const auto is_automatic = [](const racer& r) { return r.tested.name.is_automatic(); };
     if (const auto ended = std::ranges::find_if(race.finalists, is_automatic); ended != race.finalists.end())
-        return ended - race.finalists.begin() < 2 ? "" : ended->name + " " + beside_winner(*ended) + ".";
+        return ended - race.finalists.begin() < 2 ? "" : ended->name + " " + ratio_text(*ended) + ".";
     const auto dropped = std::ranges::find_if(race.dropped, is_automatic);
     if (dropped == race.dropped.end()) return "";
     if (dropped->broken_off) return fmt::format("{}: {}.", dropped->name, text_of(*dropped->broken_off));
     return fmt::format("{} was dropped after {}: it took {:.2f} times as long as the fastest.", dropped->name,
-                       counted(dropped->last->frames, "frame"), dropped->behind);
+                       counted(dropped->last->frames, "frame"), dropped->ratio_to_fastest);
 }
 
 /// The median over the repeats of the difference in `value`; empty if its confidence interval contains 0.
 template <class Value>
-std::optional<double> shown_difference(const racer& r, const racer& other, Value value) {
+std::optional<double> significant_difference(const racer& r, const racer& other, Value value) {
     cells differences(1, 1);
     for (std::size_t i = 0; i < r.times.size(); ++i) differences.add(0, 0, value(r.times[i]) - value(other.times[i]));
     const estimate difference = bootstrap(differences);
@@ -43,18 +43,18 @@ std::optional<double> shown_difference(const racer& r, const racer& other, Value
 }
 
 /// The number of frames for which two candidates take equally long.
-struct crossing {
+struct break_even {
     double frames;
-    bool sooner;  ///< the other candidate is faster for fewer frames
+    bool faster_before;  ///< the other candidate is faster for fewer frames
 };
 
 /// The crossing of two candidates; empty if the repeats do not show one.
-std::optional<crossing> crossing_of(const racer& other, const racer& winner) {
+std::optional<break_even> break_even_of(const racer& other, const racer& winner) {
     if (!other.has_range()) return std::nullopt;
-    const auto begin = shown_difference(other, winner, [](const observation& t) { return t.over(1); });
-    const auto steady = shown_difference(other, winner, [](const observation& t) { return t.steady_ms(); });
+    const auto begin = significant_difference(other, winner, [](const observation& t) { return t.over(1); });
+    const auto steady = significant_difference(other, winner, [](const observation& t) { return t.steady_ms(); });
     if (!begin || !steady || (*begin > 0) == (*steady > 0)) return std::nullopt;
-    return crossing{1 - *begin / *steady, *begin < 0};
+    return break_even{1 - *begin / *steady, *begin < 0};
 }
 
 /// The options that select a candidate; none for `auto`, which is the default.
@@ -74,7 +74,7 @@ std::string frames_text(const race_result& race) {
 }
 
 /// The numbers of frames nearest to the current one, above and below, for which another candidate is faster.
-std::vector<std::string> what_would_change_it(const race_result& race) {
+std::vector<std::string> faster_at_other_lengths(const race_result& race) {
     if (race.final_frames < 2 || race.finalists.size() < 2 || !race.finalists.front().has_range()) return {};
     const auto frames = static_cast<double>(race.final_frames);
     double below = 1.5;  // fewer than 2 frames would be a single one
@@ -83,13 +83,13 @@ std::vector<std::string> what_would_change_it(const race_result& race) {
     const racer* with_more = nullptr;
     for (const racer& other : race.finalists) {
         if (&other == &race.finalists.front()) continue;
-        const std::optional<crossing> at = crossing_of(other, race.finalists.front());
+        const std::optional<break_even> at = break_even_of(other, race.finalists.front());
         if (!at) continue;
-        if (at->sooner && at->frames < frames && at->frames > below) {
+        if (at->faster_before && at->frames < frames && at->frames > below) {
             below = at->frames;
             with_fewer = &other;
         }
-        if (!at->sooner && at->frames > frames && at->frames < above) {
+        if (!at->faster_before && at->frames > frames && at->frames < above) {
             above = at->frames;
             with_more = &other;
         }
@@ -104,7 +104,7 @@ std::vector<std::string> what_would_change_it(const race_result& race) {
 }
 
 /// Caveats: what did not run for lack of time, or was not compared with the ground truth.
-std::vector<std::string> what_was_left(const race_result& race) {
+std::vector<std::string> caveats_of(const race_result& race) {
     std::vector<std::string> sentences;
     const auto not_run =
         std::ranges::count_if(race.dropped, [](const racer& r) { return r.broken_off && r.broken_off->seconds == 0; });
@@ -131,14 +131,14 @@ std::vector<std::string> advice_of(const race_result& race) {
     const racer& winner = race.finalists.front();
     std::string use = fmt::format("Use {}: {:.4g} ms for {}", winner.name, winner.last->whole_ms(), frames_text(race));
     if (race.finalists.size() > 1)
-        use += fmt::format("; the next, {}, {}", race.finalists[1].name, beside_winner(race.finalists[1]));
-    for (const std::string& part : what_would_change_it(race)) use += "; " + part;
+        use += fmt::format("; the next, {}, {}", race.finalists[1].name, ratio_text(race.finalists[1]));
+    for (const std::string& part : faster_at_other_lengths(race)) use += "; " + part;
     std::vector<std::string> sentences{use + "."};
-    if (std::string sentence = of_automatic(race); !sentence.empty()) sentences.push_back(std::move(sentence));
+    if (std::string sentence = sentence_about_auto(race); !sentence.empty()) sentences.push_back(std::move(sentence));
     if (std::string options = options_of(winner.tested.name); !options.empty()) sentences.push_back(std::move(options));
     for (const racer& r : race.wrong)
         sentences.push_back(fmt::format("{} is rejected: its pairs differ from the ground truth.", r.name));
-    for (std::string& sentence : what_was_left(race)) sentences.push_back(std::move(sentence));
+    for (std::string& sentence : caveats_of(race)) sentences.push_back(std::move(sentence));
     return sentences;
 }
 

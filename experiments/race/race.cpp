@@ -52,17 +52,17 @@ observation median_of(std::vector<observation> times) {
 class race {
 public:
     race(staged_scene& scene, std::vector<racer> candidates, const time_limits& limits)
-        : scene_(scene), limits_(limits), whole_(limits.to_run()), running_(std::move(candidates)) {
+        : scene_(scene), limits_(limits), budget_(limits.to_run()), running_(std::move(candidates)) {
         result_.objects = scene.scene().objects();
         result_.frames = scene.scene().frames();
-        result_.of = result_.frames * running_.size();
+        result_.frames_of_all = result_.frames * running_.size();
     }
 
     race_result run() {
         std::size_t frames = std::min(result_.frames, first_frames);
         double margin = first_margin;
         run_first_round(frames, margin);
-        while (frames < result_.frames && running_.size() > most_finalists && left() > whole_ / 2) {
+        while (frames < result_.frames && running_.size() > most_finalists && seconds_left() > budget_ / 2) {
             frames = std::min(result_.frames, 2 * frames);
             margin = std::max(last_margin, std::sqrt(margin));
             if (!run_round(frames, margin)) break;
@@ -77,22 +77,22 @@ public:
         std::ranges::reverse(result_.dropped);
         result_.finalists = std::move(running_);
         for (const std::vector<racer>* group : {&result_.finalists, &result_.dropped, &result_.wrong})
-            for (const racer& r : *group) result_.played += r.frames;
+            for (const racer& r : *group) result_.frames_run += r.frames;
         return std::move(result_);
     }
 
 private:
-    [[nodiscard]] double left() const { return limits_.to_run(); }
+    [[nodiscard]] double seconds_left() const { return limits_.to_run(); }
 
     /// The time limit of a run, given the seconds `least` of the fastest so far; the very first run gets more.
-    [[nodiscard]] double longest(double least, double margin) const {
-        const stopping_rule rule{.grace = std::min(1.0, whole_ / 20), .share = whole_ / 16, .margin = margin};
-        return std::isfinite(least) ? rule.longest(least) : rule.grace + whole_ / 4;
+    [[nodiscard]] double time_limit(double least, double margin) const {
+        const stopping_rule rule{.grace = std::min(1.0, budget_ / 20), .share = budget_ / 16, .margin = margin};
+        return std::isfinite(least) ? rule.longest(least) : rule.grace + budget_ / 4;
     }
 
     /// Runs a candidate on the first frames and records the outcome.
     /// @returns whether it finished
-    bool runs(racer& r, std::size_t frames, double seconds, double time_left) {
+    bool run_candidate(racer& r, std::size_t frames, double seconds, double time_left) {
         attempt outcome = scene_.run(r.tested, frames, seconds, time_left);
         if (outcome.end != ending::done) {
             r.frames = std::max(r.frames, outcome.seen.frames);
@@ -110,20 +110,20 @@ private:
     /// @returns whether any candidate finished
     bool run_all(std::size_t& frames, double margin, bool is_first_round) {
         progress shown("candidates over " + counted(frames, "frame"), running_.size());
-        const double kept = is_first_round ? (1 - share_of_first_round) * whole_ : 0;
+        const double kept = is_first_round ? (1 - share_of_first_round) * budget_ : 0;
         double least = std::numeric_limits<double>::infinity();
         std::size_t done = 0;
         for (racer& r : running_) {
-            bool ends = runs(r, frames, longest(least, margin), left() - kept);
-            if (!ends && is_first_round && !std::isfinite(least) && r.broken_off->end == ending::stopped &&
+            bool is_done = run_candidate(r, frames, time_limit(least, margin), seconds_left() - kept);
+            if (!is_done && is_first_round && !std::isfinite(least) && r.broken_off->end == ending::stopped &&
                 r.frames > 0) {
                 frames = r.frames;
                 r.seconds = r.broken_off->seconds_of_frames;
                 r.last = std::move(r.broken_off->seen);
                 r.broken_off.reset();
-                ends = true;
+                is_done = true;
             }
-            if (ends) least = std::min(least, r.seconds);
+            if (is_done) least = std::min(least, r.seconds);
             shown.at(++done);
         }
         return std::isfinite(least);
@@ -135,7 +135,7 @@ private:
             frames = 1;
             racer& first = running_.front();
             first.broken_off.reset();
-            if (!runs(first, frames, limits_.to_end(), limits_.to_end())) reject_all();
+            if (!run_candidate(first, frames, limits_.to_end(), limits_.to_end())) reject_all();
         }
         finish_round(frames, margin);
     }
@@ -154,11 +154,11 @@ private:
     /// @returns whether the round counts
     bool run_round(std::size_t frames, double margin) {
         const std::vector<racer> before = running_;
-        const bool any_ends = run_all(frames, margin, false);
-        const bool is_cut =
+        const bool any_done = run_all(frames, margin, false);
+        const bool is_out_of_time =
             std::ranges::any_of(running_, [](const racer& r) { return r.broken_off && r.broken_off->is_out_of_time; });
-        if (!is_cut) require_any_accepted();
-        if (is_cut || !any_ends) {
+        if (!is_out_of_time) require_any_accepted();
+        if (is_out_of_time || !any_done) {
             running_ = before;
             return false;
         }
@@ -167,48 +167,52 @@ private:
     }
 
     void finish_round(std::size_t frames, double margin) {
-        set_behind();
-        run_again(frames, margin);
-        judge(margin);
+        update_ratios();
+        rerun_close_candidates(frames, margin);
+        drop_slow(margin);
     }
 
-    [[nodiscard]] double whole(const racer& r) const { return r.last->over(static_cast<double>(result_.frames)); }
+    [[nodiscard]] double extrapolated_ms(const racer& r) const {
+        return r.last->over(static_cast<double>(result_.frames));
+    }
 
-    void set_behind() {
+    void update_ratios() {
         double least = std::numeric_limits<double>::infinity();
         for (const racer& r : running_)
-            if (r.last) least = std::min(least, whole(r));
-        for (racer& r : running_) r.behind = r.last ? whole(r) / least : 0;
+            if (r.last) least = std::min(least, extrapolated_ms(r));
+        for (racer& r : running_) r.ratio_to_fastest = r.last ? extrapolated_ms(r) / least : 0;
     }
 
     /// Repeats the runs of candidates that are slightly behind, since the first run may have been disturbed.
-    void run_again(std::size_t frames, double margin) {
+    void rerun_close_candidates(std::size_t frames, double margin) {
         constexpr double far_behind = 2;
         for (racer& r : running_) {
-            if (r.broken_off || r.behind <= margin || r.behind > far_behind * margin || left() < whole_ / 2) continue;
-            const attempt second = scene_.run(r.tested, frames, longest(r.seconds, margin), left());
+            if (r.broken_off || r.ratio_to_fastest <= margin || r.ratio_to_fastest > far_behind * margin ||
+                seconds_left() < budget_ / 2)
+                continue;
+            const attempt second = scene_.run(r.tested, frames, time_limit(r.seconds, margin), seconds_left());
             if (second.end == ending::done && second.seen.whole_ms() < r.last->whole_ms()) r.last = second.seen;
         }
-        set_behind();
+        update_ratios();
     }
 
     /// Drops candidates that did not finish, or are behind both in total and per frame.
-    void judge(double margin) {
+    void drop_slow(double margin) {
         double least_steady = std::numeric_limits<double>::infinity();
         for (const racer& r : running_)
             if (r.last) least_steady = std::min(least_steady, r.last->steady_ms());
         std::ranges::stable_sort(running_, [](const racer& a, const racer& b) {
-            return a.last.has_value() && (!b.last || a.behind < b.behind);
+            return a.last.has_value() && (!b.last || a.ratio_to_fastest < b.ratio_to_fastest);
         });
-        keep([&](const racer& r) {
-            return !r.broken_off &&
-                   (r.behind <= margin || (r.last->frames > 1 && r.last->steady_ms() <= margin * least_steady));
+        keep_only([&](const racer& r) {
+            return !r.broken_off && (r.ratio_to_fastest <= margin ||
+                                     (r.last->frames > 1 && r.last->steady_ms() <= margin * least_steady));
         });
     }
 
     template <class Stays>
-    void keep(Stays stays) {
-        const auto first_out = std::stable_partition(running_.begin(), running_.end(), stays);
+    void keep_only(Stays is_kept) {
+        const auto first_out = std::stable_partition(running_.begin(), running_.end(), is_kept);
         for (auto last = running_.end(); last != first_out;) result_.dropped.push_back(std::move(*--last));
         running_.erase(first_out, running_.end());
     }
@@ -225,7 +229,7 @@ private:
         return seconds;
     }
     [[nodiscard]] bool final_fits(std::size_t frames) const {
-        return fewest_repeats * seconds_of_repeat(frames) <= left();
+        return fewest_repeats * seconds_of_repeat(frames) <= seconds_left();
     }
 
     /// Repeats interleaved runs of the finalists on as many frames, and as often, as time allows. Finalists that fail
@@ -236,11 +240,12 @@ private:
             frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);
         progress shown("repeats of the final", most_repeats);
         const std::vector<racer> before = running_;
-        bool is_cut = false;  // time is over within a repeat, which is discarded
+        bool is_out_of_time = false;  // time is over within a repeat, which is discarded
         const auto run = [&](racer& r, std::size_t) {
-            attempt outcome = scene_.run(r.tested, frames, longest(seconds_of(r, frames), last_margin), left());
+            attempt outcome =
+                scene_.run(r.tested, frames, time_limit(seconds_of(r, frames), last_margin), seconds_left());
             if (outcome.is_out_of_time) {
-                is_cut = true;
+                is_out_of_time = true;
             } else if (outcome.end == ending::done) {
                 r.times.push_back(std::move(outcome.seen));
                 r.frames = frames;
@@ -249,26 +254,26 @@ private:
             }
         };
         const auto drop = [&](std::size_t repeat) {
-            if (is_cut)
+            if (is_out_of_time)
                 for (racer& r : running_) r.times.resize(std::min(repeat, r.times.size()));
             else
                 require_any_accepted();
-            keep([](const racer& r) { return !r.broken_off; });
+            keep_only([](const racer& r) { return !r.broken_off; });
             shown.at(repeat + 1);
         };
         const round_limits limits{
-            .end = most_repeats, .left = [&] { return left(); }, .expected = seconds_of_repeat(frames)};
+            .end = most_repeats, .left = [&] { return seconds_left(); }, .expected = seconds_of_repeat(frames)};
         run_rounds(running_, limits, run, drop);
         if (!running_.empty() && !running_.front().times.empty()) {
             result_.final_frames = frames;
             return;
         }
-        if (running_.empty()) take_back(before);
+        if (running_.empty()) restore(before);
         for (racer& r : running_) r.times.push_back(*r.last);
     }
 
     /// Restores all finalists if they were dropped only for exceeding their limits.
-    void take_back(std::vector<racer> before) {
+    void restore(std::vector<racer> before) {
         const auto finalists = std::span(result_.dropped).last(before.size());
         if (std::ranges::any_of(finalists, [](const racer& r) { return r.broken_off->end != ending::stopped; }))
             throw aabb::input_error("no candidate finishes this scene");
@@ -302,7 +307,7 @@ private:
 
     staged_scene& scene_;
     const time_limits& limits_;
-    double whole_;  // total time for runs, in seconds
+    double budget_;  // total time for runs, in seconds
     std::vector<racer> running_;
     race_result result_;
 };
@@ -323,7 +328,7 @@ void rank(std::vector<racer>& finalists) {
                      [](const racer& a, const racer& b) { return a.log_ratio->value < b.log_ratio->value; });
 }
 
-std::vector<racer> starters(const scene_frames& scene) {
+std::vector<racer> race_candidates(const scene_frames& scene) {
     const bool meshes = scene.meshes() != nullptr;
     std::vector<racer> candidates;
     const auto add = [&](candidate tested, std::string name) {

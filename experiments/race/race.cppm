@@ -20,7 +20,7 @@ struct racer {
     std::optional<attempt> broken_off;  ///< the unfinished run for which it was dropped
     double seconds = 0;                 ///< total time of the last round that it finished
     std::size_t frames = 0;             ///< the most frames of the scene that it ran in any round
-    double behind = 0;                  ///< its time in the last round over that of the fastest
+    double ratio_to_fastest = 0;        ///< its time in the last round over that of the fastest
     std::optional<estimate> log_ratio;  ///< of a finalist: the median over repeats, relative to the winner
 
     [[nodiscard]] bool has_range() const { return times.size() >= fewest_repeats; }
@@ -35,20 +35,20 @@ struct racer {
 struct race_result {
     std::size_t objects = 0;
     std::size_t frames = 0;
-    std::size_t final_frames = 0;  ///< of the final: fewer than `frames` if time was short
-    std::vector<racer> finalists;  ///< from the fastest
-    std::vector<racer> dropped;    ///< in reverse order of being dropped
-    std::vector<racer> wrong;      ///< finalists in time, but with results that differ from those of CGAL
-    std::size_t validated = 0;     ///< frames of the final that were compared with CGAL
-    std::size_t played = 0;        ///< frames that candidates ran, summed; repeated runs do not count
-    std::size_t of = 0;            ///< the same if every candidate ran all frames
+    std::size_t final_frames = 0;   ///< of the final: fewer than `frames` if time was short
+    std::vector<racer> finalists;   ///< from the fastest
+    std::vector<racer> dropped;     ///< in reverse order of being dropped
+    std::vector<racer> wrong;       ///< finalists in time, but with results that differ from those of CGAL
+    std::size_t validated = 0;      ///< frames of the final that were compared with CGAL
+    std::size_t frames_run = 0;     ///< by all candidates; repeated runs do not count
+    std::size_t frames_of_all = 0;  ///< the same without early stopping
 
     [[nodiscard]] bool is_validated() const { return validated > 0 && validated == final_frames; }
 };
 
 /// The candidates for a scene: first `auto`, then the exact engines and every other composition of the relevant stage,
 /// in a reproducible random order, since there may be no time for all.
-[[nodiscard]] std::vector<racer> starters(const scene_frames& scene);
+[[nodiscard]] std::vector<racer> race_candidates(const scene_frames& scene);
 
 /// @throws aabb::input_error if the scene cannot be run, or no candidate finishes its first frame in time.
 [[nodiscard]] race_result run_race(staged_scene& scene, std::vector<racer> candidates, const time_limits& limits);

@@ -36,14 +36,14 @@ table table_of(const race_result& race) {
 }
 
 /// How far behind a dropped candidate was, or how its run ended.
-std::string fate_of(const racer& r) {
-    return r.broken_off ? text_of(*r.broken_off) : fmt::format("{:.3g}", r.behind);
+std::string reason_for_drop(const racer& r) {
+    return r.broken_off ? text_of(*r.broken_off) : fmt::format("{:.3g}", r.ratio_to_fastest);
 }
 
 table dropped_table_of(const race_result& race) {
     table t{{{"dropped", false}, {"after frames"}, {"times"}}, {}};
     for (const racer& r : race.dropped)
-        t.rows.push_back({r.name, r.last ? std::to_string(r.last->frames) : "-", fate_of(r)});
+        t.rows.push_back({r.name, r.last ? std::to_string(r.last->frames) : "-", reason_for_drop(r)});
     return t;
 }
 
@@ -51,7 +51,7 @@ table dropped_table_of(const race_result& race) {
 table unfinished_table_of(const race_result& race) {
     table t{{{"not finished", false}, {"", false}}, {}};
     for (const racer& r : race.dropped)
-        if (r.broken_off && r.broken_off->seconds > 0) t.rows.push_back({r.name, fate_of(r)});
+        if (r.broken_off && r.broken_off->seconds > 0) t.rows.push_back({r.name, reason_for_drop(r)});
     return t;
 }
 
@@ -62,8 +62,8 @@ std::vector<std::string> legend() {
             ms_a_frame_text, build_ms_text};
 }
 
-std::string origin() {
-    const calibrated_costs here = label_costs(aabb::machine_costs());
+std::string provenance() {
+    const kept_costs here = costs_here(aabb::machine_costs());
     return "aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions;
 }
 
@@ -79,7 +79,7 @@ std::string page_of(const std::string& scene, const race_result& race, const std
         "Dropped: a candidate was stopped after this many frames, since it took this many times as long as the "
         "fastest, both in total and per frame after the first; or its run did not finish. Strategies have their "
         "default parameters.");
-    report.paragraph(origin());
+    report.paragraph(provenance());
     return report.html();
 }
 
@@ -105,13 +105,13 @@ int recommend(const recommend_request& request) {
     }
     if (scene.scene().objects() < 2)
         throw aabb::input_error("nothing to search: the scene has " + counted(scene.scene().objects(), "object"));
-    const race_result race = run_race(scene, starters(scene.scene()), limits);
+    const race_result race = run_race(scene, race_candidates(scene.scene()), limits);
     const std::string name = heading_of(scene.choice());
     print_paragraph(name + ": " + counted(race.objects, "object") + ", " + counted(race.frames, "frame"));
     print_paragraph(
         fmt::format("{} of {} candidates reached the final; early stopping reduced the frames that ran to {:.0f} %",
                     race.finalists.size(), race.finalists.size() + race.dropped.size() + race.wrong.size(),
-                    100 * static_cast<double>(race.played) / static_cast<double>(race.of)));
+                    100 * static_cast<double>(race.frames_run) / static_cast<double>(race.frames_of_all)));
     print("\n" + to_text(table_of(race), output_width()) + "\n");
     for (const std::string& line : legend()) print_paragraph(line);
     print("\n");

@@ -115,14 +115,14 @@ TEST_CASE("A model of a line's times is fitted to the map, and judged by the sce
     std::vector<atlas_scene> atlas;
     for (std::size_t objects = 100; objects <= 25600; objects *= 2)
         for (const bool unseen : {false, true})
-            for (const double pairs_an_object : {0.1, 2.0}) {
+            for (const double pairs_per_object : {0.1, 2.0}) {
                 // 10 ns a box and 5 a pair; beside the map, half as much again.
                 const double n = static_cast<double>(objects);
-                const double ms = (10 * n + 5 * n * pairs_an_object) * (unseen ? 1.5e-6 : 1e-6);
+                const double ms = (10 * n + 5 * n * pairs_per_object) * (unseen ? 1.5e-6 : 1e-6);
                 atlas.push_back(cloud("0.1", {line("linear", ms), line("slow", 1e-6 * n * n)}, unseen));
                 atlas.back().scene.settings[0].value = std::to_string(objects);
                 atlas.back().measures.objects = objects;
-                atlas.back().measures.pairs_an_object = pairs_an_object;
+                atlas.back().measures.pairs_per_object = pairs_per_object;
                 atlas.back().lines[0].frame_ms = {atlas.back().lines[0].frame_ms[0]};
             }
     const std::vector<aabblab::line_model> models = models_of(atlas);

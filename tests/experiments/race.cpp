@@ -70,7 +70,7 @@ aabblab::race_result race_of(const aabblab::scene_choice& choice, std::vector<ra
 }
 
 std::vector<racer> starters_of(const aabblab::scene_choice& choice) {
-    return aabblab::starters(aabblab::scene_frames(choice));
+    return aabblab::race_candidates(aabblab::scene_frames(choice));
 }
 
 bool holds(const std::vector<racer>& some, const std::string& name) {
@@ -135,7 +135,7 @@ TEST_CASE("A race ends with the fastest, and those who are far behind or fail pl
     CHECK(race.finalists.front().name == "fast");
     CHECK(holds(race.finalists, "late"));
     for (const char* name : {"slow", "stuck", "broken", "gone"}) CHECK(holds(race.dropped, name));
-    CHECK(race.played < race.of);
+    CHECK(race.frames_run < race.frames_of_all);
     CHECK(std::exp(race.finalists.front().log_ratio->value) == 1);
     for (const racer& r : race.finalists) {
         CHECK(r.times.size() >= 5);
@@ -163,8 +163,8 @@ TEST_CASE("Who was disturbed once is not dropped") {
 TEST_CASE("A race counts the frames of the scene that were played, not those that were played again") {
     const aabblab::race_result race = race_of(scene, {delayed("one", [] {}), delayed("other", [] {})}, 20);
     REQUIRE(race.finalists.size() + race.dropped.size() == 2);
-    CHECK(race.of == 50);
-    CHECK(race.played == 25 * race.finalists.size() + 4 * race.dropped.size());
+    CHECK(race.frames_of_all == 50);
+    CHECK(race.frames_run == 25 * race.finalists.size() + 4 * race.dropped.size());
 }
 
 TEST_CASE("Who finds other pairs than CGAL does not win a race") {
@@ -441,7 +441,7 @@ TEST_CASE("How auto did in a race is told as far as the repeats tell") {
     aabblab::race_result without = ended({winner, second});
     automatic.last = automatic.times.front();
     automatic.last->frames = 8;
-    automatic.behind = 1.5;
+    automatic.ratio_to_fastest = 1.5;
     without.dropped.push_back(automatic);
     CHECK(reported(without, "auto (= x) was dropped after 8 frames: it took 1.50 times as long as the fastest."));
     without.dropped.back().broken_off = aabblab::attempt{aabblab::ending::stopped, {}, "", 2.1};

@@ -18,7 +18,7 @@ namespace {
 bool outlives_reader = false;
 bool reader_has_gone = false;
 
-void lose_output(int error) {
+void handle_write_error(int error) {
     if (error != EPIPE)
         throw aabb::input_error("cannot write to standard output: " + std::generic_category().message(error));
     if (!outlives_reader) throw output_closed();
@@ -26,7 +26,7 @@ void lose_output(int error) {
 }
 
 /// The length in bytes of the first character; 0 for a control character or invalid UTF-8.
-std::size_t plain_length(std::string_view text) {
+std::size_t printable_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     if (byte(0) < 0x80) return byte(0) >= ' ' && byte(0) != 0x7f ? 1 : 0;
     const std::size_t length = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
@@ -49,10 +49,10 @@ std::optional<std::size_t> width_of_terminal(int stream) {
     return std::max<std::size_t>(window.ws_col, least_width);
 }
 
-std::string made_visible(std::string_view text, bool keep_lines) {
+std::string escaped(std::string_view text, bool keep_lines) {
     std::string shown;
     while (!text.empty()) {
-        const std::size_t length = keep_lines && text[0] == '\n' ? 1 : plain_length(text);
+        const std::size_t length = keep_lines && text[0] == '\n' ? 1 : printable_length(text);
         if (length == 0)
             shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
         else
@@ -65,17 +65,17 @@ std::string made_visible(std::string_view text, bool keep_lines) {
 }  // namespace
 
 std::string visible(std::string_view text) {
-    return made_visible(text, false);
+    return escaped(text, false);
 }
 
 void print(std::string_view text) {
     if (reader_has_gone) return;
-    const std::string shown = made_visible(text, true);
-    if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size()) lose_output(errno);
+    const std::string shown = escaped(text, true);
+    if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size()) handle_write_error(errno);
 }
 
 void flush_output() {
-    if (!reader_has_gone && std::fflush(stdout) != 0) lose_output(errno);
+    if (!reader_has_gone && std::fflush(stdout) != 0) handle_write_error(errno);
 }
 
 void outlive_reader() {

@@ -48,13 +48,13 @@ struct pipe_ends {
 // Between fork and exec: async-signal-safe functions only.
 
 /// Makes the kernel send this process a signal when its parent ends.
-void end_with(pid_t parent, int signal) {
+void request_signal_at_end_of(pid_t parent, int signal) {
     prctl(PR_SET_PDEATHSIG, signal);
     if (getppid() != parent) _exit(127);  // the parent has already ended
 }
 
 /// Starts the program; returns only if that fails.
-void become(char* const* arguments, const surroundings& where, int output) {
+void exec_program(char* const* arguments, const surroundings& where, int output) {
     if (dup2(output, STDOUT_FILENO) < 0 || !redirect(where.input.c_str(), O_RDONLY, STDIN_FILENO) ||
         !redirect(where.errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO) ||
         (!where.folder.empty() && chdir(where.folder.c_str()) != 0))
@@ -90,21 +90,21 @@ void kill_descendants() {
 /// Forks a process that will become the program. The keeper, this process, waits until that one ends, or until SIGTERM,
 /// which the end of the parent also causes. It then kills all descendants, in any session, and ends like the program.
 /// @returns true in the new process; false if fork fails
-[[nodiscard]] bool keep(int output, int rejection, pid_t parent) {
+[[nodiscard]] bool fork_under_keeper(int output, int rejection, pid_t parent) {
     sigset_t awaited;
     sigset_t before;
     sigset_t none;
     sigemptyset(&none);
     sigfillset(&awaited);
     sigprocmask(SIG_SETMASK, &awaited, &before);
-    end_with(parent, SIGTERM);
+    request_signal_at_end_of(parent, SIGTERM);
     prctl(PR_SET_CHILD_SUBREAPER, 1);
     setpgid(0, 0);
     const pid_t keeper = getpid();
     const pid_t program = fork();
     if (program < 0) return false;
     if (program == 0) {
-        end_with(keeper, SIGKILL);
+        request_signal_at_end_of(keeper, SIGKILL);
         setpgid(0, 0);  // so that signals to its group do not reach the keeper
         sigprocmask(SIG_SETMASK, &before, nullptr);
         return true;
@@ -131,8 +131,8 @@ void kill_descendants() {
 /// Ends at the end of its standard input, which all keepers hold open, too.
 constexpr const char* guard_script = "trap '' HUP INT TERM; read -r end; rm -rf -- \"$1\"";
 
-/// Like `become`, for the guard; its output goes to /dev/null so that readers of ours do not wait for it.
-[[noreturn]] void become_guard(int input, const char* folder) {
+/// Like `exec_program`, for the guard; its output goes to /dev/null so that readers of ours do not wait for it.
+[[noreturn]] void exec_guard(int input, const char* folder) {
     setpgid(0, 0);
     if (dup2(input, STDIN_FILENO) >= 0 && redirect("/dev/null", O_WRONLY, STDOUT_FILENO) &&
         redirect("/dev/null", O_WRONLY, STDERR_FILENO))
@@ -143,7 +143,7 @@ constexpr const char* guard_script = "trap '' HUP INT TERM; read -r end; rm -rf 
 using clock = std::chrono::steady_clock;
 
 /// True if input, or the end of input, arrives before that time.
-bool is_ready(int input, const std::optional<clock::time_point>& end) {
+bool becomes_readable(int input, const std::optional<clock::time_point>& end) {
     pollfd request{input, POLLIN, 0};
     while (end) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(*end - clock::now()).count();
@@ -159,7 +159,7 @@ std::string read_all(int input, const std::optional<clock::time_point>& end = {}
     std::string text;
     std::array<char, 4096> part{};
     for (;;) {
-        if (!is_ready(input, end)) return text;
+        if (!becomes_readable(input, end)) return text;
         const ssize_t count = read(input, part.data(), part.size());
         if (count > 0)
             text.append(part.data(), static_cast<std::size_t>(count));
@@ -172,7 +172,7 @@ bool ends_before(pid_t child, clock::time_point end) {
     const int handle = pidfd_open(child, 0);
     // Without a handle the end cannot be observed.
     if (handle < 0) return true;
-    const bool ended = is_ready(handle, end);
+    const bool ended = becomes_readable(handle, end);
     close(handle);
     return ended;
 }
@@ -193,9 +193,9 @@ child_result run_child(const std::string& program, const std::vector<std::string
     const pid_t child = fork();
     if (child < 0) return {errno, 0, false, {}};
     if (child == 0) {
-        if (!where.kept) end_with(parent, SIGKILL);
-        if (!where.kept || keep(output.ends[1], rejection.ends[1], parent))
-            become(pointers.data(), where, output.ends[1]);
+        if (!where.kept) request_signal_at_end_of(parent, SIGKILL);
+        if (!where.kept || fork_under_keeper(output.ends[1], rejection.ends[1], parent))
+            exec_program(pointers.data(), where, output.ends[1]);
         const int why = errno;
         _exit(write(rejection.ends[1], &why, sizeof why) < 0 ? 126 : 127);
     }
@@ -253,7 +253,7 @@ folder_guard::folder_guard(std::filesystem::path folder) : folder_(std::move(fol
     if (!life.open()) return;
     guard_ = fork();
     if (guard_ < 0) return;
-    if (guard_ == 0) become_guard(life.ends[0], folder_.c_str());
+    if (guard_ == 0) exec_guard(life.ends[0], folder_.c_str());
     held_ = std::exchange(life.ends[1], -1);
 }
 

@@ -27,10 +27,10 @@ std::map<std::size_t, double> busy_ticks() {
 
 idlest_processor::idlest_processor() {
     // A tick is a hundredth of a second.
-    constexpr auto moment = std::chrono::milliseconds(60);
+    constexpr auto sample_time = std::chrono::milliseconds(60);
     if (sched_getaffinity(0, sizeof before_, &before_) != 0 || CPU_COUNT(&before_) < 2) return;
     const std::map<std::size_t, double> busy_before = busy_ticks();
-    std::this_thread::sleep_for(moment);
+    std::this_thread::sleep_for(sample_time);
     double least = std::numeric_limits<double>::infinity();
     std::size_t idlest = CPU_SETSIZE;
     for (const auto& [number, ticks] : busy_ticks()) {
@@ -44,19 +44,19 @@ idlest_processor::idlest_processor() {
     if (idlest == CPU_SETSIZE) return;
     CPU_ZERO(&idlest_);
     CPU_SET(idlest, &idlest_);
-    stays_ = sched_setaffinity(0, sizeof idlest_, &idlest_) == 0;
+    is_pinned_ = sched_setaffinity(0, sizeof idlest_, &idlest_) == 0;
 }
 
 idlest_processor::~idlest_processor() {
-    leave();
+    unpin();
 }
 
-void idlest_processor::stay() const {
-    if (stays_) sched_setaffinity(0, sizeof idlest_, &idlest_);
+void idlest_processor::pin() const {
+    if (is_pinned_) sched_setaffinity(0, sizeof idlest_, &idlest_);
 }
 
-void idlest_processor::leave() const {
-    if (stays_) sched_setaffinity(0, sizeof before_, &before_);
+void idlest_processor::unpin() const {
+    if (is_pinned_) sched_setaffinity(0, sizeof before_, &before_);
 }
 
 }  // namespace aabblab

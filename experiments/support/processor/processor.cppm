@@ -17,18 +17,18 @@ public:
 
     /// Calls `work` without pinning, so that threads that it starts may run on all processors.
     void without(auto&& work) const {
-        leave();
+        unpin();
         work();
-        stay();
+        pin();
     }
 
 private:
-    void stay() const;
-    void leave() const;
+    void pin() const;
+    void unpin() const;
 
     cpu_set_t before_;
     cpu_set_t idlest_;
-    bool stays_ = false;
+    bool is_pinned_ = false;
 };
 
 }  // namespace aabblab

@@ -51,8 +51,8 @@ constexpr std::string_view minus_sign = "\u2212";
             // Division, because powers below 1 are not exact.
             const double at = exponent < 0 ? times / std::pow(10, -exponent) : times * std::pow(10, exponent);
             if (at < from * (1 - 1e-9) || at > to * (1 + 1e-9)) continue;
-            const bool of_these = std::ranges::find(multiples, times) != multiples.end();
-            if (of_these && exponent % decades == 0)
+            const bool is_labelled = std::ranges::find(multiples, times) != multiples.end();
+            if (is_labelled && exponent % decades == 0)
                 ticks.push_back(powers ? power_tick(at, times, exponent, 0)
                                        : tick{at, number_text(at, std::max(0, -exponent))});
             else if (decades == 1 || times == 1)
