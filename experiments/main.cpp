@@ -63,10 +63,8 @@ int run_program(int argc, char** argv) {
     int status = 0;
     try {
         open_standard_streams();
-        CLI::App program(
-            "AABB Lab composes methods of collision detection with axis-aligned bounding boxes, validates them, and "
-            "measures what they cost",
-            "aabblab");
+        CLI::App program("AABB Lab composes, validates and times collision detection with axis-aligned bounding boxes",
+                         "aabblab");
         program.set_version_flag("--version", "aabblab " AABBLAB_VERSION, "Print the version");
         program.set_help_flag("-h,--help", "Print this help");
         program.require_subcommand(0, 1);
@@ -80,8 +78,7 @@ int run_program(int argc, char** argv) {
             "  benchmark                   Time each stage, elementary test and build separately\n"
             "  paper                       Write the report of a reproduction as a PDF\n"
             "aabblab COMMAND --help lists the options of a command.\n"
-            "Exit status: 0 on success; 1 if a check fails, or collide --exit-code finds an intersection; 2 on invalid "
-            "input.");
+            "Exit status: 0 on success; 1 if a check fails or --exit-code finds an intersection; 2 on invalid input.");
         // Costs are loaded before every command except calibrate, which must run even if the file is malformed.
         program.parse_complete_callback([&] {
             if (!program.got_subcommand("calibrate")) use_calibrated_costs();

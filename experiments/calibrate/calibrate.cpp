@@ -125,8 +125,8 @@ struct generated_scene {
 /// The work of a mean frame: first the kinds with a cost, then kinds that no strategy plans by, with a constant 1.
 using work_of_frame = std::function<std::vector<double>(const frame_sample&)>;
 
-trial trial_of_frames(const generated_scene& scene, cost_group group, const aabb::composition& c,
-                      const aabb::cost_model& planned_by, work_of_frame work) {
+trial frames_trial(const generated_scene& scene, cost_group group, const aabb::composition& c,
+                   const aabb::cost_model& planned_by, work_of_frame work) {
     return {scene.name, scene.held_out,
             [group, run = box_run{scene.frames, c, planned_by}, work = std::move(work)](aabb::instrumentation counted) {
                 const frame_sample mean = mean_of(sample_frames(run, counted), warm_up_frames, 1);
@@ -135,7 +135,7 @@ trial trial_of_frames(const generated_scene& scene, cost_group group, const aabb
 }
 
 /// A Verlet list that is rebuilt in every even frame and reused in every odd one.
-trial trial_of_verlet_list(const generated_scene& scene) {
+trial verlet_list_trial(const generated_scene& scene) {
     aabb::composition c;
     c[aabb::strategy_kind::prepare] = {"neighbour_list", {{"every", "2"}}};
     return {scene.name, scene.held_out,
@@ -153,10 +153,10 @@ trial trial_of_verlet_list(const generated_scene& scene) {
 }
 
 void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
-    trials.push_back(trial_of_frames(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
+    trials.push_back(frames_trial(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
         return std::vector<double>{n, mean.pairs, 0, 0, 0};
     }));
-    trials.push_back(trial_of_verlet_list(scene));
+    trials.push_back(verlet_list_trial(scene));
 }
 
 /// @param lists the number of sorted lists: one per cut axis, and one for the sweep
@@ -166,15 +166,14 @@ void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, con
     c[aabb::strategy_kind::sort] = {sort, {}};
     c[aabb::strategy_kind::partition] = partition;
     c[aabb::strategy_kind::sweep] = {"one_axis", {}};
-    trials.push_back(
-        trial_of_frames(scene, cost_group::cut, c, {}, [listed = scene.n * lists](const frame_sample& mean) {
-            return std::vector<double>{listed,
-                                       mean.count(aabb::work::subset_copies),
-                                       mean.count(aabb::work::subsets),
-                                       mean.count(aabb::work::box_tests),
-                                       mean.pairs,
-                                       1};
-        }));
+    trials.push_back(frames_trial(scene, cost_group::cut, c, {}, [listed = scene.n * lists](const frame_sample& mean) {
+        return std::vector<double>{listed,
+                                   mean.count(aabb::work::subset_copies),
+                                   mean.count(aabb::work::subsets),
+                                   mean.count(aabb::work::box_tests),
+                                   mean.pairs,
+                                   1};
+    }));
 }
 
 void add_cut_trials(std::vector<trial>& trials, const generated_scene& scene) {
@@ -194,16 +193,15 @@ void add_column_trial(std::vector<trial>& trials, const generated_scene& scene, 
                       const aabb::cost_model& planned_by) {
     aabb::composition c;
     c[aabb::strategy_kind::partition] = {"columns", {{"axes", axes}}};
-    trials.push_back(
-        trial_of_frames(scene, cost_group::columns, c, planned_by, [n = scene.n](const frame_sample& mean) {
-            // Copies are not counted if there is a single column.
-            return std::vector<double>{std::max(n, mean.count(aabb::work::subset_copies)),
-                                       mean.count(aabb::work::subsets),
-                                       mean.count(aabb::work::box_tests) / double{aabb::simd::width},
-                                       n,
-                                       mean.pairs,
-                                       1};
-        }));
+    trials.push_back(frames_trial(scene, cost_group::columns, c, planned_by, [n = scene.n](const frame_sample& mean) {
+        // Copies are not counted if there is a single column.
+        return std::vector<double>{std::max(n, mean.count(aabb::work::subset_copies)),
+                                   mean.count(aabb::work::subsets),
+                                   mean.count(aabb::work::box_tests) / double{aabb::simd::width},
+                                   n,
+                                   mean.pairs,
+                                   1};
+    }));
 }
 
 /// Adds trials with more and with fewer columns than are optimal, so that the fit can separate their costs.

@@ -18,13 +18,7 @@ struct calibrate_request {
     bool reset = false;
 };
 
-std::filesystem::path file_of(const calibrate_request& request) {
-    const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : calibrated_costs_file();
-    if (file.empty())
-        throw aabb::input_error("neither XDG_CONFIG_HOME nor HOME names a folder; give --out FILE for the costs");
-    return file;
-}
-
+/// The fitted costs beside the shipped ones, with 95 % confidence intervals.
 table table_of(const calibration& fit) {
     table t{{{"cost", false}, {"unit", false}, {"shipped"}, {"here"}, {"95 %"}}, {}};
     for (std::size_t k = 0; k < aabb::cost_infos.size(); ++k) {
@@ -37,6 +31,7 @@ table table_of(const calibration& fit) {
     return t;
 }
 
+/// How far the fitted costs mispredict the times of held-out scenes.
 table checks_of(const calibration& fit) {
     table t{{{"predicted in held-out scenes", false}, {"times"}, {"median factor"}, {"worst"}}, {}};
     for (const group_check& check : fit.checks)
@@ -46,7 +41,9 @@ table checks_of(const calibration& fit) {
 }
 
 void calibrate(const calibrate_request& request) {
-    const std::filesystem::path file = file_of(request);
+    const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : kept_costs_file();
+    if (file.empty())
+        throw aabb::input_error("neither XDG_CONFIG_HOME nor HOME names a folder; give --out FILE for the costs");
     if (request.reset)
         return print(std::filesystem::remove(file) ? "removed " + file.string() + ": costs are as shipped\n"
                                                    : file.string() + " is not there: costs are as shipped\n");

@@ -123,8 +123,7 @@ void reject_contradictions(const collide_request& request) {
         if (request.self != "true" && std::ranges::find(choices, request.self) == choices.end())
             throw aabb::input_error(aabb::unknown_name("value of --self", request.self, choices));
         reject_if(request.b.has_value(),
-                  "--self finds self-intersections of one mesh, so give no second one; --self=apart excludes adjacent "
-                  "triangles");
+                  "--self takes one mesh, so give no second one; --self=apart excludes adjacent triangles");
         reject_if(request.poses[0] || request.poses[1] || request.poses_of_b,
                   "--self finds self-intersections, which no pose changes; omit the poses");
         reject_if(request.first, "--self finds every pair, so --first cannot be combined with it; --count can");
@@ -178,9 +177,8 @@ void add_collide(const command_parser& program) {
     command.option("--pose-a M", &request.poses[0],
                    "Pose of A: 12 numbers, the rows of [R t], separated by commas (default: the identity)");
     command.option("--pose-b M", &request.poses[1], "Pose of B");
-    command.option(
-        "--poses FILE", &request.poses_of_b,
-        "Search with B at each pose of this file, which has one per line, as for --pose-b; trees are built once");
+    command.option("--poses FILE", &request.poses_of_b,
+                   "Search with B at each pose of this file, one per line, as for --pose-b; trees are built once");
     request.method.add_to(command, "build, tree and triangle test");
     command.flag("--self [=apart]", &request.self,
                  "Find self-intersections of A; pairs that share a vertex are counted separately, and --self=apart "
@@ -191,8 +189,7 @@ void add_collide(const command_parser& program) {
         request.repeats =
             parse_whole(text, 1, 1'000'000, "--repeat is the number of searches: a whole number from 1 to 1,000,000");
     };
-    command.option("--repeat N", take_repeats,
-                   "Repeat the search N times, at all poses in turn; --json lists every time");
+    command.option("--repeat N", take_repeats, "Search N times, at all poses in turn; --json lists every time");
     command.option("--out FILE", &request.out,
                    "CSV file for the pairs: rows a,b, with --self a,b,shared_vertices, with --self=apart a,b, with "
                    "--poses pose,a,b");
@@ -200,7 +197,7 @@ void add_collide(const command_parser& program) {
                  "Add the intersection of its triangles to each pair, in world coordinates: kind, corners, error");
     command.flag(
         "--exit-code", &request.exit_code,
-        "Exit with status 1 if anything intersects, as diff does; with --self, if triangles that share no vertex do");
+        "Exit with status 1 if there is an intersection, as diff does; with --self, of triangles that share no vertex");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

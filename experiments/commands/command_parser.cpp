@@ -24,6 +24,7 @@ std::pair<std::string, std::string> split_placeholder(const std::string& names) 
     return {names.substr(0, blank), blank == std::string::npos ? "" : names.substr(blank + 1)};
 }
 
+/// Formats the help like the parser, but wrapped to the width of the output, with descriptions in a second column.
 class wrapped_help final : public CLI::Formatter {
 public:
     std::string make_option(const CLI::Option* option, bool is_positional) const override {
@@ -47,13 +48,6 @@ public:
     }
 };
 
-std::vector<std::string> command_names(const CLI::App& program) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
-        names.push_back(command->get_name());
-    return names;
-}
-
 std::vector<std::string> option_names(const CLI::App& command) {
     std::vector<std::string> names;
     for (const CLI::Option* option : command.get_options())
@@ -61,7 +55,8 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-/// The syntax of a strategy's parameter, if a strategy that the command accepts has one of this name; else empty.
+/// How to set a parameter of this name, "--partition axial_cut:axes=…", for users who write it as an option of its own.
+/// @returns empty if no strategy that the command accepts has such a parameter
 std::string option_of_parameter(const std::string& parameter, const std::vector<std::string>& options) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         const std::string option = "--" + std::string(name_of(kind));
@@ -84,13 +79,14 @@ std::string hint_at_help_of(const CLI::App& command) {
     return "; see " + full_name(command) + " --help";
 }
 
-/// Refers to the help if the message suggests no name.
+/// The message on an unknown name; it refers to the help if no known name is similar enough to be suggested.
 std::string unknown_name(const std::string& what, const std::string& name, const std::vector<std::string>& known,
                          const CLI::App& command) {
     const std::string sentence = aabb::unknown_name(what, name, known);
     return sentence == aabb::unknown_name(what, name, {}) ? sentence + hint_at_help_of(command) : sentence;
 }
 
+/// The message on an unknown option, which may be the name of a strategy or of one of its parameters.
 std::string rejection_of_option(const CLI::App& command, const std::string& argument) {
     std::string name = argument.substr(0, argument.find('='));
     name.erase(0, name.find_first_not_of('-'));
@@ -104,14 +100,17 @@ std::string rejection_of_option(const CLI::App& command, const std::string& argu
     return unknown_name("option", argument.substr(0, argument.find('=')), options, command);
 }
 
+/// The message on an argument that the parser could not assign to any option, argument or command.
 std::string rejection_of_argument(const CLI::App& program, const CLI::App& command, const std::string& argument) {
     if (argument.size() > 1 && argument[0] == '-') return rejection_of_option(command, argument);
     if (&command != &program) return "unexpected argument '" + argument + "'" + hint_at_help_of(command);
-    std::vector<std::string> names = command_names(program);
-    const std::vector<std::string> of_script = {"test", "data", "benchmark", "paper"};
-    if (std::ranges::find(of_script, argument) != of_script.end())
+    const std::vector<std::string> script_commands = {"test", "data", "benchmark", "paper"};
+    if (std::ranges::find(script_commands, argument) != script_commands.end())
         return "'" + argument + "' is a command of the script aabblab at the root of the source tree";
-    names.insert(names.end(), of_script.begin(), of_script.end());
+    std::vector<std::string> names;
+    for (const CLI::App* known : program.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(known->get_name());
+    names.insert(names.end(), script_commands.begin(), script_commands.end());
     return unknown_name("command", argument, names, program);
 }
 
@@ -149,16 +148,6 @@ command_parser command_parser::add_command(const std::string& name, const std::s
 
 command_parser command_parser::command(const std::string& name) const {
     return {*command_->get_subcommand(name), *status_};
-}
-
-parsed_option command_parser::argument(const std::string& name, const option_value& value,
-                                       const std::string& help) const {
-    return option(name, value, help).required();
-}
-
-parsed_option command_parser::optional_argument(const std::string& name, const option_value& value,
-                                                const std::string& help) const {
-    return option(name, value, help);
 }
 
 parsed_option command_parser::option(const std::string& names, const option_value& value,

@@ -63,8 +63,12 @@ public:
     }
 
     /// @param name as in the help: "MESH"
-    parsed_option argument(const std::string& name, const option_value& value, const std::string& help) const;
-    parsed_option optional_argument(const std::string& name, const option_value& value, const std::string& help) const;
+    parsed_option argument(const std::string& name, const option_value& value, const std::string& help) const {
+        return option(name, value, help).required();
+    }
+    parsed_option optional_argument(const std::string& name, const option_value& value, const std::string& help) const {
+        return option(name, value, help);
+    }
     /// @param names with the placeholder of the value in the help: "--n,--objects V"
     parsed_option option(const std::string& names, const option_value& value, const std::string& help) const;
     /// @param value a text if the flag has an optional value, as in "--self [=apart]"; "true" without a value

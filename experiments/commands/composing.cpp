@@ -31,7 +31,7 @@ void method_options::add_to(const command_parser& command, const std::string& re
     for (const aabb::stage stage : stages_)
         for (const aabb::strategy_kind kind : kinds_of(stage))
             command.option(fmt::format("--{} S", name_of(kind)), &values_[kind],
-                           fmt::format("One of {} (default {}), as in NAME:parameter=value", listed_names(kind),
+                           fmt::format("One of {} (default: {}), as in NAME:parameter=value", listed_names(kind),
                                        default_text(kind)));
     command.option("--engine E", &engine_, "Reference engine instead of " + replaced);
     command.footer("aabblab list shows every strategy with its parameters.");
@@ -49,8 +49,7 @@ search_choice method_options::choice(bool geometry) const {
         for (const aabb::strategy_kind kind : kinds_of(stage)) {
             if (!is_set(kind)) continue;
             if (*values_[kind] == "auto")
-                throw aabb::input_error(fmt::format(
-                    "--{} auto: omit the option, since strategies that are not named are selected", name_of(kind)));
+                throw aabb::input_error(fmt::format("--{} auto: omit the option to have one selected", name_of(kind)));
             choice.named[kind] = aabb::parse_strategy(*values_[kind]);
         }
     static_cast<void>(method_of(choice, {}));

@@ -58,6 +58,7 @@ private:
     std::optional<stage_runner> finder_;  // finds the contacts to which the scene reacts
 };
 
+/// Passes a scene on, and records what its picture and the report of its displacement need.
 class observed_scene final : public aabb::box_scene {
 public:
     explicit observed_scene(std::unique_ptr<aabb::box_scene> scene)
@@ -117,15 +118,6 @@ std::string all_parameters(const scene_info& kind, const scene_choice& choice) {
     return parameters_text(whole);
 }
 
-/// The requested outputs by option.
-std::vector<std::pair<std::string, std::string>> outputs_of(const scene_request& request) {
-    std::vector<std::pair<std::string, std::string>> outputs;
-    if (request.out) outputs.emplace_back("--out", *request.out);
-    if (request.motion) outputs.emplace_back("--motion", *request.motion);
-    if (request.picture) outputs.emplace_back("--picture", *request.picture);
-    return outputs;
-}
-
 /// Requires the usual extension, which other programs rely on, unless the file is a pipe or a device.
 void require_extension(const std::string& option, const std::optional<std::string>& file, const std::string& ending,
                        const std::string& what) {
@@ -135,8 +127,12 @@ void require_extension(const std::string& option, const std::optional<std::strin
         throw aabb::input_error(option + " must end in " + ending + ", not '" + *file + "': it writes " + what);
 }
 
+/// Rejects requests without outputs, outputs that would overwrite an input or each other, and wrong extensions.
 void require_outputs(const scene_request& request) {
-    const auto outputs = outputs_of(request);
+    std::vector<std::pair<std::string, std::string>> outputs;  // by option
+    if (request.out) outputs.emplace_back("--out", *request.out);
+    if (request.motion) outputs.emplace_back("--motion", *request.motion);
+    if (request.picture) outputs.emplace_back("--picture", *request.picture);
     const auto input = request.settings.find("file");
     for (const auto& [option, file] : outputs) {
         require_no_mesh(file, request.meshes);

@@ -77,8 +77,7 @@ int validate(const validate_request& request) {
 
 void add_validate(const command_parser& program) {
     const command_parser command = program.add_command(
-        "validate",
-        "Compare the results of every composition of an experiment, or of all compositions, with the ground truth");
+        "validate", "Compare every composition of an experiment, or every one there is, with the ground truth");
     auto& request = command.set_action(validate);
     command.optional_argument("CONFIG", &request.config,
                               "Config of the experiment (.toml); without it, every composition is validated");

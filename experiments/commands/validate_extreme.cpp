@@ -29,11 +29,10 @@ int validate_extreme(const extreme_request& request) {
 }  // namespace
 
 void add_validate_extreme(const command_parser& program) {
-    const command_parser command =
-        program.command("validate")
-            .add_command("extreme",
-                         "Validate every composition and engine where exactness is hardest: extreme scenes, invalid "
-                         "input, other floating-point modes, and hard pairs of triangles");
+    const command_parser command = program.command("validate")
+                                       .add_command("extreme",
+                                                    "Validate exactness where it is hardest: extreme scenes, invalid "
+                                                    "input, rounding modes, hard triangles");
     command.footer([] {
         std::string text = "Scenes:\n";
         for (const aabb::extreme_scene& scene : all_extreme_scenes(aabb::extreme_size::full).scenes)

@@ -23,13 +23,9 @@ std::string text_of(std::string_view stage, const std::string& strategies, const
     return text;
 }
 
-std::string indented(std::string_view before, const std::string& paragraph) {
-    return hanging(before, paragraph) + "\n";
-}
-
 std::string indented_list(std::string_view heading, const std::vector<std::string>& sentences) {
     std::string text = sentences.empty() ? "" : fmt::format("    {}\n", heading);
-    for (const std::string& sentence : sentences) text += indented("      ", sentence);
+    for (const std::string& sentence : sentences) text += hanging("      ", sentence) + "\n";
     return text;
 }
 
@@ -71,8 +67,8 @@ void print_candidate(staged_scene& scene, const candidate& tested, const time_li
                        share_of_part * limits.to_run());
     // A candidate rejects only invalid input.
     if (work.end == ending::rejected) throw aabb::input_error(work.reason);
-    print(indented("  ", text_of(tested.name)));
-    print(work.end == ending::done ? work.reported : indented("    ", "its bytes and plans: " + reason_of(work)));
+    print(hanging("  ", text_of(tested.name)) + "\n");
+    print(work.end == ending::done ? work.reported : hanging("    ", "its bytes and plans: " + reason_of(work)) + "\n");
 }
 
 /// Lists parts of the config that do not apply to the scene.

@@ -216,18 +216,15 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     if (!without_alternative.empty())
         print_paragraph(without_alternative + ": no other strategy can be composed with the rest.");
     if (!is_small)
-        print_paragraph(
-            fmt::format("With more than {}, only prepare and build are replaced: slow strategies of other kinds would "
-                        "take minutes.",
-                        counted(most_objects_of_all_kinds, "object")));
+        print_paragraph(fmt::format("With more than {}, only prepare and build are replaced, to save time.",
+                                    counted(most_objects_of_all_kinds, "object")));
     print_paragraph(ms_a_frame_text);
     print_paragraph(fmt::format(
         "ratio: ms/frame relative to the selected composition in the same round, the median; range: the least and the "
         "greatest ratio; ?: undecided, since the range comes within 3 % of 1; > {:.0f}: measured in one round.",
         hopeless_ratio));
     print_paragraph(build_ms_text);
-    print_paragraph(
-        "bytes: allocated after the last of these frames; counters: as selected, but with all work counted.");
+    print_paragraph("bytes: allocated after these frames; counters: as selected, with all work counted.");
     print("\n");
     print_omissions(variants);
     const bool agree = print_disagreements(variants);

@@ -52,9 +52,8 @@ double overlapping_pairs(std::vector<float> lower, std::vector<float> upper) {
 }
 
 double longest_edge(const aabb::box& b) {
-    double longest = 0;
-    for (int k = 0; k < 3; ++k) longest = std::max(longest, double{b.max[k]} - double{b.min[k]});
-    return longest;
+    const auto edge = [&](int k) { return double{b.max[k]} - double{b.min[k]}; };
+    return std::max({edge(0), edge(1), edge(2)});
 }
 
 std::optional<double> size_ratio_of(std::span<const aabb::box> boxes) {

@@ -220,9 +220,8 @@ std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
     std::optional<std::size_t> trees;
     for (const aabb::part_bytes& part : result.bytes)
         if (part.part == "nodes" || part.part == "indices") trees = trees.value_or(0) + part.bytes;
-    std::size_t triangles = 0;
-    for (const std::uint32_t of_mesh : result.triangles) triangles += of_mesh;
     if (!trees) return std::nullopt;
+    const auto triangles = std::accumulate(result.triangles.begin(), result.triangles.end(), std::size_t{0});
     return static_cast<double>(*trees) / static_cast<double>(triangles);
 }
 

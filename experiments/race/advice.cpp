@@ -32,7 +32,8 @@ std::string sentence_about_auto(const race_result& race) {
                        counted(dropped->last->frames, "frame"), dropped->ratio_to_fastest);
 }
 
-/// The median over the repeats of the difference in `value`; empty if its confidence interval contains 0.
+/// The median over the repeats of the difference in `value`, an observation's time; empty if its confidence interval
+/// contains 0, since then the repeats do not show which candidate is faster.
 template <class Value>
 std::optional<double> significant_difference(const racer& r, const racer& other, Value value) {
     cells differences(1, 1);
@@ -48,7 +49,9 @@ struct break_even {
     bool faster_before;  ///< the other candidate is faster for fewer frames
 };
 
-/// The crossing of two candidates; empty if the repeats do not show one.
+/// Where the total times of two candidates are equal: n frames take t1 + (n - 1) s, with t1 the time up to frame 0 and
+/// s that of each further frame, so n = 1 - (difference of t1) / (difference of s). Empty if the repeats do not show
+/// it.
 std::optional<break_even> break_even_of(const racer& other, const racer& winner) {
     if (!other.has_range()) return std::nullopt;
     const auto begin = significant_difference(other, winner, [](const observation& t) { return t.over(1); });
@@ -73,32 +76,26 @@ std::string frames_text(const race_result& race) {
                        counted(race.frames, "frame"));
 }
 
-/// The numbers of frames nearest to the current one, above and below, for which another candidate is faster.
+/// For fewer and for more frames than the final has: the nearest number from which on another candidate is faster.
 std::vector<std::string> faster_at_other_lengths(const race_result& race) {
-    if (race.final_frames < 2 || race.finalists.size() < 2 || !race.finalists.front().has_range()) return {};
-    const auto frames = static_cast<double>(race.final_frames);
-    double below = 1.5;  // fewer than 2 frames would be a single one
-    double above = 1e6;
-    const racer* with_fewer = nullptr;
-    const racer* with_more = nullptr;
-    for (const racer& other : race.finalists) {
-        if (&other == &race.finalists.front()) continue;
-        const std::optional<break_even> at = break_even_of(other, race.finalists.front());
-        if (!at) continue;
-        if (at->faster_before && at->frames < frames && at->frames > below) {
-            below = at->frames;
-            with_fewer = &other;
-        }
-        if (!at->faster_before && at->frames > frames && at->frames < above) {
-            above = at->frames;
-            with_more = &other;
-        }
-    }
+    const racer& winner = race.finalists.front();
+    if (race.final_frames < 2 || race.finalists.size() < 2 || !winner.has_range()) return {};
     std::vector<std::string> parts;
-    if (with_fewer)
-        parts.push_back(fmt::format("with fewer than about {:.0f} frames it would be {}", below, with_fewer->name));
-    if (with_more)
-        parts.push_back(fmt::format("with more than about {:.0f} frames it would be {}", above, with_more->name));
+    for (const bool is_fewer : {true, false}) {
+        const auto frames = static_cast<double>(race.final_frames);
+        double low = is_fewer ? 1.5 : frames;  // fewer than 2 frames would be a single one
+        double high = is_fewer ? frames : 1e6;
+        const racer* faster = nullptr;
+        for (const racer& other : std::span(race.finalists).subspan(1)) {
+            const std::optional<break_even> point = break_even_of(other, winner);
+            if (!point || point->faster_before != is_fewer || point->frames <= low || point->frames >= high) continue;
+            (is_fewer ? low : high) = point->frames;
+            faster = &other;
+        }
+        if (faster)
+            parts.push_back(fmt::format("with {} than about {:.0f} frames it would be {}", is_fewer ? "fewer" : "more",
+                                        is_fewer ? low : high, faster->name));
+    }
     if (parts.empty()) parts.emplace_back("no other candidate is shown to be faster with fewer or more frames");
     return parts;
 }

@@ -49,6 +49,8 @@ observation median_of(std::vector<observation> times) {
     return *middle;
 }
 
+/// A race in three steps. In the first round all candidates run a few frames. Rounds of twice as many frames follow,
+/// after each of which slow candidates are dropped. In the final, the remaining ones run in interleaved repeats.
 class race {
 public:
     race(staged_scene& scene, std::vector<racer> candidates, const time_limits& limits)
@@ -110,11 +112,11 @@ private:
     /// @returns whether any candidate finished
     bool run_all(std::size_t& frames, double margin, bool is_first_round) {
         progress shown("candidates over " + counted(frames, "frame"), running_.size());
-        const double kept = is_first_round ? (1 - share_of_first_round) * budget_ : 0;
+        const double reserved = is_first_round ? (1 - share_of_first_round) * budget_ : 0;
         double least = std::numeric_limits<double>::infinity();
         std::size_t done = 0;
         for (racer& r : running_) {
-            bool is_done = run_candidate(r, frames, time_limit(least, margin), seconds_left() - kept);
+            bool is_done = run_candidate(r, frames, time_limit(least, margin), seconds_left() - reserved);
             if (!is_done && is_first_round && !std::isfinite(least) && r.broken_off->end == ending::stopped &&
                 r.frames > 0) {
                 frames = r.frames;

@@ -12,6 +12,7 @@ export namespace aabblab {
 /// Fewer repeats give no confidence intervals of ratios.
 inline constexpr std::size_t fewest_repeats = 5;
 
+/// A candidate in the race, with its runs so far.
 struct racer {
     candidate tested;
     std::string name;

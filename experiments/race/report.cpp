@@ -62,11 +62,6 @@ std::vector<std::string> legend() {
             ms_a_frame_text, build_ms_text};
 }
 
-std::string provenance() {
-    const kept_costs here = costs_here(aabb::machine_costs());
-    return "aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions;
-}
-
 std::string page_of(const std::string& scene, const race_result& race, const std::string& measured) {
     page report(scene);
     report.title(scene);
@@ -79,7 +74,8 @@ std::string page_of(const std::string& scene, const race_result& race, const std
         "Dropped: a candidate was stopped after this many frames, since it took this many times as long as the "
         "fastest, both in total and per frame after the first; or its run did not finish. Strategies have their "
         "default parameters.");
-    report.paragraph(provenance());
+    const kept_costs here = costs_here(aabb::machine_costs());
+    report.paragraph("aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions);
     return report.html();
 }
 

@@ -61,7 +61,7 @@ TEST_CASE("pairs and scene refuse what they cannot do and leave no file behind")
             {{"--engine", "brute_farce"}, "did you mean 'brute_force'?"},
             {{"--engine", "brute_force", "--sweep", "one_axis"},
              "--engine replaces --prepare, --sort, --partition and --sweep, so give it alone\n"},
-            {{"--sort", "auto"}, "--sort auto: omit the option, since strategies that are not named are selected"},
+            {{"--sort", "auto"}, "--sort auto: omit the option to have one selected"},
             {{"--split-large", "2"}, "'split_large' is a strategy; write --prepare split_large"},
             {{"--prepare", "split_large:size=0"}, "split_large: size must be a number above 0, not '0'"},
             {{"--prepare", "split_mesh"}, "split_mesh divides meshes, and there are only boxes here"},
@@ -89,7 +89,7 @@ TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
         folder, {"collide", a},
         {
             {{}, "collide: expected B, the other mesh, or --self"},
-            {{a, "--self"}, "--self finds self-intersections of one mesh, so give no second one"},
+            {{a, "--self"}, "--self takes one mesh, so give no second one"},
             {{"--self=appart"}, "did you mean 'apart'?"},
             {{"--self", "--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0"}, "which no pose changes"},
             {{"--self", "--poses", "poses.txt"}, "which no pose changes"},

@@ -47,16 +47,4 @@ idlest_processor::idlest_processor() {
     is_pinned_ = sched_setaffinity(0, sizeof idlest_, &idlest_) == 0;
 }
 
-idlest_processor::~idlest_processor() {
-    unpin();
-}
-
-void idlest_processor::pin() const {
-    if (is_pinned_) sched_setaffinity(0, sizeof idlest_, &idlest_);
-}
-
-void idlest_processor::unpin() const {
-    if (is_pinned_) sched_setaffinity(0, sizeof before_, &before_);
-}
-
 }  // namespace aabblab

@@ -13,7 +13,7 @@ public:
     idlest_processor();
     idlest_processor(const idlest_processor&) = delete;
     idlest_processor& operator=(const idlest_processor&) = delete;
-    ~idlest_processor();
+    ~idlest_processor() { unpin(); }
 
     /// Calls `work` without pinning, so that threads that it starts may run on all processors.
     void without(auto&& work) const {
@@ -23,8 +23,12 @@ public:
     }
 
 private:
-    void pin() const;
-    void unpin() const;
+    void pin() const {
+        if (is_pinned_) sched_setaffinity(0, sizeof idlest_, &idlest_);
+    }
+    void unpin() const {
+        if (is_pinned_) sched_setaffinity(0, sizeof before_, &before_);
+    }
 
     cpu_set_t before_;
     cpu_set_t idlest_;

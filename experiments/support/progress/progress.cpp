@@ -33,10 +33,6 @@ std::string progress_text(std::string_view what, std::size_t done, std::size_t t
 progress::progress(std::string what, std::size_t total)
     : what_(std::move(what)), total_(total), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
-progress::~progress() {
-    hide();
-}
-
 void progress::at(std::size_t done) {
     if (!on_terminal_) return;
     const clock::time_point now = clock::now();

@@ -19,7 +19,7 @@ public:
     progress(std::string what, std::size_t total);
     progress(const progress&) = delete;
     progress& operator=(const progress&) = delete;
-    ~progress();
+    ~progress() { hide(); }
 
     /// Reports that `done` steps are done. Cheap enough for steps of a millisecond.
     void at(std::size_t done);

@@ -38,10 +38,6 @@ constexpr std::string_view minus_sign = "\u2212";
     return ticks;
 }
 
-[[nodiscard]] bool labelled(const tick& t) {
-    return !t.label.empty();
-}
-
 /// Ticks at all multiples of powers of ten; only the given multiples of every `decades`-th power have labels.
 [[nodiscard]] std::vector<tick> decade_ticks(double from, double to, std::span<const int> multiples, int decades) {
     const bool powers = from < 0.9e-4 || to > 1.1e6;
@@ -61,14 +57,16 @@ constexpr std::string_view minus_sign = "\u2212";
     return ticks;
 }
 
+/// Labels powers of ten; in short ranges also 2 and 5 times these, or else round values, to get at least three labels.
 [[nodiscard]] std::vector<tick> log_ticks(double from, double to) {
-    constexpr std::array<int, 1> ones{1};
-    constexpr std::array<int, 3> few{1, 2, 5};
-    constexpr std::ptrdiff_t enough = 3;
+    constexpr std::array<int, 3> multiples{1, 2, 5};
+    const auto has_three_labels = [](const std::vector<tick>& ticks) {
+        return std::ranges::count_if(ticks, [](const tick& t) { return !t.label.empty(); }) >= 3;
+    };
     const int decades = 1 + static_cast<int>(std::log10(to / from) / 7);
-    if (auto ticks = decade_ticks(from, to, ones, decades); std::ranges::count_if(ticks, labelled) >= enough)
-        return ticks;
-    if (auto ticks = decade_ticks(from, to, few, 1); std::ranges::count_if(ticks, labelled) >= enough) return ticks;
+    const std::span powers = std::span(multiples).first(1);
+    if (auto ticks = decade_ticks(from, to, powers, decades); has_three_labels(ticks)) return ticks;
+    if (auto ticks = decade_ticks(from, to, multiples, 1); has_three_labels(ticks)) return ticks;
     return linear_ticks(from, to, round_step(to - from, 6));
 }
 
