@@ -73,6 +73,7 @@ struct box_run {
     aabb::cost_model planned_by;
 };
 
+/// Measures every frame of a run: its work if the run counts it, otherwise its time, which counting would lengthen.
 std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentation counted) {
     const costs_in_scope costs(run.planned_by);
     scene_frames scene(std::make_unique<aabb::known_boxes>(*run.frames));
@@ -125,6 +126,7 @@ struct generated_scene {
 /// The work of a mean frame: first the kinds with a cost, then kinds that no strategy plans by, with a constant 1.
 using work_of_frame = std::function<std::vector<double>(const frame_sample&)>;
 
+/// A trial whose only part is the mean frame after the warm-up.
 trial frames_trial(const generated_scene& scene, cost_group group, const aabb::composition& c,
                    const aabb::cost_model& planned_by, work_of_frame work) {
     return {scene.name, scene.held_out,
@@ -253,8 +255,10 @@ void add_mesh_trials(std::vector<trial>& trials, const std::string& standing, co
     add_mesh_trial(trials, choice, held_out, "sah", cost_group::sah);
 }
 
+using sizes = std::vector<std::size_t>;
+
+/// Trials of the lists and of the broad phase; the held-out ones use other kinds of scenes than the fitted ones.
 std::vector<trial> box_trials(calibration_size size) {
-    using sizes = std::vector<std::size_t>;
     const bool quick = size == calibration_size::quick;
     std::vector<trial> trials;
     const auto add_lists = [&](const std::vector<const char*>& kinds, const sizes& objects,
@@ -282,8 +286,8 @@ std::vector<trial> box_trials(calibration_size size) {
     return trials;
 }
 
+/// Trials of builds and queries of trees; the held-out ones use another pair of shapes.
 std::vector<trial> mesh_trials(calibration_size size) {
-    using sizes = std::vector<std::size_t>;
     const bool quick = size == calibration_size::quick;
     std::vector<trial> trials;
     for (const std::size_t triangles : quick ? sizes{3000, 20'000} : sizes{3000, 20'000, 80'000}) {

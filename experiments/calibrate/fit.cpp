@@ -54,13 +54,12 @@ double median_of(std::vector<double> values) {
 
 /// The Huber weight of each observation: 1 for usual residuals, smaller for outliers.
 std::vector<double> weights_of(std::span<const timed_work> observations, const Eigen::VectorXd& costs) {
-    constexpr double threshold_in_deviations = 1.345;  // standard deviations: 95 % efficient for normal errors
+    constexpr double most_deviations = 1.345;  // standard deviations: 95 % efficient for normal errors
     constexpr double deviations_per_median = 1.4826;
     constexpr double least_scale = 1e-9;
     std::vector<double> residuals;
     for (const timed_work& o : observations) residuals.push_back(std::abs(work_of(o).dot(costs) / median_of(o.ns) - 1));
-    const double threshold =
-        threshold_in_deviations * std::max(least_scale, deviations_per_median * median_of(residuals));
+    const double threshold = most_deviations * std::max(least_scale, deviations_per_median * median_of(residuals));
     std::vector<double> weights;
     for (const double r : residuals) weights.push_back(r <= threshold ? 1 : threshold / r);
     return weights;
@@ -69,6 +68,7 @@ std::vector<double> weights_of(std::span<const timed_work> observations, const E
 /// Normal equations that can be bootstrapped. Whole scenes are resampled, in the role of processes.
 class resampled_equations {
 public:
+    /// Sums up the equations of each scene and repeat, which the bootstrap draws.
     resampled_equations(std::span<const timed_work> observations, std::span<const double> weights)
         : count_(static_cast<Eigen::Index>(observations.front().work.size())) {
         std::map<std::string, std::vector<std::size_t>> scenes;

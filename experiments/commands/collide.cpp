@@ -112,6 +112,7 @@ void print_text(const collide_request& request, const mesh_result& result) {
     print("\nbytes:" + bytes + "\n");
 }
 
+/// Rejects options that exclude each other or would have no effect, before any file is read.
 void reject_contradictions(const collide_request& request) {
     const auto reject_if = [](bool condition, const char* sentence) {
         if (condition) throw aabb::input_error(sentence);
@@ -136,6 +137,7 @@ void reject_contradictions(const collide_request& request) {
               "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair");
 }
 
+/// Opens the CSV file of --out with the columns of this request; it must not overwrite an input.
 std::optional<number_table> open_rows(const collide_request& request) {
     if (!request.out) return std::nullopt;
     require_no_mesh(*request.out, request.meshes());

@@ -1,6 +1,5 @@
-#include "command_parser.hpp"
-
 #include "composing.hpp"
+#include "command_parser.hpp"
 
 import aabb.selection;
 

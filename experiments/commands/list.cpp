@@ -91,6 +91,7 @@ std::vector<list_item> items_of(const auto& infos) {
     return items;
 }
 
+/// All parts of the list in the order of its text; what this build lacks is listed as left out.
 std::vector<section> sections() {
     std::vector<section> list;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)

@@ -12,8 +12,7 @@ void add_recommend(const command_parser& program) {
     command.argument("WHAT", &request.what, scene_arguments_help);
     command.option(
         "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },
-        "Time for all runs (default 60). The command ends within twice that, or 2 s after the scene is read if that is "
-        "later; slower runs are stopped");
+        "Time for all runs (default 60); the command takes at most twice as long, or 2 s after the scene is read");
     command.option("--report FILE.html", &request.report, "Also write the results as a page");
 }
 

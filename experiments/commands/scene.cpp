@@ -98,6 +98,7 @@ void require_poses_suffice(const scene_info& kind, const scene_choice& choice, c
         throw aabb::input_error("--motion writes poses of unscaled meshes, so give --normalise no with it");
 }
 
+/// Creates a scene of boxes, or the world boxes of a scene of meshes, whose poses are also written to `motion`.
 std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_choice& choice, motion_file* motion) {
     if (!kind.has_meshes && motion)
         throw aabb::input_error(kind.name + " is a scene of boxes, which have no poses to write with --motion");

@@ -14,6 +14,7 @@ namespace aabblab {
 
 namespace {
 
+/// Every composition and engine, in small scenes of every kind that needs no file.
 experiment built_in_experiment() {
     experiment e;
     for (const scene_info& info : scene_kinds())

@@ -42,9 +42,10 @@ std::string text_of(const candidate_name& name, aabb::stage stage) {
     return text.empty() ? name.engine : text;
 }
 
-/// Two frames, so that buffers have grown and data that is kept between frames exists.
+/// Enough that buffers have grown and data that is kept between frames exists.
 constexpr std::size_t frames_before_bytes = 2;
 
+/// Runs two frames, and describes each stage by its strategies and bytes, with its plans and omissions.
 std::string explanation_of(scene_frames& scene, const candidate& tested) {
     stage_runner runner(tested, scene, aabb::instrumentation::none);
     run_frames(scene, runner, [](const searched_frame&) {}, frames_before_bytes);
@@ -61,6 +62,7 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
     return text + indented_list("left out", left_out);
 }
 
+/// Prints the explanation of a candidate, made in a child process, or why that did not finish.
 void print_candidate(staged_scene& scene, const candidate& tested, const time_limits& limits) {
     const child_result work =
         scene.in_child([&](scene_frames& frames, const output_sender& send) { send(explanation_of(frames, tested)); },
@@ -121,6 +123,8 @@ bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named,
     return print_savings(scene, c, limits);
 }
 
+/// Explains first the compositions that `auto` selects, with their savings, then the named ones.
+/// @returns whether the results of all runs agree
 bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& limits) {
     print_measures(scene, limits);
     if (const std::size_t frames = scene.scene().frames(); frames > frames_before_bytes)

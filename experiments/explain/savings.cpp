@@ -104,6 +104,7 @@ void print_omissions(std::span<const variant> variants) {
     print(wrapped("-: no variant that ran has it. Below 0: the variant takes less. ?: as above.") + "\n");
 }
 
+/// The same candidate with all work counted, which shows what the counters would cost.
 candidate with_counters(candidate tested) {
     const auto counting = [](const auto& make) {
         return [make](aabb::instrumentation) { return make(aabb::instrumentation::counters); };
@@ -175,15 +176,14 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     const bool is_small = scene.objects() <= most_objects_of_all_kinds;
     std::vector<variant> variants{{"", "as selected", candidate_of(selected, meshes)}};
     std::vector<variant> by_settings;
-    std::string without_alternative;  // kinds without any other strategy that fits the composition
+    std::string unreplaced;  // kinds without any other strategy that fits the composition
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
         if (!is_small && !info_of(kind).apart) continue;
         const std::vector<variant> of_kind = variants_by_strategy(selected, kind, meshes);
         variants.insert(variants.end(), of_kind.begin(), of_kind.end());
         std::ranges::move(variants_by_settings(selected, kind, meshes), std::back_inserter(by_settings));
-        if (of_kind.empty())
-            without_alternative += (without_alternative.empty() ? "" : ", ") + std::string(name_of(kind));
+        if (of_kind.empty()) unreplaced += (unreplaced.empty() ? "" : ", ") + std::string(name_of(kind));
     }
     variants.push_back({"", "counters of all work", with_counters(variants.front().tested)});
     const std::size_t in_table = variants.size();
@@ -213,8 +213,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
         counted(outcome.rounds, "round"), counted(outcome.frames, "frame")));
     print(to_text(t, output_width()) + "\n");
     print_unfinished(variants);
-    if (!without_alternative.empty())
-        print_paragraph(without_alternative + ": no other strategy can be composed with the rest.");
+    if (!unreplaced.empty()) print_paragraph(unreplaced + ": no other strategy can be composed with the rest.");
     if (!is_small)
         print_paragraph(fmt::format("With more than {}, only prepare and build are replaced, to save time.",
                                     counted(most_objects_of_all_kinds, "object")));

@@ -147,7 +147,7 @@ scene_measures measure_scene(scene_frames& scene) {
     recorded_frame before;
     std::size_t axis = 0;
     double changes = 0;
-    std::size_t frame_pairs = 0;
+    std::size_t steps = 0;
     run_frames(
         scene, runner,
         [&](const searched_frame& frame) {
@@ -167,15 +167,14 @@ scene_measures measure_scene(scene_frames& scene) {
             } else {
                 add_motion(m, before, current, axis);
                 changes += static_cast<double>(scene.arrivals().size() + scene.departures().size());
-                ++frame_pairs;
+                ++steps;
             }
             before = std::move(current);
         },
         frames_measured);
-    if (frame_pairs > 0) {
-        for (const auto member : motion_members) *m.motion.*member /= static_cast<double>(frame_pairs);
-        m.turnover =
-            changes / static_cast<double>(frame_pairs) / static_cast<double>(std::max<std::size_t>(m.objects, 1));
+    if (steps > 0) {
+        for (const auto member : motion_members) *m.motion.*member /= static_cast<double>(steps);
+        m.turnover = changes / static_cast<double>(steps) / static_cast<double>(std::max<std::size_t>(m.objects, 1));
     }
     return m;
 }
@@ -206,8 +205,7 @@ table measures_table(const scene_measures& m) {
                                 m.motion->relative_displacement / unit, unit_name));
     add("inversions", fmt::format("{:.3g} per object and frame", m.motion->inversions));
     add("at rest", fmt::format("{:.3g} % of the objects", 100 * m.motion->at_rest));
-    if (m.turnover > 0)
-        add("turnover", fmt::format("{:.3g} % of the objects appear or disappear per frame", 100 * m.turnover));
+    if (m.turnover > 0) add("turnover", fmt::format("{:.3g} % of the objects come or go per frame", 100 * m.turnover));
     return measured;
 }
 

@@ -20,6 +20,7 @@ std::size_t count_object_pairs(std::span<const aabb::contact> sorted) {
     return pairs;
 }
 
+/// Adds a row per contact. The geometry is set up once for consecutive contacts of the same two objects.
 void add_contacts(number_table& rows, const searched_frame& frame, const scene_frames& scene,
                   std::optional<hit_geometry>& geometry) {
     const auto mesh_of = [&](std::uint32_t object) -> const aabb::mesh& {
@@ -30,7 +31,7 @@ void add_contacts(number_table& rows, const searched_frame& frame, const scene_f
         std::string cells;
         if (geometry) {
             if (before == nullptr || !are_of_same_objects(c, *before))
-                geometry->take(mesh_of(c.a), scene.poses()[c.a], mesh_of(c.b), scene.poses()[c.b]);
+                geometry->set_meshes(mesh_of(c.a), scene.poses()[c.a], mesh_of(c.b), scene.poses()[c.b]);
             cells = to_cells((*geometry)({c.triangle_a, c.triangle_b}));
             before = &c;
         }
@@ -54,9 +55,8 @@ std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choi
                     choice.name, fmt::join(names, " or ")));
 }
 
-hit_geometry::hit_geometry(const aabb::strategy_choice& triangle) : test_(constructing_test(triangle, true)) {}
-
-void hit_geometry::take(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b) {
+void hit_geometry::set_meshes(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b,
+                              const aabb::pose& pose_b) {
     a_ = &a;
     b_ = &b;
     pose_a_ = pose_a;

@@ -166,20 +166,20 @@ public:
         : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
 
     /// @param stored whether the pairs include those that share a vertex
-    void take(std::uint32_t pose, query_result pose_result, bool stores_adjacent) {
+    void take(std::uint32_t pose, query_result hits, bool stores_adjacent) {
         pose_ = pose;
-        sort_rows(pose_result.pairs);
-        require_each_once(pose_result.pairs, method_.name);
+        sort_rows(hits.pairs);
+        require_each_once(hits.pairs, method_.name);
         const std::vector<aabb::mesh>& meshes = scene_.meshes()->meshes;
         if (method_.geometry)
-            method_.geometry->take(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
+            method_.geometry->set_meshes(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
         if (query_.ask == question::first) result_.first.emplace_back();
-        if (!query_.neighbours || stores_adjacent) return take_sorted(pose_result.pairs);
+        if (!query_.neighbours || stores_adjacent) return take_sorted(hits.pairs);
         const std::uint64_t neighbours = merge_adjacent_pairs(
-            meshes.front(), pose_result.pairs, [&](std::span<const aabb::index_pair> pairs) { take_sorted(pairs); });
-        if (neighbours != pose_result.neighbours)
+            meshes.front(), hits.pairs, [&](std::span<const aabb::index_pair> pairs) { take_sorted(pairs); });
+        if (neighbours != hits.neighbours)
             throw defect(fmt::format("{} finds {} pairs of triangles that share a vertex, but there are {}",
-                                     method_.name, pose_result.neighbours, neighbours));
+                                     method_.name, hits.neighbours, neighbours));
     }
     [[nodiscard]] std::string digest() const { return digest_.text(); }
 
@@ -244,26 +244,26 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     const bool stores_adjacent = query.neighbours && !result.method.exact && query.ask != question::count;
     pair_record record(query, scene, result, rows);
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
-        query_result pose_result;
+        query_result hits;
         try {
             searcher->update();
             searcher->search();
             const auto ask = [&] {
-                pose_result = result_of(*searcher, query, scene.meshes()->meshes.front(), stores_adjacent);
+                hits = result_of(*searcher, query, scene.meshes()->meshes.front(), stores_adjacent);
             };
             result.query_ms.push_back(milliseconds_of(ask));
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(fmt::format("{}{}: {}", of_b.place_of(frame % poses), query.between, error.what()));
         }
         if (frame >= poses) continue;
-        if (query.self) result.neighbours = pose_result.neighbours;
+        if (query.self) result.neighbours = hits.neighbours;
         if (!query.self && query.ask != question::count) {
             for (const aabb::contact& c : searcher->sorted_contacts())
-                pose_result.pairs.push_back({c.triangle_a, c.triangle_b});
-            pose_result.count = pose_result.pairs.size();
+                hits.pairs.push_back({c.triangle_a, c.triangle_b});
+            hits.count = hits.pairs.size();
         }
-        result.counts.push_back(pose_result.count);
-        if (query.ask != question::count) record.take(frame, std::move(pose_result), stores_adjacent);
+        result.counts.push_back(hits.count);
+        if (query.ask != question::count) record.take(frame, std::move(hits), stores_adjacent);
     }
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);

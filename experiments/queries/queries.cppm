@@ -24,10 +24,10 @@ export namespace aabblab {
 class hit_geometry {
 public:
     /// @throws aabb::input_error as `constructing_test`.
-    explicit hit_geometry(const aabb::strategy_choice& triangle);
+    explicit hit_geometry(const aabb::strategy_choice& triangle) : test_(constructing_test(triangle, true)) {}
 
     /// Sets the meshes of the following hits, which must outlive them.
-    void take(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b);
+    void set_meshes(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b);
     [[nodiscard]] aabb::triangle_intersection operator()(aabb::index_pair triangles) const;
 
 private:

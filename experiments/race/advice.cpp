@@ -29,7 +29,7 @@ std::string sentence_about_auto(const race_result& race) {
     if (dropped == race.dropped.end()) return "";
     if (dropped->broken_off) return fmt::format("{}: {}.", dropped->name, text_of(*dropped->broken_off));
     return fmt::format("{} was dropped after {}: it took {:.2f} times as long as the fastest.", dropped->name,
-                       counted(dropped->last->frames, "frame"), dropped->ratio_to_fastest);
+                       counted(dropped->last->frames, "frame"), dropped->slowdown);
 }
 
 /// The median over the repeats of the difference in `value`, an observation's time; empty if its confidence interval

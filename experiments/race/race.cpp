@@ -174,22 +174,20 @@ private:
         drop_slow(margin);
     }
 
-    [[nodiscard]] double extrapolated_ms(const racer& r) const {
-        return r.last->over(static_cast<double>(result_.frames));
-    }
+    [[nodiscard]] double total_ms(const racer& r) const { return r.last->over(static_cast<double>(result_.frames)); }
 
     void update_ratios() {
         double least = std::numeric_limits<double>::infinity();
         for (const racer& r : running_)
-            if (r.last) least = std::min(least, extrapolated_ms(r));
-        for (racer& r : running_) r.ratio_to_fastest = r.last ? extrapolated_ms(r) / least : 0;
+            if (r.last) least = std::min(least, total_ms(r));
+        for (racer& r : running_) r.slowdown = r.last ? total_ms(r) / least : 0;
     }
 
     /// Repeats the runs of candidates that are slightly behind, since the first run may have been disturbed.
     void rerun_close_candidates(std::size_t frames, double margin) {
         constexpr double far_behind = 2;
         for (racer& r : running_) {
-            if (r.broken_off || r.ratio_to_fastest <= margin || r.ratio_to_fastest > far_behind * margin ||
+            if (r.broken_off || r.slowdown <= margin || r.slowdown > far_behind * margin ||
                 seconds_left() < budget_ / 2)
                 continue;
             const attempt second = scene_.run(r.tested, frames, time_limit(r.seconds, margin), seconds_left());
@@ -204,11 +202,11 @@ private:
         for (const racer& r : running_)
             if (r.last) least_steady = std::min(least_steady, r.last->steady_ms());
         std::ranges::stable_sort(running_, [](const racer& a, const racer& b) {
-            return a.last.has_value() && (!b.last || a.ratio_to_fastest < b.ratio_to_fastest);
+            return a.last.has_value() && (!b.last || a.slowdown < b.slowdown);
         });
         keep_only([&](const racer& r) {
-            return !r.broken_off && (r.ratio_to_fastest <= margin ||
-                                     (r.last->frames > 1 && r.last->steady_ms() <= margin * least_steady));
+            return !r.broken_off &&
+                   (r.slowdown <= margin || (r.last->frames > 1 && r.last->steady_ms() <= margin * least_steady));
         });
     }
 

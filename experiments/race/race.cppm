@@ -21,7 +21,7 @@ struct racer {
     std::optional<attempt> broken_off;  ///< the unfinished run for which it was dropped
     double seconds = 0;                 ///< total time of the last round that it finished
     std::size_t frames = 0;             ///< the most frames of the scene that it ran in any round
-    double ratio_to_fastest = 0;        ///< its time in the last round over that of the fastest
+    double slowdown = 0;                ///< its time in the last round over that of the fastest
     std::optional<estimate> log_ratio;  ///< of a finalist: the median over repeats, relative to the winner
 
     [[nodiscard]] bool has_range() const { return times.size() >= fewest_repeats; }

@@ -37,7 +37,7 @@ table table_of(const race_result& race) {
 
 /// How far behind a dropped candidate was, or how its run ended.
 std::string reason_for_drop(const racer& r) {
-    return r.broken_off ? text_of(*r.broken_off) : fmt::format("{:.3g}", r.ratio_to_fastest);
+    return r.broken_off ? text_of(*r.broken_off) : fmt::format("{:.3g}", r.slowdown);
 }
 
 table dropped_table_of(const race_result& race) {

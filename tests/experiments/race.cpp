@@ -441,7 +441,7 @@ TEST_CASE("How auto did in a race is told as far as the repeats tell") {
     aabblab::race_result without = ended({winner, second});
     automatic.last = automatic.times.front();
     automatic.last->frames = 8;
-    automatic.ratio_to_fastest = 1.5;
+    automatic.slowdown = 1.5;
     without.dropped.push_back(automatic);
     CHECK(reported(without, "auto (= x) was dropped after 8 frames: it took 1.50 times as long as the fastest."));
     without.dropped.back().broken_off = aabblab::attempt{aabblab::ending::stopped, {}, "", 2.1};

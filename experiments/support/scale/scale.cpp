@@ -24,6 +24,7 @@ constexpr std::string_view minus_sign = "\u2212";
     return static_cast<int>(std::floor(std::log10(value) + 1e-9));
 }
 
+/// Ticks at the multiples of a step; very large and very small ones are labelled with one common power of ten.
 [[nodiscard]] std::vector<tick> linear_ticks(double from, double to, double step) {
     const std::vector<double> values = round_values(from, to, step);
     double largest = 0;
