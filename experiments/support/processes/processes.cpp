@@ -181,8 +181,8 @@ bool ends_before(pid_t child, clock::time_point end) {
 
 }  // namespace
 
-child_result run_child(const std::string& program, const std::vector<std::string>& arguments,
-                       const surroundings& where) {
+program_result run_child(const std::string& program, const std::vector<std::string>& arguments,
+                         const surroundings& where) {
     std::vector<std::string> texts{program};
     texts.insert(texts.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
@@ -203,7 +203,7 @@ child_result run_child(const std::string& program, const std::vector<std::string
     }
     output.close_end(1);
     rejection.close_end(1);
-    child_result result{};
+    program_result result{};
     // If the program starts, exec closes the other end, and nothing is read.
     if (const std::string why = read_all(rejection.ends[0]); why.size() == sizeof result.rejected)
         std::memcpy(&result.rejected, why.data(), why.size());
@@ -221,7 +221,7 @@ child_result run_child(const std::string& program, const std::vector<std::string
 ended_process run_to_end(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                          const std::filesystem::path& log) {
     flush_output();
-    const child_result ended = run_child(program.string(), arguments, {.folder = {}, .input = {}, .errors = log});
+    const program_result ended = run_child(program.string(), arguments, {.folder = {}, .input = {}, .errors = log});
     if (ended.rejected != 0)
         throw aabb::input_error(program.string() + " cannot be started: " + std::strerror(ended.rejected));
     const int status = ended.status;

@@ -14,7 +14,7 @@ struct surroundings {
     std::chrono::seconds timeout{0};  ///< time until it is killed; 0 for none
 };
 
-struct child_result {
+struct program_result {
     int rejected;    ///< errno if it could not be started, otherwise 0
     int status;      ///< of waitpid
     bool timed_out;  ///< it was killed; its descendants survive unless it was kept
@@ -23,8 +23,8 @@ struct child_result {
 
 /// Runs a program to its end. Neither it nor, if kept, its descendants outlive the calling thread, however that ends.
 /// @param program a path, or a name without slashes to be looked up in PATH
-[[nodiscard]] child_result run_child(const std::string& program, const std::vector<std::string>& arguments,
-                                     const surroundings& where);
+[[nodiscard]] program_result run_child(const std::string& program, const std::vector<std::string>& arguments,
+                                       const surroundings& where);
 
 /// The result of a program that exited.
 struct ended_process {
