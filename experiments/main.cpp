@@ -19,6 +19,7 @@ namespace {
 constexpr int check_failed = 1;
 constexpr int bad_input = 2;
 
+/// Parses the command line, which also runs the command; the parser reports --version and --help by exceptions.
 void parse_and_run(CLI::App& program, int argc, char** argv) {
     try {
         program.parse(argc, argv);
@@ -57,6 +58,8 @@ int report_error(int status, const std::string& sentence) {
     return status;
 }
 
+/// Runs the program, and reports each exception in one sentence.
+/// @returns the exit status
 int run_program(int argc, char** argv) {
     std::signal(SIGCHLD, SIG_DFL);  // if inherited as ignored, waitpid could not report a status
     std::signal(SIGPIPE, SIG_IGN);  // print() handles a closed pipe by its error EPIPE

@@ -29,8 +29,8 @@ struct measured_part {
 struct trial {
     std::string scene;
     bool held_out;  ///< used to check the fit, not for it
-    std::function<std::vector<measured_part>(aabb::instrumentation)> run_frames;
-    std::vector<std::pair<cost_group, timed_work>> observations = {};  ///< by piece
+    std::function<std::vector<measured_part>(aabb::instrumentation)> run;
+    std::vector<std::pair<cost_group, timed_work>> observations = {};  ///< by part
 };
 
 using box_frames = std::shared_ptr<const std::vector<std::vector<aabb::box>>>;
@@ -328,11 +328,11 @@ std::vector<group_observations> observe_trials(std::vector<trial> trials, double
         return seconds - std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     };
     for (trial& t : trials)
-        for (measured_part& p : t.run_frames(aabb::instrumentation::counters))
+        for (measured_part& p : t.run(aabb::instrumentation::counters))
             t.observations.emplace_back(p.group, timed_work{t.scene, std::move(p.work), {}});
     progress shown("seconds of measurement", static_cast<std::size_t>(seconds));
     const auto time = [&](trial& t, std::size_t) {
-        const std::vector<measured_part> timed = t.run_frames(aabb::instrumentation::none);
+        const std::vector<measured_part> timed = t.run(aabb::instrumentation::none);
         for (std::size_t p = 0; p < timed.size(); ++p) t.observations[p].second.ns.push_back(timed[p].ns);
         shown.at(static_cast<std::size_t>(seconds - std::max(0.0, remaining())));
     };

@@ -66,9 +66,8 @@ void add_atlas(const command_parser& program) {
     auto& request = command.set_action(run);
     command.flag("--quick", &request.quick, "Use small scenes and few repeats: a minute instead of half an hour");
     command.flag("--judge", &request.judge, "Measure nothing: draw the maps of existing results");
-    command.optional_argument(
-        "RESULTS", &request.source,
-        "With --judge: an archive or a folder of results, of atlas or reproduce, instead of the folder of --out");
+    command.optional_argument("RESULTS", &request.source,
+                              "With --judge: an archive or folder of results, of atlas or reproduce, instead of --out");
     command.option("--out DIR", &request.out,
                    "Folder of results and maps (default results/atlas; with --quick results/atlas-quick; with RESULTS "
                    "results/atlas-judged)");

@@ -66,14 +66,13 @@ void add_classify(const command_parser& program) {
         "classify", "Test whether triangles intersect, and in what: reads a pair per line, writes a result per line");
     auto& request = command.set_action(classify);
     command.argument("FILE", &request.file,
-                     "18 numbers per line, decimal or C99 hexadecimal, separated by blanks or commas; - is standard "
-                     "input; # begins a comment");
+                     "18 numbers per line, decimal or C99 hexadecimal, separated by blanks or commas; # begins a "
+                     "comment; - is standard input");
     command.option("--triangle R", &request.triangle,
                    "Triangle test (default exact): a strategy, or a library test that `list` shows");
     command.flag("--double", &request.keep_doubles, "Keep the numbers as doubles instead of rounding to float");
     command.flag("--geometry", &request.geometry,
-                 "Write the intersection instead of 0 or 1: its kind, the number of its corners, the corners, and the "
-                 "error of a coordinate on each axis");
+                 "Write intersections instead of 0 or 1: kind, number of corners, corners, error on each axis");
 }
 
 }  // namespace aabblab

@@ -183,8 +183,7 @@ void add_collide(const command_parser& program) {
                    "Search with B at each pose of this file, one per line, as for --pose-b; trees are built once");
     request.method.add_to(command, "build, tree and triangle test");
     command.flag("--self [=apart]", &request.self,
-                 "Find self-intersections of A; pairs that share a vertex are counted separately, and --self=apart "
-                 "also excludes them from the pairs");
+                 "Find self-intersections of A, and count pairs that share a vertex separately; apart: exclude these");
     command.flag("--first", &request.first, "Stop at the first pair found");
     command.flag("--count", &request.count, "Count the pairs without storing them");
     const auto take_repeats = [&request](const std::string& text) {
@@ -193,13 +192,11 @@ void add_collide(const command_parser& program) {
     };
     command.option("--repeat N", take_repeats, "Search N times, at all poses in turn; --json lists every time");
     command.option("--out FILE", &request.out,
-                   "CSV file for the pairs: rows a,b, with --self a,b,shared_vertices, with --self=apart a,b, with "
-                   "--poses pose,a,b");
+                   "CSV file for pairs: a,b; with --self a,b,shared_vertices; --self=apart a,b; --poses pose,a,b");
     command.flag("--geometry", &request.geometry,
                  "Add the intersection of its triangles to each pair, in world coordinates: kind, corners, error");
-    command.flag(
-        "--exit-code", &request.exit_code,
-        "Exit with status 1 if there is an intersection, as diff does; with --self, of triangles that share no vertex");
+    command.flag("--exit-code", &request.exit_code,
+                 "Exit with status 1 if triangles intersect, with --self without a shared vertex, as diff does");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

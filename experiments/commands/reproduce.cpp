@@ -8,8 +8,7 @@ void add_reproduce(const command_parser& program) {
     const command_parser command = program.add_command(
         "reproduce", "Reproduce every table, figure and claim of the paper, with a verdict on each claim");
     auto& request = command.set_action(reproduce);
-    command.flag("--quick", &request.quick,
-                 "Use small scenes and few repeats: some minutes instead of most of an hour");
+    command.flag("--quick", &request.quick, "Use small scenes and few repeats: minutes instead of most of an hour");
     command.flag("--judge", &request.judge,
                  "Measure nothing: judge existing results, of any build or machine, and write their report");
     command.optional_argument("RESULTS", &request.sources,

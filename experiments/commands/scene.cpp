@@ -202,8 +202,7 @@ void add_parameters(const command_parser& command, scene_request& request) {
             if (const auto [at, is_new] = request.settings.try_emplace(p.name); is_new)
                 command.option(option_names(p.name) + " V", &at->second, "").hidden();
     command.footer(
-        "`aabblab list scenes` shows the scenes and their parameters. Each parameter is an option: --n 500 or "
-        "--objects 500, --displacement 0.2.");
+        "`aabblab list scenes` shows all scenes and their parameters, which are options: --n 500 or --objects 500.");
 }
 
 }  // namespace

@@ -29,10 +29,9 @@ int validate_extreme(const extreme_request& request) {
 }  // namespace
 
 void add_validate_extreme(const command_parser& program) {
-    const command_parser command = program.command("validate")
-                                       .add_command("extreme",
-                                                    "Validate exactness where it is hardest: extreme scenes, invalid "
-                                                    "input, rounding modes, hard triangles");
+    const command_parser command =
+        program.command("validate")
+            .add_command("extreme", "Validate extreme scenes, invalid input, rounding modes and hard triangle pairs");
     command.footer([] {
         std::string text = "Scenes:\n";
         for (const aabb::extreme_scene& scene : all_extreme_scenes(aabb::extreme_size::full).scenes)

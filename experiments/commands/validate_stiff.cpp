@@ -27,10 +27,10 @@ int validate_stiff(const stiff_request& request) {
 }  // namespace
 
 void add_validate_stiff(const command_parser& program) {
-    const command_parser command = program.command("validate")
-                                       .add_command("stiff",
-                                                    "Simulate bodies that are in contact, and compare their motion "
-                                                    "with closed forms and published results");
+    const command_parser command =
+        program.command("validate")
+            .add_command("stiff",
+                         "Simulate bodies in contact, and compare them with closed forms and published results");
     auto& request = command.set_action(validate_stiff);
     std::string names;
     for (const stiff_study& study : stiff_studies()) names += (names.empty() ? "" : ", ") + std::string(study.name);

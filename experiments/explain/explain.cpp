@@ -32,9 +32,9 @@ std::string indented_list(std::string_view heading, const std::vector<std::strin
 /// The share of the remaining time that one part of the explanation may use.
 constexpr double share_of_part = 0.25;
 
-/// Why work did not finish, in place of its output.
-std::string reason_of(const child_result& work) {
-    return text_of(attempt{work.end, {}, work.reason, work.seconds});
+/// Why work in a child process did not finish, in place of its output.
+std::string reason_of(const child_result& result) {
+    return text_of(attempt{result.end, {}, result.reason, result.seconds});
 }
 
 std::string text_of(const candidate_name& name, aabb::stage stage) {
@@ -64,13 +64,14 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
 
 /// Prints the explanation of a candidate, made in a child process, or why that did not finish.
 void print_candidate(staged_scene& scene, const candidate& tested, const time_limits& limits) {
-    const child_result work =
+    const child_result result =
         scene.in_child([&](scene_frames& frames, const output_sender& send) { send(explanation_of(frames, tested)); },
                        share_of_part * limits.to_run());
     // A candidate rejects only invalid input.
-    if (work.end == ending::rejected) throw aabb::input_error(work.reason);
+    if (result.end == ending::rejected) throw aabb::input_error(result.reason);
     print(hanging("  ", text_of(tested.name)) + "\n");
-    print(work.end == ending::done ? work.reported : hanging("    ", "its bytes and plans: " + reason_of(work)) + "\n");
+    print(result.end == ending::done ? result.reported
+                                     : hanging("    ", "bytes and plans: " + reason_of(result)) + "\n");
 }
 
 /// Lists parts of the config that do not apply to the scene.
@@ -85,18 +86,18 @@ void print_unused(const experiment& e, const scene_choice& scene) {
 
 /// Prints the scene and its measures, unless its input is invalid.
 void print_measures(staged_scene& scene, const time_limits& limits) {
-    const child_result work = scene.in_child(
+    const child_result result = scene.in_child(
         [](scene_frames& frames, const output_sender& send) {
             send(to_text(measures_table(measure_scene(frames)), output_width()));
         },
         share_of_part * limits.to_run());
-    if (work.end == ending::rejected) throw aabb::input_error(work.reason);
+    if (result.end == ending::rejected) throw aabb::input_error(result.reason);
     print_paragraph(heading_of(scene.choice()));
     table unmeasured = empty_table({"measured", ""});
     unmeasured.rows = {{"objects", grouped(scene.scene().objects())},
                        {"frames", grouped(scene.scene().frames())},
-                       {"the rest", reason_of(work)}};
-    print((work.end == ending::done ? work.reported : to_text(unmeasured, output_width())) + "\n");
+                       {"the rest", reason_of(result)}};
+    print((result.end == ending::done ? result.reported : to_text(unmeasured, output_width())) + "\n");
 }
 
 void print_selected(const std::vector<aabb::selected_strategy>& selected) {

@@ -314,6 +314,7 @@ private:
 
 }  // namespace
 
+/// The winner is the finalist with the greatest lead: its smallest median log-ratio to any rival is the largest.
 void rank(std::vector<racer>& finalists) {
     if (finalists.empty()) return;
     const auto first = std::ranges::max_element(finalists, {}, [&](const racer& r) { return lead_of(r, finalists); });

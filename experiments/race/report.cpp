@@ -89,6 +89,7 @@ std::string measures_page(staged_scene& scene, double seconds) {
 
 }  // namespace
 
+/// Reads the scene and opens the page before the race, so that invalid input is reported without delay.
 int recommend(const recommend_request& request) {
     require_fine_clock();
     time_limits limits(request.seconds);

@@ -49,6 +49,7 @@ std::optional<std::size_t> width_of_terminal(int stream) {
     return std::max<std::size_t>(window.ws_col, least_width);
 }
 
+/// Replaces control characters and invalid UTF-8 by hexadecimal escapes, so that text cannot control a terminal.
 std::string escaped(std::string_view text, bool keep_lines) {
     std::string shown;
     while (!text.empty()) {

@@ -44,16 +44,16 @@ constexpr std::string_view minus_sign = "\u2212";
     const bool powers = from < 0.9e-4 || to > 1.1e6;
     std::vector<tick> ticks;
     for (int exponent = exponent_of(from); exponent <= exponent_of(to); ++exponent)
-        for (int times = 1; times < 10; ++times) {
+        for (int multiple = 1; multiple < 10; ++multiple) {
             // Division, because powers below 1 are not exact.
-            const double at = exponent < 0 ? times / std::pow(10, -exponent) : times * std::pow(10, exponent);
-            if (at < from * (1 - 1e-9) || at > to * (1 + 1e-9)) continue;
-            const bool is_labelled = std::ranges::find(multiples, times) != multiples.end();
+            const double value = exponent < 0 ? multiple / std::pow(10, -exponent) : multiple * std::pow(10, exponent);
+            if (value < from * (1 - 1e-9) || value > to * (1 + 1e-9)) continue;
+            const bool is_labelled = std::ranges::find(multiples, multiple) != multiples.end();
             if (is_labelled && exponent % decades == 0)
-                ticks.push_back(powers ? power_tick(at, times, exponent, 0)
-                                       : tick{at, number_text(at, std::max(0, -exponent))});
-            else if (decades == 1 || times == 1)
-                ticks.push_back({at, {}});
+                ticks.push_back(powers ? power_tick(value, multiple, exponent, 0)
+                                       : tick{value, number_text(value, std::max(0, -exponent))});
+            else if (decades == 1 || multiple == 1)
+                ticks.push_back({value, {}});
         }
     return ticks;
 }
