@@ -98,9 +98,9 @@ int run_program(int argc, char** argv) {
         const std::string path = error.path1().string();
         return report_error(bad_input, (path.empty() ? "" : path + ": ") + error.code().message());
     } catch (const std::bad_alloc&) {
-        return report_error(bad_input, "out of memory: the input or its result does not fit into memory");
+        return report_error(bad_input, "the input or its result does not fit into memory");
     } catch (const std::length_error&) {
-        return report_error(bad_input, "out of memory: the input or its result does not fit into memory");
+        return report_error(bad_input, "the input or its result does not fit into memory");
     } catch (const std::exception& error) {
         return report_error(check_failed, std::string("internal error: ") + error.what());
     }

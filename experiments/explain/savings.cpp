@@ -86,18 +86,18 @@ std::string difference_text(std::uint64_t bytes, std::uint64_t than) {
     return bytes < than ? "-" + grouped(than - bytes) : grouped(bytes - than);
 }
 
-/// Prints for each omission of the first variant, the selected one, the fastest variant without it and its extra cost.
+/// Prints what each omission of the first variant, the selected one, saves compared with the fastest one without it.
 void print_omissions(std::span<const variant> variants) {
     const std::vector<observation>& times = variants[0].times;
     table t{{{"left out", false}, {"available with", false}, {"ms/frame"}, {"bytes"}}, {}};
     for (const aabb::absence what : omitted_by(variants[0])) {
         t.rows.push_back({to_text(what), "-", "-", "-"});
-        const variant* with = fastest_with(what, variants.subspan(1));
-        if (!with) continue;
-        const bool open = paired_ratio_of(frame_ms_of(with->times), frame_ms_of(times)).may_be_same();
-        t.rows.back() = {to_text(what), label_of(*with),
-                         fmt::format("{:.5f}{}", median_ms(with->times) - median_ms(times), open ? "?" : ""),
-                         difference_text(with->times.back().bytes, times.back().bytes)};
+        const variant* fastest = fastest_with(what, variants.subspan(1));
+        if (!fastest) continue;
+        const bool undecided = paired_ratio_of(frame_ms_of(fastest->times), frame_ms_of(times)).may_be_same();
+        t.rows.back() = {to_text(what), label_of(*fastest),
+                         fmt::format("{:.5f}{}", median_ms(fastest->times) - median_ms(times), undecided ? "?" : ""),
+                         difference_text(fastest->times.back().bytes, times.back().bytes)};
     }
     print("savings of what is left out, compared with the fastest variant that has it\n");
     print_wrapped_table(t, 0);

@@ -134,7 +134,7 @@ private:
 struct query_result {
     std::uint64_t count = 0;              ///< within one mesh, of pairs that share no vertex
     std::uint64_t neighbours = 0;         ///< within one mesh, of pairs that share a vertex
-    std::vector<aabb::index_pair> pairs;  ///< the stored pairs, without those that `detect` leaves in the player
+    std::vector<aabb::index_pair> pairs;  ///< the stored pairs, without those that `detect` leaves in the runner
 };
 
 /// @param stored whether pairs that share a vertex are stored

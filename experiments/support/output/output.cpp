@@ -93,6 +93,7 @@ std::size_t paragraph_width() {
     return std::min<std::size_t>(output_width(), 80);
 }
 
+/// Fills lines greedily; every blank is kept, unless a line is broken there.
 std::string wrapped(std::string_view text, std::size_t most) {
     std::string lines;
     std::size_t width = 0;
