@@ -108,10 +108,10 @@ std::uint64_t merge_adjacent_pairs(const aabb::mesh& m, std::span<const aabb::in
 /// A scene of one object per mesh, in which the second one takes all poses frame by frame, once per repeat.
 class posed_meshes final : public aabb::mesh_scene {
 public:
-    /// @param of_b at least one pose, even without a second mesh
-    posed_meshes(std::vector<aabb::mesh> objects, const aabb::pose& of_a, std::vector<aabb::pose> of_b,
+    /// @param poses_b at least one pose, even without a second mesh
+    posed_meshes(std::vector<aabb::mesh> objects, const aabb::pose& pose_a, std::vector<aabb::pose> poses_b,
                  std::size_t repeats)
-        : of_a_(of_a), of_b_(std::move(of_b)), frames_(repeats * of_b_.size()) {
+        : pose_a_(pose_a), poses_b_(std::move(poses_b)), frames_(repeats * poses_b_.size()) {
         meshes = std::move(objects);
         for (std::uint32_t object = 0; object < meshes.size(); ++object) mesh_of.push_back(object);
     }
@@ -119,14 +119,14 @@ public:
     [[nodiscard]] std::size_t frames() const override { return frames_; }
     bool next(std::vector<aabb::pose>& poses) override {
         if (frame_ == frames_) return false;
-        poses = {of_a_, of_b_[frame_++ % of_b_.size()]};
+        poses = {pose_a_, poses_b_[frame_++ % poses_b_.size()]};
         poses.resize(meshes.size());
         return true;
     }
 
 private:
-    aabb::pose of_a_;
-    std::vector<aabb::pose> of_b_;
+    aabb::pose pose_a_;
+    std::vector<aabb::pose> poses_b_;
     std::size_t frames_;
     std::size_t frame_ = 0;
 };
@@ -137,14 +137,14 @@ struct query_result {
     std::vector<aabb::index_pair> pairs;  ///< the stored pairs, without those that `detect` leaves in the runner
 };
 
-/// @param stored whether pairs that share a vertex are stored
-query_result result_of(stage_runner& runner, const mesh_query& query, const aabb::mesh& m, bool stores_adjacent) {
+/// @param with_adjacent whether pairs that share a vertex are stored
+query_result result_of(stage_runner& runner, const mesh_query& query, const aabb::mesh& m, bool with_adjacent) {
     query_result result;
     if (query.self) {
         runner.each_self_pair(0, [&](aabb::index_pair pair) {
             const bool neighbours = share_vertex(m, pair);
             ++(neighbours ? result.neighbours : result.count);
-            if (neighbours ? stores_adjacent : query.ask != question::count) result.pairs.push_back(pair);
+            if (neighbours ? with_adjacent : query.ask != question::count) result.pairs.push_back(pair);
         });
         return result;
     }
@@ -165,8 +165,8 @@ public:
     pair_record(const mesh_query& query, const scene_frames& scene, mesh_result& result, number_table* rows)
         : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
 
-    /// @param stored whether the pairs include those that share a vertex
-    void take(std::uint32_t pose, query_result hits, bool stores_adjacent) {
+    /// @param with_adjacent whether the pairs include those that share a vertex
+    void add(std::uint32_t pose, query_result hits, bool with_adjacent) {
         pose_ = pose;
         sort_rows(hits.pairs);
         require_each_once(hits.pairs, method_.name);
@@ -174,9 +174,9 @@ public:
         if (method_.geometry)
             method_.geometry->set_meshes(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
         if (query_.ask == question::first) result_.first.emplace_back();
-        if (!query_.neighbours || stores_adjacent) return take_sorted(hits.pairs);
+        if (!query_.neighbours || with_adjacent) return add_sorted(hits.pairs);
         const std::uint64_t neighbours = merge_adjacent_pairs(
-            meshes.front(), hits.pairs, [&](std::span<const aabb::index_pair> pairs) { take_sorted(pairs); });
+            meshes.front(), hits.pairs, [&](std::span<const aabb::index_pair> pairs) { add_sorted(pairs); });
         if (neighbours != hits.neighbours)
             throw defect(fmt::format("{} finds {} pairs of triangles that share a vertex, but there are {}",
                                      method_.name, hits.neighbours, neighbours));
@@ -184,7 +184,7 @@ public:
     [[nodiscard]] std::string digest() const { return digest_.text(); }
 
 private:
-    void take_sorted(std::span<const aabb::index_pair> pairs) {
+    void add_sorted(std::span<const aabb::index_pair> pairs) {
         digest_.add(pose_, pairs);
         if (!rows_ && !method_.geometry && query_.ask != query_kind::first) return;
         for (const aabb::index_pair pair : pairs) {
@@ -228,9 +228,10 @@ std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
 }  // namespace
 
 mesh_result search_meshes(const mesh_query& query, const search_choice& choice, std::vector<aabb::mesh> meshes,
-                          const aabb::pose& of_a, given_poses of_b, number_table* rows) {
-    const std::size_t poses = of_b.poses.size();
-    scene_frames scene(std::make_unique<posed_meshes>(std::move(meshes), of_a, std::move(of_b.poses), query.repeats));
+                          const aabb::pose& pose_a, given_poses poses_b, number_table* rows) {
+    const std::size_t poses = poses_b.poses.size();
+    scene_frames scene(
+        std::make_unique<posed_meshes>(std::move(meshes), pose_a, std::move(poses_b.poses), query.repeats));
     aabb::scene_traits traits = traits_of(scene);
     traits.frames = 1;  // every query is timed on its own: nothing is reused between them
     mesh_result result;
@@ -241,19 +242,18 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     // Within one mesh, pairs that share a vertex may dominate: n triangles around one vertex have n²/2 of them. They
     // are stored only if they are reported and an inexact method may have missed some; with an exact method, they
     // follow from the mesh.
-    const bool stores_adjacent = query.neighbours && !result.method.exact && query.ask != question::count;
+    const bool with_adjacent = query.neighbours && !result.method.exact && query.ask != question::count;
     pair_record record(query, scene, result, rows);
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
         query_result hits;
         try {
             searcher->update();
             searcher->search();
-            const auto ask = [&] {
-                hits = result_of(*searcher, query, scene.meshes()->meshes.front(), stores_adjacent);
-            };
+            const auto ask = [&] { hits = result_of(*searcher, query, scene.meshes()->meshes.front(), with_adjacent); };
             result.query_ms.push_back(milliseconds_of(ask));
         } catch (const aabb::input_error& error) {
-            throw aabb::input_error(fmt::format("{}{}: {}", of_b.place_of(frame % poses), query.between, error.what()));
+            throw aabb::input_error(
+                fmt::format("{}{}: {}", poses_b.place_of(frame % poses), query.between, error.what()));
         }
         if (frame >= poses) continue;
         if (query.self) result.neighbours = hits.neighbours;
@@ -263,7 +263,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
             hits.count = hits.pairs.size();
         }
         result.counts.push_back(hits.count);
-        if (query.ask != question::count) record.take(frame, std::move(hits), stores_adjacent);
+        if (query.ask != question::count) record.add(frame, std::move(hits), with_adjacent);
     }
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);

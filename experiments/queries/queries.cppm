@@ -106,11 +106,11 @@ struct mesh_result {
 /// Both meshes are always candidates: world boxes lose their precision if the meshes are moved far away together.
 /// Results of repeats are not reported again.
 /// @param meshes one or two
-/// @param of_b one or more poses of the second mesh
+/// @param poses_b one or more poses of the second mesh
 /// @param rows receives triangles, preceded by the pose or followed by the number of shared vertices; may be null
 /// @throws aabb::input_error if a pose cannot be searched, defect if a pair is found twice or missed.
 [[nodiscard]] mesh_result search_meshes(const mesh_query& query, const search_choice& choice,
-                                        std::vector<aabb::mesh> meshes, const aabb::pose& of_a, given_poses of_b,
+                                        std::vector<aabb::mesh> meshes, const aabb::pose& pose_a, given_poses poses_b,
                                         number_table* rows);
 
 }  // namespace aabblab
