@@ -58,8 +58,7 @@ int report_error(int status, const std::string& sentence) {
     return status;
 }
 
-/// Runs the program, and reports each exception in one sentence.
-/// @returns the exit status
+/// Runs the program, reports an exception in one sentence, and returns the exit status.
 int run_program(int argc, char** argv) {
     std::signal(SIGCHLD, SIG_DFL);  // if inherited as ignored, waitpid could not report a status
     std::signal(SIGPIPE, SIG_IGN);  // print() handles a closed pipe by its error EPIPE

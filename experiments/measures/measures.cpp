@@ -78,6 +78,8 @@ double inversions_of(std::span<const aabb::box> before, std::span<const aabb::bo
 
 }  // namespace
 
+/// On an axis, two intervals of mean length e, uniformly spread over a range of width w, overlap with probability of
+/// about 2 e / w. The expected number of pairs of n boxes is n (n - 1) / 2 times the product over the axes.
 box_measures measure_boxes(std::span<const aabb::box> boxes) {
     box_measures m;
     if (boxes.empty()) return m;
@@ -88,8 +90,7 @@ box_measures measure_boxes(std::span<const aabb::box> boxes) {
     for (const aabb::box& b : boxes) extents_of_boxes.add(b);
     m.typical_extent = extents_of_boxes();
     for (int k = 0; k < 3; ++k) {
-        std::vector<float> lower;
-        std::vector<float> upper;
+        std::vector<float> lower, upper;
         double extents = 0;
         for (const aabb::box& b : boxes) {
             lower.push_back(b.min[k]);
@@ -103,12 +104,12 @@ box_measures measure_boxes(std::span<const aabb::box> boxes) {
     return m;
 }
 
+/// The common motion along an axis is the middle of all displacements, so half of their range remains as relative.
 motion_measures measure_motion(std::span<const aabb::box> before, std::span<const aabb::box> after, std::size_t axis) {
     motion_measures m;
     if (before.empty()) return m;
     const auto n = static_cast<double>(before.size());
-    double displacements = 0;
-    double moved = 0;
+    double displacements = 0, moved = 0;
     std::vector<double> squares(before.size());
     for (int k = 0; k < 3; ++k) {
         double least = std::numeric_limits<double>::infinity();
@@ -137,6 +138,7 @@ scene_measures measure_scene(const scene_choice& choice) {
     return measure_scene(scene);
 }
 
+/// Searches with the default composition, since the number of overlapping pairs is a measure, too.
 scene_measures measure_scene(scene_frames& scene) {
     scene_measures m;
     m.objects = scene.objects();
@@ -159,10 +161,9 @@ scene_measures measure_scene(scene_frames& scene) {
                 const std::vector<aabb::box> boxes = current.present_boxes();
                 m.boxes = measure_boxes(boxes);
                 m.present = boxes.size();
-                m.pairs_per_object = static_cast<double>(frame.pairs.size()) /
-                                     static_cast<double>(std::max<std::size_t>(boxes.size(), 1));
-                m.clustering =
-                    m.boxes.expected_pairs > 0 ? static_cast<double>(frame.pairs.size()) / m.boxes.expected_pairs : 0;
+                const auto pairs = static_cast<double>(frame.pairs.size());
+                m.pairs_per_object = pairs / static_cast<double>(std::max<std::size_t>(boxes.size(), 1));
+                m.clustering = m.boxes.expected_pairs > 0 ? pairs / m.boxes.expected_pairs : 0;
                 axis = static_cast<std::size_t>(std::ranges::min_element(m.boxes.overlaps) - m.boxes.overlaps.begin());
             } else {
                 add_motion(m, before, current, axis);

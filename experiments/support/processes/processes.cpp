@@ -168,8 +168,7 @@ std::string read_all(int input, const std::optional<clock::time_point>& end = {}
     }
 }
 
-/// Waits until a child process ends, or until that time.
-/// @returns whether it has ended
+/// Waits until a child process ends, or until that time, and returns whether it has ended.
 bool ends_before(pid_t child, clock::time_point end) {
     const int handle = pidfd_open(child, 0);
     // Without a handle the end cannot be observed.
