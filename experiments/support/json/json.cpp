@@ -36,9 +36,10 @@ bool is_nested_too_deeply(std::string_view text) {
     return false;
 }
 
-json parsed(const std::string& file, std::string_view text, const std::string& otherwise, json_value::position where) {
+/// Parses untrusted JSON; the message on a syntax error has its line, or its byte in formats without lines.
+json parse(const std::string& file, std::string_view text, const std::string& message, json_value::position where) {
     const auto reject = [&](const std::string& place, const std::string& why) {
-        throw aabb::input_error(file + place + ": " + otherwise + why);
+        throw aabb::input_error(file + place + ": " + message + why);
     };
     // Checked up front, because a parser callback would visit every list again for each of its items.
     if (is_nested_too_deeply(text))
@@ -62,8 +63,8 @@ const json& content_at(const void* content) {
 
 }  // namespace
 
-json_value::json_value(std::string file, std::string_view text, const std::string& otherwise, position where) {
-    json content = parsed(file, text, otherwise, where);
+json_value::json_value(std::string file, std::string_view text, const std::string& message, position where) {
+    json content = parse(file, text, message, where);
     in_ = std::make_unique<document>(document{std::move(file), std::move(content)});
     content_ = &in_->content;
 }

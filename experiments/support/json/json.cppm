@@ -13,8 +13,8 @@ public:
     enum class position { line, byte };
 
     /// @param file the name in messages
-    /// @param otherwise the message if it is not JSON: "is not a manifest of results"
-    json_value(std::string file, std::string_view text, const std::string& otherwise, position where = position::line);
+    /// @param message the message if it is not JSON: "is not a manifest of results"
+    json_value(std::string file, std::string_view text, const std::string& message, position where = position::line);
 
     [[nodiscard]] std::string text() const;
     [[nodiscard]] double number() const;

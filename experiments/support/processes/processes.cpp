@@ -54,10 +54,10 @@ void request_signal_at_end_of(pid_t parent, int signal) {
 }
 
 /// Starts the program; returns only if that fails.
-void exec_program(char* const* arguments, const surroundings& where, int output) {
-    if (dup2(output, STDOUT_FILENO) < 0 || !redirect(where.input.c_str(), O_RDONLY, STDIN_FILENO) ||
-        !redirect(where.errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO) ||
-        (!where.folder.empty() && chdir(where.folder.c_str()) != 0))
+void exec_program(char* const* arguments, const process_options& options, int output) {
+    if (dup2(output, STDOUT_FILENO) < 0 || !redirect(options.input.c_str(), O_RDONLY, STDIN_FILENO) ||
+        !redirect(options.errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO) ||
+        (!options.folder.empty() && chdir(options.folder.c_str()) != 0))
         return;
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGPIPE, SIG_DFL);
@@ -181,7 +181,7 @@ bool ends_before(pid_t child, clock::time_point end) {
 }  // namespace
 
 program_result run_child(const std::string& program, const std::vector<std::string>& arguments,
-                         const surroundings& where) {
+                         const process_options& options) {
     std::vector<std::string> texts{program};
     texts.insert(texts.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
@@ -194,9 +194,9 @@ program_result run_child(const std::string& program, const std::vector<std::stri
     const pid_t child = fork();
     if (child < 0) return {errno, 0, false, {}};
     if (child == 0) {
-        if (!where.kept) request_signal_at_end_of(parent, SIGKILL);
-        if (!where.kept || fork_under_keeper(output.ends[1], rejection.ends[1], parent))
-            exec_program(pointers.data(), where, output.ends[1]);
+        if (!options.kept) request_signal_at_end_of(parent, SIGKILL);
+        if (!options.kept || fork_under_keeper(output.ends[1], rejection.ends[1], parent))
+            exec_program(pointers.data(), options, output.ends[1]);
         const int why = errno;
         _exit(write(rejection.ends[1], &why, sizeof why) < 0 ? 126 : 127);
     }
@@ -207,12 +207,12 @@ program_result run_child(const std::string& program, const std::vector<std::stri
     if (const std::string why = read_all(rejection.ends[0]); why.size() == sizeof result.rejected)
         std::memcpy(&result.rejected, why.data(), why.size());
     std::optional<clock::time_point> end;
-    if (where.timeout.count() > 0) end = clock::now() + where.timeout;
+    if (options.timeout.count() > 0) end = clock::now() + options.timeout;
     result.printed = read_all(output.ends[0], end);
     // A program may close its output before it ends.
     result.timed_out = end && !ends_before(child, *end);
     // On SIGTERM the keeper kills the program and all its descendants.
-    if (result.timed_out) kill(child, where.kept ? SIGTERM : SIGKILL);
+    if (result.timed_out) kill(child, options.kept ? SIGTERM : SIGKILL);
     while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) continue;
     return result;
 }

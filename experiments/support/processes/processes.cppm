@@ -5,8 +5,8 @@ import aabb.std;
 
 export namespace aabblab {
 
-/// The environment of a program; empty members are inherited.
-struct surroundings {
+/// How a program runs; what is empty is inherited from this process.
+struct process_options {
     std::filesystem::path folder;
     std::filesystem::path input;
     std::filesystem::path errors;     ///< appended to; with /dev/stdout errors are part of the output
@@ -24,7 +24,7 @@ struct program_result {
 /// Runs a program to its end. Neither it nor, if kept, its descendants outlive the calling thread, however that ends.
 /// @param program a path, or a name without slashes to be looked up in PATH
 [[nodiscard]] program_result run_child(const std::string& program, const std::vector<std::string>& arguments,
-                                       const surroundings& where);
+                                       const process_options& options);
 
 /// The result of a program that exited.
 struct ended_process {
