@@ -41,7 +41,7 @@ table checks_of(const calibration& fit) {
 }
 
 void calibrate(const calibrate_request& request) {
-    const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : kept_costs_file();
+    const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : calibrated_costs_file();
     if (file.empty())
         throw aabb::input_error("neither XDG_CONFIG_HOME nor HOME names a folder; give --out FILE for the costs");
     if (request.reset)

@@ -68,15 +68,15 @@ public:
     [[nodiscard]] std::size_t frames() const override { return scene_->frames(); }
     bool next(std::vector<aabb::box>& boxes) override {
         if (!scene_->next(boxes)) return false;
-        observations_.see(boxes, scene_->present());
+        observations_.add_frame(boxes, scene_->present());
         return true;
     }
     [[nodiscard]] std::span<const std::uint8_t> present() const override { return scene_->present(); }
-    [[nodiscard]] const survey& observations() const { return observations_; }
+    [[nodiscard]] const picture_data& observations() const { return observations_; }
 
 private:
     std::unique_ptr<aabb::box_scene> scene_;
-    survey observations_;
+    picture_data observations_;
 };
 
 /// The seed option, else 1 if the kind has a seed.

@@ -164,7 +164,7 @@ int explain(const explain_request& request) {
         time_limits limits(request.seconds);
         // A scene that cannot be created is reported before any output.
         staged_scene scene(choice);
-        limits.scene_is_read();
+        limits.note_scene_read();
         if (&choice == e.scenes.data()) print(wrapped("strategies plan with " + costs_in_force()) + "\n\n");
         agree &= explain_scene(e, scene, limits);
     }

@@ -217,7 +217,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     if (!is_small)
         print_paragraph(fmt::format("With more than {}, only prepare and build are replaced, to save time.",
                                     counted(most_objects_of_all_kinds, "object")));
-    print_paragraph(ms_a_frame_text);
+    print_paragraph(ms_per_frame_text);
     print_paragraph(fmt::format(
         "ratio: ms/frame relative to the selected composition in the same round, the median; range: the least and the "
         "greatest ratio; ?: undecided, since the range comes within 3 % of 1; > {:.0f}: measured in one round.",

@@ -144,14 +144,14 @@ query_result result_of(stage_runner& runner, const mesh_query& query, const aabb
         runner.each_self_pair(0, [&](aabb::index_pair pair) {
             const bool neighbours = share_vertex(m, pair);
             ++(neighbours ? result.neighbours : result.count);
-            if (neighbours ? with_adjacent : query.ask != question::count) result.pairs.push_back(pair);
+            if (neighbours ? with_adjacent : query.ask != query_kind::count) result.pairs.push_back(pair);
         });
         return result;
     }
     switch (query.ask) {
-        case question::count: result.count = runner.count_contacts(); break;
-        case question::pairs: runner.detect(); break;
-        case question::first:
+        case query_kind::count: result.count = runner.count_contacts(); break;
+        case query_kind::pairs: runner.detect(); break;
+        case query_kind::first:
             if (const auto c = runner.first_contact()) result.pairs.push_back({c->triangle_a, c->triangle_b});
             break;
     }
@@ -173,7 +173,7 @@ public:
         const std::vector<aabb::mesh>& meshes = scene_.meshes()->meshes;
         if (method_.geometry)
             method_.geometry->set_meshes(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
-        if (query_.ask == question::first) result_.first.emplace_back();
+        if (query_.ask == query_kind::first) result_.first.emplace_back();
         if (!query_.neighbours || with_adjacent) return add_sorted(hits.pairs);
         const std::uint64_t neighbours = merge_adjacent_pairs(
             meshes.front(), hits.pairs, [&](std::span<const aabb::index_pair> pairs) { add_sorted(pairs); });
@@ -242,7 +242,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     // Within one mesh, pairs that share a vertex may dominate: n triangles around one vertex have n²/2 of them. They
     // are stored only if they are reported and an inexact method may have missed some; with an exact method, they
     // follow from the mesh.
-    const bool with_adjacent = query.neighbours && !result.method.exact && query.ask != question::count;
+    const bool with_adjacent = query.neighbours && !result.method.exact && query.ask != query_kind::count;
     pair_record record(query, scene, result, rows);
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
         query_result hits;
@@ -257,13 +257,13 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
         }
         if (frame >= poses) continue;
         if (query.self) result.neighbours = hits.neighbours;
-        if (!query.self && query.ask != question::count) {
+        if (!query.self && query.ask != query_kind::count) {
             for (const aabb::contact& c : searcher->sorted_contacts())
                 hits.pairs.push_back({c.triangle_a, c.triangle_b});
             hits.count = hits.pairs.size();
         }
         result.counts.push_back(hits.count);
-        if (query.ask != question::count) record.add(frame, std::move(hits), with_adjacent);
+        if (query.ask != query_kind::count) record.add(frame, std::move(hits), with_adjacent);
     }
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);

@@ -59,7 +59,7 @@ std::vector<std::string> legend() {
     return {"all ms: build ms, first ms (frame 0) and the time of all further frames; the median of the repeats.",
             "ratio: all ms relative to the fastest candidate in the same repeat, the median, with its 95 % confidence "
             "interval; -: the fastest itself, or too few repeats.",
-            ms_a_frame_text, build_ms_text};
+            ms_per_frame_text, build_ms_text};
 }
 
 std::string page_of(const std::string& scene, const race_result& race, const std::string& measured) {
@@ -74,7 +74,7 @@ std::string page_of(const std::string& scene, const race_result& race, const std
         "Dropped: a candidate was stopped after this many frames, since it took this many times as long as the "
         "fastest, both in total and per frame after the first; or its run did not finish. Strategies have their "
         "default parameters.");
-    const kept_costs here = costs_here(aabb::machine_costs());
+    const calibrated_costs here = label_costs(aabb::machine_costs());
     report.paragraph("aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions);
     return report.html();
 }

@@ -49,7 +49,7 @@ draft c8_claim(const measurements& m) {
         series& s = f.lines.emplace_back(series{std::string("over ") + build, series_style::points});
         for (const condition& c : conditions) {
             const endpoint& ratio = c8.add(median_over(c, build), subject);
-            if (ratio.known()) s.points.push_back(point_of(static_cast<double>(&c - conditions.data()), ratio));
+            if (ratio.is_known()) s.points.push_back(point_of(static_cast<double>(&c - conditions.data()), ratio));
         }
     }
     c8.claim.tables.push_back({"c8_builds", "Medians of time and work of canonical trees, for each rule of splitting.",

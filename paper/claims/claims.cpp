@@ -65,7 +65,7 @@ claim_result result_of(const draft& source, const std::vector<endpoint>& endpoin
     claim.brief = sentence_of(of_primary_lines, claim.lead);
     std::vector<endpoint> unjudged;
     for (const endpoint& e : source.unjudged)
-        if (e.known()) unjudged.push_back(decided_alone(e));
+        if (e.is_known()) unjudged.push_back(decided_alone(e));
     if (!unjudged.empty()) claim.sentence += " " + sentence_of(unjudged);
     if (!claim.remark.empty()) claim.sentence += " " + claim.remark;
     claim.evidence = evidence_text(endpoints);

@@ -34,7 +34,7 @@ struct endpoint {
 
     /// Whether all machines measured it.
     [[nodiscard]] bool is_known() const {
-        return !log_ratios.empty() && std::ranges::all_of(log_ratios, &estimate::known);
+        return !log_ratios.empty() && std::ranges::all_of(log_ratios, &estimate::is_known);
     }
     /// The mean over all machines.
     [[nodiscard]] estimate log_ratio() const { return mean_of(log_ratios); }
@@ -191,7 +191,7 @@ struct claim_source {
 /// Table cells, "-" if nothing was measured.
 [[nodiscard]] std::string digits_cell(const std::optional<double>& value);
 [[nodiscard]] inline std::string ratio_cell(const endpoint& e) {
-    return e.known() ? ratio_text(decided_alone(e)) : "-";
+    return e.is_known() ? ratio_text(decided_alone(e)) : "-";
 }
 
 /// A composition and its label in figures and tables.

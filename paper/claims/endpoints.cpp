@@ -98,7 +98,7 @@ std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factor
     std::map<std::string, series> by_span;
     for (const endpoint& e : ratios) {
         const std::string span = value_of(e.where, "span");
-        if (span.empty() || !e.known() || !matches(e.where, wanted)) continue;
+        if (span.empty() || !e.is_known() || !matches(e.where, wanted)) continue;
         series& line = by_span[span];
         line.label = "edge " + span + " of the world";
         line.points.push_back(point_of(number_of(e.where, "huge"), e));

@@ -13,7 +13,7 @@ struct measured_choices {
     std::vector<alternative> alternatives{};  ///< the measured ones
 
     void add(const std::string& label, const endpoint& measured) {
-        if (measured.known()) alternatives.push_back({label, measured});
+        if (measured.is_known()) alternatives.push_back({label, measured});
     }
     /// Adds claim C1's ratio.
     void add_search(const std::string& label, const condition& c) {

@@ -41,8 +41,8 @@ table bytes_table(const condition& c) {
         const selection composition = selection_of(l, "median");
         if (!c.value(composition, measured("tree_bytes"))) continue;
         const auto text_of = [&](const row_value& bytes) {
-            const std::optional<double> per_triangle = c.value(composition, a_triangle(bytes));
-            return per_triangle ? fmt::format("{:.2f}", *per_triangle) : "-";
+            const std::optional<double> quotient = c.value(composition, per_triangle(bytes));
+            return quotient ? fmt::format("{:.2f}", *quotient) : "-";
         };
         t.rows.push_back({l.name, l.internal, l.leaf, l.bytes, text_of(bytes_of({"nodes", "indices"})),
                           text_of(bytes_of({"nodes"})), text_of(bytes_of({"indices"}))});

@@ -156,7 +156,7 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     // columns take no other sweep.
     for (const char* part :
          {"\nsweep: no other strategy can be composed with the rest.\n", "\nratio: ms/frame relative",
-          "\nms/frame: update, search", "\nbuild ms: the stages are made"})
+          "\nms/frame: the mean time per frame", "\nbuild ms: the time to create"})
         CHECK(holds(reported.out, part));
     check_narrow(reported.out);
     CHECK(holds(run_program({"explain", file, file}).err, "a recording is a scene of its own"));

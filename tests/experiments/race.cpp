@@ -585,7 +585,7 @@ TEST_CASE("recommend ranks, says what to use, and writes a page") {
     for (const char* part : {"<p>Use ", "overlapping pairs per object", "dropped", "all_axes", "<p>aabblab "})
         CHECK(holds(html, part));
     for (const char* part :
-         {"\nratio: all ms relative", "\nms/frame: update, search", "\nbuild ms: the stages are made"})
+         {"\nratio: all ms relative", "\nms/frame: the mean time per frame", "\nbuild ms: the time to create"})
         CHECK(holds(reported.out, part));
     check_narrow(reported.out.substr(reported.out.find("\nUse ") + 1));
     for (const char* seconds : {"0", "-1", "inf", "nan", "1e7", "x", ""}) {
