@@ -52,7 +52,8 @@ private:
     enum class state : std::uint8_t { none, taken, broken };
 
     [[noreturn]] static void throw_broken() {
-        throw input_error("an exception in an earlier frame left this stage half-changed; make a new one");
+        throw input_error(
+            "an exception in an earlier frame left this stage in an inconsistent state; create a new one");
     }
 
     state state_ = state::none;

@@ -45,14 +45,14 @@ struct cost_info {
 
 inline constexpr std::array<cost_info, 15> cost_infos{{
     {&cost_model::search_box, "search_box", "ns/box", "searching a box by columns"},
-    {&cost_model::search_pair, "search_pair", "ns/pair", "finding a pair so"},
-    {&cost_model::keep_box, "keep_box", "ns/box", "keeping a box with its list"},
-    {&cost_model::watch_box, "watch_box", "ns/box", "watching a box move"},
+    {&cost_model::search_pair, "search_pair", "ns/pair", "finding a pair by columns"},
+    {&cost_model::keep_box, "keep_box", "ns/box", "keeping a box with its Verlet list"},
+    {&cost_model::watch_box, "watch_box", "ns/box", "tracking the motion of a box"},
     {&cost_model::test_pair, "test_pair", "ns/pair", "testing a listed pair"},
     {&cost_model::list_entry, "list_entry", "ns/entry", "sorting an entry of a list"},
     {&cost_model::cut_entry, "cut_entry", "ns/entry", "an entry of a box in a subset"},
     {&cost_model::cut_subset, "cut_subset", "ns/subset", "a subset of a cut"},
-    {&cost_model::cut_test, "cut_test", "ns/test", "testing two boxes of one"},
+    {&cost_model::cut_test, "cut_test", "ns/test", "testing two boxes in a subset"},
     {&cost_model::column_entry, "column_entry", "ns/entry", "an entry of a box in a column"},
     {&cost_model::column, "column", "ns/column", "a column"},
     {&cost_model::column_test, "column_test", "ns/vector", "testing an entry by a vector"},

@@ -74,7 +74,7 @@ template <class Element, class Matrix>
     constexpr std::ptrdiff_t rows = sizeof(Element) / sizeof(typename Matrix::Scalar);
     const auto count = static_cast<std::size_t>(Matrix::IsRowMajor ? m.rows() : m.cols());
     if (count > 1 && (m.innerStride() != 1 || m.outerStride() != rows))
-        throw input_error("the numbers of the matrix do not stand side by side in memory");
+        throw input_error("the matrix is not contiguous in memory");
     return {reinterpret_cast<const Element*>(m.data()), count};
 }
 
@@ -141,7 +141,7 @@ template <class Vertices, class Triangles>
             const std::int64_t v = at(k);
             if (v < 0 || v > std::numeric_limits<std::uint32_t>::max())
                 throw input_error("triangle " + std::to_string(result.triangles.size()) + " uses vertex " +
-                                  std::to_string(v) + ", which there cannot be");
+                                  std::to_string(v) + ", which cannot exist");
             return static_cast<std::uint32_t>(v);
         };
         result.triangles.push_back({corner(0), corner(1), corner(2)});

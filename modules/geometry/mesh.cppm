@@ -50,7 +50,7 @@ inline void require_valid(const mesh& m) {
 inline void require_still_valid(const mesh& m, std::size_t triangles) {
     require_valid(m);
     if (m.triangles.size() != triangles)
-        throw input_error("a mesh that deforms keeps its triangles: there were " + std::to_string(triangles) +
+        throw input_error("a deforming mesh must keep its triangles: there were " + std::to_string(triangles) +
                           ", now there are " + std::to_string(m.triangles.size()));
 }
 

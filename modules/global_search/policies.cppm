@@ -122,11 +122,11 @@ concept CoherentSweep =
 template <class... All>
 constexpr std::string_view rejection_of_coherent_sweep() {
     if (((CuttingPartition<All> || SearchingPartition<All>) || ...))
-        return "a sweep that keeps its pairs between frames cannot follow a partition that makes other subsets in each "
-               "frame; it goes with none only";
+        return "a sweep that keeps its pairs between frames cannot use a partition that changes its subsets in each "
+               "frame; it can be combined with none only";
     if (((SortPolicy<All> && !SwapReportingSort<All>) || ...))
-        return "a sweep that keeps its pairs follows the swaps of neighbours, of which this sort does not tell; "
-               "it goes with insertion only";
+        return "a sweep that keeps its pairs between frames follows the swaps of neighbours, which this sort does not "
+               "report; it can be combined with insertion only";
     return {};
 }
 

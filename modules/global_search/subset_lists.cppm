@@ -86,7 +86,7 @@ private:
         throw input_error(std::string(Partition::name) + " makes " + std::to_string(copies) + " copies of " +
                           std::to_string(any.size()) + " objects, but at most " +
                           std::to_string(most_copies(any.size())) +
-                          " (2^24 + 64 an object) are allowed; fewer cuts make fewer");
+                          " (2^24 + 64 per object) are allowed; fewer cuts make fewer copies");
     }
 
     std::vector<std::size_t> starts_{0};

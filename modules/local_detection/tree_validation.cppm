@@ -30,7 +30,7 @@ public:
             else if (at.opened < 2) {
                 const auto child = tree_.children(at.cursor, mesh_)[at.opened++];
                 open_.push_back({child, empty_box(), 0});
-                if (open_.size() > seen_.size()) result_.fault = "the tree is deeper than it has triangles";
+                if (open_.size() > seen_.size()) result_.fault = "the tree has more levels than triangles";
                 continue;
             }
             close(at);
@@ -53,7 +53,7 @@ private:
     void visit_leaf(node& leaf) {
         const std::uint32_t triangle = tree_.triangle(leaf.cursor);
         if (triangle >= seen_.size())
-            result_.fault = "a leaf holds triangle " + std::to_string(triangle) + ", which the mesh has not";
+            result_.fault = "a leaf holds triangle " + std::to_string(triangle) + ", which the mesh does not have";
         else if (seen_[triangle]++ != 0)
             result_.fault = "triangle " + std::to_string(triangle) + " is in two leaves";
         else
@@ -72,7 +72,7 @@ private:
         if (!result_.fault.empty()) return;
         const box below = at.below;
         const box bounds = tree_.bounds(at.cursor);
-        if (!contains(bounds, below)) result_.fault = "a box does not hold the triangles below it";
+        if (!contains(bounds, below)) result_.fault = "a box does not contain the triangles below it";
         if (has_box(at.cursor)) {
             result_.tight &= bounds == below;
             area_ += surface_area(bounds);

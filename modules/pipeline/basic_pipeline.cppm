@@ -195,8 +195,7 @@ private:
     }
 
     void require_searched() const {
-        if (!searched_)
-            throw input_error("there are no candidates to decide on: search was not called, or did not succeed");
+        if (!searched_) throw input_error("there are no candidates to test: search was not called, or did not succeed");
         assert(poses_.size() == scene_.mesh_of.size());
     }
     [[nodiscard]] index_pair models_of(std::size_t candidate) const noexcept {

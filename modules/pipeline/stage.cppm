@@ -103,7 +103,7 @@ public:
 /// The features that the stages lack, without duplicates. Either stage may be null.
 [[nodiscard]] inline std::vector<omission> left_out_by(const global_stage* global, const local_stage* local) {
     std::vector<omission> absent = global ? global->left_out() : std::vector<omission>{};
-    if (!local) absent.push_back({absence::local_detection, "no meshes, no trees, no triangle test"});
+    if (!local) absent.push_back({absence::local_detection, "objects are boxes, without trees and triangles"});
     for (const omission& o : local ? local->left_out() : std::vector<omission>{})
         if (std::ranges::find(absent, o) == absent.end()) absent.push_back(o);
     return absent;

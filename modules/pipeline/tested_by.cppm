@@ -43,7 +43,7 @@ public:
             return triangle_.intersection(s, t);
         else
             throw input_error(std::string(Triangle::name) +
-                              " decides whether triangles intersect, not what they have in common");
+                              " decides whether triangles intersect, but does not construct their intersection");
     }
     [[nodiscard]] bool constructs() const override { return ConstructingTrianglePolicy<Triangle>; }
 

@@ -50,7 +50,7 @@ template <Configurable S>
         std::vector<std::string> names;
         for_each_parameter<S>([&](const auto& parameter) { names.emplace_back(parameter.name); });
         if (names.empty())
-            throw input_error(std::string(S::name) + " takes no parameters, so not '" + s.name + "' either");
+            throw input_error(std::string(S::name) + " takes no parameters, but '" + s.name + "' is set");
         throw input_error(unknown_name("parameter of " + std::string(S::name), s.name, names));
     }
     for_each_parameter<S>([&](const auto& parameter) {

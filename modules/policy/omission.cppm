@@ -22,9 +22,9 @@ enum class absence : std::uint8_t {
 
 inline constexpr std::array absence_texts = std::to_array<std::string_view>(
     {"no partition", "no sort", "no projection list of the x axis", "no projection list of the y axis",
-     "no projection list of the z axis", "no projection lists beside those that the sweep keeps for itself",
-     "no list of neighbours", "no division of large objects", "no local detection", "no boxes of single triangles",
-     "no indices of nodes", "no work counters"});
+     "no projection list of the z axis", "no projection lists beside those of the sweep itself", "no Verlet list",
+     "no division of large objects", "no local detection", "no boxes of single triangles", "no node indices",
+     "no work counters"});
 static_assert(absence_texts.size() == static_cast<std::size_t>(absence::counters) + 1);
 
 [[nodiscard]] inline std::string to_text(absence feature) {
@@ -38,7 +38,7 @@ struct omission {
 
     bool operator==(const omission&) const = default;
 };
-/// "no sort: so few boxes are tested each against each"
+/// "no sort: so few boxes are tested by brute force"
 [[nodiscard]] inline std::string to_text(const omission& o) {
     return to_text(o.what) + (o.why.empty() ? "" : ": ") + std::string(o.why);
 }

@@ -13,7 +13,7 @@ struct threaded_build {
         std::uint32_t threads = 1;
     };
     static constexpr std::tuple parameters{
-        integer_parameter{"threads", &config::threads, 1U, 256U, "how many threads build a tree"}};
+        integer_parameter{"threads", &config::threads, 1U, 256U, "number of threads that build a tree"}};
 
     threaded_build() = default;
     explicit threaded_build(const config& c) : threads(c.threads) {}

@@ -12,7 +12,8 @@ struct file_order_build : threaded_build {
     using threaded_build::threaded_build;
 
     static constexpr std::string_view name = "file_order";
-    static constexpr std::string_view summary = "halves of the mesh's own order, for meshes written leaf by leaf";
+    static constexpr std::string_view summary =
+        "splits the mesh's own order in halves, for meshes that are stored leaf by leaf";
 
     [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const {
         const auto halves = [](std::span<const build_element> range, const box&) {

@@ -25,7 +25,7 @@ struct mean_build : top_down_build<mean_split, axis_rule::longest> {
     using top_down_build::top_down_build;
 
     static constexpr std::string_view name = "mean";
-    static constexpr std::string_view summary = "at the mean of the triangles' centroids along the longest axis";
+    static constexpr std::string_view summary = "splits at the mean of the triangles' centroids along the longest axis";
 };
 
 static_assert(BuildPolicy<mean_build>);

@@ -13,7 +13,7 @@ struct median_build : top_down_build<median_split, axis_rule::longest> {
 
     static constexpr std::string_view name = "median";
     static constexpr std::string_view summary =
-        "at the median of the triangles' centroids along the longest axis: the paper's, balanced";
+        "splits at the median of the triangles' centroids along the longest axis: balanced, as in the paper";
 };
 
 static_assert(BuildPolicy<median_build>);

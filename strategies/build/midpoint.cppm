@@ -25,7 +25,7 @@ struct midpoint_build : top_down_build<midpoint_split, axis_rule::longest> {
     using top_down_build::top_down_build;
 
     static constexpr std::string_view name = "midpoint";
-    static constexpr std::string_view summary = "in the middle of the longest axis of the node's box";
+    static constexpr std::string_view summary = "splits in the middle of the longest axis of the node's box";
 };
 
 static_assert(BuildPolicy<midpoint_build>);

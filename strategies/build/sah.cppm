@@ -15,7 +15,7 @@ struct sah_build : top_down_build<sah_split, axis_rule::least_area> {
     using top_down_build::top_down_build;
 
     static constexpr std::string_view name = "sah";
-    static constexpr std::string_view summary = "by the surface-area heuristic, in 16 bins on each axis";
+    static constexpr std::string_view summary = "splits by the surface-area heuristic, with 16 bins per axis";
 
     /// Queries visit a twelfth fewer nodes than in trees by `median`.
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
@@ -25,9 +25,9 @@ struct sah_build : top_down_build<sah_split, axis_rule::least_area> {
         const bool serves = scene.queries >= repaid;
         return {.serves = serves,
                 .because = {
-                    {serves ? "queries are to be {queries}, and from {repaid} on they repay a better tree"
-                            : "built fastest: queries are to be {queries}, and only from {repaid} on they "
-                              "repay a better tree",
+                    {serves ? "{queries} queries are expected, and a better tree is worth its cost from {repaid} on"
+                            : "built fastest: {queries} queries are expected, and a better tree is worth its cost "
+                              "only from {repaid} on",
                      {{{"queries", static_cast<double>(scene.queries)}, {"repaid", static_cast<double>(repaid)}}}}}};
     }
 };

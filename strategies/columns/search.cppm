@@ -216,13 +216,13 @@ public:
         if (is_few_) return {};
         const column_plan& p = plan();
         return {{is_in_groups() ? plan_kind::groups_of_columns : plan_kind::columns,
-                 {p.columns() == 1 ? "one column, cut nowhere" : along[is_in_groups() ? 1 : 0][p.axis],
+                 {p.columns() == 1 ? "one column: no axis is cut" : along[is_in_groups() ? 1 : 0][p.axis],
                   {{{"u", static_cast<double>(p.across[0])},
                     {"v", static_cast<double>(p.across[1])},
                     {"axis", static_cast<double>(p.axis)}}}}}};
     }
     [[nodiscard]] std::vector<omission> left_out() const {
-        constexpr const char* why = "so few boxes are tested each against each";
+        constexpr const char* why = "so few boxes are tested by brute force";
         if (is_few_) return {{absence::partition, why}, {absence::sort, why}};
         return {};
     }

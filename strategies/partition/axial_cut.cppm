@@ -38,8 +38,9 @@ public:
         limit_choice limit = limit_choice::on;
     };
     static constexpr std::tuple parameters{
-        integer_parameter{"axes", &config::axes, 1U, 3U, "how many axes are cut; auto: as many as pay, or none"},
-        integer_parameter{"segments", &config::segments, 1U, 65'535U, "wanted on each of these axes"},
+        integer_parameter{"axes", &config::axes, 1U, 3U, "number of axes to cut; auto: the cheapest number, or none"},
+        integer_parameter{"segments", &config::segments, 1U, 65'535U,
+                          "desired number on each of these axes; auto: the cheapest"},
         choice_parameter{"limit", &config::limit, std::array<std::string_view, 2>{"on", "off"},
                          "cut no box more than once on an axis"}};
 
@@ -84,7 +85,7 @@ public:
             subsets *= cuts_[k].size() + 1;
         }
         if (subsets > most_subsets)
-            throw input_error("axial_cut: " + std::to_string(wanted_) + " segments an axis make " +
+            throw input_error("axial_cut: " + std::to_string(wanted_) + " segments per axis make " +
                               std::to_string(subsets) + " subsets, more than 2^26");
         assert(subsets == subset_count());
     }

@@ -16,7 +16,7 @@ export namespace aabb {
 class columns_partition {
 public:
     static constexpr std::string_view name = "columns";
-    static constexpr std::string_view summary = "cuts boxes into columns before anything is sorted";
+    static constexpr std::string_view summary = "cuts boxes into columns before it sorts them";
 
     struct config {
         /// Number of the two perpendicular axes that are cut into columns.
@@ -33,17 +33,19 @@ public:
     };
     static constexpr std::tuple parameters{
         integer_parameter{"axes", &config::axes, 0U, 2U,
-                          "how many axes are cut, beside the one that columns run along"},
-        integer_parameter{"few", &config::few, 0U, 4096U, "boxes that are not cut, but tested each against each"},
-        integer_parameter{"group", &config::group, 1U, 1'000'000'000U, "boxes that are cut into columns together"},
-        integer_parameter{"threads", &config::threads, 1U, 256U, "how many threads take groups"}};
+                          "number of axes to cut, beside the one along which columns run"},
+        integer_parameter{"few", &config::few, 0U, 4096U,
+                          "brute-force threshold: up to this many boxes are tested pair by pair, without columns"},
+        integer_parameter{"group", &config::group, 1U, 1'000'000'000U,
+                          "approximate number of boxes per group; each group is cut into columns separately"},
+        integer_parameter{"threads", &config::threads, 1U, 256U, "number of threads that search groups"}};
 
     static constexpr std::array contrasts{std::string_view("few=0")};
 
     template <class... All>
     static constexpr std::string_view rejects() {
         if (((SweepPolicy<All> && !ColumnSweep<All>) || ...))
-            return "columns hands over boxes in whole vectors, bucket by bucket; it goes with simd only";
+            return "columns passes boxes in whole vectors, bucket by bucket; it can be combined with simd only";
         return {};
     }
 

@@ -24,14 +24,14 @@ class kd_tree_partition {
 public:
     static constexpr std::string_view name = "kd_tree";
     static constexpr std::string_view summary =
-        "planes at medians, kept between frames and chosen anew where boxes went elsewhere";
+        "planes at medians, kept between frames and rebuilt where boxes have moved elsewhere";
 
     struct config {
         /// A leaf with more boxes is split if that copies at most half of them. auto: if splitting costs less.
         std::optional<std::uint32_t> leaf;
     };
     static constexpr std::tuple parameters{
-        integer_parameter{"leaf", &config::leaf, 2U, 65'535U, "boxes in a leaf; auto: as many as cost least"}};
+        integer_parameter{"leaf", &config::leaf, 2U, 65'535U, "greatest number of boxes per leaf; auto: the cheapest"}};
 
     kd_tree_partition() = default;
     explicit kd_tree_partition(const config& c) : config_(c) {}

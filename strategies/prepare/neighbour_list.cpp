@@ -134,21 +134,22 @@ public:
         std::vector<stage_plan> stage_plans = search_->plans();
         if (state_ == state::listing)
             stage_plans.push_back({plan_kind::neighbour_list,
-                                   {"a list of {pairs} pairs, of boxes grown by {margin} on every side",
+                                   {"a Verlet list of {pairs} pairs of boxes, with a skin of {margin}",
                                     {{{"pairs", static_cast<double>(list_.size())}, {"margin", margin_}}}}});
         else if (state_ == state::resting)
-            stage_plans.push_back({plan_kind::static_frame, {"the pairs of a frame since which nothing has moved"}});
+            stage_plans.push_back(
+                {plan_kind::static_frame, {"the pairs of an earlier frame, since nothing has moved"}});
         return stage_plans;
     }
 
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
         if (state_ <= state::watching)
-            absent.push_back({absence::neighbour_list, is_below_list_threshold()
-                                                           ? "so few boxes are searched as soon as watched"
-                                                       : expected_ < fewest_frames_of_first_list
-                                                           ? "none has been seen to repay its making in so few frames"
-                                                           : "boxes move too far, or come too often, for one to pay"});
+            absent.push_back({absence::neighbour_list,
+                              is_below_list_threshold() ? "searching so few boxes costs no more than tracking them"
+                              : expected_ < fewest_frames_of_first_list
+                                  ? "no list would be worth its cost in so few frames"
+                                  : "boxes move too far, or arrive too often, for a list to be worth its cost"});
         return absent;
     }
 

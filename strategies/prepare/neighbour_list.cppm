@@ -25,7 +25,7 @@ export namespace aabb {
 struct neighbour_list_prepare {
     static constexpr std::string_view name = "neighbour_list";
     static constexpr std::string_view summary =
-        "pairs of boxes grown by a margin, kept until boxes have moved by more than that";
+        "a Verlet list: pairs of boxes grown by a margin, the skin, kept until boxes have moved farther";
 
     struct config {
         std::optional<double> margin;
@@ -36,21 +36,21 @@ struct neighbour_list_prepare {
     };
     static constexpr std::array leaves_out{absence::division};
     static constexpr std::tuple parameters{
-        number_parameter{"margin", &config::margin, 0.0, std::numeric_limits<double>::max(),
-                         "by which boxes are grown on every side, in typical extents; auto: as it pays, list by list",
-                         true},
-        integer_parameter{"every", &config::every, std::uint32_t{0}, std::uint32_t{1'000'000},
-                          "frames from one search to the next, inexact above 1; 0: when boxes have moved too far"}};
+        number_parameter{
+            "margin", &config::margin, 0.0, std::numeric_limits<double>::max(),
+            "the skin by which boxes are grown on every side, in typical extents; auto: the cheapest per list", true},
+        integer_parameter{
+            "every", &config::every, std::uint32_t{0}, std::uint32_t{1'000'000},
+            "number of frames between searches, inexact above 1; 0: search when boxes have moved too far"}};
 
     static constexpr std::array contrasts{std::string_view("margin=0.1")};
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         constexpr std::size_t fewest = scene_traits::fewest_frames_to_keep;
         if (scene.frames < fewest)
-            return {.because = {{"fewer than {frames} frames: a list of neighbours would not repay its making",
+            return {.because = {{"fewer than {frames} frames: a Verlet list would not be worth its cost",
                                  {{{"frames", fewest}}}}}};
         return {.serves = true,
-                .because = {{"frames follow each other: a list of neighbours is kept while boxes move little, and only "
-                             "then"}}};
+                .because = {{"frames follow each other: a Verlet list is kept while boxes move little"}}};
     }
 
     neighbour_list_prepare() = default;

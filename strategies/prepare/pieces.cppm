@@ -45,7 +45,7 @@ inline void require_few_pieces(std::string_view strategy, std::size_t pieces, st
     const std::size_t most = 65'536 + 16 * objects;
     if (pieces > most)
         throw input_error(std::string(strategy) + ": this size makes more than " + std::to_string(most) +
-                          " pieces of " + std::to_string(objects) + " objects; a greater one makes fewer");
+                          " pieces of " + std::to_string(objects) + " objects; a greater size makes fewer");
 }
 
 }  // namespace aabb

@@ -20,7 +20,7 @@ struct split_mesh_prepare : dividing_prepare {
     static constexpr std::string_view summary =
         "meshes much longer than the mean are divided into parts with boxes and trees of their own";
     static constexpr std::string_view needs_meshes =
-        "split_mesh divides meshes, and there are only boxes here; split_large divides boxes";
+        "split_mesh divides meshes, but the scene has only boxes; split_large divides boxes";
 
     [[nodiscard]] std::unique_ptr<global_stage> before(std::unique_ptr<global_stage> search,
                                                        instrumentation counted) const;

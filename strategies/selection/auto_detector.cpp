@@ -77,7 +77,7 @@ void auto_detector::remove(std::uint32_t object) {
 }
 
 std::span<const index_pair> auto_detector::pairs(std::span<const box> boxes) {
-    if (meshes_) throw input_error("this detector is of meshes: ask for contacts, with their poses");
+    if (meshes_) throw input_error("this detector is for meshes: call contacts with their poses");
     global_->update(boxes);
     pairs_.clear();
     global_->search(pairs_);
@@ -85,7 +85,7 @@ std::span<const index_pair> auto_detector::pairs(std::span<const box> boxes) {
 }
 
 pipeline& auto_detector::searched(std::span<const pose> poses) {
-    if (!meshes_) throw input_error("this detector is of boxes: make one with meshes to ask for contacts");
+    if (!meshes_) throw input_error("this detector is for boxes: construct one with meshes to find contacts");
     meshes_->both.update(poses);
     meshes_->both.search();
     return meshes_->both;

@@ -48,7 +48,7 @@ composition completed(const named_strategies& named) {
 
 /// The rule for a strategy that does not depend on the scene, followed by its summary.
 std::string usual_rule(strategy_kind kind, const strategy_choice& choice) {
-    const std::string why = choice == composition()[kind] ? "the usual one" : "what goes with what is named";
+    const std::string why = choice == composition()[kind] ? "the default" : "compatible with the named strategies";
     return why + ": " + std::ranges::find(strategies(kind), choice.name, &strategy_info::name)->summary;
 }
 
@@ -101,7 +101,7 @@ std::vector<selected_strategy> select_strategies(const named_strategies& named, 
         for (const statement& reason : fitting_of(kind, whole, traits).fit.because)
             rule += (rule.empty() ? "" : "; ") + to_text(reason);
         if (rule.empty()) rule = usual_rule(kind, whole[kind]);
-        selected.push_back({kind, whole[kind], named[kind] ? "as it is named" : rule});
+        selected.push_back({kind, whole[kind], named[kind] ? "as named" : rule});
     }
     return selected;
 }

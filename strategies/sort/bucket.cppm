@@ -13,7 +13,7 @@ class bucket_sort {
 public:
     static constexpr std::string_view name = "bucket";
     static constexpr std::string_view summary =
-        "buckets of equal length, as many as entries; linear where spread evenly";
+        "bucket sort with one bucket of equal width per entry: linear for uniformly spread entries";
     static constexpr bool is_done_by_columns = true;
 
     template <CounterPolicy Counters>

@@ -12,7 +12,7 @@ export namespace aabb {
 class radix_sort {
 public:
     static constexpr std::string_view name = "radix";
-    static constexpr std::string_view summary = "radix sort of the keys' bits: linear whatever the order";
+    static constexpr std::string_view summary = "radix sort of the keys' bits: linear for any order";
 
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {

@@ -24,7 +24,7 @@ public:
     };
     static constexpr std::tuple parameters{choice_parameter{
         "gaps", &config::gaps, std::array<std::string_view, 5>{"shell", "ciura", "tokuda", "ciura_eight", "four_one"},
-        "the sequence of gaps; ciura_eight and four_one have eight and two, however long the list"}};
+        "the gap sequence; ciura_eight and four_one have eight and two gaps for lists of any length"}};
 
     shell_sort() = default;
     explicit shell_sort(const config& c) : config_(c) {}

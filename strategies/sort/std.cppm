@@ -9,7 +9,7 @@ export namespace aabb {
 /// observed, so it counts comparisons only.
 struct std_sort {
     static constexpr std::string_view name = "std";
-    static constexpr std::string_view summary = "std::sort: n log n whatever the order";
+    static constexpr std::string_view summary = "std::sort: O(n log n) for any order";
 
     template <CounterPolicy Counters>
     static constexpr void sort(std::span<projection> list, Counters& counters) {

@@ -24,15 +24,14 @@ export namespace aabb {
 class subdivided_sweep : public kept_pairs {
 public:
     static constexpr std::string_view name = "subdivided";
-    static constexpr std::string_view summary =
-        "a coarse grid of regions, each with lists that are kept between frames as those of incremental are";
+    static constexpr std::string_view summary = "incremental sweep and prune within each region of a coarse grid";
 
     struct config {
         /// Number along each of the two cut axes. auto: as many as leave 16 objects per region of four mean extents.
         std::optional<std::uint32_t> regions;
     };
-    static constexpr std::tuple parameters{
-        integer_parameter{"regions", &config::regions, 1U, 256U, "along each of two axes"}};
+    static constexpr std::tuple parameters{integer_parameter{
+        "regions", &config::regions, 1U, 256U, "number along each of two axes; auto: about 16 objects per region"}};
 
     subdivided_sweep() = default;
     explicit subdivided_sweep(const config& c) : config_(c) {}

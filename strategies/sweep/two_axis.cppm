@@ -22,7 +22,7 @@ class two_axis_sweep {
 public:
     static constexpr std::string_view name = "two_axis";
     static constexpr std::string_view summary =
-        "sweeps one axis and keeps the boxes at hand in the order of a second one";
+        "sweeps along one axis and keeps the active boxes in the order of a second one";
 
     axis_set axes(std::span<const box> boxes, const membership& objects) {
         const spread along = spread_of(boxes, objects);

@@ -13,7 +13,7 @@ class compressed_literal_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "compressed_literal";
     static constexpr std::string_view summary =
-        "table 1 of the paper to the letter: three planes a node, the rest from its parent, some boxes larger";
+        "table 1 of the paper to the letter: three planes per node, the rest from its parent, some boxes larger";
 
     using leafless_layout::leafless_layout;
 

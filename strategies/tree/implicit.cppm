@@ -19,7 +19,7 @@ class implicit_tree {
 public:
     static constexpr std::string_view name = "implicit";
     static constexpr std::string_view summary =
-        "eight children a node in 64 bytes, no indices, no leaf boxes, walked in batches: fastest";
+        "nodes of 64 bytes with eight children, no indices, no leaf boxes, traversed in batches: fastest";
     static constexpr std::array leaves_out{absence::triangle_boxes, absence::node_indices};
     static constexpr bool has_leaf_boxes = true;
 
@@ -38,12 +38,12 @@ public:
         front_choice front = front_choice::forgotten;
     };
     static constexpr std::tuple parameters{
-        choice_parameter{
-            "vertices", &config::vertices, std::array<std::string_view, 2>{"listed", "fetched"},
-            "of a leaf: in a list, for 5 to 6 bytes a triangle, or through the mesh's triangles, which are waited for"},
-        choice_parameter{
-            "front", &config::front, std::array<std::string_view, 2>{"forgotten", "kept"},
-            "pairs of leaves near each other: forgotten, or kept for queries nearby, of exact triangle tests"}};
+        choice_parameter{"vertices", &config::vertices, std::array<std::string_view, 2>{"listed", "fetched"},
+                         "how a leaf's vertices are read: from a list, 5 to 6 bytes per triangle, or slower, through "
+                         "the mesh's triangles"},
+        choice_parameter{"front", &config::front, std::array<std::string_view, 2>{"forgotten", "kept"},
+                         "BVTT front tracking, for exact triangle tests: pairs of close leaves are kept for queries at "
+                         "nearby poses"}};
 
     template <class Triangle, class Counters>
     using walk = front_walk<implicit_tree, Triangle, Counters>;
@@ -63,7 +63,7 @@ public:
         if (scene.triangles > 0 && scene.triangles_of_two() <= most_fetched_of_two && scene.queries < repaid) {
             fit.settings.push_back({"vertices", "fetched"});
             fit.because.push_back(
-                {"queries are to be {queries}, and only from {repaid} on they repay lists of vertices",
+                {"{queries} queries are expected, and vertex lists are worth their cost only from {repaid} on",
                  {{{"queries", static_cast<double>(scene.queries)}, {"repaid", static_cast<double>(repaid)}}}});
         }
         if (scene.triangles_of_two() >= double{least_of_front} && scene.exact_triangles &&

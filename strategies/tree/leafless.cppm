@@ -12,7 +12,7 @@ class leafless_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "leafless";
     static constexpr std::string_view summary =
-        "internal nodes of 32 bytes, no leaves: triangle indices stand in the parent";
+        "internal nodes of 32 bytes, no leaves: parents store the triangle indices";
 
     using leafless_layout::leafless_layout;
 

@@ -18,8 +18,8 @@ struct leafless_config {
 inline constexpr std::tuple leafless_parameters{
     choice_parameter{"leaf_test", &leafless_config::leaf_test,
                      std::array<std::string_view, 4>{"none", "triangle_box", "triangle_aabb", "moller_triangle_box"},
-                     "what is tested in place of a leaf's box: nothing, the triangle against the other box, or the "
-                     "triangle's own box; moller_triangle_box is Möller's original of the second and inexact"}};
+                     "the test that replaces that of a leaf's box: none, the triangle against the other box, or the "
+                     "triangle's own box; moller_triangle_box is Möller's original form of the second, inexact"}};
 
 /// The common part of layouts without leaves: at a leaf the cursor carries the parent's box, or the triangle's own box
 /// if that is tested.

@@ -19,14 +19,14 @@ class quantized_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "quantized";
     static constexpr std::string_view summary =
-        "compressed further: planes in 4 to 16 bits each, rounded outward, and one index for two siblings";
+        "compressed further: planes of 4 to 16 bits, rounded outward, and one index per two siblings";
     static constexpr leaf_arrangement arrangement = leaf_arrangement::pairs;
 
     using config = quantized_config;
     static constexpr auto parameters = std::tuple_cat(
         leafless_parameters,
         std::tuple{integer_parameter{"bits", &config::bits, quantized_planes::least_bits, quantized_planes::most_bits,
-                                     "of a plane: fewer take less memory and make boxes larger"}});
+                                     "bits per plane: fewer take less memory and make boxes larger"}});
 
     quantized_tree() = default;
     explicit quantized_tree(const config& c) : leafless_layout(c), planes_(c.bits) {}
@@ -44,7 +44,7 @@ public:
             if (nodes[i].is_leaf()) continue;
             records += !holds_leaves_only(i);
             end += holds_leaves_only(i) ? pair_bytes : record_bytes();
-            if (end > pair_bit) throw input_error("a quantized tree takes no more than 2 GiB; this mesh needs more");
+            if (end > pair_bit) throw input_error("a quantized tree takes at most 2 GiB; this mesh needs more");
         }
         bytes_.assign(end, {});
         records_ = records;

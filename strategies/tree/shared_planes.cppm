@@ -12,8 +12,7 @@ export namespace aabb {
 class shared_planes_tree {
 public:
     static constexpr std::string_view name = "shared_planes";
-    static constexpr std::string_view summary =
-        "leaves kept, planes shared: six floats and six bits for the boxes of two siblings";
+    static constexpr std::string_view summary = "leaves kept, planes shared: six floats and six bits per two siblings";
     static constexpr bool has_leaf_boxes = true;
 
     using cursor = box_cursor;

@@ -141,16 +141,16 @@ class interval_arithmetic_triangle {
 public:
     static constexpr std::string_view name = "interval_arithmetic";
     static constexpr std::string_view summary =
-        "orientation signs by interval arithmetic: exact, or without its fallback never missing a pair";
+        "orientation signs by interval arithmetic: exact, or with false positives but no false negatives";
 
     struct config {
         fallback_choice fallback = fallback_choice::exact;
 
         [[nodiscard]] constexpr bool is_exact() const noexcept { return fallback == fallback_choice::exact; }
     };
-    static constexpr std::tuple parameters{choice_parameter{
-        "fallback", &config::fallback, std::array<std::string_view, 2>{"exact", "intersects"},
-        "what an interval that holds zero leads to: the exact sign, or the answer that they intersect"}};
+    static constexpr std::tuple parameters{
+        choice_parameter{"fallback", &config::fallback, std::array<std::string_view, 2>{"exact", "intersects"},
+                         "result if an interval contains zero: the exact sign, or that the triangles intersect"}};
 
     interval_arithmetic_triangle() = default;
     explicit interval_arithmetic_triangle(const config& c) : fallback_(c.fallback) {}

@@ -32,7 +32,7 @@ inline constexpr std::tuple interval_parameters{
                      "distances that count as zero: below 1e-6 as in the original, none, or below 1e-6 of the "
                      "pair's extent"},
     choice_parameter{"division", &interval_config::division, std::array<std::string_view, 2>{"yes", "no"},
-                     "whether ends of intervals are quotients, or are compared as products with all denominators"}};
+                     "whether ends of intervals are compared as quotients, or as products with all denominators"}};
 
 /// Möller's interval test ("A fast triangle-triangle intersection test", 1997) in the arithmetic of Real. It reproduces
 /// the original's order of summation, its choice of axis in ties, and its results after underflow and overflow.

@@ -22,7 +22,7 @@ public:
     using config = precision_config<Usual>;
     static constexpr auto parameters = std::make_tuple(
         choice_parameter{"precision", &config::precision, std::array<std::string_view, 2>{"float", "double"},
-                         "what it computes in; float rounds doubles that it is given"});
+                         "precision of the arithmetic; float rounds input in double"});
 
     test_in_precision() = default;
     explicit test_in_precision(const config& c) : config_(c) {}

@@ -62,7 +62,7 @@ public:
             total += size;
         }
         if (total > most_bytes)
-            throw input_error("lists of vertices take no more than 4 GiB; this mesh needs implicit:vertices=fetched");
+            throw input_error("vertex lists take at most 4 GiB; this mesh needs implicit:vertices=fetched");
         lists_.resize(total + read_beyond);
         std::fill(lists_.end() - read_beyond, lists_.end(), std::byte{});
         workers.for_each_index(sizes.size(), [&](std::size_t p, std::size_t) {

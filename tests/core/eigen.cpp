@@ -94,7 +94,7 @@ TEST_CASE("points and boxes are where the user has them, aligned or not") {
     const Eigen::Map<const bounds> two(memory.data() + 1, 6, 2);
     REQUIRE(boxes_in(two)[1] == box{{7, 8, 9}, {10, 11, 12}});
     const Eigen::Map<Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> apart(memory.data(), 3, 3, Eigen::OuterStride<>(4));
-    REQUIRE_THROWS_MATCHES(points_in(apart), input_error, MessageMatches(ContainsSubstring("side by side")));
+    REQUIRE_THROWS_MATCHES(points_in(apart), input_error, MessageMatches(ContainsSubstring("not contiguous")));
     const Eigen::Map<Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> one(memory.data(), 3, 1, Eigen::OuterStride<>(4));
     REQUIRE(points_in(one).size() == 1);
 }

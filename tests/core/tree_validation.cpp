@@ -59,12 +59,12 @@ TEST_CASE("a survey tells of boxes that are larger than they must be") {
 
 TEST_CASE("a survey finds what is wrong with a tree") {
     CHECK(validate_tree({{{{0, 0, 0}, {4, 5, 5}}, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}}).fault ==
-          "a box does not hold the triangles below it");
+          "a box does not contain the triangles below it");
     CHECK(validate_tree({{all, {1, 2}, 0}, {{{0, 0, 0}, {1, 0.5F, 0}}, {}, 0}, {right, {}, 1}}).fault ==
-          "a box does not hold the triangles below it");
+          "a box does not contain the triangles below it");
     CHECK(validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {left, {}, 0}}).fault == "triangle 0 is in two leaves");
     CHECK(validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {right, {}, 7}}).fault ==
-          "a leaf holds triangle 7, which the mesh has not");
+          "a leaf holds triangle 7, which the mesh does not have");
     CHECK(validate_tree({{left, {}, 0}}).fault == "triangle 1 is in no leaf");
-    CHECK(validate_tree({{all, {0, 1}, 0}, {right, {}, 1}}).fault == "the tree is deeper than it has triangles");
+    CHECK(validate_tree({{all, {0, 1}, 0}, {right, {}, 1}}).fault == "the tree has more levels than triangles");
 }

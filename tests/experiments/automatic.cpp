@@ -149,8 +149,9 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     for (const char* part :
          {"objects       200\n", "frames        81, of which the first 4 are measured\n",
           "at rest       0 % of the objects\n", "counters of all work  ", "prepare    neighbour_list  frames follow",
-          "    plans from earlier frames\n", "one column, cut nowhere", " pairs, of boxes grown by ", "as selected",
-          "split_large", "axial_cut", "build, tree, triangle do not apply to this scene"})
+          "    plans from earlier frames
+", "one column: no axis is cut", " pairs of boxes, with a skin of ",
+          "as selected", "split_large", "axial_cut", "build, tree, triangle do not apply to this scene"})
         CHECK(holds(reported.out, part));
     CHECK_FALSE(holds(reported.out, "canonical"));
     // columns take no other sweep.
@@ -185,7 +186,7 @@ TEST_CASE("explain says what all that is left out saves, with whom it is had, or
         CHECK_FALSE(line_of(table, what).ends_with("-"));
     }
     // Of so few boxes nobody keeps one without being told to, and none is large.
-    CHECK(holds(line_of(table, "no list of neighbours"), "neighbour_list:margin=0.1 "));
+    CHECK(holds(line_of(table, "no Verlet list"), "neighbour_list:margin=0.1 "));
     CHECK(line_of(table, "no division of large objects").ends_with(" -"));
     CHECK(holds(line_of(table, "no work counters"), "counters of all work "));
     CHECK(line_of(table, "no work counters").ends_with(" 0"));

@@ -110,7 +110,7 @@ sweep = "incremental"
 TEST_CASE("What divides meshes is refused beside a scene of boxes, and plays in scenes of meshes") {
     const std::string splits = "[compose]\nprepare = [\"none\", \"split_mesh\"]\n";
     REQUIRE(rejection_of(minimal + splits)
-                .ends_with("split_mesh divides meshes, and there are only boxes here; split_large divides boxes"));
+                .ends_with("split_mesh divides meshes, but the scene has only boxes; split_large divides boxes"));
     // With the line that asks for it.
     REQUIRE(holds(rejection_of(minimal + splits), ":6: brownian: split_mesh divides"));
     REQUIRE(

@@ -64,9 +64,9 @@ TEST_CASE("pairs and scene refuse what they cannot do and leave no file behind")
             {{"--sort", "auto"}, "--sort auto: omit the option to have one selected"},
             {{"--split-large", "2"}, "'split_large' is a strategy; write --prepare split_large"},
             {{"--prepare", "split_large:size=0"}, "split_large: size must be a number above 0, not '0'"},
-            {{"--prepare", "split_mesh"}, "split_mesh divides meshes, and there are only boxes here"},
-            {{"--sort", "std", "--sweep", "incremental"}, "goes with insertion only"},
-            {{"--sort", "insertion", "--partition", "axial_cut", "--sweep", "incremental"}, "it goes with none only"},
+            {{"--prepare", "split_mesh"}, "split_mesh divides meshes, but the scene has only boxes"},
+            {{"--sort", "std", "--sweep", "incremental"}, "combined with insertion only"},
+            {{"--sort", "insertion", "--partition", "axial_cut", "--sweep", "incremental"}, "combined with none only"},
             {{"--partition", "axial_cut:axes=4"}, "axes must be a whole number from 1 to 3 or auto, not '4'"},
             {{"--partition", "axial_cut:segments=0"}, "segments must be a whole number from 1 to 65535 or auto"},
         });

@@ -467,5 +467,5 @@ TEST_CASE("columns are for a sweep that takes them") {
     composition c = columns_with("");
     c[strategy_kind::sweep] = parse_strategy("one_axis");
     CHECK(rejection_of(c, stage::global_search) ==
-          "columns hands over boxes in whole vectors, bucket by bucket; it goes with simd only");
+          "columns passes boxes in whole vectors, bucket by bucket; it can be combined with simd only");
 }

@@ -226,7 +226,7 @@ TEST_CASE("an auto_detector says what it selected and by which rule, and what it
         const auto one = std::ranges::find(all, kind, &selected_strategy::kind);
         return one == all.end() ? "" : to_text(one->choice) + ", " + one->rule;
     };
-    CHECK(rule_of(boxes, strategy_kind::sort) == "shell:gaps=ciura, as it is named");
+    CHECK(rule_of(boxes, strategy_kind::sort) == "shell:gaps=ciura, as named");
     CHECK(rule_of(boxes, strategy_kind::prepare).starts_with("none, fewer than 4 frames"));
     CHECK(rule_of(boxes, strategy_kind::tree).empty());
     CHECK(leaves_out(boxes, absence::local_detection));
@@ -251,7 +251,7 @@ TEST_CASE("a detector refuses what it cannot be made of, or asked for, in one se
     CHECK_THROWS_AS(auto_detector({"prepare=split_mesh"}), input_error);
     CHECK_THROWS_AS(auto_detector({"sort=shell", "sweep=incremental"}), input_error);
     auto_detector boxes;
-    CHECK_REFUSED(boxes.contacts({}), "this detector is of boxes: make one with meshes to ask for contacts");
+    CHECK_REFUSED(boxes.contacts({}), "this detector is for boxes: construct one with meshes to find contacts");
     auto_detector moving(meshes, mesh_of);
-    CHECK_REFUSED(moving.pairs({}), "this detector is of meshes: ask for contacts, with their poses");
+    CHECK_REFUSED(moving.pairs({}), "this detector is for meshes: call contacts with their poses");
 }

@@ -212,14 +212,14 @@ TEST_CASE("copies that no machine can hold are counted and refused, and the sear
     }
     for (const auto& [partition, boxes, sentence] :
          {std::tuple{"axial_cut:axes=3,segments=65535,limit=off", nested,
-                     "axial_cut makes 2038522500 copies of 300 objects, but at most 16796416 (2^24 + 64 an object) are "
-                     "allowed; fewer cuts make fewer"},
+                     "axial_cut makes 2038522500 copies of 300 objects, but at most 16796416 (2^24 + 64 per object) "
+                     "are allowed; fewer cuts make fewer copies"},
           std::tuple{"uniform_grid:cell_size=1", std::vector(200, cube(0, 400)),
-                     "uniform_grid makes 12896240200 copies of 200 objects, but at most 16790016 (2^24 + 64 an "
-                     "object) are allowed; fewer cuts make fewer"},
+                     "uniform_grid makes 12896240200 copies of 200 objects, but at most 16790016 (2^24 + 64 per "
+                     "object) are allowed; fewer cuts make fewer copies"},
           std::tuple{"uniform_grid:cell_size=1", std::vector(200, cube(0, 60)),
-                     "uniform_grid makes 45396200 copies of 200 objects, but at most 16790016 (2^24 + 64 an "
-                     "object) are allowed; fewer cuts make fewer"}}) {
+                     "uniform_grid makes 45396200 copies of 200 objects, but at most 16790016 (2^24 + 64 per "
+                     "object) are allowed; fewer cuts make fewer copies"}}) {
         const auto stage = search_of(composed({{strategy_kind::partition, partition}}), boxes.size());
         CHECK_REFUSED(stage->update(boxes), sentence);
         // Nothing of that size was made.

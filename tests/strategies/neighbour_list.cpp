@@ -180,7 +180,7 @@ TEST_CASE("what a list planned is told in numbers, and in a sentence that has th
     CHECK(plans.back().told["pairs"] == 1);
     CHECK(plans.back().told["margin"] == 0.5);
     CHECK(plans.back().told["cells"] == 0);
-    CHECK(to_text(plans.back().told) == "a list of 1 pairs, of boxes grown by 0.5 on every side");
+    CHECK(to_text(plans.back().told) == "a Verlet list of 1 pairs of boxes, with a skin of 0.5");
 }
 
 TEST_CASE("a neighbour list serves boxes that move alike, however far, and is exact whatever rounding does") {
@@ -874,7 +874,7 @@ TEST_CASE("a few boxes are not watched") {
         const auto stage = listing_stage(n);
         std::vector<box> boxes(n, cube(0));
         (void)found_by(*stage, boxes);
-        const omission few{absence::neighbour_list, "so few boxes are searched as soon as watched"};
+        const omission few{absence::neighbour_list, "searching so few boxes costs no more than tracking them"};
         CHECK(std::ranges::count(stage->left_out(), few) == (n == 2 * simd::width ? 1 : 0));
         // A margin that is named is kept to.
         const auto named = search_of(composed({{strategy_kind::prepare, "neighbour_list:margin=1"}}), n);

@@ -226,7 +226,7 @@ TEST_CASE("more subsets than a machine can hold are refused") {
         boxes.push_back({p, p});
     }
     CHECK_REFUSED(cut_frame(boxes, {{"axes", "3"}, {"segments", "3000"}}),
-                  "axial_cut: 3000 segments an axis make 27000000000 subsets, more than 2^26");
+                  "axial_cut: 3000 segments per axis make 27000000000 subsets, more than 2^26");
 }
 
 TEST_CASE("overlapping boxes have one leaf that owns them, whatever frames came before") {

@@ -35,7 +35,7 @@ TEST_CASE("a frame that a pipeline refused is not searched, and the next one is"
     both.update(poses);
     poses[0].translation[0] = 9;
     poses[1].translation[0] = 1e300;
-    const std::string no_candidates = "there are no candidates to decide on: search was not called, or did not succeed";
+    const std::string no_candidates = "there are no candidates to test: search was not called, or did not succeed";
     CHECK_REFUSED(both.update(poses), "object 1 lies beyond the range of float");
     CHECK_REFUSED(both.search(), "there is no frame to search: update was not called, or did not succeed");
     CHECK_REFUSED(both.detect(), no_candidates);

@@ -75,7 +75,7 @@ TEST_CASE("pieces keep their places in sorted lists when other objects come and 
 TEST_CASE("a size that would make far more pieces than there are objects is refused") {
     const auto stage = splitting(1e-6, 20'000);
     CHECK_REFUSED(stage->update(std::vector<box>(20'000, cube(0, 1))),
-                  "split_large: this size makes more than 385536 pieces of 20000 objects; a greater one makes fewer");
+                  "split_large: this size makes more than 385536 pieces of 20000 objects; a greater size makes fewer");
 }
 
 TEST_CASE("rounding of coordinates splits nothing") {

@@ -145,7 +145,7 @@ TEST_CASE("objects of divided meshes are refused by their own numbers") {
     const auto last = scene.meshes[0].triangles.back();
     scene.meshes[0].triangles.pop_back();
     CHECK_REFUSED(parted.both.update(poses),
-                  "a mesh that deforms keeps its triangles: there were 320, now there are 319");
+                  "a deforming mesh must keep its triangles: there were 320, now there are 319");
     scene.meshes[0].triangles.push_back(last);
     CHECK_FALSE(parted.contacts(poses).empty());
     scene.meshes[0].triangles[5][0] = 9999;
@@ -155,7 +155,7 @@ TEST_CASE("objects of divided meshes are refused by their own numbers") {
 TEST_CASE("split_mesh refuses boxes alone, and a size that makes far more pieces than there are objects") {
     const auto stage = compose_global_search(splitting("4"), instrumentation::none);
     stage->insert(0);
-    const std::string sentence = "split_mesh divides meshes, and there are only boxes here; split_large divides boxes";
+    const std::string sentence = "split_mesh divides meshes, but the scene has only boxes; split_large divides boxes";
     CHECK_REFUSED(stage->update(std::vector<box>(1)), sentence);
     CHECK(needs_meshes(splitting("4")) == sentence);
     CHECK(needs_meshes(composition()).empty());
@@ -167,5 +167,5 @@ TEST_CASE("split_mesh refuses boxes alone, and a size that makes far more pieces
     }
     const told_scene scene({dust}, std::vector<std::uint32_t>(17, 0));
     CHECK_REFUSED(played(scene, splitting("0.001")),
-                  "split_mesh: this size makes more than 65808 pieces of 17 objects; a greater one makes fewer");
+                  "split_mesh: this size makes more than 65808 pieces of 17 objects; a greater size makes fewer");
 }

@@ -208,9 +208,9 @@ TEST_CASE("sweeps that keep their pairs are refused with what they cannot follow
                                             stage::global_search));
         };
         for (const char* sort : {"shell", "std"})
-            CHECK(rejection(sort, "none").ends_with("it goes with insertion only"));
+            CHECK(rejection(sort, "none").ends_with("it can be combined with insertion only"));
         for (const char* partition : {"axial_cut", "uniform_grid"})
-            CHECK(rejection("insertion", partition).ends_with("it goes with none only"));
+            CHECK(rejection("insertion", partition).ends_with("it can be combined with none only"));
         CHECK(rejection("insertion", "none").empty());
     }
 }

@@ -158,7 +158,7 @@ TEST_CASE("a mesh that has lost triangles or turned bad is not refitted") {
         CHECK_REFUSED(stage->refit(0), "vertex 0 has a coordinate that is not finite");
         m.vertices[0][1] = 0;
         m.triangles.pop_back();
-        CHECK_REFUSED(stage->refit(0), "a mesh that deforms keeps its triangles: there were 7, now there are 6");
+        CHECK_REFUSED(stage->refit(0), "a deforming mesh must keep its triangles: there were 7, now there are 6");
     }
 }
 

@@ -66,8 +66,9 @@ TEST_CASE("a test that only decides refuses to construct; epeck constructs what 
         if (test->constructs())
             CHECK(test->intersection(face, edge).corners == exact_triangle::intersection(face, edge).corners);
         else
-            CHECK_REFUSED(test->intersection(face, edge),
-                          info.name + " decides whether triangles intersect, not what they have in common");
+            CHECK_REFUSED(
+                test->intersection(face, edge),
+                info.name + " decides whether triangles intersect, but does not construct their intersection");
     }
 }
 
@@ -87,7 +88,7 @@ TEST_CASE("every triangle test of a library comes to an end, whatever the pair")
 TEST_CASE("a library's triangle test is refused by the nearest name, and by settings that it has not") {
     CHECK_REFUSED(make_library_test({"epik", {}}), "unknown triangle test 'epik'; did you mean 'epick'?");
     CHECK_REFUSED(make_library_test({"epick", {{"epsilon", "none"}}}),
-                  "epick takes no parameters, so not 'epsilon' either");
+                  "epick takes no parameters, but 'epsilon' is set");
     for (const library_test_info& info : library_tests())
         for (const parameter_info& p : info.parameters) {
             INFO(info.name << ": " << p.name);
