@@ -122,7 +122,7 @@ inline aabb::composition composed(std::initializer_list<std::pair<aabb::strategy
 }
 
 /// Whether pairs of leaves are kept from query to query.
-inline bool keeps_front(const aabb::composition& c) {
+inline bool keeps_fronts(const aabb::composition& c) {
     return std::ranges::count(c[aabb::strategy_kind::tree].settings, aabb::setting{"front", "kept"}) > 0;
 }
 

@@ -29,7 +29,7 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
     Build by_two;
     by_two.threads = 2;
     const auto build = [&](const Build& by) {
-        const aabb::model<aabb::implicit_tree> built(m, aabb::built_by(by));
+        const aabb::model<aabb::implicit_tree> built(m, aabb::as_tree_builder(by));
         benchmark::DoNotOptimize(&built);
     };
     // Warm-up: starts the threads. TBB determines the available processors on its first use.

@@ -61,7 +61,7 @@ private:
 
 /// Calls `append`, which appends to a list; if it throws, the list is restored.
 template <class T, class Allocator, class Append>
-void append_whole(std::vector<T, Allocator>& list, Append append) {
+void append_or_restore(std::vector<T, Allocator>& list, Append append) {
     const std::size_t before = list.size();
     try {
         append();

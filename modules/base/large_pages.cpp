@@ -32,7 +32,7 @@ void give(void* memory) noexcept {
 
 }  // namespace
 
-void* take_large(std::size_t bytes) {
+void* allocate_large(std::size_t bytes) {
     const bool in_large_pages = bytes >= 2 * page;
     void* const memory = take(bytes, in_large_pages ? page : large_alignment);
     if (memory == nullptr) throw std::bad_alloc();
@@ -43,7 +43,7 @@ void* take_large(std::size_t bytes) {
     return memory;
 }
 
-void give_large(void* memory) noexcept {
+void free_large(void* memory) noexcept {
     give(memory);
 }
 

@@ -9,8 +9,8 @@ namespace aabb::detail {
 
 inline constexpr std::size_t large_alignment = 64;
 
-[[nodiscard]] void* take_large(std::size_t bytes);
-void give_large(void* memory) noexcept;
+[[nodiscard]] void* allocate_large(std::size_t bytes);
+void free_large(void* memory) noexcept;
 
 }  // namespace aabb::detail
 
@@ -30,11 +30,11 @@ struct large_pages {
     constexpr large_pages(const large_pages<U>&) noexcept {}
 
     [[nodiscard]] static constexpr T* allocate(std::size_t n) {
-        if (is_large(n)) return static_cast<T*>(detail::take_large(n * sizeof(T)));
+        if (is_large(n)) return static_cast<T*>(detail::allocate_large(n * sizeof(T)));
         return std::allocator<T>().allocate(n);
     }
     static constexpr void deallocate(T* memory, std::size_t n) noexcept {
-        if (is_large(n)) return detail::give_large(memory);
+        if (is_large(n)) return detail::free_large(memory);
         std::allocator<T>().deallocate(memory, n);
     }
 

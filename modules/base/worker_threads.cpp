@@ -24,7 +24,8 @@ worker_threads::worker_threads(worker_threads&&) noexcept = default;
 worker_threads& worker_threads::operator=(worker_threads&&) noexcept = default;
 worker_threads::~worker_threads() = default;
 
-void worker_threads::share_out(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker), void* work) {
+void worker_threads::run_in_arena(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker),
+                                  void* work) {
     const auto share = [&] {
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, n, 1),
@@ -38,7 +39,7 @@ void worker_threads::share_out(std::size_t n, void (*call)(void* work, std::size
     arena_->of.execute([&] { tbb::this_task_arena::isolate(share); });
 }
 
-void worker_threads::share_both(void (*first)(void*), void* of_first, void (*second)(void*), void* of_second) {
+void worker_threads::run_both_in_arena(void (*first)(void*), void* of_first, void (*second)(void*), void* of_second) {
     arena_->of.execute([&] { tbb::parallel_invoke([&] { first(of_first); }, [&] { second(of_second); }); });
 }
 

@@ -19,7 +19,7 @@ public:
     template <class Work>
     void for_each_index(std::size_t n, Work work) {
         const auto call = [](void* of, std::size_t i, std::size_t worker) { (*static_cast<Work*>(of))(i, worker); };
-        if (count_ > 1 && n > 1) return share_out(n, call, &work);
+        if (count_ > 1 && n > 1) return run_in_arena(n, call, &work);
         for (std::size_t i = 0; i < n; ++i) work(i, std::size_t{0});
     }
 
@@ -36,7 +36,7 @@ public:
     void both(First first, Second second) {
         const auto call_first = [](void* of) { (*static_cast<First*>(of))(); };
         const auto call_second = [](void* of) { (*static_cast<Second*>(of))(); };
-        if (count_ > 1) return share_both(call_first, &first, call_second, &second);
+        if (count_ > 1) return run_both_in_arena(call_first, &first, call_second, &second);
         first();
         second();
     }
@@ -44,8 +44,8 @@ public:
 private:
     struct arena;
 
-    void share_out(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker), void* work);
-    void share_both(void (*first)(void*), void* of_first, void (*second)(void*), void* of_second);
+    void run_in_arena(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker), void* work);
+    void run_both_in_arena(void (*first)(void*), void* of_first, void (*second)(void*), void* of_second);
 
     unsigned count_;
     std::unique_ptr<arena> arena_;  // null for one thread

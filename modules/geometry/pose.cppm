@@ -55,17 +55,17 @@ struct box_motion {
 /// A bound on the rounding error of a vertex's image (`relative_pose::to_boxes`): rounding to float contributes, on
 /// each axis, 2^-24 of the magnitudes whose 2^-48 is the margin, or half the least denormal. Twice that also covers
 /// rounding in double.
-[[nodiscard]] inline double most_rounding(const box_motion& p) noexcept {
+[[nodiscard]] inline double rounding_bound(const box_motion& p) noexcept {
     return (p.margin[0] + p.margin[1] + p.margin[2]) * 0x1p25 + 0x1p-147;
 }
 
 /// A bound on the distance between the rounded images of a vertex under two poses (`relative_pose::to_boxes`), and so
 /// between those of any point of a triangle.
 /// @param bounds box of the vertices
-[[nodiscard]] inline double most_apart(const box_motion& p, const box_motion& q, const box& bounds) noexcept {
+[[nodiscard]] inline double displacement_bound(const box_motion& p, const box_motion& q, const box& bounds) noexcept {
     const auto length = [](const vec3d& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
     vec3d between{};
-    double distance = most_rounding(p) + most_rounding(q);
+    double distance = rounding_bound(p) + rounding_bound(q);
     for (int k = 0; k < 3; ++k) between[k] = p.shift[k] - q.shift[k];
     for (int j = 0; j < 3; ++j) {
         const double centre = (double{bounds.min[j]} + double{bounds.max[j]}) / 2;

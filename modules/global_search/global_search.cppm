@@ -84,7 +84,7 @@ public:
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_whole(pairs, [&] {
+        append_or_restore(pairs, [&] {
             if constexpr (cuts) {
                 for (std::uint32_t s = 0; s < subsets_.size(); ++s)
                     sweep_.sweep(subsets_.subset(s, boxes_), pairs, counters_);
@@ -149,7 +149,7 @@ public:
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_whole(pairs, [&] { sweep_.search(pairs); });
+        append_or_restore(pairs, [&] { sweep_.search(pairs); });
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
@@ -193,7 +193,7 @@ public:
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_whole(pairs, [&] { search_.search(pairs, counters_); });
+        append_or_restore(pairs, [&] { search_.search(pairs, counters_); });
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }

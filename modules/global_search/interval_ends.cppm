@@ -45,8 +45,8 @@ inline void sort_ends(std::vector<interval_end>& list) {
 /// Updates the pairs after a swap: inserts a pair whose overlap begins, and erases one whose overlap ends.
 /// @param before the boxes of the previous frame
 template <CounterPolicy Counters>
-inline void take_note_of_swap(const interval_end& passed, const interval_end& mover, std::span<const box> before,
-                              std::span<const box> boxes, pair_set& pairs, Counters& counters) {
+inline void update_pairs_after_swap(const interval_end& passed, const interval_end& mover, std::span<const box> before,
+                                    std::span<const box> boxes, pair_set& pairs, Counters& counters) {
     if (passed.is_upper == mover.is_upper) return;
     const index_pair pair = ordered_pair(passed.id, mover.id);
     counters.add(work::box_tests);

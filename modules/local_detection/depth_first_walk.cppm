@@ -18,8 +18,8 @@ public:
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal /*goal*/, Emit emit) {
         begin();
-        push_if_near(a, b, to_a, {a.root(), b.root(), to_a(b.bounds())}, side::both);
-        drain(test, a, b, to_a, emit);
+        push_if_overlapping(a, b, to_a, {a.root(), b.root(), to_a(b.bounds())}, side::both);
+        test_pending(test, a, b, to_a, emit);
     }
 
     /// The same for the pairs of one mesh, in either order.
@@ -35,8 +35,8 @@ public:
             const auto [left, right] = m.tree().children(at, m.triangles());
             nodes_.push_back(left);
             nodes_.push_back(right);
-            push_if_near(m, m, here, {left, right, m.tree().bounds(right)}, side::both);
-            drain(test, m, m, here, emit);
+            push_if_overlapping(m, m, here, {left, right, m.tree().bounds(right)}, side::both);
+            test_pending(test, m, m, here, emit);
         }
         assert(stack_.empty());
     }
@@ -71,7 +71,7 @@ private:
     }
 
     template <class Frame, class Emit>
-    void drain(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a, Emit& emit) {
+    void test_pending(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a, Emit& emit) {
         const Tree& tree_a = a.tree();
         const Tree& tree_b = b.tree();
         while (!stack_.empty()) {
@@ -86,12 +86,12 @@ private:
                 if (emit(std::span<const index_pair>(&triangles, 1))) return;
             } else if (b_is_leaf || (!a_is_leaf && length(tree_a.bounds(at.a)) >= length(at.b_bounds))) {
                 const auto [left, right] = tree_a.children(at.a, a.triangles());
-                push_if_near(a, b, to_a, {right, at.b, at.b_bounds}, side::a);
-                push_if_near(a, b, to_a, {left, at.b, at.b_bounds}, side::a);
+                push_if_overlapping(a, b, to_a, {right, at.b, at.b_bounds}, side::a);
+                push_if_overlapping(a, b, to_a, {left, at.b, at.b_bounds}, side::a);
             } else {
                 const auto [left, right] = tree_b.children(at.b, b.triangles());
-                push_if_near(a, b, to_a, {at.a, right, bounds_in_a(b, to_a, right, at.b_bounds)}, side::b);
-                push_if_near(a, b, to_a, {at.a, left, bounds_in_a(b, to_a, left, at.b_bounds)}, side::b);
+                push_if_overlapping(a, b, to_a, {at.a, right, bounds_in_a(b, to_a, right, at.b_bounds)}, side::b);
+                push_if_overlapping(a, b, to_a, {at.a, left, bounds_in_a(b, to_a, left, at.b_bounds)}, side::b);
             }
         }
     }
@@ -124,14 +124,14 @@ private:
     }
 
     template <class Frame>
-    void push_if_near(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
-                      side untested) {
-        if (may_meet(a, b, to_a, next, untested)) stack_.push_back(next);
+    void push_if_overlapping(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
+                             side untested) {
+        if (may_overlap(a, b, to_a, next, untested)) stack_.push_back(next);
     }
 
     template <class Frame>
-    [[nodiscard]] bool may_meet(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
-                                side untested) {
+    [[nodiscard]] bool may_overlap(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
+                                   side untested) {
         if constexpr (!Tree::has_leaf_boxes) {
             const leaf_test_choice test = a.tree().leaf_test();
             const bool a_is_leaf = a.tree().is_leaf(next.a);
@@ -142,14 +142,15 @@ private:
             if (a_is_leaf && b_is_leaf && test != leaf_test_choice::triangle_aabb) return true;
             if (test == leaf_test_choice::none && (untested == side::a ? a_is_leaf : b_is_leaf)) return true;
             if (tests_triangles && a_is_leaf)
-                return meets_box(a.triangles().triangle(a.tree().triangle(next.a)), next.b_bounds, test);
-            if (tests_triangles && b_is_leaf) return meets_box(image(b, to_a, next.b), a.tree().bounds(next.a), test);
+                return intersects_box(a.triangles().triangle(a.tree().triangle(next.a)), next.b_bounds, test);
+            if (tests_triangles && b_is_leaf)
+                return intersects_box(image(b, to_a, next.b), a.tree().bounds(next.a), test);
         }
         counters_.add(work::box_tests);
         return overlaps(a.tree().bounds(next.a), next.b_bounds);
     }
 
-    [[nodiscard]] bool meets_box(const triangle3f& t, const box& b, leaf_test_choice test) {
+    [[nodiscard]] bool intersects_box(const triangle3f& t, const box& b, leaf_test_choice test) {
         counters_.add(work::triangle_box_tests);
         return test == leaf_test_choice::triangle_box ? triangle_meets_box(t, b) : moller_triangle_meets_box(t, b);
     }

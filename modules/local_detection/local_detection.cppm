@@ -37,7 +37,7 @@ public:
     /// Appends every pair of intersecting triangles (a of A, b of B) once, in unspecified order.
     void all_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
-        append_whole(pairs, [&] {
+        append_or_restore(pairs, [&] {
             between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
                 pairs.insert(pairs.end(), batch.begin(), batch.end());
                 return false;
@@ -68,7 +68,7 @@ public:
 
     /// Appends every pair of intersecting triangles a < b of one mesh, including neighbours that share a vertex.
     void self_pairs(const model<Tree>& m, std::vector<index_pair>& pairs) {
-        append_whole(pairs, [&] { each_self_pair(m, [&](index_pair pair) { pairs.push_back(pair); }); });
+        append_or_restore(pairs, [&] { each_self_pair(m, [&](index_pair pair) { pairs.push_back(pair); }); });
     }
 
     /// Passes each of the same pairs to `take` as it is found, without storing any.

@@ -30,7 +30,7 @@ enum class leaf_arrangement : std::uint8_t { any, pairs };
 /// The split of a node: the first `left` triangles go to the left, in the order of their centroids along an axis (of
 /// their indices if these are equal), or in their current order.
 struct split_choice {
-    static constexpr int as_they_stand = -1;
+    static constexpr int in_current_order = -1;
 
     int axis;
     std::size_t left;
@@ -90,7 +90,7 @@ struct tree_builder {
 };
 
 template <BuildPolicy Build>
-[[nodiscard]] tree_builder built_by(const Build& by = {}) {
+[[nodiscard]] tree_builder as_tree_builder(const Build& by = {}) {
     return {[by](const mesh& m, leaf_arrangement arrangement) { return by.build(m, arrangement); },
             [by](const mesh& m) { return by.order(m); }};
 }

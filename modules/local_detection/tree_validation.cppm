@@ -95,7 +95,7 @@ private:
 
 /// Validates the tree of a mesh: each triangle is in exactly one leaf, and each box contains the triangles below it.
 template <TreePolicy Tree>
-[[nodiscard]] tree_validation validation_of(const Tree& tree, const mesh& m) {
+[[nodiscard]] tree_validation validate(const Tree& tree, const mesh& m) {
     return detail::tree_validator<Tree>(tree, m).validate_tree();
 }
 

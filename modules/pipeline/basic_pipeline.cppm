@@ -52,7 +52,7 @@ public:
         frame_.begin();
         searched_ = false;
         require_ieee_arithmetic();
-        follow_meshes();
+        refit_deformed();
         place(poses);
         poses_.assign(poses.begin(), poses.end());
         if (searches()) global_->update(boxes());
@@ -66,23 +66,23 @@ public:
         if (parts_) {
             parts_->found.clear();
             global_->search(parts_->found);
-            parts_->name_objects(candidates_);
+            parts_->append_objects(candidates_);
         } else if (searches())
             global_->search(candidates_);
         else
-            take_every_two();
+            add_all_pairs();
         searched_ = true;
     }
     /// @throws input_error if the last search failed or there was none since the last update
     void detect() {
         contacts_.clear();
         require_searched();
-        append_whole(contacts_, [&] {
+        append_or_restore(contacts_, [&] {
             for (std::size_t i = 0; i < candidates_.size(); ++i) {
                 const auto [a, b] = models_of(i);
                 triangle_pairs_.clear();
                 local_.all_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b], triangle_pairs_);
-                if (parts_) parts_->name_triangles({a, b}, triangle_pairs_);
+                if (parts_) parts_->map_triangles({a, b}, triangle_pairs_);
                 // Resizing once is faster than `push_back`, whose capacity checks take longer than the writes.
                 const std::size_t before = contacts_.size();
                 contacts_.resize(before + triangle_pairs_.size());
@@ -100,7 +100,7 @@ public:
         for (std::size_t i = 0; i < candidates_.size(); ++i) {
             const auto [a, b] = models_of(i);
             if (auto pair = local_.first_pair(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b])) {
-                if (parts_) parts_->name_triangles({a, b}, {&*pair, 1});
+                if (parts_) parts_->map_triangles({a, b}, {&*pair, 1});
                 return contact{candidates_[i].a, candidates_[i].b, pair->a, pair->b};
             }
         }
@@ -176,7 +176,7 @@ private:
     }
 
     /// Refits deformed meshes, which also validates them.
-    void follow_meshes() {
+    void refit_deformed() {
         if (parts_) parts_->follow();
         for (std::uint32_t m = 0; m < models(); ++m)
             if (deforms(m)) local_.refit(m);
@@ -189,7 +189,7 @@ private:
             require_poses(scene_, poses);
     }
 
-    void take_every_two() {
+    void add_all_pairs() {
         for (std::uint32_t b = 0; b < poses_.size(); ++b)
             for (std::uint32_t a = 0; a < b; ++a) candidates_.push_back({a, b});
     }

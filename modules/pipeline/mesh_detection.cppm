@@ -41,7 +41,7 @@ public:
     }
     void refit(std::uint32_t model) { models_[model].refit(refitted_); }
     [[nodiscard]] tree_validation validate_tree(std::uint32_t model) const {
-        return validation_of(models_[model].tree(), models_[model].triangles());
+        return validate(models_[model].tree(), models_[model].triangles());
     }
     [[nodiscard]] const Counters& counters() const noexcept { return detection_.counters(); }
 

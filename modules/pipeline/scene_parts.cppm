@@ -67,7 +67,7 @@ public:
     scene_parts& operator=(const scene_parts&) = delete;
     virtual ~scene_parts() = default;
 
-    std::vector<index_pair> found;  ///< pairs of pieces; after `name_objects`, one per candidate
+    std::vector<index_pair> found;  ///< pairs of pieces; after `append_objects`, one per candidate
 
     [[nodiscard]] virtual std::uint32_t pieces() const noexcept = 0;
     /// The half-open range of an object's pieces.
@@ -88,10 +88,10 @@ public:
     [[nodiscard]] virtual std::span<const box> boxes() const noexcept = 0;
 
     /// Removes the pairs of pieces of the same object, and appends the objects of each remaining pair.
-    virtual void name_objects(std::vector<index_pair>& objects) = 0;
+    virtual void append_objects(std::vector<index_pair>& objects) = 0;
     [[nodiscard]] virtual index_pair models_of(index_pair pieces) const noexcept = 0;
     /// Converts triangle indices of two models to those of the scene's meshes.
-    virtual void name_triangles(index_pair models, std::span<index_pair> triangles) const noexcept = 0;
+    virtual void map_triangles(index_pair models, std::span<index_pair> triangles) const noexcept = 0;
 
     [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;
 };

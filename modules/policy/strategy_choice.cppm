@@ -71,10 +71,10 @@ struct scene_traits {
         constexpr double many = 1e18;
         if (triangles == 0) return static_cast<std::size_t>(many);
         const double least = longer * static_cast<double>(triangles) /
-                             (machine_costs().node_visit * visits_a_root * share * std::sqrt(triangles_of_two()));
+                             (machine_costs().node_visit * visits_a_root * share * std::sqrt(triangles_per_query()));
         return static_cast<std::size_t>(std::clamp(std::ceil(least), 0.0, many));
     }
-    [[nodiscard]] inline double triangles_of_two() const {
+    [[nodiscard]] inline double triangles_per_query() const {
         return 2 * static_cast<double>(triangles) / static_cast<double>(meshes);
     }
 };

@@ -22,9 +22,9 @@ struct part {
     [[nodiscard]] std::size_t size() const noexcept { return end - begin; }
 };
 
-class balancer {
+class balanced_order_builder {
 public:
-    balancer(const mesh& m, axis_rule rule) : mesh_(m), rule_(rule) {
+    balanced_order_builder(const mesh& m, axis_rule rule) : mesh_(m), rule_(rule) {
         const std::size_t n = m.triangles.size();
         memory_.resize(2 * n);
         items_ = {std::span(memory_).first(n), std::span(memory_).last(n)};
@@ -177,18 +177,18 @@ private:
                     std::uint8_t* bin, worker_threads& workers) const {
         if (workers.count() == 1) {
             share whole{0, from.size()};
-            return split_shared(from, to, bounds, left, bin, workers, std::span(&whole, 1));
+            return split_by_histogram(from, to, bounds, left, bin, workers, std::span(&whole, 1));
         }
         std::vector<share> shares;
         for (std::size_t begin = 0; begin < from.size(); begin += least_shared)
             shares.push_back({begin, std::min(from.size(), begin + least_shared)});
-        split_shared(from, to, bounds, left, bin, workers, shares);
+        split_by_histogram(from, to, bounds, left, bin, workers, shares);
     }
 
     /// @param bin receives the bin of each item
     /// @returns the histogram
-    static std::array<std::uint32_t, bins> put_in_bins(std::span<const balanced_item> items, std::size_t axis,
-                                                       float low, float scale, std::uint8_t* bin) noexcept {
+    static std::array<std::uint32_t, bins> count_in_bins(std::span<const balanced_item> items, std::size_t axis,
+                                                         float low, float scale, std::uint8_t* bin) noexcept {
         // Several histograms: adjacent items mostly share a bin, so that increments of a single one would stall.
         constexpr std::size_t turns = 4;
         std::array<std::array<std::uint32_t, bins>, turns> counts{};
@@ -208,14 +208,15 @@ private:
         return counts[0];
     }
 
-    void split_shared(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds, std::size_t left,
-                      std::uint8_t* bin, worker_threads& workers, std::span<share> shares) const {
+    void split_by_histogram(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
+                            std::size_t left, std::uint8_t* bin, worker_threads& workers,
+                            std::span<share> shares) const {
         const std::size_t axis = best_axis(from, bounds, left);
         const float low = bounds.min[static_cast<int>(axis)];
         const float scale = bins / (bounds.max[static_cast<int>(axis)] - low);
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
             share& own = shares[s];
-            own.count = put_in_bins(from.subspan(own.begin, own.end - own.begin), axis, low, scale, bin + own.begin);
+            own.count = count_in_bins(from.subspan(own.begin, own.end - own.begin), axis, low, scale, bin + own.begin);
         });
         std::array<std::uint32_t, bins> count{};
         for (const share& s : shares)
@@ -271,8 +272,8 @@ private:
 
 }  // namespace
 
-balanced_order order_by_halves(const mesh& m, axis_rule rule, std::uint32_t threads) {
-    return balancer(m, rule).order(threads);
+balanced_order order_balanced(const mesh& m, axis_rule rule, std::uint32_t threads) {
+    return balanced_order_builder(m, rule).order(threads);
 }
 
 }  // namespace aabb

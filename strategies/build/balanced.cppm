@@ -50,6 +50,6 @@ void halve(worker_threads& workers, const Part& whole, const Split& split, const
 enum class axis_rule : std::uint8_t { longest, least_area };
 
 /// The order does not depend on the number of threads.
-[[nodiscard]] balanced_order order_by_halves(const mesh& m, axis_rule rule, std::uint32_t threads);
+[[nodiscard]] balanced_order order_balanced(const mesh& m, axis_rule rule, std::uint32_t threads);
 
 }  // namespace aabb

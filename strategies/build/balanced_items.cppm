@@ -150,7 +150,7 @@ public:
                 lower_[k][i] = lower_[k][count_ - 1];
                 negated_upper_[k][i] = negated_upper_[k][count_ - 1];
             }
-        for (std::size_t k = 0; k < 3; ++k) number_centres(k, filled / lanes);
+        for (std::size_t k = 0; k < 3; ++k) quantize_centres(k, filled / lanes);
     }
 
     /// Sets bit i for each item i with fewer than `left` items before it along the axis, to a precision of 16 bits: the
@@ -189,7 +189,7 @@ private:
     using row = std::array<float, most>;
 
     /// Quantises the centres to 16 bits between the least and the greatest.
-    inline void number_centres(std::size_t axis, std::size_t vectors) noexcept {
+    inline void quantize_centres(std::size_t axis, std::size_t vectors) noexcept {
         std::array<simd::sixteen_floats, most / lanes> centre;
         simd::sixteen_floats least = simd::sixteen_floats{} + std::numeric_limits<float>::infinity();
         simd::sixteen_floats most_negated = least;

@@ -17,7 +17,7 @@ struct file_order_build : threaded_build {
 
     [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const {
         const auto halves = [](std::span<const build_element> range, const box&) {
-            return split_choice{split_choice::as_they_stand, std::bit_ceil(range.size()) / 2};
+            return split_choice{split_choice::in_current_order, std::bit_ceil(range.size()) / 2};
         };
         return build_top_down(m, arrangement, halves, threads);
     }

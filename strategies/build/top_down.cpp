@@ -7,7 +7,7 @@ namespace aabb {
 
 namespace {
 
-build_element element_of(const mesh& m, std::uint32_t triangle) {
+build_element element_of_triangle(const mesh& m, std::uint32_t triangle) {
     const triangle3f t = m.triangle(triangle);
     build_element e{bounds_of(t), {}, triangle};
     // In double, so that the sum cannot overflow.
@@ -48,10 +48,11 @@ public:
         const std::size_t n = mesh_.triangles.size();
         elements_.resize(n);
         workers.for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t) elements_[t] = element_of(mesh_, static_cast<std::uint32_t>(t));
+            for (std::size_t t = begin; t < end; ++t)
+                elements_[t] = element_of_triangle(mesh_, static_cast<std::uint32_t>(t));
         });
         nodes_.resize(2 * n - 1);
-        halve(workers, task{0, n, 0}, [&](const task& t) { return halves_of(t); }, [&](const task& t) { finish(t); });
+        halve(workers, task{0, n, 0}, [&](const task& t) { return split_task(t); }, [&](const task& t) { finish(t); });
         return std::move(nodes_);
     }
 
@@ -60,13 +61,13 @@ private:
         return std::span(elements_).subspan(t.begin, t.size());
     }
 
-    [[nodiscard]] std::array<task, 2> halves_of(const task& t) {
+    [[nodiscard]] std::array<task, 2> split_task(const task& t) {
         const std::span range = range_of(t);
         const box bounds = bounds_of(range);
         const split_choice chosen = split_(range, bounds);
         const std::size_t left =
             arrangement_ == leaf_arrangement::pairs ? paired(chosen.left, range.size()) : chosen.left;
-        if (chosen.axis != split_choice::as_they_stand)
+        if (chosen.axis != split_choice::in_current_order)
             std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
                                      centroid_order{chosen.axis});
         // The left child has 2 left - 1 nodes.
@@ -84,7 +85,7 @@ private:
             if (current.size() == 1) {
                 nodes_[current.node] = {elements_[current.begin].bounds, 0, elements_[current.begin].triangle};
             } else {
-                const auto [left, right] = halves_of(current);
+                const auto [left, right] = split_task(current);
                 tasks.push_back(right);
                 tasks.push_back(left);
             }

@@ -36,7 +36,7 @@ struct top_down_build : threaded_build {
     [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const {
         return build_top_down(m, arrangement, Split, threads);
     }
-    [[nodiscard]] balanced_order order(const mesh& m) const { return order_by_halves(m, Rule, threads); }
+    [[nodiscard]] balanced_order order(const mesh& m) const { return order_balanced(m, Rule, threads); }
 };
 
 }  // namespace aabb

@@ -8,7 +8,7 @@ export namespace aabb {
 /// The boxes of one region of a scene, contiguous in memory.
 struct column_group {
     std::span<const box> boxes;
-    std::span<const std::uint32_t> ids;  ///< by index, with bits of `later_on`; empty if the index is the id
+    std::span<const std::uint32_t> ids;  ///< by index, with bits of `begins_earlier`; empty if the index is the id
 };
 
 /// Puts the boxes of a large scene into cache-sized groups of neighbours; each group is cut into columns separately.
@@ -20,7 +20,7 @@ public:
     /// The grid of groups: as many as planned, in the proportion of the columns, and no more than those on each axis.
     /// If these are too few, as for boxes along a line, groups are cut along the columns instead of the axis with fewer
     /// of them.
-    [[nodiscard]] static column_plan coarser(column_plan plan) {
+    [[nodiscard]] static column_plan group_grid(column_plan plan) {
         const double groups = plan.groups;
         const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;
         const std::uint32_t most = plan.across[1 - fewer];
@@ -150,10 +150,10 @@ private:
         for_each_vector(boxes.subspan(p.begin, p.end - p.begin), [&](std::size_t i, const simd::floats(&c)[6],
                                                                      std::uint32_t present) {
             invalid |= are_invalid(c);
-            const simd::words first = simd::upper_products(plan_.whole(c[u], u) | plan_.whole(c[v], v) << 16, across);
+            const simd::words first = simd::high_products(plan_.whole(c[u], u) | plan_.whole(c[v], v) << 16, across);
             const simd::words last =
-                simd::upper_products(plan_.whole(c[3 + u], u) | plan_.whole(c[3 + v], v) << 16, across);
-            simd::store_lower_halves(&keys_[p.begin + i], (first & 0xffffU) + (first >> 16) * plan_.across[0]);
+                simd::high_products(plan_.whole(c[3 + u], u) | plan_.whole(c[3 + v], v) << 16, across);
+            simd::store_low_halves(&keys_[p.begin + i], (first & 0xffffU) + (first >> 16) * plan_.across[0]);
             const std::uint32_t wide = simd::bits(first != last) & present;
             simd::compress_store(&wide_first_[p.wide_end], first, wide);
             simd::compress_store(&wide_last_[p.wide_end], last, wide);
@@ -165,7 +165,7 @@ private:
         std::size_t* const begin_there = p.next.data();
         for (const std::uint16_t key : std::span(keys_).subspan(p.begin, p.end - p.begin)) ++begin_there[key];
         for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
-            for_each_further(w, [&](std::uint32_t group, std::uint32_t) {
+            for_each_later_group(w, [&](std::uint32_t group, std::uint32_t) {
                 ++p.next_copy[group];
                 ++p.copies;
             });
@@ -218,25 +218,26 @@ private:
         const std::uint16_t* const keys = keys_.data();
         box* const to = boxes_.data();
         std::uint32_t* const to_ids = ids_.data();
-        const auto write = [&](std::size_t place, std::size_t i, std::uint32_t later_on) {
+        const auto write = [&](std::size_t place, std::size_t i, std::uint32_t begins_earlier) {
             // Prefetch the next cache lines of the group: there are too many write streams for hardware prefetchers.
             __builtin_prefetch(to + place + 8, 1);
             __builtin_prefetch(to_ids + place + 16, 1);
             to[place] = boxes[i];
-            to_ids[place] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | later_on;
+            to_ids[place] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | begins_earlier;
         };
         std::size_t i = p.begin;
         for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
             for (; i <= wide_[w]; ++i) write(next[keys[i]]++, i, 0);
-            for_each_further(
-                w, [&](std::uint32_t group, std::uint32_t later_on) { write(next_copy[group]++, i - 1, later_on); });
+            for_each_later_group(w, [&](std::uint32_t group, std::uint32_t begins_earlier) {
+                write(next_copy[group]++, i - 1, begins_earlier);
+            });
         }
         for (; i < p.end; ++i) write(next[keys[i]]++, i, 0);
     }
 
     /// Visits all groups of a wide box except the first.
     template <class Visit>
-    void for_each_further(std::size_t wide, Visit visit) const {
+    void for_each_later_group(std::size_t wide, Visit visit) const {
         const std::uint32_t u0 = wide_first_[wide] & 0xffffU;
         const std::uint32_t v0 = wide_first_[wide] >> 16;
         const std::uint32_t u1 = wide_last_[wide] & 0xffffU;
@@ -244,8 +245,9 @@ private:
         for (std::uint32_t v = v0; v <= v1; ++v)
             for (std::uint32_t u = u0; u <= u1; ++u)
                 if (u != u0 || v != v0)
-                    visit(u + v * plan_.across[0], (u != u0 ? column_entry::later_on(plan_.axis_across(0)) : 0) |
-                                                       (v != v0 ? column_entry::later_on(plan_.axis_across(1)) : 0));
+                    visit(u + v * plan_.across[0],
+                          (u != u0 ? column_entry::begins_earlier(plan_.axis_across(0)) : 0) |
+                              (v != v0 ? column_entry::begins_earlier(plan_.axis_across(1)) : 0));
     }
 
     column_plan plan_;

@@ -25,7 +25,7 @@ template <std::size_t K>
 }
 
 template <std::size_t K>
-[[gnu::always_inline]] inline void take_pair(const pairs (&rows)[6], floats* columns) noexcept {
+[[gnu::always_inline]] inline void transpose_pair(const pairs (&rows)[6], floats* columns) noexcept {
     const auto low = __builtin_bit_cast(floats, every_third<K>(rows[0], rows[1], rows[2]));
     const auto high = __builtin_bit_cast(floats, every_third<K>(rows[3], rows[4], rows[5]));
     constexpr auto even = [](std::size_t i) { return 2 * i; };
@@ -55,9 +55,9 @@ export namespace aabb::simd {
 [[gnu::always_inline]] inline void load_rows_of_six(const float* from, floats (&columns)[6]) noexcept {
     detail::pairs rows[6];
     std::memcpy(rows, from, sizeof rows);
-    detail::take_pair<0>(rows, columns);
-    detail::take_pair<1>(rows, columns);
-    detail::take_pair<2>(rows, columns);
+    detail::transpose_pair<0>(rows, columns);
+    detail::transpose_pair<1>(rows, columns);
+    detail::transpose_pair<2>(rows, columns);
 }
 
 /// Transposes `width` rows of four u32 into columns.
@@ -106,14 +106,14 @@ using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two 
 }
 
 /// Stores the low u16 of each u32.
-[[gnu::always_inline]] inline void store_lower_halves(std::uint16_t* to, words v) noexcept {
+[[gnu::always_inline]] inline void store_low_halves(std::uint16_t* to, words v) noexcept {
     using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
     const auto lower = __builtin_convertvector(v, narrow);
     std::memcpy(to, &lower, sizeof lower);
 }
 
 /// The high u16 of the product of each pair of u16.
-[[nodiscard, gnu::always_inline]] inline words upper_products(words a, words b) noexcept {
+[[nodiscard, gnu::always_inline]] inline words high_products(words a, words b) noexcept {
     using wide = std::uint32_t __attribute__((vector_size(8 * width)));
     const auto x = __builtin_convertvector(reinterpret_cast<halves>(a), wide);
     const auto y = __builtin_convertvector(reinterpret_cast<halves>(b), wide);
@@ -121,7 +121,7 @@ using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two 
 }
 
 /// The saturating difference of each pair of u16: 0 if it would be negative.
-[[nodiscard, gnu::always_inline]] inline words excess(words a, words b) noexcept {
+[[nodiscard, gnu::always_inline]] inline words saturated_difference(words a, words b) noexcept {
     return reinterpret_cast<words>(
         __builtin_elementwise_sub_sat(reinterpret_cast<halves>(a), reinterpret_cast<halves>(b)));
 }
@@ -140,7 +140,7 @@ using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two 
 }
 
 /// The inclusive prefix sum over the lanes.
-[[nodiscard, gnu::always_inline]] inline words running_sum(words v) noexcept {
+[[nodiscard, gnu::always_inline]] inline words prefix_sum(words v) noexcept {
     const words zero{};
     const auto shifted = [&]<std::size_t By, std::size_t... I>(std::integral_constant<std::size_t, By>,
                                                                std::index_sequence<I...>) {

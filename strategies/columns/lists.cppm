@@ -55,7 +55,7 @@ private:
     };
     /// A copy of a box in another column.
     struct copy {
-        std::uint32_t index;    ///< index of the box, with bits of `later_on`
+        std::uint32_t index;    ///< index of the box, with bits of `begins_earlier`
         std::uint32_t buckets;  ///< offset to the bucket in the first column
     };
 
@@ -90,8 +90,8 @@ private:
             invalid |= are_invalid(c);
             const simd::words lower = plan.whole(c[u], u) | plan.whole(c[v], v) << 16;
             const simd::words upper = plan.whole(c[3 + u], u) | plan.whole(c[3 + v], v) << 16;
-            const simd::words first = simd::upper_products(lower, across);
-            const simd::words last = simd::upper_products(upper, across);
+            const simd::words first = simd::high_products(lower, across);
+            const simd::words last = simd::high_products(upper, across);
             const simd::words bucket = ((first & 0xffffU) + (first >> 16) * plan.across[0]) << bits;
             simd::store_rows_of_four(&places_[begin + i].lower,
                                      {lower, upper, bucket + (plan.whole(c[3 + Axis], Axis) >> (16 - bits)),
@@ -106,8 +106,8 @@ private:
     /// Records a copy for each further column of the boxes that overlap several columns.
     /// @returns whether the number of copies is within the limit
     [[nodiscard]] bool add_copies(std::size_t most_copies) {
-        const std::uint32_t later_on[2] = {column_entry::later_on(plan_.axis_across(0)),
-                                           column_entry::later_on(plan_.axis_across(1))};
+        const std::uint32_t begins_earlier[2] = {column_entry::begins_earlier(plan_.axis_across(0)),
+                                                 column_entry::begins_earlier(plan_.axis_across(1))};
         const std::uint32_t column = std::uint32_t{1} << bucket_bits_;
         const std::uint32_t row = plan_.across[0] << bucket_bits_;
         const auto reached = [&](const place& p, int shift, std::size_t k) {
@@ -123,7 +123,7 @@ private:
             const std::uint32_t nv = reached(p, 16, 1);
             const auto add = [&](std::uint32_t u, std::uint32_t v, std::uint32_t times) {
                 const std::uint32_t buckets = u * column + v * row;
-                buffer[n] = {i | (u ? later_on[0] : 0) | (v ? later_on[1] : 0), buckets};
+                buffer[n] = {i | (u ? begins_earlier[0] : 0) | (v ? begins_earlier[1] : 0), buckets};
                 n += times;
                 ends_[p.bucket + buckets * times] += times;
             };
@@ -162,7 +162,7 @@ private:
         std::uint32_t next = 0;
         for (std::uint32_t c = 0; c < columns; ++c) {
             std::uint32_t* const ends = &ends_[c << bucket_bits_];
-            next = buckets >= width ? places_of(ends, buckets, next) : std::exchange(*ends, next) + next;
+            next = buckets >= width ? bucket_starts(ends, buckets, next) : std::exchange(*ends, next) + next;
             while (next % width != 0) entries_[next++] = padding;
         }
         ends_[columns << bucket_bits_] = 0;  // padding ends before every entry, so it overlaps none
@@ -170,10 +170,10 @@ private:
     }
 
     /// Exclusive prefix sum over the buckets of a column.
-    static std::uint32_t places_of(std::uint32_t* counts, std::uint32_t buckets, std::uint32_t next) noexcept {
+    static std::uint32_t bucket_starts(std::uint32_t* counts, std::uint32_t buckets, std::uint32_t next) noexcept {
         for (std::uint32_t b = 0; b < buckets; b += width) {
             const simd::words here = simd::load(counts + b);
-            const simd::words ends = simd::running_sum(here) + next;
+            const simd::words ends = simd::prefix_sum(here) + next;
             simd::store(counts + b, ends - here);
             next = ends[width - 1];
         }
@@ -188,16 +188,17 @@ private:
             distribute([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_bits; });
     }
     template <class LaterOn>
-    void distribute(LaterOn later_on) {
+    void distribute(LaterOn begins_earlier) {
         const auto boxes = static_cast<std::uint32_t>(block_.boxes.size());
         for (std::uint32_t i = 0; i < boxes; ++i) {
             const place p = places_[i];
-            entries_[ends_[p.bucket]++] = {p.lower, p.upper, p.reach, i | later_on(i)};
+            entries_[ends_[p.bucket]++] = {p.lower, p.upper, p.reach, i | begins_earlier(i)};
         }
         for (const copy& c : copies_) {
             const std::uint32_t i = c.index & column_entry::index_bits;
             const place p = places_[i];
-            entries_[ends_[p.bucket + c.buckets]++] = {p.lower, p.upper, p.reach + c.buckets, c.index | later_on(i)};
+            entries_[ends_[p.bucket + c.buckets]++] = {p.lower, p.upper, p.reach + c.buckets,
+                                                       c.index | begins_earlier(i)};
         }
     }
 

@@ -62,11 +62,11 @@ struct column_entry {
     std::uint32_t lower;
     std::uint32_t upper;
     std::uint32_t reach;  ///< index into `column_block::ends` of the bucket in which the box ends along the column
-    std::uint32_t index;  ///< index of the box in the block; for the three highest bits, see `later_on`
+    std::uint32_t index;  ///< index of the box in the block; for the three highest bits, see `begins_earlier`
 
     static constexpr std::uint32_t index_bits = (std::uint32_t{1} << 29) - 1;
     /// Set if the box begins in an earlier column on axis k. If both copies have it set, another column owns the pair.
-    [[nodiscard]] static constexpr std::uint32_t later_on(int k) noexcept { return std::uint32_t{1} << (29 + k); }
+    [[nodiscard]] static constexpr std::uint32_t begins_earlier(int k) noexcept { return std::uint32_t{1} << (29 + k); }
 };
 static_assert(sizeof(column_entry) == 16);
 
@@ -74,7 +74,8 @@ static_assert(sizeof(column_entry) == 16);
 /// boxes are ordered by bucket, but unordered within a bucket.
 struct column_block {
     std::span<const box> boxes;
-    std::span<const std::uint32_t> ids;  ///< by index, possibly with bits of `later_on`; empty if the index is the id
+    std::span<const std::uint32_t>
+        ids;  ///< by index, possibly with bits of `begins_earlier`; empty if the index is the id
     std::span<const column_entry> entries;
     std::span<const std::uint32_t> ends;  ///< by bucket: index of the entry after the bucket's last
     int axis;                             ///< the axis along which columns run

@@ -89,7 +89,7 @@ public:
             const std::size_t first = v * width;
             const std::uint32_t present = simd::lanes_below(n - first);
             const auto test = [&](std::size_t i, std::uint32_t wanted) {
-                const std::uint32_t lanes = vector.met_by(group_.boxes[i]) & wanted;
+                const std::uint32_t lanes = vector.overlap_mask(group_.boxes[i]) & wanted;
                 // Stored without a branch, which would be hard to predict.
                 met_[rows] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(first), lanes};
                 rows += static_cast<std::size_t>(lanes != 0);
@@ -112,25 +112,25 @@ private:
         simd::floats coordinates[6];
 
         /// Bit l is set if box l of the vector overlaps `b`.
-        [[nodiscard, gnu::always_inline]] inline std::uint32_t met_by(const box& b) const noexcept {
+        [[nodiscard, gnu::always_inline]] inline std::uint32_t overlap_mask(const box& b) const noexcept {
             simd::flags met = (coordinates[0] <= b.max[0]) & (coordinates[3] >= b.min[0]);
             for (int k = 1; k < 3; ++k) met &= (coordinates[k] <= b.max[k]) & (coordinates[3 + k] >= b.min[k]);
             return simd::bits(met);
         }
     };
     /// A box and the later boxes of one vector that it overlaps.
-    struct met_lanes {
+    struct lane_overlaps {
         std::uint32_t box;
         std::uint32_t first;  ///< index of the vector's first box
         std::uint32_t lanes;
     };
 
-    void report(std::span<const met_lanes> rows, std::vector<index_pair>& pairs) const {
+    void report(std::span<const lane_overlaps> rows, std::vector<index_pair>& pairs) const {
         std::size_t next = pairs.size();
         std::size_t end = next;
-        for (const met_lanes& met : rows) end += static_cast<std::size_t>(std::popcount(met.lanes));
+        for (const lane_overlaps& met : rows) end += static_cast<std::size_t>(std::popcount(met.lanes));
         pairs.resize(end);
-        for (const met_lanes& met : rows)
+        for (const lane_overlaps& met : rows)
             for (std::uint32_t lanes = met.lanes; lanes != 0; lanes &= lanes - 1)
                 pairs[next++] = {id_of(met.box),
                                  id_of(met.first + static_cast<std::uint32_t>(std::countr_zero(lanes)))};
@@ -142,7 +142,7 @@ private:
 
     column_group group_{};
     std::vector<vector_of_boxes> vectors_;
-    std::vector<met_lanes> met_;
+    std::vector<lane_overlaps> met_;
 };
 
 /// Broad phase that cuts before it sorts: boxes are put into columns unsorted. Large scenes are processed group by
@@ -166,41 +166,41 @@ public:
     /// @throws input_error as `global_search::update`.
     void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
         boxes_ = boxes;
-        rests_ = static_frame_.lasts(boxes, objects);
-        if (rests_) return;
+        is_static_ = static_frame_.lasts(boxes, objects);
+        if (is_static_) return;
         if (boxes.size() > column_entry::index_bits) throw input_error("columns take at most 536,870,911 objects");
         select(boxes, objects);
         const std::size_t n = present_.boxes.size();
-        is_few_ = n <= partition_.few();
-        if (is_few_) {
+        uses_brute_force_ = n <= partition_.few();
+        if (uses_brute_force_) {
             planned_ = 0;
             if (!batch_.fill(present_)) require_valid(boxes);
             return;
         }
         const box bounds = bounds_of_sample();
-        const bool is_anew = is_stale(n) || lie_elsewhere(bounds, planned_bounds_);
-        if (is_anew) planned_bounds_ = bounds;
+        const bool is_new_plan = is_stale(n) || bounds_have_changed(bounds, planned_bounds_);
+        if (is_new_plan) planned_bounds_ = bounds;
         planned_ = 0;
-        age_ = is_anew ? 0 : age_ + 1;
-        if (!cut(is_anew, counters)) require_valid(boxes);
+        age_ = is_new_plan ? 0 : age_ + 1;
+        if (!cut(is_new_plan, counters)) require_valid(boxes);
         planned_ = n;
-        add_up(counters);
+        collect_counters(counters);
     }
 
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         for (worker& w : workers_) w.own.times().clear();
-        if (rests_) {
+        if (is_static_) {
             pairs.insert(pairs.end(), static_frame_.pairs().begin(), static_frame_.pairs().end());
             return;
         }
         const std::size_t before = pairs.size();
-        if (is_few_)
+        if (uses_brute_force_)
             batch_.search(pairs, counters);
         else if (groups_.size() == 0)
             workers_.front().own.sweep(partition_, present_, everywhere, cut_.columns, pairs);
         else
             search_groups(pairs);
-        add_up(counters);
+        collect_counters(counters);
         static_frame_.keep(boxes_, std::span(pairs).subspan(before));
     }
 
@@ -213,7 +213,7 @@ public:
              "{u} by {v} columns along the z axis"},
             {"{u} by {v} groups of columns along the x axis", "{u} by {v} groups of columns along the y axis",
              "{u} by {v} groups of columns along the z axis"}};
-        if (is_few_) return {};
+        if (uses_brute_force_) return {};
         const column_plan& p = plan();
         return {{is_in_groups() ? plan_kind::groups_of_columns : plan_kind::columns,
                  {p.columns() == 1 ? "one column: no axis is cut" : along[is_in_groups() ? 1 : 0][p.axis],
@@ -223,7 +223,7 @@ public:
     }
     [[nodiscard]] std::vector<omission> left_out() const {
         constexpr const char* why = "so few boxes are tested by brute force";
-        if (is_few_) return {{absence::partition, why}, {absence::sort, why}};
+        if (uses_brute_force_) return {{absence::partition, why}, {absence::sort, why}};
         return {};
     }
     /// The share of the last search's time that belongs to the update: `search` also cuts and sorts the groups.
@@ -244,7 +244,7 @@ public:
 
 private:
     /// A plan is replaced after this many frames.
-    static constexpr unsigned frames_a_plan = 32;
+    static constexpr unsigned frames_per_plan = 32;
 
     using own_counters = std::conditional_t<Counters::enabled, work_counters, no_counters>;
 
@@ -276,7 +276,7 @@ private:
 
     [[nodiscard]] bool is_stale(std::size_t n) const noexcept {
         const std::size_t change = n > planned_ ? n - planned_ : planned_ - n;
-        return planned_ == 0 || age_ + 1 == frames_a_plan || 8 * change > planned_;
+        return planned_ == 0 || age_ + 1 == frames_per_plan || 8 * change > planned_;
     }
 
     /// Bounds of a sample of boxes, which is the same in every frame with the same number of boxes.
@@ -291,7 +291,7 @@ private:
 
     /// Whether, on any axis, the extent of the scene has grown by half or shrunk by a third since it was planned for,
     /// or its centre has moved by half of the extent. Short axes count as a 64th of the longest one.
-    [[nodiscard]] static bool lie_elsewhere(const box& current, const box& planned) noexcept {
+    [[nodiscard]] static bool bounds_have_changed(const box& current, const box& planned) noexcept {
         const auto width_of = [](const box& b, int k) { return double{b.max[k]} - double{b.min[k]}; };
         const double longest = width_of(planned, longest_axis(planned));
         for (int k = 0; k < 3; ++k) {
@@ -305,7 +305,7 @@ private:
     }
 
     /// @returns whether all boxes are valid.
-    [[nodiscard]] bool cut(bool is_anew, Counters& counters) {
+    [[nodiscard]] bool cut(bool is_new_plan, Counters& counters) {
         const auto plan = [&] {
             age_ = 0;
             kept_plan planned = workers_.front().own.planned(partition_, present_, everywhere);
@@ -314,7 +314,7 @@ private:
             planned.plan.groups = std::max(planned.plan.groups, by_size);
             return planned;
         };
-        if (is_anew) {
+        if (is_new_plan) {
             cut_.columns = plan();
             cut_.in_groups = false;
         }
@@ -371,7 +371,7 @@ private:
         w.own.search(partition_, groups_.group(g), groups_.region(g, everywhere), cut_.groups[g], pairs);
     }
 
-    void add_up(Counters& counters) {
+    void collect_counters(Counters& counters) {
         if constexpr (Counters::enabled)
             for (worker& w : workers_) {
                 const work_counters own_work = w.own.take_counters();
@@ -392,13 +392,13 @@ private:
     std::vector<worker> workers_;  // one per thread
     std::span<const box> boxes_;   // boxes of the current frame
     static_frame static_frame_;
-    bool rests_ = false;
+    bool is_static_ = false;
     column_group present_{};
     std::vector<box> present_boxes_;  // used only if some objects are absent
     std::vector<std::uint32_t> present_ids_;
     brute_force_batch batch_;
-    bool is_few_ = false;
-    kept_cut cut_;
+    bool uses_brute_force_ = false;
+    cut_plan cut_;
     column_groups groups_;
     std::vector<pairs_of_group> group_pairs_;  // by group
     std::size_t planned_ = 0;                  // number of boxes in the previous frame; 0 without a plan

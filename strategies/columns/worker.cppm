@@ -14,26 +14,26 @@ struct kept_plan {
 };
 
 /// The plan of a scene or group: either columns, or a grid of groups and recursively the plan of each group.
-struct kept_cut {
+struct cut_plan {
     kept_plan columns;  ///< used if there are no groups
     bool in_groups = false;
     column_plan grid;         ///< the grid of groups
     std::size_t fullest = 0;  ///< number of boxes in the fullest group when the grid was planned
-    std::vector<kept_cut> groups;
+    std::vector<cut_plan> groups;
 
     [[nodiscard]] bool is_planned() const noexcept { return in_groups || columns.most_tests > 0; }
 
     /// Discards the plans of earlier groups.
     void begin_groups(std::size_t in_fullest) {
         if (groups.size() < grid.columns()) groups.resize(grid.columns());
-        for (kept_cut& g : groups) g.columns = {}, g.in_groups = false;
+        for (cut_plan& g : groups) g.columns = {}, g.in_groups = false;
         in_groups = true;
         fullest = in_fullest;
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
         std::size_t sum = bytes_of(groups);
-        for (const kept_cut& g : groups) sum += bytes_of(g);
+        for (const cut_plan& g : groups) sum += bytes_of(g);
         return sum;
     }
 };
@@ -44,7 +44,7 @@ struct kept_cut {
 /// boxes. The work over all levels is then at most eight times that of brute force.
 /// @returns `crowded` if there are no groups
 template <class Plan>
-[[nodiscard]] fill_result put_into_groups(const column_group& boxes, kept_cut& kept, Plan plan, column_groups& groups,
+[[nodiscard]] fill_result put_into_groups(const column_group& boxes, cut_plan& kept, Plan plan, column_groups& groups,
                                           worker_threads& threads) {
     const auto distribute = [&](std::size_t most) {
         return groups.distribute(boxes.boxes, boxes.ids, kept.grid, most, threads);
@@ -56,7 +56,7 @@ template <class Plan>
         kept.columns = plan();
     }
     if (kept.columns.plan.groups <= 1) return fill_result::crowded;
-    kept.grid = column_groups::coarser(kept.columns.plan);
+    kept.grid = column_groups::group_grid(kept.columns.plan);
     fill_result result = distribute(std::numeric_limits<std::size_t>::max());
     if (result == fill_result::invalid) return result;
     const auto n = static_cast<double>(boxes.boxes.size());
@@ -114,7 +114,7 @@ public:
     }
 
     /// Finds the pairs of a group of valid boxes, recursively if nested groups are planned.
-    void search(const Partition& partition, const column_group& group, const box& within, kept_cut& kept,
+    void search(const Partition& partition, const column_group& group, const box& within, cut_plan& kept,
                 std::vector<index_pair>& pairs, std::size_t depth = 0) {
         if (group.boxes.size() < 2) return count(1, group.boxes.size());
         const auto plan = [&] { return planned(partition, group, within); };
@@ -165,7 +165,7 @@ public:
             // The boxes were validated when the columns were first filled.
             if (!is_filled_) static_cast<void>(fill(partition, group, within, kept));
             const bool is_new = kept.most_tests == 0;
-            const std::uint64_t most = !is_new ? kept.most_tests : kept.by_keys ? any_number : 64 * n + 4096;
+            const std::uint64_t most = !is_new ? kept.most_tests : kept.by_keys ? unlimited : 64 * n + 4096;
             const std::uint64_t tests = sweep_.sweep(columns_.block(), pairs, most, counters_);
             if (tests <= most) {
                 if (is_new) kept.most_tests = 2 * tests + n + 1;
@@ -198,7 +198,7 @@ public:
     [[nodiscard]] std::size_t sweep_bytes() const noexcept { return bytes_of(sweep_); }
 
 private:
-    static constexpr std::uint64_t any_number = std::numeric_limits<std::uint64_t>::max();
+    static constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
     /// The limit on copies above which columns are not worth their cost.
     [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept {

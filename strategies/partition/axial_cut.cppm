@@ -56,14 +56,14 @@ public:
         const spread along = spread_of(boxes, objects);
         const std::array<int, 3> order = in_order(along, swept);
         const bool may_leave_out = !config_.axes && !config_.segments;
-        candidate_cut best{0, 1, may_leave_out ? uncut_cost(along, swept) : never};
+        candidate_cut best{0, 1, may_leave_out ? cost_without_cuts(along, swept) : never};
         if (cut_ == 0) best.cost *= preference;
         axis_set cut = 0;
         for (std::uint32_t n = 1; n <= config_.axes.value_or(3); ++n) {
             const int k = order[n - 1];
             if (along.variance[k] > 0) cut |= axis_set{1} << k;
             if (n < config_.axes.value_or(1) || cut == 0) continue;
-            candidate_cut candidate = cheapest(along, cut, swept);
+            candidate_cut candidate = cheapest_cut(along, cut, swept);
             if (cut == cut_) candidate.cost *= preference;
             if (candidate.cost < best.cost) best = candidate;
         }
@@ -229,7 +229,7 @@ private:
         return machine_costs().list_entry * static_cast<double>(along.objects) * std::popcount(needed);
     }
 
-    [[nodiscard]] static double uncut_cost(const spread& along, axis_set swept) {
+    [[nodiscard]] static double cost_without_cuts(const spread& along, axis_set swept) {
         const vec3d share = shares_of(along);
         const auto objects = static_cast<double>(along.objects);
         double swept_share = 1;
@@ -243,7 +243,7 @@ private:
     /// · extent / width, and within a subset each box is tested against those that overlap it on the swept axis. The
     /// limit bounds x by 1. There are never more subsets than boxes, so that no cost model can make a frame exceed the
     /// limit on subsets and be rejected.
-    [[nodiscard]] candidate_cut cheapest(const spread& along, axis_set cut, axis_set swept) const {
+    [[nodiscard]] candidate_cut cheapest_cut(const spread& along, axis_set cut, axis_set swept) const {
         const auto objects = static_cast<double>(along.objects);
         const vec3d share = shares_of(along);
         candidate_cut best{cut, 1, never};

@@ -84,10 +84,10 @@ public:
             }
         }
         best.fit(seen.bounds);
-        best.most_along =
-            static_cast<std::uint32_t>(std::min(most(seen, best.axis, true) / columns_a_box, double{most_columns}));
+        best.most_along = static_cast<std::uint32_t>(
+            std::min(most(seen, best.axis, true) / columns_per_extent, double{most_columns}));
         // A group of fewer boxes than a plan samples is not worth its own plan.
-        if (!config_.group && are_clumped(seen, best, boxes.size(), least))
+        if (!config_.group && are_clustered(seen, best, boxes.size(), least))
             best.groups = std::clamp(static_cast<double>(boxes.size()) / samples, 4.0, double{most_groups});
         return best;
     }
@@ -110,7 +110,7 @@ private:
     static constexpr std::size_t boxes_per_tested = 32;
     static constexpr std::uint32_t most_columns = 16'384;
     static constexpr std::uint32_t most_groups = 300;
-    static constexpr double columns_a_box = 4;
+    static constexpr double columns_per_extent = 4;
     static constexpr std::array<std::uint32_t, 24> numbers{1,  2,  3,  4,  5,  6,  7,  8,  10, 12, 14,  16,
                                                            20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128};
 
@@ -196,8 +196,8 @@ private:
     /// or 8th on either side is excluded if that makes the bounds at least four times as short.
     /// @returns whether outliers were excluded
     static bool bound(box& bounds, int k, std::span<float> lower, std::span<float> upper) {
-        const std::array<float, shares.size()> first = outermost(lower, std::ranges::less());
-        const std::array<float, shares.size()> last = outermost(upper, std::ranges::greater());
+        const std::array<float, shares.size()> first = bounds_without_outliers(lower, std::ranges::less());
+        const std::array<float, shares.size()> last = bounds_without_outliers(upper, std::ranges::greater());
         const auto length = [&](std::size_t i) { return double{last[i]} - double{first[i]}; };
         std::size_t chosen = 0;
         for (std::size_t i = 1; i < shares.size(); ++i)
@@ -209,7 +209,8 @@ private:
 
     /// The outermost value after each share of outliers is excluded.
     template <class Before>
-    [[nodiscard]] static std::array<float, shares.size()> outermost(std::span<float> values, Before before) {
+    [[nodiscard]] static std::array<float, shares.size()> bounds_without_outliers(std::span<float> values,
+                                                                                  Before before) {
         std::array<float, shares.size()> bounds{};
         const std::size_t count = values.size();
         for (std::size_t i = shares.size(); i-- > 0;) {
@@ -236,7 +237,7 @@ private:
     /// The greatest useful number of columns on an axis; narrower ones gain nothing.
     [[nodiscard]] static double most(const sample& seen, int k, bool cut) {
         if (!cut || !seen.varies(k)) return 1;
-        return seen.extent[k] > 0 ? std::max(1.0, columns_a_box * seen.width(k) / seen.extent[k]) : numbers.back();
+        return seen.extent[k] > 0 ? std::max(1.0, columns_per_extent * seen.width(k) / seen.extent[k]) : numbers.back();
     }
 
     /// The cost per box in nanoseconds: placing its entries, and testing each of them by vectors against the entries
@@ -271,26 +272,26 @@ private:
             const simd::words across = simd::all(plan.across[0] | plan.across[1] << 16);
             lower = plan.whole(ends[u], u) | plan.whole(ends[v], v) << 16;
             upper = plan.whole(ends[3 + u], u) | plan.whole(ends[3 + v], v) << 16;
-            first = simd::upper_products(lower, across);
-            last = simd::upper_products(upper, across);
+            first = simd::high_products(lower, across);
+            last = simd::high_products(upper, across);
             begin = plan.whole(ends[plan.axis], plan.axis) >> (16 - bucket_bits);
             end = plan.whole(ends[3 + plan.axis], plan.axis) >> (16 - bucket_bits);
         }
 
         /// Bit l is set if box l shares a column, and a range of buckets in it, with the other box.
-        [[nodiscard]] std::uint32_t met_by(const sampled_entries& others, std::size_t other) const {
-            return simd::bits(((simd::excess(first, simd::all(others.last[other])) |
-                                simd::excess(simd::all(others.first[other]), last)) == 0U) &
+        [[nodiscard]] std::uint32_t overlap_mask(const sampled_entries& others, std::size_t other) const {
+            return simd::bits(((simd::saturated_difference(first, simd::all(others.last[other])) |
+                                simd::saturated_difference(simd::all(others.first[other]), last)) == 0U) &
                               (begin <= others.end[other]) & (end >= others.begin[other]));
         }
         /// Bit l is set if box l does not overlap the other box, but the quantized test across the columns does not
         /// reject it.
-        [[nodiscard]] std::uint32_t rejected_late(const sampled_entries& others, std::size_t other) const {
+        [[nodiscard]] std::uint32_t rejected_by_exact_test(const sampled_entries& others, std::size_t other) const {
             simd::flags disjoint{};
             for (int k = 0; k < 3; ++k)
                 disjoint |= (ends[k] > others.ends[3 + k][other]) | (ends[3 + k] < others.ends[k][other]);
-            return simd::bits(((simd::excess(lower, simd::all(others.upper[other])) |
-                                simd::excess(simd::all(others.lower[other]), upper)) == 0U) &
+            return simd::bits(((simd::saturated_difference(lower, simd::all(others.upper[other])) |
+                                simd::saturated_difference(simd::all(others.lower[other]), upper)) == 0U) &
                               disjoint);
         }
     };
@@ -298,8 +299,8 @@ private:
     /// Whether the boxes are clustered: the tests, extrapolated from pairs of the sample, cost more than the whole plan
     /// for uniformly spread boxes plus the cost of grouping. Switching only at that point is 2-competitive: it takes at
     /// most about twice the time of the better choice, whichever that is.
-    [[nodiscard]] static bool are_clumped(const sample& seen, const column_plan& plan, std::size_t boxes,
-                                          double planned) {
+    [[nodiscard]] static bool are_clustered(const sample& seen, const column_plan& plan, std::size_t boxes,
+                                            double planned) {
         const cost_model& ns = machine_costs();
         // Costs are in nanoseconds per box.
         const double most = planned + ns.column_entry;
@@ -320,10 +321,10 @@ private:
             for (std::size_t first = 0; first < seen.kept; first += simd::width) {
                 std::uint32_t lanes = simd::lanes_below(seen.kept - first);
                 if (first == i - other) lanes &= ~(std::uint32_t{1} << other);
-                lanes &= entries[first / simd::width].met_by(others, other);
+                lanes &= entries[first / simd::width].overlap_mask(others, other);
                 if (lanes == 0) continue;
                 met += std::popcount(lanes);
-                rejected += std::popcount(lanes & entries[first / simd::width].rejected_late(others, other));
+                rejected += std::popcount(lanes & entries[first / simd::width].rejected_by_exact_test(others, other));
             }
         }
         // Each pair is counted from both sides. Counts are Poisson-like, so three square roots are subtracted to make

@@ -88,22 +88,22 @@ axis_set kd_tree_partition::axes(std::span<const box> boxes, const membership& o
 }
 
 void kd_tree_partition::fit(const whole_subset& scene) {
-    made_nodes_ = 0;
+    built_nodes_ = 0;
     // After an exception, the next frame rebuilds the whole tree.
     if (!std::exchange(is_whole_, false))
-        choose_all(scene.boxes);
+        rebuild_all(scene.boxes);
     else if (!groups_.empty())
-        choose_stale(scene.boxes);
+        rebuild_stale(scene.boxes);
     [[maybe_unused]] bool placed = place(scene.boxes);
     if (!placed) {
-        choose_all(scene.boxes);
+        rebuild_all(scene.boxes);
         placed = place(scene.boxes);
     }
     compare();
     // Stale subtrees are usually rebuilt in the next frame, so that boxes are placed only once per frame, but not if
     // they make the current frame much more expensive.
-    if (!groups_.empty() && pairs_ > 2 * pairs_at_first_) {
-        choose_stale(scene.boxes);
+    if (!groups_.empty() && pairs_ > 2 * initial_pairs_) {
+        rebuild_stale(scene.boxes);
         placed = place(scene.boxes);
         compare();
     }
@@ -112,39 +112,39 @@ void kd_tree_partition::fit(const whole_subset& scene) {
 }
 
 std::size_t kd_tree_partition::bytes() const noexcept {
-    return bytes_of(present_, nodes_, starts_, entries_, homes_, now_at_, in_leaf_, below_, old_, groups_, group_of_,
-                    group_starts_, group_ends_, ids_);
+    return bytes_of(present_, nodes_, starts_, entries_, homes_, new_index_, copies_in_leaf_, copies_below_, old_,
+                    groups_, group_of_, group_starts_, group_ends_, ids_);
 }
 
 /// Rebuilds the whole tree.
-void kd_tree_partition::choose_all(std::span<const box> boxes) {
+void kd_tree_partition::rebuild_all(std::span<const box> boxes) {
     nodes_.clear();
     leaves_ = 0;
     groups_.clear();
     copied_ = 0;
-    pairs_at_first_ = 0;
+    initial_pairs_ = 0;
     ids_ = present_;
     homes_.clear();
     choose(boxes, 0, ids_.size(), {empty_box().max, empty_box().min}, 0);
 }
 
 /// Rebuilds the stale subtrees from the boxes that were in them.
-void kd_tree_partition::choose_stale(std::span<const box> boxes) {
+void kd_tree_partition::rebuild_stale(std::span<const box> boxes) {
     gather();
     old_.swap(nodes_);
     nodes_.clear();
     leaves_ = 0;
     copied_ = 0;
-    for (const std::uint32_t copies : in_leaf_) copied_ += copies;
+    for (const std::uint32_t copies : copies_in_leaf_) copied_ += copies;
     copied_ -= std::min<std::uint64_t>(copied_, present_.size());
-    pairs_at_first_ = 0;
-    now_at_.resize(old_.size());
-    copy_or_choose(boxes, 0, 0);
-    for (std::uint32_t& home : homes_) home = now_at_[home];
+    initial_pairs_ = 0;
+    new_index_.resize(old_.size());
+    copy_or_rebuild(boxes, 0, 0);
+    for (std::uint32_t& home : homes_) home = new_index_[home];
     groups_.clear();
 }
 
-void kd_tree_partition::copy_or_choose(std::span<const box> boxes, std::uint32_t old, std::size_t depth) {
+void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_t old, std::size_t depth) {
     const auto self = static_cast<std::uint32_t>(nodes_.size());
     const auto group = std::ranges::lower_bound(groups_, old);
     if (group != groups_.end() && *group == old) {
@@ -159,26 +159,26 @@ void kd_tree_partition::copy_or_choose(std::span<const box> boxes, std::uint32_t
         ids_.resize(first);
         std::uint32_t last = old;
         while (old_[last].axis != is_leaf) last = old_[last].children[1];
-        std::fill(now_at_.begin() + old, now_at_.begin() + last + 1, self);
+        std::fill(new_index_.begin() + old, new_index_.begin() + last + 1, self);
         return;
     }
-    now_at_[old] = self;
+    new_index_[old] = self;
     nodes_.push_back(old_[old]);
     if (old_[old].axis == is_leaf) {
         nodes_[self].children[0] = leaves_++;
         return;
     }
     nodes_[self].children[0] = self + 1;
-    copy_or_choose(boxes, old_[old].children[0], depth + 1);
+    copy_or_rebuild(boxes, old_[old].children[0], depth + 1);
     nodes_[self].children[1] = static_cast<std::uint32_t>(nodes_.size());
-    copy_or_choose(boxes, old_[old].children[1], depth + 1);
+    copy_or_rebuild(boxes, old_[old].children[1], depth + 1);
 }
 
 /// Builds the subtree of the boxes ids_[first .. first + count).
 void kd_tree_partition::choose(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell,
                                std::size_t depth) {
     const std::size_t self = nodes_.size();
-    ++made_nodes_;
+    ++built_nodes_;
     nodes_.push_back({cell, 0, is_leaf, {leaves_, 0}, unknown});
     if (count >= 2 && depth < most_depth) {
         const split at = best_split(boxes, first, count);
@@ -271,7 +271,7 @@ bool kd_tree_partition::place(std::span<const box> boxes) {
     const std::size_t most = 2 * most_copies * present_.size();
     starts_.resize(boxes.size() + 1);
     homes_.resize(boxes.size(), 0);
-    in_leaf_.assign(leaves_, 0);
+    copies_in_leaf_.assign(leaves_, 0);
     entries_.clear();
     std::size_t next = 0;  // next element of starts_
     for (const std::uint32_t id : present_) {
@@ -307,7 +307,7 @@ inline std::uint32_t kd_tree_partition::put(const box& b, std::uint32_t from) {
             at = n->children[static_cast<std::size_t>(!left)];
         }
         entries_.push_back(n->children[0] << 3 | owned);
-        ++in_leaf_[n->children[0]];
+        ++copies_in_leaf_[n->children[0]];
         // In preorder, descendants have greater indices.
         home = std::min(home, at);
         if (height == 0) return home;
@@ -318,26 +318,27 @@ inline std::uint32_t kd_tree_partition::put(const box& b, std::uint32_t from) {
 
 /// Compares the number of copies below each node with that at its construction, and collects the stale nodes.
 void kd_tree_partition::compare() {
-    below_.resize(nodes_.size());
+    copies_below_.resize(nodes_.size());
     for (std::size_t at = nodes_.size(); at-- > 0;) {
         node& n = nodes_[at];
-        below_[at] = n.axis == is_leaf ? in_leaf_[n.children[0]] : below_[n.children[0]] + below_[n.children[1]];
-        if (n.at_first == unknown) n.at_first = below_[at];
+        copies_below_[at] = n.axis == is_leaf ? copies_in_leaf_[n.children[0]]
+                                              : copies_below_[n.children[0]] + copies_below_[n.children[1]];
+        if (n.initial_copies == unknown) n.initial_copies = copies_below_[at];
     }
     pairs_ = 0;
-    for (const std::uint32_t copies : in_leaf_) pairs_ += static_cast<double>(copies) * copies;
-    if (pairs_at_first_ == 0) pairs_at_first_ = pairs_;
+    for (const std::uint32_t copies : copies_in_leaf_) pairs_ += static_cast<double>(copies) * copies;
+    if (initial_pairs_ == 0) initial_pairs_ = pairs_;
     groups_.clear();
-    if (is_off(0))
+    if (is_stale(0))
         groups_.push_back(0);
     else
         mark(0);
 }
 
 /// Whether a node is stale: its number of copies has more than doubled or halved, with a tolerance for small numbers.
-bool kd_tree_partition::is_off(std::uint32_t at) const noexcept {
-    const std::uint64_t current = below_[at];
-    const std::uint64_t initial = nodes_[at].at_first;
+bool kd_tree_partition::is_stale(std::uint32_t at) const noexcept {
+    const std::uint64_t current = copies_below_[at];
+    const std::uint64_t initial = nodes_[at].initial_copies;
     return current > 2 * initial + 16 || 2 * current + 16 < initial;
 }
 
@@ -345,7 +346,7 @@ bool kd_tree_partition::is_off(std::uint32_t at) const noexcept {
 void kd_tree_partition::mark(std::uint32_t at) {
     if (nodes_[at].axis == is_leaf) return;
     const auto [left, right] = nodes_[at].children;
-    if (is_off(left) || is_off(right)) {
+    if (is_stale(left) || is_stale(right)) {
         groups_.push_back(at);
         return;
     }
@@ -367,7 +368,7 @@ void kd_tree_partition::gather() {
     std::size_t total = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         group_starts_[g] = group_ends_[g] = total;
-        total += below_[groups_[g]];
+        total += copies_below_[groups_[g]];
         const std::uint32_t last = leaf_of(groups_[g], 1);
         for (std::uint32_t leaf = leaf_of(groups_[g], 0); leaf <= last; ++leaf)
             group_of_[leaf] = static_cast<std::uint32_t>(g) + 1;

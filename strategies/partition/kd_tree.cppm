@@ -43,7 +43,7 @@ public:
 
     [[nodiscard]] std::uint32_t subset_count() const noexcept { return leaves_; }
     /// Number of nodes built in this frame, including leaves.
-    [[nodiscard]] std::size_t made_nodes() const noexcept { return made_nodes_; }
+    [[nodiscard]] std::size_t built_nodes() const noexcept { return built_nodes_; }
 
     [[nodiscard]] inline std::uint64_t copies(std::uint32_t id, const box&) const noexcept {
         return starts_[id + 1] - starts_[id];
@@ -68,7 +68,7 @@ private:
         float plane;
         std::uint32_t axis;                     ///< or is_leaf
         std::array<std::uint32_t, 2> children;  ///< left, right; in a leaf, the first is its number
-        std::uint32_t at_first;                 ///< number of copies in its leaves when it was built
+        std::uint32_t initial_copies;           ///< number of copies in its leaves when it was built
     };
 
     struct split {
@@ -77,9 +77,9 @@ private:
         double cost;  ///< of the node's boxes per frame, in nanoseconds
     };
 
-    void choose_all(std::span<const box> boxes);
-    void choose_stale(std::span<const box> boxes);
-    void copy_or_choose(std::span<const box> boxes, std::uint32_t old, std::size_t depth);
+    void rebuild_all(std::span<const box> boxes);
+    void rebuild_stale(std::span<const box> boxes);
+    void copy_or_rebuild(std::span<const box> boxes, std::uint32_t old, std::size_t depth);
     void choose(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell, std::size_t depth);
     std::uint32_t put(const box& b, std::uint32_t from);
     [[nodiscard]] std::uint32_t leaf_of(std::uint32_t at, std::size_t side) const noexcept;
@@ -88,7 +88,7 @@ private:
                               std::array<std::size_t, 2>& parts);
     [[nodiscard]] bool place(std::span<const box> boxes);
     void compare();
-    [[nodiscard]] bool is_off(std::uint32_t at) const noexcept;
+    [[nodiscard]] bool is_stale(std::uint32_t at) const noexcept;
     void mark(std::uint32_t at);
     void gather();
 
@@ -98,17 +98,17 @@ private:
     std::vector<std::uint32_t> present_;
     std::vector<node> nodes_;
     std::uint32_t leaves_ = 1;
-    std::vector<std::uint32_t> starts_;   // by id, in entries_
-    std::vector<std::uint32_t> entries_;  // leaf << 3 | the axes whose lower end lies there
-    std::vector<std::uint32_t> homes_;    // by id: the lowest node whose cell contains the box
-    std::vector<std::uint32_t> in_leaf_;  // by leaf: number of copies
-    std::vector<std::uint32_t> below_;    // by node: number of copies in its leaves
-    double pairs_ = 0;                    // number of ordered pairs within leaves
-    double pairs_at_first_ = 0;           // the same when the planes were chosen
-    std::size_t made_nodes_ = 0;
+    std::vector<std::uint32_t> starts_;          // by id, in entries_
+    std::vector<std::uint32_t> entries_;         // leaf << 3 | the axes whose lower end lies there
+    std::vector<std::uint32_t> homes_;           // by id: the lowest node whose cell contains the box
+    std::vector<std::uint32_t> copies_in_leaf_;  // by leaf: number of copies
+    std::vector<std::uint32_t> copies_below_;    // by node: number of copies in its leaves
+    double pairs_ = 0;                           // number of ordered pairs within leaves
+    double initial_pairs_ = 0;                   // the same when the planes were chosen
+    std::size_t built_nodes_ = 0;
     // Used while planes are chosen:
     std::vector<node> old_;
-    std::vector<std::uint32_t> now_at_;      // by old node: its new index, or that of the subtree that replaces it
+    std::vector<std::uint32_t> new_index_;   // by old node: its new index, or that of the subtree that replaces it
     std::vector<std::uint32_t> groups_;      // nodes whose subtrees the next frame rebuilds, ascending
     std::vector<std::uint32_t> group_of_;    // by leaf: index of its group plus one, or 0 if the leaf stays
     std::vector<std::size_t> group_starts_;  // indices into ids_

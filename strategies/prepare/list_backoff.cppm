@@ -18,14 +18,14 @@ public:
         next_ = std::min(2 * next_, longest);
     }
     /// Begins by watching a sample of boxes from this frame on.
-    void start_with_sample() noexcept { left_ = motion_sample::longest + 1; }
+    void begin_with_sample() noexcept { left_ = motion_sample::longest + 1; }
     /// A list served as long as planned, so the next back-off is short again.
     void shorten() noexcept { next_ = shortest; }
 
     /// Advances by one frame and ends the back-off once a list seems worth its cost. If the sample already moves too
     /// far for any list, so does the whole scene, and the rest of the eight frames is skipped.
     /// @param outlook estimates; its law is that of the sample
-    /// @param drawn as in `drawn_id`
+    /// @param drawn as in `draw_id`
     /// @returns whether all eight frames were in vain; another sample is watched next
     bool pass(std::span<const box> boxes, const membership& objects, list_estimate& estimate, std::uint32_t& drawn) {
         --left_;

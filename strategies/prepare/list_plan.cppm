@@ -86,10 +86,10 @@ struct list_estimate {
     list_horizon horizon{};
 
     /// Estimates the growth again, from a new sample.
-    /// @param drawn as in `drawn_id`
+    /// @param drawn as in `draw_id`
     void resample(std::span<const box> boxes_by_id, const membership& objects, std::uint32_t& drawn) {
         std::array<box, 16> sample;
-        growth = growth_of_pairs(drawn_boxes(boxes_by_id, objects, drawn, sample));
+        growth = growth_of_pairs(draw_boxes(boxes_by_id, objects, drawn, sample));
     }
     /// The estimated number of pairs in a list with this margin.
     [[nodiscard]] double listed(double margin) const {
@@ -164,8 +164,7 @@ inline constexpr double worth_a_list = 0.9;
 
 /// Whether it is worth its cost to find the sure pairs of a list, which later frames then do not test. Finding them
 /// takes as long as two tests of each pair.
-[[nodiscard]] inline bool is_marking_certain_worth_it(const list_estimate& estimate, std::size_t listed,
-                                                      double margin) {
+[[nodiscard]] inline bool is_marking_worth_it(const list_estimate& estimate, std::size_t listed, double margin) {
     const double certain = static_cast<double>(estimate.pairs) * estimate.growth.certain(margin);
     const double frames_left = estimate.law.until(margin) - static_cast<double>(estimate.law.age());
     return certain * frames_left > 2 * static_cast<double>(listed);

@@ -68,24 +68,24 @@ public:
         objects_.require_boxes_for_all(boxes.size());
         boxes_ = boxes;
         // The pairs of the frame in which the list was planned were never requested, so the list does not exist.
-        if (std::exchange(is_to_be_made_, false)) state_ = state::nothing;
-        const bool comes_any = objects_.arrivals() > 0;
-        const bool leaves_any = objects_.any_departures();
+        if (std::exchange(is_list_pending_, false)) state_ = state::nothing;
+        const bool any_arrivals = objects_.arrivals() > 0;
+        const bool any_leave = objects_.any_departures();
         frame_.change([&] { objects_.settle(); });
         // Departures are reported only once, so they are applied now, even if this frame is rejected later.
-        if (leaves_any && state_ >= state::resting)
+        if (any_leave && state_ >= state::resting)
             list_.erase_if([&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
-        note_arrivals(comes_any);
+        record_arrivals(any_arrivals);
         if (is_below_list_threshold()) {
             state_ = state::nothing;
             search_->update(boxes);
         } else {
-            const sight seen = look(boxes, comes_any);
+            const sight seen = look(boxes, any_arrivals);
             switch (steps[static_cast<std::size_t>(state_)][static_cast<std::size_t>(seen)]) {
                 case step::search: search_->update(boxes); break;
                 case step::keep: keep(boxes, {0, 0}); break;
                 // Objects inserted since the boxes were kept have no valid kept box, so their motion is unknown.
-                case step::plan: plan(boxes, seen == sight::changed && age_ > 0 && !comes_any); break;
+                case step::plan: plan(boxes, seen == sight::changed && age_ > 0 && !any_arrivals); break;
                 case step::repeat: has_rested_ = true; break;
                 case step::serve: serve(boxes); break;
                 case step::settle: settle(boxes); break;
@@ -99,16 +99,16 @@ public:
         frame_.require_taken();
         require_ieee_arithmetic();
         const std::size_t before = pairs.size();
-        const bool searches = is_to_be_made_ || state_ <= state::watching;
-        if (is_to_be_made_) search_->search(list_.begin());
-        is_to_be_made_ = false;
+        const bool searches = is_list_pending_ || state_ <= state::watching;
+        if (is_list_pending_) search_->search(list_.begin());
+        is_list_pending_ = false;
         switch (state_) {
             case state::nothing:
             case state::searching:
             case state::watching: search_->search(pairs); break;
             case state::resting: pairs.insert(pairs.end(), list_.whole().begin(), list_.whole().end()); break;
             case state::listing:
-                append_whole(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, is_within())); });
+                append_or_restore(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, certain_pairs_hold())); });
                 break;
         }
         estimate_.pairs = pairs.size() - before;
@@ -157,16 +157,18 @@ private:
     struct next_list {
         std::size_t frames;  ///< number of frames that the list is planned to serve; 0 if unplanned
         double margin;
-        bool about_kept = false;  ///< the list is built from the kept boxes instead of those of this frame
+        bool around_kept_boxes = false;  ///< the list is built from the kept boxes instead of those of this frame
     };
 
-    [[nodiscard]] bool adapts() const noexcept { return !config_.margin && config_.every == 0; }
-    [[nodiscard]] bool is_below_list_threshold() const noexcept { return adapts() && objects_.size() < fewest_boxes; }
+    [[nodiscard]] bool is_adaptive() const noexcept { return !config_.margin && config_.every == 0; }
+    [[nodiscard]] bool is_below_list_threshold() const noexcept {
+        return is_adaptive() && objects_.size() < fewest_boxes;
+    }
     /// Whether the pairs marked as sure are guaranteed to overlap in this frame.
-    [[nodiscard]] bool is_within() const noexcept { return moved_.both_ways <= margin_; }
+    [[nodiscard]] bool certain_pairs_hold() const noexcept { return moved_.in_both_directions <= margin_; }
 
     /// An arrival ends every list. The next one is expected after the interval between the last two, or is overdue.
-    void note_arrivals(bool any) noexcept {
+    void record_arrivals(bool any) noexcept {
         if (any && frames_ > 0) between_arrivals_ = since_arrival_;
         since_arrival_ = any ? 1 : since_arrival_ + 1;
         const std::size_t until_arrival = std::max(between_arrivals_, since_arrival_);
@@ -177,10 +179,10 @@ private:
                              .in_new_memory = grown_.capacity() == 0};
     }
 
-    [[nodiscard]] sight look(std::span<const box> boxes, bool comes_any) {
+    [[nodiscard]] sight look(std::span<const box> boxes, bool any_arrivals) {
         if (state_ == state::nothing) return sight::changed;
-        if (state_ == state::searching) return look_at_few(boxes);
-        if (comes_any || boxes.size() != kept_.size())
+        if (state_ == state::searching) return observe_sample(boxes);
+        if (any_arrivals || boxes.size() != kept_.size())
             // An object inserted among resting boxes does not make them move.
             return state_ == state::resting && !has_rested_ ? sight::changed : sight::arrival;
         if (state_ == state::resting && std::memcmp(boxes.data(), kept_.data(), boxes.size_bytes()) == 0)
@@ -194,8 +196,8 @@ private:
         estimate_.law.observe(age_, moved_.margin);
         if (config_.every > 0) return is_due ? sight::changed : sight::as_before;
         if (state_ != state::listing || moved_.margin > margin_) return sight::changed;
-        if (!adapts()) return sight::as_before;
-        if (age_ == made_at_ + 1 && !is_list_worth_it(objects_.size(), estimate_.pairs, list_.size())) {
+        if (!is_adaptive()) return sight::as_before;
+        if (age_ == age_when_made_ + 1 && !is_list_worth_it(objects_.size(), estimate_.pairs, list_.size())) {
             planned_ = 0;  // the list ends because of its length, not because boxes moved too far
             return sight::changed;
         }
@@ -203,7 +205,7 @@ private:
         return age_ > 1 && moved_ == before ? sight::settled : sight::as_before;
     }
 
-    [[nodiscard]] sight look_at_few(std::span<const box> boxes) {
+    [[nodiscard]] sight observe_sample(std::span<const box> boxes) {
         if (!backoff_.lasts()) return sight::changed;
         if (backoff_.pass(boxes, objects_, estimate_, drawn_)) {
             estimate_.correction = 1;  // learned from lists that are too old to predict the next one
@@ -229,8 +231,8 @@ private:
         estimate_.pairs = 0;
         estimate_.resample(boxes, objects_, drawn_);
         if (estimate_.horizon.frames_left < fewest_frames_of_first_list) {
-            backoff_.start_with_sample();
-            static_cast<void>(look_at_few(boxes));
+            backoff_.begin_with_sample();
+            static_cast<void>(observe_sample(boxes));
             return std::nullopt;
         }
         const double margin = typical_extents(extents_of_first_margin, boxes, objects_);
@@ -241,11 +243,11 @@ private:
     /// Returns nullopt if no list is worth its cost, or if boxes moved much farther than estimated and must be watched.
     [[nodiscard]] std::optional<next_list> planned_list(std::span<const box> boxes, bool has_ended) {
         const bool is_list = state_ == state::listing;
-        const bool has_failed = has_ended && is_list && 2 * (age_ - made_at_) < planned_;
+        const bool has_failed = has_ended && is_list && 2 * (age_ - age_when_made_) < planned_;
         // Without this success, the next back-off would be longer than the last one.
         if (is_list ? !has_failed : has_rested_) backoff_.shorten();
         if (has_failed) return std::nullopt;
-        if (has_ended && is_list && made_at_ == 0 && planned_ <= age_ && age_ < 2 * planned_ &&
+        if (has_ended && is_list && age_when_made_ == 0 && planned_ <= age_ && age_ < 2 * planned_ &&
             repeated_ < longest_repetition && !is_far_too_long(boxes, margin_)) {
             ++repeated_;
             return next_list{planned_, margin_};
@@ -291,13 +293,13 @@ private:
     void keep(std::span<const box> boxes, next_list next) {
         state_ = state::nothing;
         margin_ = margin_when_made_ = next.margin;
-        if (!next.about_kept) {
+        if (!next.around_kept_boxes) {
             kept_.assign(boxes.begin(), boxes.end());
             age_ = 0;
             moved_ = {};
             estimate_.law.begin();
         }
-        made_at_ = age_;
+        age_when_made_ = age_;
         planned_ = next.frames;
         has_rested_ = false;
         if (margin_ > 0) {
@@ -307,30 +309,30 @@ private:
             grow(kept_, margin_, grown_);
         }
         search_->update(margin_ > 0 ? std::span<const box>(grown_) : boxes);
-        is_to_be_made_ = true;
-        state_ = adapts() && margin_ == 0 ? state::resting : state::listing;
+        is_list_pending_ = true;
+        state_ = is_adaptive() && margin_ == 0 ? state::resting : state::listing;
     }
 
     /// Serves a frame from a complete list. After two frames its remaining lifetime can be estimated.
     void serve(std::span<const box> boxes) {
         require_valid(boxes);
-        if (adapts()) shorten_if_worth_it();
-        if (config_.every == 0 && age_ == made_at_ + 2 && is_marking_certain_worth_it(estimate_, list_.size(), margin_))
-            list_.mark_certain(kept_, margin_);
+        if (is_adaptive()) shorten_if_worth_it();
+        if (config_.every == 0 && age_ == age_when_made_ + 2 && is_marking_worth_it(estimate_, list_.size(), margin_))
+            list_.mark_certain_pairs(kept_, margin_);
     }
 
     /// Reduces the list to the overlapping pairs, which are the result of every frame until a box moves.
     void settle(std::span<const box> boxes) {
         require_valid(boxes);
-        if (!is_within()) list_.forget_sure();
+        if (!certain_pairs_hold()) list_.forget_certain();
         count_tests(list_.tested());
-        list_.keep_meeting(boxes);
-        list_.forget_sure();
+        list_.keep_overlapping(boxes);
+        list_.forget_certain();
         kept_.assign(boxes.begin(), boxes.end());
         margin_ = 0;
         planned_ = 0;
         age_ = 0;
-        made_at_ = 0;
+        age_when_made_ = 0;
         has_rested_ = true;
         estimate_.law.forget();
         state_ = state::resting;
@@ -353,8 +355,8 @@ private:
         planned_ = 0;
         grow(kept_, margin_, grown_);
         count_tests(list_.tested());
-        list_.keep_meeting(grown_);
-        list_.mark_certain(kept_, margin_);
+        list_.keep_overlapping(grown_);
+        list_.mark_certain_pairs(kept_, margin_);
     }
 
     void count_tests(std::size_t tests) noexcept {
@@ -381,22 +383,22 @@ private:
     frame_state frame_;
     std::span<const box> boxes_;
     state state_ = state::nothing;
-    bool is_to_be_made_ = false;  // the next search fills the list
+    bool is_list_pending_ = false;  // the next search fills the list
     double share_of_update_ = 0;
-    std::vector<box> kept_;        // reference boxes from which the list was made
-    std::vector<box> grown_;       // the reference boxes grown by the margin
-    pair_list list_;               // the pairs of the grown boxes, without those of removed objects
-    double margin_ = 0;            // the skin of the Verlet list
-    double margin_when_made_ = 0;  // the margin before the list was shortened
-    relative_motion moved_{};      // motion from the kept boxes to those of this frame
-    std::size_t age_ = 0;          // number of frames since the boxes were kept
-    std::size_t made_at_ = 0;      // age at which the list was made
-    bool has_rested_ = false;      // boxes have been at rest for at least one frame
-    std::size_t planned_ = 0;      // number of frames that the list is planned to serve; 0 if unplanned
-    unsigned repeated_ = 0;        // number of lists made since by the same plan
+    std::vector<box> kept_;          // reference boxes from which the list was made
+    std::vector<box> grown_;         // the reference boxes grown by the margin
+    pair_list list_;                 // the pairs of the grown boxes, without those of removed objects
+    double margin_ = 0;              // the skin of the Verlet list
+    double margin_when_made_ = 0;    // the margin before the list was shortened
+    relative_motion moved_{};        // motion from the kept boxes to those of this frame
+    std::size_t age_ = 0;            // number of frames since the boxes were kept
+    std::size_t age_when_made_ = 0;  // age at which the list was made
+    bool has_rested_ = false;        // boxes have been at rest for at least one frame
+    std::size_t planned_ = 0;        // number of frames that the list is planned to serve; 0 if unplanned
+    unsigned repeated_ = 0;          // number of lists made since by the same plan
     list_estimate estimate_;
     list_backoff backoff_;
-    std::uint32_t drawn_ = 0;  // see `drawn_id`
+    std::uint32_t drawn_ = 0;  // see `draw_id`
     std::size_t frames_ = 0;   // number of earlier frames
     std::size_t expected_ = std::numeric_limits<std::size_t>::max();
     std::size_t since_arrival_ = 0;  // number of frames

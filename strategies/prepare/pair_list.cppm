@@ -36,7 +36,7 @@ using corner = float __attribute__((vector_size(16)));
 /// outcome of a test is hard to predict.
 /// @param to may equal the list; writes up to one vector beyond the list's length
 /// @return the number of overlapping pairs
-inline std::size_t store_meeting(std::span<const box> boxes, std::span<const index_pair> list, index_pair* to) {
+inline std::size_t store_overlapping(std::span<const box> boxes, std::span<const index_pair> list, index_pair* to) {
     constexpr std::size_t at_a_time = simd::width / 2;
     std::size_t end = 0;
     std::size_t i = 0;
@@ -58,13 +58,13 @@ inline std::size_t store_meeting(std::span<const box> boxes, std::span<const ind
 
 /// Appends the overlapping pairs of a list. Works in blocks, so that the buffer stays in the cache and the output never
 /// grows by more than it needs.
-inline void append_meeting(std::span<const box> boxes, std::span<const index_pair> list,
-                           std::vector<index_pair>& pairs) {
+inline void append_overlapping(std::span<const box> boxes, std::span<const index_pair> list,
+                               std::vector<index_pair>& pairs) {
     constexpr std::size_t at_a_time = 1024;
     std::array<index_pair, at_a_time + simd::width / 2> overlaps;
     for (std::size_t i = 0; i < list.size(); i += at_a_time) {
         const std::size_t count =
-            store_meeting(boxes, list.subspan(i, std::min(at_a_time, list.size() - i)), overlaps.data());
+            store_overlapping(boxes, list.subspan(i, std::min(at_a_time, list.size() - i)), overlaps.data());
         pairs.insert(pairs.end(), overlaps.begin(), overlaps.begin() + static_cast<std::ptrdiff_t>(count));
     }
 }
@@ -85,8 +85,8 @@ public:
 
     /// Finds the sure pairs.
     /// @param kept the boxes from which the list was made
-    void mark_certain(std::span<const box> kept, double margin) {
-        const float depth = depth_beyond(margin);
+    void mark_certain_pairs(std::span<const box> kept, double margin) {
+        const float depth = certain_depth(margin);
         if (std::isinf(depth)) return;
         constexpr std::size_t at_a_time = simd::width / 2;
         constexpr std::uint32_t all_words = (1U << simd::width) - 1;
@@ -100,7 +100,8 @@ public:
             std::uint32_t both_words = 0;
 #pragma clang loop unroll(full)
             for (std::size_t k = 0; k < at_a_time; ++k)
-                both_words |= (overlap_by(depth, kept[open_[i + k].a], kept[open_[i + k].b]) ? 3U : 0U) << 2 * k;
+                both_words |= (overlap_deeper_than(depth, kept[open_[i + k].a], kept[open_[i + k].b]) ? 3U : 0U)
+                              << 2 * k;
             simd::words block;
             std::memcpy(&block, &open_[i], sizeof block);
             end += simd::compress_store(&sure_[end].a, block, both_words) / 2;
@@ -108,7 +109,7 @@ public:
         }
         for (; i < count; ++i) {
             const index_pair pair = open_[i];
-            const bool certain = overlap_by(depth, kept[pair.a], kept[pair.b]);
+            const bool certain = overlap_deeper_than(depth, kept[pair.a], kept[pair.b]);
             sure_[end] = pair;
             end += static_cast<std::size_t>(certain);
             open_[still_open] = pair;
@@ -119,9 +120,9 @@ public:
     }
 
     /// Removes the pairs whose boxes do not overlap; sure pairs stay.
-    void keep_meeting(std::span<const box> boxes) { open_.resize(store_meeting(boxes, open_, open_.data())); }
+    void keep_overlapping(std::span<const box> boxes) { open_.resize(store_overlapping(boxes, open_, open_.data())); }
 
-    void forget_sure() {
+    void forget_certain() {
         open_.insert(open_.end(), sure_.begin(), sure_.end());
         sure_.clear();
     }
@@ -145,8 +146,8 @@ public:
         if (within)
             pairs.insert(pairs.end(), sure_.begin(), sure_.end());
         else
-            append_meeting(boxes, sure_, pairs);
-        append_meeting(boxes, open_, pairs);
+            append_overlapping(boxes, sure_, pairs);
+        append_overlapping(boxes, open_, pairs);
         return within ? open_.size() : size();
     }
 
@@ -161,14 +162,15 @@ public:
 private:
     /// The least overlap computed in floats that proves an overlap by two margins: the relative error of a difference
     /// is at most 2^-24.
-    [[nodiscard]] static float depth_beyond(double margin) noexcept {
+    [[nodiscard]] static float certain_depth(double margin) noexcept {
         constexpr float infinity = std::numeric_limits<float>::infinity();
         const double depth = 2 * margin * (1 + 0x1p-22);
         return depth < double{std::numeric_limits<float>::max()} ? std::nextafter(static_cast<float>(depth), infinity)
                                                                  : infinity;
     }
 
-    [[nodiscard, gnu::always_inline]] static bool overlap_by(float depth, const box& a, const box& b) noexcept {
+    [[nodiscard, gnu::always_inline]] static bool overlap_deeper_than(float depth, const box& a,
+                                                                      const box& b) noexcept {
         using bools = bool __attribute__((ext_vector_type(4)));
         const auto deep = (upper_of(b) - lower_of(a) >= depth) & (upper_of(a) - lower_of(b) >= depth);
         return (std::bit_cast<std::uint8_t>(__builtin_convertvector(deep, bools)) & 7U) == 7U;

@@ -36,7 +36,7 @@ struct plane_motion {
 };
 
 /// Boxes are stored as rows of six floats; three vectors hold a whole number of rows at any vector width.
-[[nodiscard]] inline plane_motion motion_of_all(std::span<const box> from, std::span<const box> to) noexcept {
+[[nodiscard]] inline plane_motion plane_motion_between(std::span<const box> from, std::span<const box> to) noexcept {
     constexpr std::size_t block = simd::width / 2;
     plane_motion motion;
     const std::size_t whole = to.size() / block * block;
@@ -84,8 +84,8 @@ struct plane_motion {
 export namespace aabb {
 
 struct relative_motion {
-    double margin;     ///< see `motion_between`
-    double both_ways;  ///< also bounds the margin by which the earlier boxes, shrunk, lie in the later ones
+    double margin;              ///< see `motion_between`
+    double in_both_directions;  ///< also bounds the margin by which the earlier boxes, shrunk, lie in the later ones
 
     bool operator==(const relative_motion&) const = default;
 };
@@ -103,9 +103,9 @@ namespace aabb::detail {
     relative_motion moved{};
     for (int k = 0; k < 3; ++k) {
         moved.margin = std::max(moved.margin, margin_between(motion.lower.least[k], motion.upper.most[k]));
-        moved.both_ways =
-            std::max(moved.both_ways, margin_between(std::min(motion.lower.least[k], motion.upper.least[k]),
-                                                     std::max(motion.lower.most[k], motion.upper.most[k])));
+        moved.in_both_directions =
+            std::max(moved.in_both_directions, margin_between(std::min(motion.lower.least[k], motion.upper.least[k]),
+                                                              std::max(motion.lower.most[k], motion.upper.most[k])));
     }
     return moved;
 }
@@ -116,7 +116,7 @@ export namespace aabb {
 
 /// The overload for scenes in which all objects are present.
 [[nodiscard]] inline relative_motion motion_between(std::span<const box> from, std::span<const box> to) noexcept {
-    return detail::motion_of(detail::motion_of_all(from, to));
+    return detail::motion_of(detail::plane_motion_between(from, to));
 }
 
 /// The motion of the present objects' boxes relative to their common motion: the least margin by which the earlier
@@ -144,7 +144,7 @@ inline void grow(std::span<const box> boxes, double margin, std::span<box> grown
     constexpr float greatest = std::numeric_limits<float>::max();
     const double with_rounding = margin * (1 + 0x1p-22) + double{std::numeric_limits<float>::min()};
     const auto wide = static_cast<float>(std::min(with_rounding, double{greatest}));
-    // Three vectors hold a whole number of rows, as in `motion_of_all`.
+    // Three vectors hold a whole number of rows, as in `plane_motion_between`.
     constexpr std::size_t block = simd::width / 2;
     constexpr std::size_t numbers = 3 * simd::width;
     simd::floats sign[3];

@@ -10,7 +10,7 @@ export namespace aabb {
 
 /// A pseudorandom id below `count`: ids at regular strides may all belong to objects of one kind.
 /// @param drawn number of ids drawn so far
-[[nodiscard]] inline std::uint32_t drawn_id(std::uint32_t& drawn, std::size_t count) noexcept {
+[[nodiscard]] inline std::uint32_t draw_id(std::uint32_t& drawn, std::size_t count) noexcept {
     // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4), applied twice: a single pass yields regular
     // strides again.
     constexpr std::uint64_t golden_ratio = 0x9e3779b97f4a7c15U;
@@ -19,13 +19,13 @@ export namespace aabb {
     return static_cast<std::uint32_t>((hash >> 32U) * count >> 32U);
 }
 
-/// @param drawn as in `drawn_id`
+/// @param drawn as in `draw_id`
 /// @return boxes in `buffer`, which it fills unless some objects are absent
-[[nodiscard]] inline std::span<const box> drawn_boxes(std::span<const box> boxes, const membership& objects,
-                                                      std::uint32_t& drawn, std::span<box> buffer) {
+[[nodiscard]] inline std::span<const box> draw_boxes(std::span<const box> boxes, const membership& objects,
+                                                     std::uint32_t& drawn, std::span<box> buffer) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < buffer.size() && i < boxes.size(); ++i) {
-        const std::uint32_t id = drawn_id(drawn, boxes.size());
+        const std::uint32_t id = draw_id(drawn, boxes.size());
         if (objects.contains(id)) buffer[count++] = boxes[id];
     }
     return buffer.first(count);
@@ -37,11 +37,11 @@ struct pair_estimate {
     double within_margin = 0;  ///< pairs that overlap when both boxes are grown by the margin
     std::size_t counted = 0;   ///< number of such pairs in the sample
 };
-/// @param drawn as in `drawn_id`
+/// @param drawn as in `draw_id`
 [[nodiscard]] inline pair_estimate estimate_pairs(std::span<const box> boxes, const membership& objects,
                                                   std::uint32_t& drawn, double margin) {
     std::array<box, 8> buffer;
-    const std::span<const box> sample = drawn_boxes(boxes, objects, drawn, buffer);
+    const std::span<const box> sample = draw_boxes(boxes, objects, drawn, buffer);
     std::array<box, 8> grown;
     // Growing one box of a pair by twice the margin is equivalent to growing both by the margin.
     grow(sample, 2 * margin, grown);
@@ -49,7 +49,7 @@ struct pair_estimate {
     std::size_t overlapping = 0;
     pair_estimate estimate;
     for (std::size_t k = 0; k < others && !boxes.empty(); ++k) {
-        const box& b = boxes[drawn_id(drawn, boxes.size())];
+        const box& b = boxes[draw_id(drawn, boxes.size())];
         for (std::size_t i = 0; i < sample.size(); ++i) {
             if (!meet(b, grown[i]) || b == sample[i]) continue;
             ++estimate.counted;
@@ -70,10 +70,10 @@ public:
     /// The number of frames for which a sample is watched.
     static constexpr unsigned longest = 8;
 
-    /// @param drawn as in `drawn_id`
+    /// @param drawn as in `draw_id`
     void keep(std::span<const box> boxes, std::uint32_t& drawn) {
         for (std::size_t i = 0; i < ids_.size() && !boxes.empty(); ++i) {
-            ids_[i] = drawn_id(drawn, boxes.size());
+            ids_[i] = draw_id(drawn, boxes.size());
             kept_[i] = boxes[ids_[i]];
         }
     }

@@ -58,7 +58,7 @@ public:
         if (splits_.empty()) return search_->search(pairs);
         piece_pairs_.clear();
         search_->search(piece_pairs_);
-        append_whole(pairs, [&] {
+        append_or_restore(pairs, [&] {
             for (const auto [a, b] : piece_pairs_)
                 if (counts(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
         });

@@ -50,7 +50,7 @@ std::vector<strategy_choice> choices_of(const composition& c, stage of) {
 }
 
 template <class Rows>
-const auto& row_for(const Rows& rows, const composition& c, stage of) {
+const auto& find_row(const Rows& rows, const composition& c, stage of) {
     require_known(c, of);
     const std::vector<strategy_choice> choices = choices_of(c, of);
     return *std::ranges::find_if(
@@ -58,8 +58,8 @@ const auto& row_for(const Rows& rows, const composition& c, stage of) {
 }
 
 template <class Rows>
-const auto& accepted_row_for(const Rows& rows, const composition& c, stage of) {
-    const auto& row = row_for(rows, c, of);
+const auto& accepted_row(const Rows& rows, const composition& c, stage of) {
+    const auto& row = find_row(rows, c, of);
     if (!row.make) throw input_error(to_text(c, of) + ": " + std::string(row.rejection));
     return row;
 }
@@ -81,7 +81,7 @@ std::vector<composition> every_composition(const Rows& rows, stage of) {
             c[kind] = {info.name, {}};
             compositions.push_back(c);
             for (const strategy_kind other : kinds) c[other] = {strategies(other).front().name, {}};
-            if (row_for(rows, c, of).make) compositions.push_back(c);
+            if (find_row(rows, c, of).make) compositions.push_back(c);
         }
     return compositions;
 }
@@ -177,8 +177,8 @@ std::string to_text(const composition& c, stage of) {
 }
 
 std::string_view rejection_of(const composition& c, stage of) {
-    return of == stage::global_search ? row_for(global_rows(), c, of).rejection
-                                      : row_for(local_rows(), c, of).rejection;
+    return of == stage::global_search ? find_row(global_rows(), c, of).rejection
+                                      : find_row(local_rows(), c, of).rejection;
 }
 
 bool is_exact(const composition& c, stage of) {
@@ -199,13 +199,13 @@ std::vector<composition> every_composition(stage of) {
 }
 
 std::unique_ptr<global_stage> compose_global_search(const composition& c, instrumentation counted) {
-    const auto& row = accepted_row_for(global_rows(), c, stage::global_search);
+    const auto& row = accepted_row(global_rows(), c, stage::global_search);
     return registry::prepared(c[strategy_kind::prepare], row.make(choices_of(c, stage::global_search), counted),
                               counted);
 }
 
 std::unique_ptr<local_stage> compose_local_detection(const composition& c, instrumentation counted) {
-    const auto& row = accepted_row_for(local_rows(), c, stage::local_detection);
+    const auto& row = accepted_row(local_rows(), c, stage::local_detection);
     return row.make(choices_of(c, stage::local_detection), registry::builder_named(c[strategy_kind::build]), counted);
 }
 

@@ -13,7 +13,7 @@ strategy_kind kind_named(std::string_view name) {
     throw input_error(unknown_name("kind of strategy", name, names));
 }
 
-named_strategies named_in(const std::vector<std::string>& texts) {
+named_strategies parse_choices(const std::vector<std::string>& texts) {
     named_strategies named;
     for (const std::string& text : texts) {
         const std::size_t equals = text.find('=');
@@ -26,8 +26,8 @@ named_strategies named_in(const std::vector<std::string>& texts) {
     return named;
 }
 
-named_strategies named_for_boxes(const std::vector<std::string>& texts) {
-    named_strategies named = named_in(texts);
+named_strategies parse_choices_for_boxes(const std::vector<std::string>& texts) {
+    named_strategies named = parse_choices(texts);
     for (const strategy_kind kind : kinds_of(stage::local_detection))
         if (named[kind]) throw input_error(std::string(name_of(kind)) + " is named, but objects are boxes");
     return named;
@@ -46,7 +46,7 @@ struct auto_detector::mesh_part {
 };
 
 auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t frames)
-    : auto_detector(named_for_boxes(named), scene_traits{.frames = frames}) {
+    : auto_detector(parse_choices_for_boxes(named), scene_traits{.frames = frames}) {
     if (const std::string sentence = needs_meshes(composed_of(selected_)); !sentence.empty())
         throw input_error(sentence);
     std::erase_if(selected_,
@@ -55,7 +55,7 @@ auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t 
 
 auto_detector::auto_detector(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of,
                              const std::vector<std::string>& named, std::size_t frames)
-    : auto_detector(named_in(named), traits_of(meshes, mesh_of.size(), frames)) {
+    : auto_detector(parse_choices(named), traits_of(meshes, mesh_of.size(), frames)) {
     meshes_ = std::make_unique<mesh_part>(std::move(meshes), std::move(mesh_of), *global_,
                                           compose_local_detection(composed_of(selected_), instrumentation::none));
 }

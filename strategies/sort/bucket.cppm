@@ -32,7 +32,7 @@ public:
         from_.assign(list.begin(), list.end());
         for (const projection& p : from_) list[starts_[bucket_of(p)]++] = p;
         counters.add(work::moves, list.size());
-        mend(list, counters);
+        sort_buckets(list, counters);
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(starts_, from_); }
@@ -40,7 +40,7 @@ public:
 private:
     /// Sorts each bucket; crowded buckets by std::sort, since insertion sort would be quadratic there.
     template <CounterPolicy Counters>
-    void mend(std::span<projection> list, Counters& counters) const {
+    void sort_buckets(std::span<projection> list, Counters& counters) const {
         constexpr std::size_t most = 64;
         std::size_t begin = 0;
         for (const std::uint32_t end : std::span(starts_).first(starts_.size() - 1)) {

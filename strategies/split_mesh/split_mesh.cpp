@@ -50,11 +50,11 @@ public:
     void follow() override;
     void place(std::span<const pose> poses) override;
     [[nodiscard]] std::span<const box> boxes() const noexcept override { return boxes_; }
-    void name_objects(std::vector<index_pair>& objects) override;
+    void append_objects(std::vector<index_pair>& objects) override;
     [[nodiscard]] index_pair models_of(index_pair pieces) const noexcept override {
         return {pieces_[pieces.a].model, pieces_[pieces.b].model};
     }
-    void name_triangles(index_pair models, std::span<index_pair> triangles) const noexcept override;
+    void map_triangles(index_pair models, std::span<index_pair> triangles) const noexcept override;
     [[nodiscard]] std::size_t bytes() const noexcept override;
 
 private:
@@ -138,13 +138,13 @@ void divided_scene::place(std::span<const pose> poses) {
         boxes_[i] = posed_box(models_[pieces_[i].model].bounds, poses[pieces_[i].object], pieces_[i].object);
 }
 
-void divided_scene::name_objects(std::vector<index_pair>& objects) {
+void divided_scene::append_objects(std::vector<index_pair>& objects) {
     const auto objects_of = [&](index_pair p) { return index_pair{pieces_[p.a].object, pieces_[p.b].object}; };
     std::erase_if(found, [&](index_pair p) { return objects_of(p).a == objects_of(p).b; });
     for (const index_pair p : found) objects.push_back(objects_of(p));
 }
 
-void divided_scene::name_triangles(index_pair models, std::span<index_pair> triangles) const noexcept {
+void divided_scene::map_triangles(index_pair models, std::span<index_pair> triangles) const noexcept {
     for (auto& [a, b] : triangles) {
         a = triangle_of(models.a, a);
         b = triangle_of(models.b, b);

@@ -33,23 +33,23 @@ public:
             throw input_error("incremental takes at most 2^31 objects, not " + std::to_string(boxes.size()));
         if (objects.any_departures()) forget_departures(objects);
         const axis_set before = axes_;
-        swaps_left_ = steps_anew();
+        swaps_left_ = restart_steps();
         for (std::size_t k = 0; k < 3; ++k)
             if (has_axis(before, k)) sort_known(boxes, k, sort, counters);
         const vec3d separation = separation_of(boxes, objects);
         axes_ = separating_axes(separation);
         for (std::size_t k = 0; k < 3; ++k) {
-            if (has_axis(axes_ & ~before, k)) begin_axis(boxes, objects, k);
+            if (has_axis(axes_ & ~before, k)) build_list(boxes, objects, k);
             if (has_axis(axes_ & before, k)) merge_arrivals(boxes, objects, k);
             if (!has_axis(axes_, k)) release(ends_[k]);
         }
         if (swaps_left_ == 0) {
             counters.add(work::restarts);
             pairs_.clear();
-            tests_anew_ = 0;
+            restart_tests_ = 0;
             find_pairs(boxes, longest_axis(separation), counters, [](std::uint32_t) { return true; });
         } else {
-            bring_up_to(axes_ & ~before, boxes, objects, separation, counters);
+            apply_unreported_changes(axes_ & ~before, boxes, objects, separation, counters);
         }
         before_.assign(boxes.begin(), boxes.end());
         assert(are_of_one_length());
@@ -82,14 +82,14 @@ private:
         sort.sort(std::span(ends_[axis]), counters, [&](const interval_end& passed, const interval_end& mover) {
             counters.add(work::inversions);
             if (--swaps_left_ == 0) return false;
-            take_note_of_swap(passed, mover, before_, boxes, pairs_, counters);
+            update_pairs_after_swap(passed, mover, before_, boxes, pairs_, counters);
             return true;
         });
     }
 
     /// The estimated number of steps of a restart, which sorts all lists and sweeps one; never 0.
-    [[nodiscard]] std::uint64_t steps_anew() const noexcept {
-        std::uint64_t steps = tests_anew_ + 1;
+    [[nodiscard]] std::uint64_t restart_steps() const noexcept {
+        std::uint64_t steps = restart_tests_ + 1;
         for (const auto& list : ends_) steps += list.size() * std::bit_width(list.size());
         return steps;
     }
@@ -103,7 +103,7 @@ private:
     }
 
     /// Builds the list of a new axis.
-    void begin_axis(std::span<const box> boxes, const membership& objects, std::size_t axis) {
+    void build_list(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         std::vector<interval_end>& list = ends_[axis];
         assert(list.empty());
         list.reserve(2 * boxes.size());
@@ -142,8 +142,8 @@ private:
     /// Applies the changes of the pairs that no swap reports: those of new axes and arrivals.
     /// @param begun axes that have a list from this frame on
     template <CounterPolicy Counters>
-    void bring_up_to(axis_set begun, std::span<const box> boxes, const membership& objects, const vec3d& separation,
-                     Counters& counters) {
+    void apply_unreported_changes(axis_set begun, std::span<const box> boxes, const membership& objects,
+                                  const vec3d& separation, Counters& counters) {
         if (begun) {
             // On a new axis all boxes overlapped until now, so pairs can only end on it.
             pairs_.erase_if([&](index_pair p) {
@@ -160,14 +160,14 @@ private:
     void find_pairs(std::span<const box> boxes, std::size_t axis, Counters& counters, auto is_new) {
         const std::uint64_t tests = sweep_.find(ends_[axis], boxes, pairs_, is_new);
         counters.add(work::box_tests, tests);
-        tests_anew_ = std::max(tests_anew_, tests);
+        restart_tests_ = std::max(restart_tests_, tests);
     }
 
     axis_set axes_ = 0;                              // axes with a list
     std::array<std::vector<interval_end>, 3> ends_;  // sorted
     std::vector<box> before_;                        // boxes of the previous frame, by id
     std::uint64_t swaps_left_ = 0;                   // remaining swaps of this frame; 0: the frame restarts
-    std::uint64_t tests_anew_ = 0;                   // greatest number of tests of a list sweep since the last restart
+    std::uint64_t restart_tests_ = 0;                // greatest number of tests of a list sweep since the last restart
     // Used for arrivals and restarts:
     std::vector<interval_end> arriving_;
     interval_sweep sweep_;

@@ -27,7 +27,7 @@ public:
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         const auto& list = subset.lists[static_cast<std::size_t>(longest_.axis())];
         if (list.size() < 2) return;
-        to_entries(subset, list);
+        convert_to_entries(subset, list);
         sweep(column_block{subset.boxes, {}, entries_, list_ends_, longest_.axis()}, pairs,
               std::numeric_limits<std::uint64_t>::max(), counters);
     }
@@ -53,8 +53,8 @@ public:
             const vector_of_entries vector(&block.entries[first], block.ends);
             const auto number = static_cast<std::uint32_t>((first - window) / width);
             tests += active + width - 1;
-            active = sweep_active(block, vector, number, first, active);
-            sweep_within(block, vector, number, first);
+            active = test_active(block, vector, number, first, active);
+            test_within(block, vector, number, first);
         }
         report(block, window, pairs);
         counters.add(work::box_tests, width * tests);
@@ -75,7 +75,7 @@ private:
         simd::words lower;
         simd::words upper;
         simd::words ends;
-        simd::words later_on;
+        simd::words begins_earlier;
 
         vector_of_entries(const column_entry* from, std::span<const std::uint32_t> bucket_ends) noexcept {
             simd::words fields[4];
@@ -83,18 +83,18 @@ private:
             lower = fields[0];
             upper = fields[1];
             ends = simd::gather(bucket_ends.data(), fields[2]);
-            later_on = fields[3] & ~column_entry::index_bits;
+            begins_earlier = fields[3] & ~column_entry::index_bits;
         }
 
         /// Bit l is set if entry l may overlap `e` across the columns, and this column owns the pair.
-        [[nodiscard]] inline std::uint32_t met_by(const column_entry& e) const noexcept {
-            return simd::bits(((later_on & e.index) | simd::excess(lower, simd::all(e.upper)) |
-                               simd::excess(simd::all(e.lower), upper)) == 0U);
+        [[nodiscard]] inline std::uint32_t overlap_mask(const column_entry& e) const noexcept {
+            return simd::bits(((begins_earlier & e.index) | simd::saturated_difference(lower, simd::all(e.upper)) |
+                               simd::saturated_difference(simd::all(e.lower), upper)) == 0U);
         }
     };
 
     /// The lanes of a vector that each of a few entries may overlap.
-    using met_lanes = std::array<std::uint16_t, width>;
+    using lane_overlaps = std::array<std::uint16_t, width>;
 
     void make_room(std::size_t candidates) {
         if (candidates <= met_.size()) return;
@@ -103,7 +103,7 @@ private:
     }
 
     /// Stores the entries that may overlap any lane as candidates, branch-free since that is hard to predict.
-    inline void keep(simd::words entries, std::uint32_t present, const met_lanes& met, simd::words lanes,
+    inline void keep(simd::words entries, std::uint32_t present, const lane_overlaps& met, simd::words lanes,
                      std::uint32_t vector) noexcept {
         const simd::words overlapped = simd::load_halves(met.data()) & lanes;
         const std::uint32_t any = simd::bits(overlapped != 0U) & present;
@@ -113,8 +113,8 @@ private:
 
     /// Tests the active entries against the vector, and updates the active entries.
     /// @returns the number of entries that stay active beyond the vector
-    [[nodiscard]] std::size_t sweep_active(const column_block& block, const vector_of_entries& vector,
-                                           std::uint32_t number, std::size_t first, std::size_t active) noexcept {
+    [[nodiscard]] std::size_t test_active(const column_block& block, const vector_of_entries& vector,
+                                          std::uint32_t number, std::size_t first, std::size_t active) noexcept {
         const auto next = static_cast<std::uint32_t>(first + width);
         std::size_t stay = 0;
         const auto take = [&](simd::words entries, simd::words ends, std::uint32_t present) {
@@ -122,13 +122,13 @@ private:
             simd::compress_store(&active_ends_[stay], ends, beyond);
             stay += simd::compress_store(&active_[stay], entries, beyond);
         };
-        met_lanes met{};
+        lane_overlaps met{};
         for (std::size_t q = 0; q < active; q += width) {
             const simd::words entries = simd::load(&active_[q]);
             const simd::words ends = simd::load(&active_ends_[q]);
             const std::size_t here = std::min(width, active - q);
             for (std::size_t l = 0; l < here; ++l)
-                met[l] = static_cast<std::uint16_t>(vector.met_by(block.entries[active_[q + l]]));
+                met[l] = static_cast<std::uint16_t>(vector.overlap_mask(block.entries[active_[q + l]]));
             const std::uint32_t present = simd::lanes_below(here);
             keep(entries, present, met, simd::lanes_below(ends - static_cast<std::uint32_t>(first)), number);
             take(entries, ends, present);
@@ -138,14 +138,14 @@ private:
     }
 
     /// Tests the entries of the vector against each other.
-    void sweep_within(const column_block& block, const vector_of_entries& vector, std::uint32_t number,
-                      std::size_t first) noexcept {
+    void test_within(const column_block& block, const vector_of_entries& vector, std::uint32_t number,
+                     std::size_t first) noexcept {
         const simd::words after = simd::all(~std::uint32_t{1}) << simd::places();
         const simd::words lanes = simd::lanes_below(vector.ends - static_cast<std::uint32_t>(first)) & after;
-        met_lanes met{};
+        lane_overlaps met{};
 #pragma clang loop unroll(full)
         for (std::size_t l = 0; l + 1 < width; ++l)
-            met[l] = static_cast<std::uint16_t>(vector.met_by(block.entries[first + l]));
+            met[l] = static_cast<std::uint16_t>(vector.overlap_mask(block.entries[first + l]));
         keep(simd::places() + static_cast<std::uint32_t>(first), simd::every_lane, met, lanes, number);
     }
 
@@ -175,7 +175,7 @@ private:
 
     /// Converts a list to entries, quantized over the bounds of its boxes.
     template <class Subset, class List>
-    void to_entries(const Subset& subset, const List& list) {
+    void convert_to_entries(const Subset& subset, const List& list) {
         column_plan plan;
         plan.axis = longest_.axis();
         box bounds = empty_box();
@@ -188,10 +188,10 @@ private:
         const int v = plan.axis_across(1);
         for (std::size_t i = 0; i < list.size(); ++i) {
             const box& b = subset.boxes[list[i].id];
-            const axis_set later_on = every_axis & ~Subset::owned(list[i]);
+            const axis_set begins_earlier = every_axis & ~Subset::owned(list[i]);
             entries_[i] = {plan.whole(b.min[u], u) | plan.whole(b.min[v], v) << 16,
                            plan.whole(b.max[u], u) | plan.whole(b.max[v], v) << 16, static_cast<std::uint32_t>(i),
-                           list[i].id | later_on << 29};
+                           list[i].id | begins_earlier << 29};
             const auto begins_within = [&](const auto& e) {
                 return subset.boxes[e.id].min[plan.axis] <= b.max[plan.axis];
             };

@@ -45,13 +45,13 @@ public:
         places_.resize(boxes.size());
         const std::size_t known = objects.size() - objects.arrivals();
         if (2 * known < objects.size() || objects.size() > 2 * planned_ || 2 * objects.size() < planned_) {
-            start_anew(boxes, objects, counters);
+            restart(boxes, objects, counters);
         } else {
-            steps_left_ = steps_anew_;
+            steps_left_ = restart_steps_;
             follow(boxes, objects, sort, counters);
             if (steps_left_ == 0) {
                 counters.add(work::restarts);
-                start_anew(boxes, objects, counters);
+                restart(boxes, objects, counters);
             }
         }
         before_.assign(boxes.begin(), boxes.end());
@@ -83,8 +83,8 @@ private:
     };
 
     static constexpr double most_regions = 256;  // per axis
-    static constexpr double objects_a_region = 16;
-    static constexpr double extents_a_region = 4;
+    static constexpr double objects_per_region = 16;
+    static constexpr double extents_per_region = 4;
 
     /// Monotone in x, rounding included, so that overlapping boxes share a region. Coordinates beyond the grid belong
     /// to the outermost cells.
@@ -119,7 +119,7 @@ private:
 
     void spend(std::uint64_t steps) noexcept { steps_left_ -= std::min(steps, steps_left_); }
 
-    static void take_out(region& r, auto goes) {
+    static void erase_ends(region& r, auto goes) {
         for (auto& list : r.ends) std::erase_if(list, [&](const interval_end& e) { return goes(e.id); });
     }
 
@@ -131,7 +131,7 @@ private:
             places_[id] = {};
         }
         for (const std::uint32_t r : touched_) {
-            take_out(regions_[r], [&](std::uint32_t id) { return objects.is_leaving(id); });
+            erase_ends(regions_[r], [&](std::uint32_t id) { return objects.is_leaving(id); });
             regions_[r].is_touched = false;
         }
         touched_.clear();
@@ -154,7 +154,7 @@ private:
             places_[id] = range;
         }
         for (const std::uint32_t r : touched_) {
-            for (std::size_t k = 0; k < 3 && steps_left_ > 0; ++k) sort_again(r, k, boxes, sort, counters);
+            for (std::size_t k = 0; k < 3 && steps_left_ > 0; ++k) sort_region(r, k, boxes, sort, counters);
             regions_[r].is_touched = false;
         }
         touched_.clear();
@@ -164,7 +164,7 @@ private:
     template <CounterPolicy Counters>
     void leave(std::uint32_t r, std::uint32_t id, std::span<const box> boxes, Counters& counters) {
         spend(regions_[r].ends[0].size());
-        take_out(regions_[r], [id](std::uint32_t other) { return other == id; });
+        erase_ends(regions_[r], [id](std::uint32_t other) { return other == id; });
         for (const interval_end& e : regions_[r].ends[0]) {
             if (e.is_upper || !overlaps(before_[id], before_[e.id])) continue;
             counters.add(work::box_tests);
@@ -181,7 +181,7 @@ private:
     }
 
     template <class Sort, CounterPolicy Counters>
-    void sort_again(std::uint32_t r, std::size_t axis, std::span<const box> boxes, Sort& sort, Counters& counters) {
+    void sort_region(std::uint32_t r, std::size_t axis, std::span<const box> boxes, Sort& sort, Counters& counters) {
         std::vector<interval_end>& list = regions_[r].ends[axis];
         spend(list.size());
         bool is_sorted = true;
@@ -193,13 +193,13 @@ private:
         sort.sort(std::span(list), counters, [&](const interval_end& passed, const interval_end& mover) {
             counters.add(work::inversions);
             if (--steps_left_ == 0) return false;
-            take_note_of_swap(passed, mover, before_, boxes, pairs_, counters);
+            update_pairs_after_swap(passed, mover, before_, boxes, pairs_, counters);
             return true;
         });
     }
 
     template <CounterPolicy Counters>
-    void start_anew(std::span<const box> boxes, const membership& objects, Counters& counters) {
+    void restart(std::span<const box> boxes, const membership& objects, Counters& counters) {
         plan(boxes, objects);
         for (region& r : regions_) {
             for (auto& list : r.ends) list.clear();
@@ -214,17 +214,17 @@ private:
             for_each_region(places_[id], {}, [&](std::uint32_t r) { enter(r, id, boxes); });
         }
         std::uint64_t tests = 0;
-        steps_anew_ = 1;
+        restart_steps_ = 1;
         for (region& r : regions_) {
             for (auto& list : r.ends) {
                 sort_ends(list);
-                steps_anew_ += list.size() * std::bit_width(list.size());
+                restart_steps_ += list.size() * std::bit_width(list.size());
             }
             const auto along = static_cast<std::size_t>(3 - cut_[0] - cut_[1]);
             tests += sweep_.find(r.ends[along], boxes, pairs_, [](std::uint32_t) { return true; });
         }
         counters.add(work::box_tests, tests);
-        steps_anew_ += tests;
+        restart_steps_ += tests;
     }
 
     /// Cuts the two axes with the greatest variance of the boxes' centres.
@@ -238,10 +238,10 @@ private:
         box world = empty_box();
         for (std::uint32_t id = 0; id < boxes.size(); ++id)
             if (objects.contains(id)) world = merged(world, boxes[id]);
-        const double wanted = std::sqrt(static_cast<double>(planned_) / objects_a_region);
+        const double wanted = std::sqrt(static_cast<double>(planned_) / objects_per_region);
         for (std::size_t k = 0; k < 2; ++k) {
             const double side = double{world.max[cut_[k]]} - double{world.min[cut_[k]]};
-            const double wide = side / (extents_a_region * along.extent[cut_[k]]);
+            const double wide = side / (extents_per_region * along.extent[cut_[k]]);
             const double count =
                 config_.regions ? static_cast<double>(*config_.regions) : std::min({wanted, wide, most_regions});
             count_[k] = side > 0 && count > 1 ? static_cast<std::uint32_t>(count) : 1;
@@ -262,7 +262,7 @@ private:
     std::vector<std::uint8_t> moved_;     // whether the object moved in this frame, by id
     std::vector<box> before_;             // boxes of the previous frame, by id
     std::uint64_t steps_left_ = 0;        // remaining steps of this frame; 0: the frame restarts
-    std::uint64_t steps_anew_ = 1;        // number of steps of the last restart
+    std::uint64_t restart_steps_ = 1;     // number of steps of the last restart
     interval_sweep sweep_;
 };
 

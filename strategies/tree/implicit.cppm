@@ -59,14 +59,14 @@ public:
         scene_fit fit;
         const std::size_t repaid =
             scene.queries_that_repay((machine_costs().sah_triangle - machine_costs().median_triangle) / 2,
-                                     std::clamp(scene.triangles_of_two() / 1'500'000, 1.0 / 200, 1.0 / 10));
-        if (scene.triangles > 0 && scene.triangles_of_two() <= most_fetched_of_two && scene.queries < repaid) {
+                                     std::clamp(scene.triangles_per_query() / 1'500'000, 1.0 / 200, 1.0 / 10));
+        if (scene.triangles > 0 && scene.triangles_per_query() <= most_fetched_of_two && scene.queries < repaid) {
             fit.settings.push_back({"vertices", "fetched"});
             fit.because.push_back(
                 {"{queries} queries are expected, and vertex lists are worth their cost only from {repaid} on",
                  {{{"queries", static_cast<double>(scene.queries)}, {"repaid", static_cast<double>(repaid)}}}});
         }
-        if (scene.triangles_of_two() >= double{least_of_front} && scene.exact_triangles &&
+        if (scene.triangles_per_query() >= double{least_of_front} && scene.exact_triangles &&
             scene.frames >= scene_traits::fewest_frames_to_keep && scene.queries <= scene.frames * most_fronts) {
             fit.settings.push_back({"front", "kept"});
             fit.because.push_back({"frames follow each other: pairs of leaves are kept while meshes move little"});
@@ -93,7 +93,7 @@ public:
             places_.resize((std::size_t{triangles_} * bits_ + 7) / 8 + read_beyond);
             std::fill(places_.end() - read_beyond, places_.end(), std::byte{});
             workers.for_each_range(triangles_, least_shared_triangles, [&](std::size_t begin, std::size_t end) {
-                set_triangles(order.triangles, begin, end);
+                pack_triangle_indices(order.triangles, begin, end);
             });
         }
         if (config_.vertices == vertex_choice::listed) vertices_ = vertex_lists(m, order.triangles, workers);
@@ -162,13 +162,13 @@ public:
         return static_cast<std::uint32_t>(word >> bit % 8 & ((std::uint64_t{1} << bits_) - 1));
     }
 
-    [[nodiscard]] inline bool keeps_front() const noexcept { return config_.front == front_choice::kept; }
+    [[nodiscard]] inline bool keeps_fronts() const noexcept { return config_.front == front_choice::kept; }
     /// Prefetches the list of the leaf's vertices.
-    inline void fetch_vertices(std::uint32_t leaf) const noexcept {
+    inline void prefetch_vertices(std::uint32_t leaf) const noexcept {
         if (!vertices_.empty()) vertices_.fetch(leaf);
     }
     /// Prefetches the indices of the leaf's triangles.
-    inline void fetch_triangles(std::uint32_t leaf) const noexcept {
+    inline void prefetch_triangles(std::uint32_t leaf) const noexcept {
         if (bits_ != 0) __builtin_prefetch(&places_[std::size_t{leaf} * bits_]);
     }
     inline void read_vertices(std::uint32_t leaf, vertex_list& list) const noexcept {
@@ -189,7 +189,7 @@ private:
     }
 
     /// Eight indices fill whole bytes, so that threads write disjoint bytes.
-    void set_triangles(std::span<const std::uint32_t> order, std::size_t begin, std::size_t end) noexcept {
+    void pack_triangle_indices(std::span<const std::uint32_t> order, std::size_t begin, std::size_t end) noexcept {
         std::byte* to = &places_[begin * bits_ / 8];
         std::uint64_t unwritten = 0;
         std::size_t bits = 0;

@@ -89,12 +89,12 @@ private:
         const vec3<Real> normal = cross(s[1] - s[0], s[2] - s[0]);
         int dropped = std::abs(normal[1]) > std::abs(normal[0]) ? 1 : 0;
         if (std::abs(normal[2]) > std::abs(normal[dropped])) dropped = 2;
-        return !an_edge_separates(s, t, dropped) && !an_edge_separates(t, s, dropped);
+        return !any_edge_separates(s, t, dropped) && !any_edge_separates(t, s, dropped);
     }
 
     template <class Real>
-    [[nodiscard]] static inline bool an_edge_separates(const triangle3<Real>& s, const triangle3<Real>& t,
-                                                       int dropped) noexcept {
+    [[nodiscard]] static inline bool any_edge_separates(const triangle3<Real>& s, const triangle3<Real>& t,
+                                                        int dropped) noexcept {
         const int x = (dropped + 1) % 3;
         const int y = (dropped + 2) % 3;
         const auto turn = [&](const vec3<Real>& a, const vec3<Real>& b, const vec3<Real>& c) {

@@ -193,7 +193,7 @@ triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
 }
 
 /// Intersects a segment with a triangle whose plane it crosses in one point.
-triangle_intersection pierced(const hull& segment, const triangle3d& t) {
+triangle_intersection segment_intersection(const hull& segment, const triangle3d& t) {
     result common;
     for (const vec3d& corner : t.corner) {
         const auto is_straight = [&](int axis) {
@@ -284,8 +284,8 @@ triangle_intersection intersection_of(const triangle3d& s, const triangle3d& t) 
     const bool s_on_t = s_to_t == signs_of_corners{};
     const bool t_on_s = t_to_s == signs_of_corners{};
     if (s_on_t && t_on_s) return coplanar_intersection(g, h);
-    if (t_on_s) return pierced(g, t);
-    if (s_on_t) return pierced(h, s);
+    if (t_on_s) return segment_intersection(g, t);
+    if (s_on_t) return segment_intersection(h, s);
     return crossing_intersection(s, s_to_t, t, t_to_s);
 }
 

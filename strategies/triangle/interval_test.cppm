@@ -174,7 +174,7 @@ private:
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
                 if (edges_cross(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3], x, y)) return true;
-        return corner_inside(s[0], t, x, y) || corner_inside(t[0], s, x, y);
+        return corner_is_inside(s[0], t, x, y) || corner_is_inside(t[0], s, x, y);
     }
 
     [[nodiscard]] static bool edges_cross(const vec3<Real>& p, const vec3<Real>& p_end, const vec3<Real>& q,
@@ -193,7 +193,7 @@ private:
     }
 
     /// Whether p is strictly inside all edges. For tiny triangles the products underflow, and the result is no.
-    [[nodiscard]] static bool corner_inside(const vec3<Real>& p, const triangle3<Real>& t, int x, int y) noexcept {
+    [[nodiscard]] static bool corner_is_inside(const vec3<Real>& p, const triangle3<Real>& t, int x, int y) noexcept {
         std::array<Real, 3> side{};
         for (int i = 0; i < 3; ++i) {
             const vec3<Real>& from = t[i];

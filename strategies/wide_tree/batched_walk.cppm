@@ -29,31 +29,31 @@ public:
         walk(test, m, m, relative_pose({}, {}, m.bounds()), extent::one_mesh, emit);
     }
 
-    /// Appends the pairs of leaves with triangles within a margin of each other, less rounding (`most_rounding`).
+    /// Appends the pairs of leaves with triangles within a margin of each other, less rounding (`rounding_bound`).
     /// @returns false if there are more than `most`, where it stops
     [[nodiscard]] bool near(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
-                            std::size_t most, std::vector<kept_pair>& pairs) {
+                            std::size_t most, std::vector<front_pair>& pairs) {
         leaves_.begin(a, b, to_a, false, false,
                       std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
         return !descend(a, b, to_a, extent::two_meshes, margin,
                         [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
-                            return leaves_.within_margin(a, b, to_a, of_a, of_b, counters_,
-                                                         [&](std::size_t p, std::uint64_t which) {
-                                                             pairs.push_back({of_a[p], of_b[p], which});
-                                                             return pairs.size() > most;
-                                                         });
+                            return leaves_.for_each_within_margin(a, b, to_a, of_a, of_b, counters_,
+                                                                  [&](std::size_t p, std::uint64_t which) {
+                                                                      pairs.push_back({of_a[p], of_b[p], which});
+                                                                      return pairs.size() > most;
+                                                                  });
                         });
     }
 
     /// The same as `between`, restricted to these pairs of leaves.
     template <class Emit>
     void among(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-               std::span<const kept_pair> pairs, kept_leaves<Tree>& leaves, walk_goal goal, Emit emit) {
+               std::span<const front_pair> pairs, front_leaves<Tree>& leaves, walk_goal goal, Emit emit) {
         const bool any_pair = goal == walk_goal::first_pair;
         const auto triangles_at = naming(a, b);
         waiting_.clear();
-        const auto test_pair = [&](const kept_pair& p, const triangle_block& of_a, const triangle_block& of_b) {
-            make_wait(a.tree(), b.tree(), p, of_a, of_b);
+        const auto test_pair = [&](const front_pair& p, const triangle_block& of_a, const triangle_block& of_b) {
+            queue_pairs(a.tree(), b.tree(), p, of_a, of_b);
             return (any_pair || waiting_.is_full()) && waiting_.decide(test, any_pair, triangles_at, emit);
         };
         if (!leaves(a, b, to_a, pairs, leaves_.reader(), test_pair))
@@ -193,12 +193,12 @@ private:
             to.make_room();
             const std::uint32_t node_a = some_a[pair];
             const std::uint32_t node_b = some_b[pair];
-            if (what == extent::one_mesh && node_a == node_b) met &= not_twice;
+            if (what == extent::one_mesh && node_a == node_b) met &= each_pair_once;
             const std::uint64_t to_open = steps_.opened(step, met);
             const std::uint32_t first_a = opens_a ? children * node_a : node_a;
             const std::uint32_t first_b = opens_b ? children * node_b : node_b;
             alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};
-            simd::store_places(places.data(), to_open);
+            simd::store_set_bits(places.data(), to_open);
             const auto count = static_cast<std::size_t>(std::popcount(to_open));
             std::size_t p = 0;
             do {  // almost always one iteration, so that the branch is predicted
@@ -223,31 +223,31 @@ private:
         const auto take = [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b,
                               std::uint64_t met) __attribute__((always_inline)) {
             if (what == extent::one_mesh) {
-                if (leaves_a[p] == leaves_b[p]) met &= not_twice & not_itself;
-                if (emit_neighbours(met, leaves_a[p], leaves_b[p], triangles_at, emit)) return true;
+                if (leaves_a[p] == leaves_b[p]) met &= each_pair_once & distinct_children;
+                if (emit_adjacent(met, leaves_a[p], leaves_b[p], triangles_at, emit)) return true;
                 if (met == 0) return false;
             }
-            make_wait(a.tree(), b.tree(), {leaves_a[p], leaves_b[p], met}, of_a.block, of_b.block);
+            queue_pairs(a.tree(), b.tree(), {leaves_a[p], leaves_b[p], met}, of_a.block, of_b.block);
             return waiting_.is_full() && waiting_.decide(test, false, triangles_at, emit);
         };
         return leaves_(a, b, to_a, leaves_a, leaves_b, counters_, take);
     }
 
     /// Queues pairs of triangles for the test, and prefetches the indices of the triangles.
-    [[gnu::always_inline]] inline void make_wait(const Tree& a, const Tree& b, const kept_pair& p,
-                                                 const triangle_block& of_a, const triangle_block& of_b) {
+    [[gnu::always_inline]] inline void queue_pairs(const Tree& a, const Tree& b, const front_pair& p,
+                                                   const triangle_block& of_a, const triangle_block& of_b) {
         counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.which)));
         waiting_.add(p.which, p.leaf_a, of_a, p.leaf_b, of_b);
-        a.fetch_triangles(p.leaf_a);
-        b.fetch_triangles(p.leaf_b);
+        a.prefetch_triangles(p.leaf_a);
+        b.prefetch_triangles(p.leaf_b);
     }
 
     /// Reports adjacent triangles without a test, because an exact test always accepts a shared corner.
     /// @param met the overlapping pairs; reported pairs are removed
     /// @returns whether to stop
     template <class TrianglesAt, class Emit>
-    [[nodiscard]] bool emit_neighbours(std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
-                                       const TrianglesAt& triangles_at, const Emit& emit) const {
+    [[nodiscard]] bool emit_adjacent(std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
+                                     const TrianglesAt& triangles_at, const Emit& emit) const {
         if constexpr (is_filtered) {
             const std::uint64_t shared = leaves_.neighbours(leaf_a, leaf_b);
             std::array<index_pair, most_children_of_pair> neighbours;
@@ -263,8 +263,8 @@ private:
     }
 
     /// Pairs of children of the same node: i <= j, and i != j.
-    static constexpr std::uint64_t not_twice = 0xff7f3f1f0f070301;
-    static constexpr std::uint64_t not_itself = 0x7fbfdfeff7fbfdfe;
+    static constexpr std::uint64_t each_pair_once = 0xff7f3f1f0f070301;
+    static constexpr std::uint64_t distinct_children = 0x7fbfdfeff7fbfdfe;
 
     [[no_unique_address]] Counters counters_;
     level_steps steps_;

@@ -61,7 +61,7 @@ private:
 };
 
 /// A direct-mapped cache of the transformed children of a tree's nodes.
-class kept_images {
+class image_cache {
 public:
     /// Invalidates the cache, and grows it if the tree has many nodes.
     /// @param first the first node of the array that has all nodes

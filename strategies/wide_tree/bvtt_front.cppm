@@ -13,7 +13,7 @@ struct model_pair {
 };
 
 /// Two leaves and a mask of the pairs of triangles that may meet: bit 8 j + i for triangle i of A's leaf and j of B's.
-struct kept_pair {
+struct front_pair {
     std::uint32_t leaf_a;
     std::uint32_t leaf_b;
     std::uint64_t which;
@@ -40,17 +40,17 @@ public:
         is_used = false;
     }
 
-    [[nodiscard]] std::span<const kept_pair> pairs() const noexcept { return pairs_; }
+    [[nodiscard]] std::span<const front_pair> pairs() const noexcept { return pairs_; }
 
     /// Whether the pairs include all that meet at this pose.
     /// @param bounds the box of B's vertices, in B's frame
     [[nodiscard]] bool holds(const model_pair& of, const box_motion& at, const box& bounds) const noexcept {
-        return margin_ >= 0 && front_states_ == of.states && most_apart(front_motion_, at, bounds) <= margin_;
+        return margin_ >= 0 && front_states_ == of.states && displacement_bound(front_motion_, at, bounds) <= margin_;
     }
     /// Whether the last query had the same models at a nearby pose.
     [[nodiscard]] bool is_near(const model_pair& of, const box_motion& at, const box& bounds,
                                double near) const noexcept {
-        return numbers_ == of.numbers && most_apart(last_at_, at, bounds) <= near;
+        return numbers_ == of.numbers && displacement_bound(last_at_, at, bounds) <= near;
     }
 
     struct outlook {
@@ -69,9 +69,10 @@ public:
             ++served_;
             return {true, std::nullopt};
         }
-        const double step = same_states ? most_apart(before, at, bounds) : std::numeric_limits<double>::infinity();
+        const double step =
+            same_states ? displacement_bound(before, at, bounds) : std::numeric_limits<double>::infinity();
         near_queries_ = step <= most_step * size ? near_queries_ + 1 : 0;
-        if (margin_ >= 0) fail_or_forgive();
+        if (margin_ >= 0) update_backoff();
         if (waits_ > 0) {
             --waits_;
             return {false, std::nullopt};
@@ -88,7 +89,7 @@ public:
         pairs_.clear();
         served_ = 0;
         if (!fill(pairs_)) {
-            fail_or_forgive();
+            update_backoff();
             return false;
         }
         front_states_ = of.states;
@@ -108,7 +109,7 @@ private:
     static constexpr std::uint32_t least_served = 2;  // fewer do not repay the front
     static constexpr std::uint32_t most_failures = 6;
 
-    void fail_or_forgive() noexcept {
+    void update_backoff() noexcept {
         failures_ = served_ < least_served ? std::min(failures_ + 1, most_failures) : 0;
         waits_ = (1U << failures_) - 1;
         margin_ = -1;
@@ -120,7 +121,7 @@ private:
     std::array<std::uint64_t, 2> front_states_{};
     box_motion front_motion_{};
     double margin_ = -1;  // negative without a front
-    std::vector<kept_pair> pairs_;
+    std::vector<front_pair> pairs_;
     std::uint32_t near_queries_ = 0;  // in a row
     std::uint32_t served_ = 0;        // queries since the front was built
     std::uint32_t failures_ = 0;      // in a row
@@ -130,7 +131,7 @@ private:
 /// Caches the fronts of many pairs of objects. Queries carry no object ids: a front is recognised by its models and
 /// their last pose, or because its pairs are still valid. The front behind the last one is tried first, since objects
 /// are mostly queried in the same order.
-class front_keeper {
+class front_cache {
 public:
     static constexpr std::size_t most = 1024;
     static constexpr std::size_t least_leaves = 64;  ///< of both meshes: with fewer, a walk costs less than the lookup
@@ -172,7 +173,7 @@ private:
             return fronts_[place].holds(of, at, bounds) || fronts_[place].is_near(of, at, bounds, near);
         };
         const std::size_t next = last_ + 1 < fronts_.size() ? last_ + 1 : 0;
-        if (next < fronts_.size() && is_it(next)) return found_again(next);
+        if (next < fronts_.size() && is_it(next)) return mark_used(next);
         for (std::size_t group = 0; group < centres_.size(); ++group) {
             simd::eight_floats furthest{};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -183,19 +184,19 @@ private:
             for (std::uint32_t near_fronts = simd::bits_of_eight(furthest <= static_cast<float>(near));
                  near_fronts != 0; near_fronts &= near_fronts - 1) {
                 const std::size_t place = group * width + static_cast<std::size_t>(std::countr_zero(near_fronts));
-                if (place < fronts_.size() && is_it(place)) return found_again(place);
+                if (place < fronts_.size() && is_it(place)) return mark_used(place);
             }
         }
-        return new_place(of);
+        return add_front(of);
     }
 
-    [[nodiscard]] std::size_t found_again(std::size_t place) noexcept {
+    [[nodiscard]] std::size_t mark_used(std::size_t place) noexcept {
         fronts_[place].is_used = true;
         return place;
     }
 
     /// Evicts a front that was not reused lately, by the clock algorithm, when the cache is full.
-    [[nodiscard]] std::size_t new_place(const model_pair& of) {
+    [[nodiscard]] std::size_t add_front(const model_pair& of) {
         std::size_t place = fronts_.size();
         if (place < most) {
             if (place == centres_.size() * width) centres_.emplace_back();

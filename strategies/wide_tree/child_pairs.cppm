@@ -92,8 +92,8 @@ private:
         return m;
     }
 
-    kept_images in_a_;  // nodes of B
-    kept_images in_b_;  // nodes of A
+    image_cache in_a_;  // nodes of B
+    image_cache in_b_;  // nodes of A
     bool turned_ = false;
     std::array<found, most_at_once> in_one_{};
     std::array<found, most_at_once> in_both_{};

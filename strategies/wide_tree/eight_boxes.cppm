@@ -32,7 +32,7 @@ struct eight_boxes {
     [[nodiscard]] inline std::uint64_t overlaps(const eight_boxes& others) const noexcept {
         const std::uint64_t columns = std::uint64_t{0x0101010101010101} * (0xffU >> (most - count));
         const std::uint64_t rows = ~std::uint64_t{0} >> (most * (most - others.count));
-        return simd::pairs_of_eight_that_overlap(lower[0].data(), others.lower[0].data()) & columns & rows;
+        return simd::overlapping_pairs(lower[0].data(), others.lower[0].data()) & columns & rows;
     }
 };
 
@@ -56,8 +56,8 @@ struct quantized_aabbs {
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {
         std::uint64_t met = ~std::uint64_t{0} >> (64U - 8U * others.count);
         for (std::size_t k = 0; k < 3; ++k)
-            met &= simd::no_greater(lower[k].data(), from_below(grid, k, others.upper[k])) &
-                   simd::no_greater(upper[k].data(), from_above(grid, k, others.lower[k]));
+            met &= simd::pairs_no_greater(lower[k].data(), from_below(grid, k, others.upper[k])) &
+                   simd::pairs_no_greater(upper[k].data(), from_above(grid, k, others.lower[k]));
         return met;
     }
 
@@ -146,7 +146,7 @@ public:
 
     /// Tests 64 pairs at once: sets bit 8 j + i where box i of these overlaps box j of `others`.
     [[nodiscard]] inline std::uint64_t overlaps(const leaf_boxes& others) const noexcept {
-        return simd::pairs_of_eight_that_overlap(at_[0].data(), others.at_[0].data());
+        return simd::overlapping_pairs(at_[0].data(), others.at_[0].data());
     }
 
     /// Whether the first box spans so few steps that the grid is too coarse for the leaf.

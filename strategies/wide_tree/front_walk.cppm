@@ -15,7 +15,7 @@ public:
     void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                  walk_goal goal, Emit emit) {
         if constexpr (requires { requires Triangle::filtered; })
-            if (a.tree().keeps_front() && leaves_of(a) + leaves_of(b) >= front_keeper::least_leaves)
+            if (a.tree().keeps_fronts() && leaves_of(a) + leaves_of(b) >= front_cache::least_leaves)
                 return follow(test, a, b, to_a, goal, emit);
         walk_.between(test, a, b, to_a, goal, emit);
     }
@@ -47,13 +47,13 @@ private:
         const double size = std::sqrt(std::min(area_of_leaf(a), area_of_leaf(b)));
         const double near = bvtt_front::most_step * size;
         // If rounding alone moves B further than that, a front is not worth its cost.
-        if (!(2 * most_rounding(at) <= near)) return walk_.between(test, a, b, to_a, goal, emit);
+        if (!(2 * rounding_bound(at) <= near)) return walk_.between(test, a, b, to_a, goal, emit);
 
-        if (!fronts_) fronts_ = std::make_unique<front_keeper>();
+        if (!fronts_) fronts_ = std::make_unique<front_cache>();
         bvtt_front& front = fronts_->find(of, at, b.bounds(), near);
         const bvtt_front::outlook outlook = front.note(of, at, b.bounds(), size);
         const auto is_kept = [&] {
-            return outlook.margin && front.make(of, at, *outlook.margin, [&](std::vector<kept_pair>& pairs) {
+            return outlook.margin && front.make(of, at, *outlook.margin, [&](std::vector<front_pair>& pairs) {
                 return walk_.near(a, b, to_a, *outlook.margin, leaves_of(a) + leaves_of(b), pairs);
             });
         };
@@ -85,7 +85,7 @@ private:
     void serve(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                const bvtt_front& front, walk_goal goal, const Emit& emit) {
         if (front.pairs().empty()) return;
-        if (!leaves_) leaves_ = std::make_unique<kept_leaves<Tree>>();
+        if (!leaves_) leaves_ = std::make_unique<front_leaves<Tree>>();
         walk_.among(test, a, b, to_a, front.pairs(), *leaves_, goal, emit);
     }
 
@@ -96,8 +96,8 @@ private:
 
     batched_walk<Tree, Triangle, Counters> walk_;
     // Both are created on first use.
-    std::unique_ptr<front_keeper> fronts_;
-    std::unique_ptr<kept_leaves<Tree>> leaves_;
+    std::unique_ptr<front_cache> fronts_;
+    std::unique_ptr<front_leaves<Tree>> leaves_;
 };
 
 }  // namespace aabb

@@ -12,7 +12,7 @@ import aabb.std;
 namespace aabb::simd::detail {
 
 #if defined(__AVX512VBMI2__)
-[[gnu::always_inline]] inline void places_of_sixty_four(std::uint64_t set, void* to) noexcept {
+[[gnu::always_inline]] inline void store_set_bits_of_sixty_four(std::uint64_t set, void* to) noexcept {
     static constexpr auto identity = [] {
         struct {
             std::uint8_t at[64];
@@ -24,7 +24,7 @@ namespace aabb::simd::detail {
 }
 #endif
 #if defined(__AVX512VBMI__)
-[[gnu::always_inline]] inline void spread_sixteen_numbers(void* to, const void* from, std::size_t bytes,
+[[gnu::always_inline]] inline void unpack_sixteen_numbers(void* to, const void* from, std::size_t bytes,
                                                           std::uint32_t count) noexcept {
     // Byte b < bytes of number i is at bytes * i + b.
     static constexpr auto patterns = [] {
@@ -47,14 +47,15 @@ namespace aabb::simd::detail {
 #endif
 #if defined(__AVX512F__)
 using eight_floats_taken = float __attribute__((vector_size(32)));
-[[nodiscard, gnu::always_inline]] inline eight_floats_taken take_of_sixteen(const void* from,
-                                                                            const void* places) noexcept {
+[[nodiscard, gnu::always_inline]] inline eight_floats_taken gather_sixteen_lanes(const void* from,
+                                                                                 const void* places) noexcept {
     const __m512i at = _mm512_castsi256_si512(_mm256_loadu_si256(static_cast<const __m256i*>(places)));
     return _mm512_castps512_ps256(_mm512_permutexvar_ps(at, _mm512_loadu_ps(from)));
 }
 
 /// Compares two copies of each row of `a` with two numbers of `b`, each broadcast to eight lanes.
-[[nodiscard, gnu::always_inline]] inline std::uint64_t columns_that_share(const void* a, const void* b) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::uint64_t columns_with_shared_number(const void* a,
+                                                                                  const void* b) noexcept {
     const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
     const auto row = [](const void* of, int c) { return _mm256_loadu_si256(static_cast<const __m256i*>(of) + c); };
     std::uint64_t shared = 0;
@@ -70,7 +71,7 @@ using eight_floats_taken = float __attribute__((vector_size(32)));
     return shared;
 }
 /// Compares two copies of the boxes of `a` with two boxes of `b`, each broadcast to eight lanes.
-[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_that_overlap(const float* a, const float* b) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::uint64_t overlapping_pairs(const float* a, const float* b) noexcept {
     const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
     const auto twice = [](const float* row) {
         return _mm512_castpd_ps(_mm512_broadcast_f64x4(_mm256_loadu_pd(reinterpret_cast<const double*>(row))));
@@ -121,7 +122,7 @@ using two_points_of_four = float __attribute__((vector_size(32)));
 export namespace aabb::simd {
 
 /// Transposes eight points: returns their x, y and z as three vectors.
-[[nodiscard, gnu::always_inline]] inline std::array<eight_floats, 3> columns_of_eight_points(
+[[nodiscard, gnu::always_inline]] inline std::array<eight_floats, 3> transpose_eight_points(
     const float* const* points) noexcept {
     const auto row = [&](int i) { return detail::two_points(points[i], points[i + 4]); };
     const auto low = [](eight_floats p, eight_floats q) {
@@ -159,12 +160,12 @@ export namespace aabb::simd {
 }
 
 /// Gathers eight of sixteen numbers, by places of 4 bits each.
-[[nodiscard, gnu::always_inline]] inline eight_floats taken_of_sixteen(const sixteen_floats& from,
-                                                                       std::uint32_t places) noexcept {
+[[nodiscard, gnu::always_inline]] inline eight_floats gather_of_sixteen(const sixteen_floats& from,
+                                                                        std::uint32_t places) noexcept {
     constexpr eight_words shift{0, 4, 8, 12, 16, 20, 24, 28};
     const eight_words at = (eight_words{} + places) >> shift;
 #if defined(__AVX512F__)
-    return detail::take_of_sixteen(&from, &at);
+    return detail::gather_sixteen_lanes(&from, &at);
 #else
     std::array<float, 16> halves;
     std::memcpy(halves.data(), &from, sizeof from);
@@ -181,7 +182,7 @@ export namespace aabb::simd {
 }
 
 /// Bit 8 j + i is set where number i of `a` is at most number j of `b`.
-[[nodiscard, gnu::always_inline]] inline std::uint64_t no_greater(const std::uint8_t* a, eight_bytes b) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_no_greater(const std::uint8_t* a, eight_bytes b) noexcept {
     using bytes = std::uint8_t __attribute__((vector_size(64)));
     using signed_bytes = std::int8_t __attribute__((vector_size(64)));
     using bools = bool __attribute__((ext_vector_type(64)));
@@ -196,10 +197,10 @@ export namespace aabb::simd {
 }
 
 /// Sets bit 8 j + i where column i of `a` and column j of `b` share a number; both have three rows of eight.
-[[nodiscard, gnu::always_inline]] inline std::uint64_t columns_of_eight_that_share(const std::uint32_t* a,
-                                                                                   const std::uint32_t* b) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::uint64_t columns_with_shared_number(const std::uint32_t* a,
+                                                                                  const std::uint32_t* b) noexcept {
 #if defined(__AVX512F__)
-    return detail::columns_that_share(a, b);
+    return detail::columns_with_shared_number(a, b);
 #else
     std::uint64_t shared = 0;
     for (std::size_t j = 0; j < 8; ++j) {
@@ -213,10 +214,10 @@ export namespace aabb::simd {
 }
 
 /// Unpacks `count` numbers (1 to 16) of 1 to 4 bytes each; the first one pads the rest. Reads 64 bytes.
-[[gnu::always_inline]] inline void load_sixteen_numbers(std::uint32_t* to, const std::byte* from, std::size_t bytes,
-                                                        std::uint32_t count) noexcept {
+[[gnu::always_inline]] inline void unpack_sixteen(std::uint32_t* to, const std::byte* from, std::size_t bytes,
+                                                  std::uint32_t count) noexcept {
 #if defined(__AVX512VBMI__)
-    detail::spread_sixteen_numbers(to, from, bytes, count);
+    detail::unpack_sixteen_numbers(to, from, bytes, count);
 #else
     const std::uint32_t mask = 0xffffffff >> (32 - 8 * bytes);
     for (std::uint32_t i = 0; i < 16; ++i) {
@@ -228,10 +229,9 @@ export namespace aabb::simd {
 
 /// Tests all 64 pairs of eight boxes and eight: sets bit 8 j + i where box i of `a` overlaps box j of `b`. Each side
 /// has six rows of eight numbers: three of lower bounds, then three of upper bounds.
-[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_of_eight_that_overlap(const float* a,
-                                                                                   const float* b) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::uint64_t overlapping_pairs(const float* a, const float* b) noexcept {
 #if defined(__AVX512F__)
-    return detail::pairs_that_overlap(a, b);
+    return detail::overlapping_pairs(a, b);
 #else
     std::uint64_t met = 0;
     for (std::size_t j = 0; j < 8; ++j) {
@@ -246,8 +246,8 @@ export namespace aabb::simd {
 }
 
 /// The same test for boxes in 16-bit integers.
-[[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_of_eight_that_overlap(const std::int16_t* a,
-                                                                                   const std::int16_t* b) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::uint64_t overlapping_pairs(const std::int16_t* a,
+                                                                         const std::int16_t* b) noexcept {
     using eight_halves = std::int16_t __attribute__((vector_size(16)));
     using four_rows = std::int16_t __attribute__((vector_size(64)));
     // Rows of pairs with even j and with odd j hold differences; one is negative where two boxes are disjoint.
@@ -293,9 +293,9 @@ export namespace aabb::simd {
 }
 
 /// Stores the positions of the set bits, in order; up to 64 bytes at `to` are overwritten.
-[[gnu::always_inline]] inline void store_places(std::uint8_t* to, std::uint64_t set) noexcept {
+[[gnu::always_inline]] inline void store_set_bits(std::uint8_t* to, std::uint64_t set) noexcept {
 #if defined(__AVX512VBMI2__)
-    detail::places_of_sixty_four(set, to);
+    detail::store_set_bits_of_sixty_four(set, to);
 #else
     for (; set != 0; set &= set - 1) *to++ = static_cast<std::uint8_t>(std::countr_zero(set));
 #endif

@@ -12,7 +12,7 @@ struct read_leaf {
     triangle_block block;
 };
 
-struct leaf_of_b : read_leaf {
+struct read_leaf_of_b : read_leaf {
     leaf_slab slab;
     bool has_slab;
 };
@@ -22,13 +22,13 @@ template <WideTreePolicy Tree>
 class leaf_pairs {
 public:
     /// @param one_mesh whether A and B are the same mesh, so that triangles may share corners
-    /// @param only_boxes_that_meet whether to reject pairs whose boxes overlap only because the grid rounds them; for
+    /// @param reject_by_exact_boxes whether to reject pairs whose boxes overlap only because the grid rounds them; for
     /// inexact tests, whose result for such pairs would otherwise depend on the grid
     /// @param margin the distance up to which triangles count as close
     void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, bool one_mesh,
-               bool only_boxes_that_meet, float margin) {
+               bool reject_by_exact_boxes, float margin) {
         grid_.begin(a.bounds(), to_a(b.bounds()));
-        only_boxes_that_meet_ = only_boxes_that_meet;
+        reject_by_exact_boxes_ = reject_by_exact_boxes;
         margin_ = margin;
         of_a_.begin(leaves_of(a));
         of_b_.begin(leaves_of(b));
@@ -48,14 +48,14 @@ public:
     [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                   std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
                                   Counters& counters, const Take& take) {
-        return each_group(
+        return for_each_group(
             a, b, to_a, leaves_a, leaves_b, counters,
             [&](std::span<const overlap> meeting) {
-                fit_slabs(leaves_b, meeting);
+                fit_missing_slabs(leaves_b, meeting);
                 std::size_t left = 0;
                 for (const overlap& f : meeting) {
                     const std::uint64_t which =
-                        f.which & columns(of_b_[leaves_b[f.pair]].slab.reached_by(of_a_[leaves_a[f.pair]].block));
+                        f.which & columns(of_b_[leaves_b[f.pair]].slab.triangles_inside(of_a_[leaves_a[f.pair]].block));
                     left_[left] = {f.pair, which};
                     left += which != 0;
                 }
@@ -66,29 +66,30 @@ public:
 
     /// Passes on, in the same way, the pairs of triangles that may lie within the margin of each other.
     template <class Counters, class Take>
-    [[nodiscard]] bool within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                                     std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
-                                     Counters& counters, const Take& take) {
-        return each_group(
+    [[nodiscard]] bool for_each_within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                              std::span<const std::uint32_t> leaves_a,
+                                              std::span<const std::uint32_t> leaves_b, Counters& counters,
+                                              const Take& take) {
+        return for_each_group(
             a, b, to_a, leaves_a, leaves_b, counters,
             [&](std::span<const overlap> meeting) {
-                fit_slabs(leaves_b, meeting);
+                fit_missing_slabs(leaves_b, meeting);
                 return meeting;
             },
             [&](const overlap& f) {
                 const read_leaf& of_a = of_a_[leaves_a[f.pair]];
-                const leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
+                const read_leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
                 leaf_slab slab_of_a;
                 slab_of_a.fit(of_a.block, grid_.edges());
-                const std::uint64_t which = f.which & rows(slab_of_a.reached_by(of_b.block, margin_)) &
-                                            columns(of_b.slab.reached_by(of_a.block, margin_));
+                const std::uint64_t which = f.which & rows(slab_of_a.triangles_inside(of_b.block, margin_)) &
+                                            columns(of_b.slab.triangles_inside(of_a.block, margin_));
                 return which != 0 && take(f.pair, which);
             });
     }
 
     /// For one mesh: sets bit 8 j + i where triangle i of A's leaf and j of B's share a corner.
     [[nodiscard]] inline std::uint64_t neighbours(std::uint32_t leaf_a, std::uint32_t leaf_b) const noexcept {
-        return corners_of_a_[of_a_.place(leaf_a)].shared_with(corners_of_b_[of_b_.place(leaf_b)]);
+        return corners_of_a_[of_a_.place(leaf_a)].sharing_corners_with(corners_of_b_[of_b_.place(leaf_b)]);
     }
 
     [[nodiscard]] leaf_reader<Tree>& reader() noexcept { return reader_; }
@@ -102,7 +103,7 @@ private:
     /// Returns a function that reads a leaf's triangles.
     /// @param frame the pose relative to A, for leaves of B
     template <class Leaf, class... Frame>
-    [[nodiscard]] static inline auto block_maker(const model<Tree>& m, const Frame&... frame) {
+    [[nodiscard]] static inline auto triangle_loader(const model<Tree>& m, const Frame&... frame) {
         return [&m, &frame...](Leaf& leaf, std::uint32_t number, const vertex_list& vertices) {
             leaf.block.load(m.triangles(), m.tree(), number, vertices, frame...);
         };
@@ -110,8 +111,8 @@ private:
     /// Returns a function that computes the boxes and corners of a leaf's triangles.
     /// @tparam OfB whether the leaf is B's, whose boxes the margin inflates
     template <bool OfB, class Leaf>
-    [[nodiscard]] inline auto box_maker(const model<Tree>& m, const leaf_store<Leaf>& store,
-                                        std::vector<corner_numbers>& corners) const {
+    [[nodiscard]] inline auto box_builder(const model<Tree>& m, const leaf_cache<Leaf>& store,
+                                          std::vector<corner_indices>& corners) const {
         return [this, &m, &store, &corners](Leaf& leaf, std::uint32_t number, const vertex_list&) {
             auto bounds = leaf.block.bounds();
             if (OfB && margin_ > 0) grow(bounds);
@@ -141,10 +142,10 @@ private:
     /// by `sift` and passes on the rest. The vertex lists of the next group are prefetched meanwhile.
     /// @returns whether `take` stopped the loop
     template <class Counters, class Sift, class Take>
-    [[nodiscard]] inline bool each_group(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                                         std::span<const std::uint32_t> leaves_a,
-                                         std::span<const std::uint32_t> leaves_b, Counters& counters, const Sift& sift,
-                                         const Take& take) {
+    [[nodiscard]] inline bool for_each_group(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                             std::span<const std::uint32_t> leaves_a,
+                                             std::span<const std::uint32_t> leaves_b, Counters& counters,
+                                             const Sift& sift, const Take& take) {
         const auto claim = [&](std::size_t begin) {
             return reader_.claim(a, of_a_, b, of_b_, begin, leaves_a.size(),
                                  [&](std::size_t i) { return std::pair(leaves_a[i], leaves_b[i]); });
@@ -152,8 +153,10 @@ private:
         std::size_t begin = 0;
         std::size_t end = claim(begin);
         while (begin < end) {
-            reader_.make_a(a, of_a_, block_maker<read_leaf>(a), box_maker<false>(a, of_a_, corners_of_a_));
-            reader_.make_b(b, of_b_, block_maker<leaf_of_b>(b, to_a), box_maker<true>(b, of_b_, corners_of_b_));
+            reader_.read_missing_of_a(a, of_a_, triangle_loader<read_leaf>(a),
+                                      box_builder<false>(a, of_a_, corners_of_a_));
+            reader_.read_missing_of_b(b, of_b_, triangle_loader<read_leaf_of_b>(b, to_a),
+                                      box_builder<true>(b, of_b_, corners_of_b_));
             const std::size_t next = claim(end);
             for (const overlap& f : sift(meet(leaves_a, leaves_b, begin, end, counters)))
                 if (take(f)) return true;
@@ -174,34 +177,34 @@ private:
             const read_leaf& of_b = of_b_[leaves_b[begin]];
             counters.add(work::box_tests, std::uint64_t{of_a.block.triangles} * of_b.block.triangles);
             std::uint64_t which = of_a.boxes.overlaps(of_b.boxes);
-            if (only_boxes_that_meet_ || std::popcount(which) > many_overlaps) which &= overlaps_in_floats(of_a, of_b);
-            meeting_[meeting] = {begin, which};
+            if (reject_by_exact_boxes_ || std::popcount(which) > many_overlaps) which &= float_overlaps(of_a, of_b);
+            overlapping_[meeting] = {begin, which};
             meeting += which != 0;
         }
-        return std::span(meeting_).first(meeting);
+        return std::span(overlapping_).first(meeting);
     }
 
     /// Fits the missing slabs of B's leaves in these pairs. Slabs are fitted lazily, because many leaves have no
     /// overlapping boxes, and for B's leaves, which are read less often: a node of B is opened with many nodes of A in
     /// a row.
-    inline void fit_slabs(std::span<const std::uint32_t> leaves_b, std::span<const overlap> meeting) noexcept {
+    inline void fit_missing_slabs(std::span<const std::uint32_t> leaves_b, std::span<const overlap> meeting) noexcept {
         std::size_t missing = 0;
         for (const overlap& f : meeting) {
-            leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
-            without_slab_[missing] = &of_b;
+            read_leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
+            missing_slabs_[missing] = &of_b;
             missing += !of_b.has_slab;
             of_b.has_slab = true;
         }
-        for (leaf_of_b* const of_b : std::span(without_slab_).first(missing))
+        for (read_leaf_of_b* const of_b : std::span(missing_slabs_).first(missing))
             of_b->slab.fit(of_b->block, grid_.edges());
     }
 
     /// Sets bit 8 j + i where the float boxes of triangle i of A's leaf and j of B's overlap or lie within the margin.
     /// Sets all bits where 16 bits are precise enough.
-    [[nodiscard, gnu::noinline]] std::uint64_t overlaps_in_floats(const read_leaf& of_a,
-                                                                  const read_leaf& of_b) const noexcept {
+    [[nodiscard, gnu::noinline]] std::uint64_t float_overlaps(const read_leaf& of_a,
+                                                              const read_leaf& of_b) const noexcept {
         const bool are_coarse = of_a.boxes.are_coarse() && of_b.boxes.are_coarse();
-        if (!are_coarse && !only_boxes_that_meet_) return ~std::uint64_t{0};
+        if (!are_coarse && !reject_by_exact_boxes_) return ~std::uint64_t{0};
         eight_boxes boxes_a;
         eight_boxes boxes_b;
         auto bounds_of_b = of_b.block.bounds();
@@ -225,14 +228,14 @@ private:
 
     leaf_grid grid_;
     bool one_mesh_ = false;
-    bool only_boxes_that_meet_ = false;
+    bool reject_by_exact_boxes_ = false;
     float margin_ = 0;
-    leaf_store<read_leaf> of_a_;
-    leaf_store<leaf_of_b> of_b_;
-    std::vector<corner_numbers> corners_of_a_;  // for one mesh only; indexed as the leaves
-    std::vector<corner_numbers> corners_of_b_;
-    std::array<overlap, most_claims + 1> meeting_{};
-    std::array<leaf_of_b*, most_claims + 1> without_slab_{};
+    leaf_cache<read_leaf> of_a_;
+    leaf_cache<read_leaf_of_b> of_b_;
+    std::vector<corner_indices> corners_of_a_;  // for one mesh only; indexed as the leaves
+    std::vector<corner_indices> corners_of_b_;
+    std::array<overlap, most_claims + 1> overlapping_{};
+    std::array<read_leaf_of_b*, most_claims + 1> missing_slabs_{};
     std::array<overlap, most_claims + 1> left_{};
     leaf_reader<Tree> reader_;
 };

@@ -11,7 +11,7 @@ inline constexpr std::size_t most_claims = 128;  ///< pairs per group
 /// A direct-mapped cache of leaves, by number. A group first claims all leaves that it needs, then reads the missing
 /// ones, so that their memory accesses overlap. A leaf stays valid until another leaf is read into its place.
 template <class Leaf>
-class leaf_store {
+class leaf_cache {
 public:
     /// Invalidates the cache, and grows it if the tree has many leaves.
     void begin(std::size_t numbers) {
@@ -34,8 +34,8 @@ public:
         // single branch; otherwise the compiler makes two.
         if (__builtin_unpredictable(static_cast<int>(is_missing) & static_cast<int>(claims_[at] == claim_)))
             return false;
-        missing_[false_negative_count_] = number;
-        false_negative_count_ += is_missing;
+        missing_[missing_count_] = number;
+        missing_count_ += is_missing;
         keys_[at] = key;
         claims_[at] = claim_;
         return true;
@@ -43,7 +43,7 @@ public:
 
     /// The claimed leaves that are not cached; the caller must read them before the next claim, or call `begin`.
     [[nodiscard]] inline std::span<const std::uint32_t> take_missing() noexcept {
-        return std::span(missing_).first(std::exchange(false_negative_count_, 0));
+        return std::span(missing_).first(std::exchange(missing_count_, 0));
     }
 
     [[nodiscard]] inline Leaf& operator[](std::uint32_t number) noexcept { return leaves_[place(number)]; }
@@ -63,7 +63,7 @@ private:
     std::array<std::uint64_t, most_places> claims_{};
     std::uint64_t claim_ = 1;
     std::array<std::uint32_t, most_claims + 1> missing_{};
-    std::size_t false_negative_count_ = 0;
+    std::size_t missing_count_ = 0;
     std::vector<Leaf> leaves_;
 };
 
@@ -80,8 +80,8 @@ public:
     /// @param pair_at returns the leaves of pair i, in A's tree and in B's
     /// @returns the end of the group
     template <class LeafOfA, class LeafOfB, class PairAt>
-    [[nodiscard]] inline std::size_t claim(const model<Tree>& a, leaf_store<LeafOfA>& of_a, const model<Tree>& b,
-                                           leaf_store<LeafOfB>& of_b, std::size_t begin, std::size_t end,
+    [[nodiscard]] inline std::size_t claim(const model<Tree>& a, leaf_cache<LeafOfA>& of_a, const model<Tree>& b,
+                                           leaf_cache<LeafOfB>& of_b, std::size_t begin, std::size_t end,
                                            const PairAt& pair_at) {
         end = std::min(end, begin + most_claims);
         of_a.release_claims();
@@ -92,8 +92,8 @@ public:
         }
         missing_a_ = of_a.take_missing();
         missing_b_ = of_b.take_missing();
-        for (const std::uint32_t number : missing_a_) a.tree().fetch_vertices(number);
-        for (const std::uint32_t number : missing_b_) b.tree().fetch_vertices(number);
+        for (const std::uint32_t number : missing_a_) a.tree().prefetch_vertices(number);
+        for (const std::uint32_t number : missing_b_) b.tree().prefetch_vertices(number);
         return begin;
     }
 
@@ -101,12 +101,12 @@ public:
     /// @param steps called as `step(leaf, number, vertices)`; each step runs over all leaves before the next one
     /// starts, so that no leaf stalls on its own previous step
     template <class Leaf, class... Steps>
-    inline void make_a(const model<Tree>& a, leaf_store<Leaf>& store, const Steps&... steps) {
+    inline void read_missing_of_a(const model<Tree>& a, leaf_cache<Leaf>& store, const Steps&... steps) {
         make(a, missing_a_, store, steps...);
     }
     /// The same for B.
     template <class Leaf, class... Steps>
-    inline void make_b(const model<Tree>& b, leaf_store<Leaf>& store, const Steps&... steps) {
+    inline void read_missing_of_b(const model<Tree>& b, leaf_cache<Leaf>& store, const Steps&... steps) {
         make(b, missing_b_, store, steps...);
     }
 
@@ -114,7 +114,7 @@ private:
     static constexpr std::size_t ahead = 10;  // leaves; most of their vertices are cached already
 
     template <class Leaf, class First, class... Others>
-    inline void make(const model<Tree>& m, std::span<const std::uint32_t> missing, leaf_store<Leaf>& store,
+    inline void make(const model<Tree>& m, std::span<const std::uint32_t> missing, leaf_cache<Leaf>& store,
                      const First& first, const Others&... others) {
         const auto fetch = [&](std::size_t i) {
             m.tree().read_vertices(missing[i], lists_[i]);
@@ -139,13 +139,13 @@ private:
 
 /// Reads the triangles of a front's pairs of leaves, those of B in A's frame.
 template <WideTreePolicy Tree>
-class kept_leaves {
+class front_leaves {
 public:
     /// @param read a reader, which others may share
     /// @param take called with a pair and the triangles of both leaves; returns whether to stop
     template <class Take>
     [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                                  std::span<const kept_pair> pairs, leaf_reader<Tree>& read, const Take& take) {
+                                  std::span<const front_pair> pairs, leaf_reader<Tree>& read, const Take& take) {
         of_a_.begin(leaves_of(a));
         of_b_.begin(leaves_of(b));
         const auto claim = [&](std::size_t begin) {
@@ -155,14 +155,16 @@ public:
         std::size_t begin = 0;
         std::size_t end = claim(begin);
         while (begin < end) {
-            read.make_a(a, of_a_, [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
-                leaf.load(a.triangles(), a.tree(), number, vertices);
-            });
-            read.make_b(b, of_b_, [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
-                leaf.load(b.triangles(), b.tree(), number, vertices, to_a);
-            });
+            read.read_missing_of_a(a, of_a_,
+                                   [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+                                       leaf.load(a.triangles(), a.tree(), number, vertices);
+                                   });
+            read.read_missing_of_b(b, of_b_,
+                                   [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+                                       leaf.load(b.triangles(), b.tree(), number, vertices, to_a);
+                                   });
             const std::size_t next = claim(end);
-            for (const kept_pair& p : pairs.subspan(begin, end - begin))
+            for (const front_pair& p : pairs.subspan(begin, end - begin))
                 if (take(p, of_a_[p.leaf_a], of_b_[p.leaf_b])) return true;
             begin = end;
             end = next;
@@ -173,8 +175,8 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return of_a_.bytes() + of_b_.bytes(); }
 
 private:
-    leaf_store<triangle_block> of_a_;
-    leaf_store<triangle_block> of_b_;
+    leaf_cache<triangle_block> of_a_;
+    leaf_cache<triangle_block> of_b_;
 };
 
 }  // namespace aabb

@@ -31,7 +31,7 @@ public:
 
     /// Sets bit j if triangle j of the other block may intersect the slab.
     /// @param margin by which the slab is inflated
-    [[nodiscard]] inline std::uint32_t reached_by(const triangle_block& other, float margin = 0) const noexcept {
+    [[nodiscard]] inline std::uint32_t triangles_inside(const triangle_block& other, float margin = 0) const noexcept {
         const heights of_other(*this, other);
         const float grown = margin == 0 ? 0 : margin * length();
         return 0xffU & ~simd::bits_of_eight((of_other.low > high_ + grown) | (of_other.high < low_ - grown));

@@ -18,8 +18,8 @@ struct nearest_places {
 
 /// Picks the two nearest of the pairs in `met` (bit 8 j + i for child i and box j), which must not be empty. It
 /// computes all 64 distances, so that they do not depend on `met`.
-[[nodiscard]] inline nearest_places two_nearest(std::uint64_t met, const wide_node& node,
-                                                const eight_boxes& boxes) noexcept {
+[[nodiscard]] inline nearest_places find_two_nearest(std::uint64_t met, const wide_node& node,
+                                                     const eight_boxes& boxes) noexcept {
     // Rounding may decide which of two equally near pairs comes first; no result depends on that.
 #pragma clang fp contract(fast)
     std::array<simd::eight_floats, 3> of_node;
@@ -84,11 +84,12 @@ public:
                 // the root, with the frequencies of the universal restart strategy (Luby, Sinclair, Zuckerman, "Optimal
                 // speedup of Las Vegas algorithms", 1993), and takes the highest pairs from there on.
                 step -= std::min(step, least_back + static_cast<std::size_t>(std::countr_zero(++missed)));
-                const std::uint64_t below = steps_waiting_ >> step;
+                const std::uint64_t below = postponed_steps_ >> step;
                 step = below == 0 ? leaves : step + static_cast<std::size_t>(std::countr_zero(below));
             }
-            if (steps_waiting_ == 0) return;
-            if ((steps_waiting_ & bit(step)) == 0) step = static_cast<std::size_t>(std::bit_width(steps_waiting_)) - 1;
+            if (postponed_steps_ == 0) return;
+            if ((postponed_steps_ & bit(step)) == 0)
+                step = static_cast<std::size_t>(std::bit_width(postponed_steps_)) - 1;
             at = take(step);
         }
     }
@@ -109,7 +110,7 @@ private:
     };
 
     /// The postponed pairs of children of two nodes.
-    struct children_left {
+    struct postponed_children {
         node_pair first;
         std::uint64_t which;  // bit 8 j + i for child i of A's node and j of B's
         std::uint32_t next;   // the pair to open next
@@ -117,7 +118,7 @@ private:
 
     /// The postponed pairs of one step, as a stack.
     struct waiting {
-        std::vector<children_left> left;
+        std::vector<postponed_children> left;
         std::size_t size = 0;
     };
 
@@ -126,7 +127,7 @@ private:
         if (waiting_.size() < steps_.size()) waiting_.resize(steps_.size());
         for (waiting& w : waiting_) w.size = 0;
         assert(steps_.size() <= 64);
-        steps_waiting_ = 0;
+        postponed_steps_ = 0;
         in_a_.begin(b.level(0), nodes_of(b), to_a.to_boxes());
     }
 
@@ -140,7 +141,7 @@ private:
         const eight_boxes& boxes = in_a_(of_b);
         const std::uint64_t met = of_a.planes.overlaps(of_a.grid(), boxes);
         if (met == 0) return false;
-        const auto [first, second] = two_nearest(met, of_a, boxes);
+        const auto [first, second] = find_two_nearest(met, of_a, boxes);
         const bool opens_a = steps_.opens_a(step);
         const bool opens_b = steps_.opens_b(step);
         const std::uint32_t opened = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
@@ -162,23 +163,23 @@ private:
     inline void leave(std::size_t step, const node_pair& first, std::uint64_t which, std::uint32_t next) {
         waiting& here = waiting_[step];
         if (here.size == here.left.size()) here.left.resize(2 * here.size + children);
-        children_left& left = here.left[here.size++];
+        postponed_children& left = here.left[here.size++];
         left.first = first;
         left.which = which;
         left.next = (which & bit(next)) != 0 ? next : last_of(which);
-        steps_waiting_ |= bit(step);
+        postponed_steps_ |= bit(step);
     }
 
     /// Pops the next pair of the step's most recent entry.
     [[nodiscard]] inline node_pair take(std::size_t step) noexcept {
         waiting& here = waiting_[step];
-        children_left& left = here.left[here.size - 1];
+        postponed_children& left = here.left[here.size - 1];
         const node_pair taken = pair_of(left.first, left.next);
         left.which &= ~bit(left.next);
         if (left.which != 0)
             left.next = last_of(left.which);
         else if (--here.size == 0)
-            steps_waiting_ &= ~bit(step);
+            postponed_steps_ &= ~bit(step);
         return taken;
     }
 
@@ -188,9 +189,9 @@ private:
     }
 
     level_steps steps_;
-    kept_images in_a_;                 // nodes of B
-    std::vector<waiting> waiting_;     // by step
-    std::uint64_t steps_waiting_ = 0;  // bit s: step s has postponed pairs
+    image_cache in_a_;                   // nodes of B
+    std::vector<waiting> waiting_;       // by step
+    std::uint64_t postponed_steps_ = 0;  // bit s: step s has postponed pairs
 };
 
 }  // namespace aabb

@@ -17,10 +17,10 @@ concept WideTreePolicy =
         { built.levels() } -> std::same_as<std::size_t>;
         { built.level(level) } -> std::same_as<const wide_node*>;
         { built.triangle_at(index) } -> std::same_as<std::uint32_t>;
-        built.fetch_vertices(index);
-        built.fetch_triangles(index);
+        built.prefetch_vertices(index);
+        built.prefetch_triangles(index);
         built.read_vertices(index, list);
-        { built.keeps_front() } -> std::same_as<bool>;
+        { built.keeps_fronts() } -> std::same_as<bool>;
     };
 
 template <WideTreePolicy Tree>

@@ -12,13 +12,13 @@ template <TrianglePolicy Triangle>
 class triangle_batch {
 public:
     void clear() noexcept { pairs_ = leaf_pairs_ = 0; }
-    [[nodiscard]] bool is_full() const noexcept { return pairs_ + most_of_a_leaf_pair > capacity; }
+    [[nodiscard]] bool is_full() const noexcept { return pairs_ + most_per_leaf_pair > capacity; }
 
     /// Adds the pairs in `which` (bit 8 j + i for triangle i of `a` and j of `b`), not zero. `is_full` must not hold.
     inline void add(std::uint64_t which, std::uint32_t leaf_a, const triangle_block& a, std::uint32_t leaf_b,
                     const triangle_block& b) noexcept {
-        alignas(64) std::array<std::uint8_t, most_of_a_leaf_pair> place{};
-        simd::store_places(place.data(), which);
+        alignas(64) std::array<std::uint8_t, most_per_leaf_pair> place{};
+        simd::store_set_bits(place.data(), which);
         leaves_[leaf_pairs_] = {leaf_a, leaf_b};
         const auto from = static_cast<std::uint32_t>(leaf_pairs_++ << pair_bits);
         const auto count = static_cast<std::size_t>(std::popcount(which));
@@ -67,7 +67,7 @@ public:
 
 private:
     static constexpr std::size_t rows = 9;
-    static constexpr std::size_t most_of_a_leaf_pair = 64;
+    static constexpr std::size_t most_per_leaf_pair = 64;
     static constexpr std::size_t capacity = 144;
     static constexpr unsigned pair_bits = 6;  // of the place 8 j + i within a leaf pair
     using corners = std::array<std::array<float, capacity + triangle_block::width>, rows>;

@@ -57,7 +57,7 @@ private:
         const auto eight_from = [&](std::size_t first) __attribute__((always_inline)) {
             std::array<const float*, width> from;
             for (std::size_t i = 0; i < width; ++i) from[i] = m.vertices[list.vertices[first + i]].at;
-            columns eight = simd::columns_of_eight_points(from.data());
+            columns eight = simd::transpose_eight_points(from.data());
             change(eight);
             return eight;
         };
@@ -67,7 +67,7 @@ private:
             // Joined in a register, since a wide load from two narrower stores stalls.
             const simd::sixteen_floats points = simd::joined(low[k], high[k]);
             for (std::size_t c = 0; c < 3; ++c)
-                simd::store_eight(corner[c][k].data(), simd::taken_of_sixteen(points, list.places[c]));
+                simd::store_eight(corner[c][k].data(), simd::gather_of_sixteen(points, list.places[c]));
         }
     }
 
@@ -79,7 +79,7 @@ private:
         for (std::size_t c = 0; c < 3; ++c) {
             std::array<const float*, width> points;
             for (std::size_t i = 0; i < width; ++i) points[i] = m.vertices[vertices[i][c]].at;
-            columns eight = simd::columns_of_eight_points(points.data());
+            columns eight = simd::transpose_eight_points(points.data());
             change(eight);
             for (std::size_t k = 0; k < 3; ++k) simd::store_eight(corner[c][k].data(), eight[k]);
         }
@@ -87,7 +87,7 @@ private:
 };
 
 /// The vertex indices of a leaf's triangles, padded to eight with the last triangle.
-struct corner_numbers {
+struct corner_indices {
     static constexpr std::size_t width = eight_boxes::most;
 
     alignas(32) std::array<std::array<std::uint32_t, width>, 3> vertex;  ///< by corner, then triangle
@@ -102,8 +102,8 @@ struct corner_numbers {
     }
 
     /// Sets bit 8 j + i where triangle i of these and triangle j of the others share a corner.
-    [[nodiscard]] inline std::uint64_t shared_with(const corner_numbers& other) const noexcept {
-        return simd::columns_of_eight_that_share(vertex[0].data(), other.vertex[0].data());
+    [[nodiscard]] inline std::uint64_t sharing_corners_with(const corner_indices& other) const noexcept {
+        return simd::columns_with_shared_number(vertex[0].data(), other.vertex[0].data());
     }
 };
 

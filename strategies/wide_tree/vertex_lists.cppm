@@ -80,7 +80,7 @@ public:
         to.count = static_cast<std::uint32_t>(*at);
         if (to.count == 0) return;
         std::memcpy(to.places.data(), at + 1, sizeof to.places);
-        simd::load_sixteen_numbers(to.vertices.data(), at + header, width_, to.count);
+        simd::unpack_sixteen(to.vertices.data(), at + header, width_, to.count);
     }
 
     /// Whether the list still has the corners of the leaf's triangles.

@@ -11,7 +11,7 @@ import aabb.wide_tree.bvtt_front;
 export namespace aabb {
 
 /// How many pairs of objects can have fronts, and how many leaves the two models must have at least.
-inline constexpr std::size_t most_fronts = front_keeper::most;
-inline constexpr std::size_t least_leaves_of_front = front_keeper::least_leaves;
+inline constexpr std::size_t most_fronts = front_cache::most;
+inline constexpr std::size_t least_leaves_of_front = front_cache::least_leaves;
 
 }  // namespace aabb

@@ -59,7 +59,7 @@ TEST_CASE("local detection allocates nothing in steady state") {
     for (const aabb::composition& composition : local_compositions()) {
         INFO(text_of_local(composition));
         // Fronts are kept of so many leaves only.
-        mesh m = ripples(keeps_front(composition) ? 12 : 6);
+        mesh m = ripples(keeps_fronts(composition) ? 12 : 6);
         const auto stage = local_of(composition, instrumentation::none);
         const auto model = stage->add_model(m);
         std::vector<index_pair> pairs;

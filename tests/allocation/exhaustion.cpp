@@ -279,7 +279,7 @@ TEST_CASE("a composed local detection that runs out of memory is exact afterward
         INFO(text_of_local(composition));
         // A triangle test takes no memory, so one is tried with every allocation.
         require_of_detection([&] { return local_of(composition, instrumentation::none); }, true,
-                             keeps_front(composition) ? squares_for_fronts : few_squares,
+                             keeps_fronts(composition) ? squares_for_fronts : few_squares,
                              composition[strategy_kind::triangle].name == "exact");
     }
 }

@@ -58,25 +58,25 @@ TEST_CASE("rows become columns and columns rows") {
 TEST_CASE("numbers of 16 bits are multiplied and taken from each other in halves") {
     const simd::words a = numbers(0x1234'5679U, 0xffff'0001U);
     const simd::words b = numbers(0x0f31'7a11U, 0x8001'ffffU);
-    const simd::words products = simd::upper_products(a, b);
-    const simd::words excess = simd::excess(a, b);
+    const simd::words products = simd::high_products(a, b);
+    const simd::words difference = simd::saturated_difference(a, b);
     for (std::size_t i = 0; i < n; ++i)
         for (const unsigned shift : {0U, 16U}) {
             const std::uint32_t x = a[i] >> shift & 0xffffU;
             const std::uint32_t y = b[i] >> shift & 0xffffU;
             REQUIRE((products[i] >> shift & 0xffffU) == x * y >> 16);
-            REQUIRE((excess[i] >> shift & 0xffffU) == (x > y ? x - y : 0));
+            REQUIRE((difference[i] >> shift & 0xffffU) == (x > y ? x - y : 0));
         }
 }
 
 TEST_CASE("sums run, places are gathered, comparisons become bits") {
     const simd::words v = numbers(11, 2);
-    const simd::words sums = simd::running_sum(v);
+    const simd::words sums = simd::prefix_sum(v);
     std::array<std::uint32_t, 4 * n> table{};
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<std::uint32_t>(i * i);
     const simd::words gathered = simd::gather(table.data(), numbers(3, 1));
     std::array<std::uint16_t, n> lower{};
-    simd::store_lower_halves(lower.data(), numbers(0x10003, 9));
+    simd::store_low_halves(lower.data(), numbers(0x10003, 9));
     const simd::words widened = simd::load_halves(lower.data());
     std::uint32_t sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -101,7 +101,7 @@ TEST_CASE("eight numbers at a time: taken by place, whole parts as bytes, compar
     const std::array<int, 8> expected{0, 0, 254, 254, 254, 254, 0, 7};
     for (int i = 0; i < 8; ++i) REQUIRE(int{whole[i]} == expected[static_cast<std::size_t>(i)]);
     const std::array<std::uint8_t, 8> a{0, 1, 127, 128, 200, 254, 255, 7};
-    const std::uint64_t held = simd::no_greater(a.data(), whole);
+    const std::uint64_t held = simd::pairs_no_greater(a.data(), whole);
     for (unsigned j = 0; j < 8; ++j)
         for (unsigned i = 0; i < 8; ++i) REQUIRE((held >> (8 * j + i) & 1U) == (a[i] <= whole[j] ? 1U : 0U));
 }
@@ -127,7 +127,7 @@ TEST_CASE("places of set bits come in order") {
     for (const std::uint64_t set : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{1} << 63, ~std::uint64_t{0},
                                     std::uint64_t{0x8421f00d00c0ffee}}) {
         std::array<std::uint8_t, 64> places{};
-        simd::store_places(places.data(), set);
+        simd::store_set_bits(places.data(), set);
         std::size_t next = 0;
         for (unsigned i = 0; i < 64; ++i)
             if (set >> i & 1U) REQUIRE(unsigned{places[next++]} == i);
@@ -140,7 +140,7 @@ TEST_CASE("sixteen numbers of one to four bytes are read, the first one in place
             std::array<std::byte, 64 + 64> from{};
             for (std::size_t i = 0; i < from.size(); ++i) from[i] = static_cast<std::byte>(7 * i + 129);
             std::array<std::uint32_t, 16> to{};
-            simd::load_sixteen_numbers(to.data(), from.data(), bytes, count);
+            simd::unpack_sixteen(to.data(), from.data(), bytes, count);
             for (std::uint32_t i = 0; i < 16; ++i) {
                 std::uint32_t expected = 0;
                 for (std::size_t b = 0; b < bytes; ++b)
@@ -155,7 +155,7 @@ TEST_CASE("columns that share a number are found") {
                                           15, 16, 17, 18, 21, 22, 23, 24, 25, 26, 27, 28};
     const std::array<std::uint32_t, 24> b{90, 2,  90, 24, 15, 90, 90, 8, 21, 90, 90, 90,
                                           90, 90, 13, 90, 90, 90, 90, 4, 90, 6,  90, 90};
-    const std::uint64_t shared = simd::columns_of_eight_that_share(a.data(), b.data());
+    const std::uint64_t shared = simd::columns_with_shared_number(a.data(), b.data());
     for (std::size_t j = 0; j < 8; ++j)
         for (std::size_t i = 0; i < 8; ++i) {
             bool expected = false;
@@ -172,7 +172,7 @@ TEST_CASE("eight points become three columns") {
         for (std::size_t k = 0; k < 3; ++k) points[i][k] = static_cast<float>(10 * i + k);
         from[i] = points[i].data();
     }
-    const auto columns = simd::columns_of_eight_points(from.data());
+    const auto columns = simd::transpose_eight_points(from.data());
     for (std::size_t i = 0; i < 8; ++i)
         for (std::size_t k = 0; k < 3; ++k) REQUIRE(columns[k][i] == points[i][k]);
 }

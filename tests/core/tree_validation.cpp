@@ -37,7 +37,7 @@ const box left{{0, 0, 0}, {1, 1, 0}};
 const box right{{5, 5, 5}, {5, 5, 5}};
 
 tree_validation validate_tree(std::vector<told_tree::node> nodes) {
-    return validation_of(told_tree{std::move(nodes)}, two);
+    return validate(told_tree{std::move(nodes)}, two);
 }
 
 }  // namespace

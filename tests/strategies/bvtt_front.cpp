@@ -75,7 +75,7 @@ TEST_CASE("images of a vertex under two poses are no further apart than is said,
         if (*rc::gen::arbitrary<bool>()) c.rotation = b.rotation;
         const relative_pose p(a, b, reach);
         const relative_pose q(a, c, reach);
-        const double said = most_apart(p.to_boxes(), q.to_boxes(), reach);
+        const double said = displacement_bound(p.to_boxes(), q.to_boxes(), reach);
         double most = 0;
         for (int i = 0; i < 40; ++i) {
             vec3f x;
@@ -122,8 +122,8 @@ TEST_CASE("children within a margin of each other are found, however one node is
             meshes[1].vertices.push_back(back);
             for (mesh& m : meshes) m.triangles.insert(m.triangles.end(), 8, {point, point, point});
         }
-        const model<implicit_tree> a(meshes[0], built_by<median_build>());
-        const model<implicit_tree> b(meshes[1], built_by<median_build>());
+        const model<implicit_tree> a(meshes[0], as_tree_builder<median_build>());
+        const model<implicit_tree> b(meshes[1], as_tree_builder<median_build>());
         child_pairs<implicit_tree> pairs;
         pairs.begin(a.tree(), b.tree(), relative_pose({}, pose_b, b.bounds()), a.bounds(), margin);
         no_counters counters;
@@ -243,7 +243,7 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     for (int i = 0; i < 100; ++i)
         if (is_planned(0.03 * i)) {
             planned.push_back(i);
-            front.make(of, at(0.03 * i), 0.001, [](std::vector<kept_pair>&) { return true; });
+            front.make(of, at(0.03 * i), 0.001, [](std::vector<front_pair>&) { return true; });
         }
     CHECK(planned == std::vector{2, 4, 8, 16, 32, 64});
     // One that holds too much is not kept.
@@ -251,7 +251,7 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     static_cast<void>(is_planned(0));
     static_cast<void>(is_planned(0));
     CHECK(is_planned(0));
-    CHECK_FALSE(front.make(of, at(0), 0.1, [](std::vector<kept_pair>&) { return false; }));
+    CHECK_FALSE(front.make(of, at(0), 0.1, [](std::vector<front_pair>&) { return false; }));
     CHECK_FALSE(front.note(of, at(0), reach, 1).holds);
 }
 
@@ -302,7 +302,7 @@ TEST_CASE("objects of the same meshes have fronts of their own, in whatever orde
     for (int i = 0; i < 20; ++i) CHECK(queries.nodes_opened(object(i)) == 0);
     for (int i = 20; i-- > 0;) CHECK(queries.nodes_opened(object(7 * i % 20)) == 0);
     // Many more than are kept pass by, and those that are asked about again stay.
-    const int kept = front_keeper::most;
+    const int kept = front_cache::most;
     for (int i = 20; i < 3 * kept; ++i) {
         queries.nodes_opened(object(i));
         if (i % 40 == 0)
@@ -319,7 +319,7 @@ TEST_CASE("a front that makes room forgets what met") {
         const vec3d by{step * static_cast<double>(i % 40), step * static_cast<double>(row), 0.03};
         return kept->first_pair(model, {}, model, moved(by, 0.2));
     };
-    const std::size_t most = front_keeper::most;
+    const std::size_t most = front_cache::most;
     std::array<std::size_t, 2> met{};
     for (std::size_t i = 0; i < most; ++i) met[0] += first(0, i, 0.003).has_value();
     for (std::size_t i = 0; i < 80; ++i)

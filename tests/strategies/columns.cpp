@@ -196,7 +196,7 @@ TEST_CASE("groups are in proportion to the columns, and cut along them where tho
         plan.across = {u, v};
         plan.most_along = along;
         plan.groups = wanted;
-        return column_groups::coarser(plan);
+        return column_groups::group_grid(plan);
     };
     const auto on_axis = [](const column_plan& plan, int axis) {
         for (std::size_t i = 0; i < 2; ++i)

@@ -275,13 +275,13 @@ TEST_CASE("planes stay while boxes do, and are chosen anew only where these went
     const vec3f world{60, 60, 60};
     std::vector<box> boxes = cubes(4000, world);
     planted p(boxes, {});
-    const std::size_t nodes = p.partition.made_nodes();
+    const std::size_t nodes = p.partition.built_nodes();
     CHECK(nodes == 2 * p.partition.subset_count() - 1);
     CHECK(nodes > 50);
     SECTION("none where each moves a little, or all are elsewhere but as many everywhere") {
         for (std::uint32_t seed = 2; seed < 5; ++seed) {
             p.take(cubes(4000, world, seed));
-            CHECK(p.partition.made_nodes() == 0);
+            CHECK(p.partition.built_nodes() == 0);
         }
     }
     SECTION("some where a corner empties into another") {
@@ -290,21 +290,21 @@ TEST_CASE("planes stay while boxes do, and are chosen anew only where these went
                 for (int k = 0; k < 3; ++k) b.min[k] = 45 + b.min[k] / 3, b.max[k] = b.min[k] + 1;
         // It waits for the next frame.
         p.take(boxes);
-        CHECK(p.partition.made_nodes() == 0);
+        CHECK(p.partition.built_nodes() == 0);
         p.take(boxes);
-        CHECK_BETWEEN(0, p.partition.made_nodes(), nodes / 2);
+        CHECK_BETWEEN(0, p.partition.built_nodes(), nodes / 2);
         p.take(boxes);
-        CHECK(p.partition.made_nodes() == 0);
+        CHECK(p.partition.built_nodes() == 0);
     }
     SECTION("all at once where the frame would be much dearer") {
         for (box& b : boxes)
             for (int k = 0; k < 3; ++k) b.min[k] /= 60, b.max[k] = b.min[k] + 1.0F / 60;
         p.take(boxes);
-        CHECK(p.partition.made_nodes() > 50);
+        CHECK(p.partition.built_nodes() > 50);
     }
     SECTION("all where another axis is swept") {
         p.take(boxes, 0b001);
-        CHECK(p.partition.made_nodes() == 2 * p.partition.subset_count() - 1);
+        CHECK(p.partition.built_nodes() == 2 * p.partition.subset_count() - 1);
     }
 }
 

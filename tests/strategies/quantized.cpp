@@ -93,7 +93,7 @@ quantized_tree with_bits(unsigned bits) {
 }
 
 double inflation_of(const model<quantized_tree>& m) {
-    const tree_validation validate_tree = validation_of(m.tree(), m.triangles());
+    const tree_validation validate_tree = validate(m.tree(), m.triangles());
     CHECK(validate_tree.fault.empty());
     return validate_tree.area_inflation;
 }

@@ -314,8 +314,8 @@ TEST_CASE("a mesh in the order of leaves is the same mesh, and has the same tree
             REQUIRE(in_order(ordered) == in_order(m));
 
             const implicit_tree fetched({implicit_tree::vertex_choice::fetched});
-            const model<implicit_tree> before(m, built_by<Build>(), fetched);
-            const model<implicit_tree> after(ordered, built_by<file_order_build>(), fetched);
+            const model<implicit_tree> before(m, as_tree_builder<Build>(), fetched);
+            const model<implicit_tree> after(ordered, as_tree_builder<file_order_build>(), fetched);
             CHECK(after.tree().bytes().indices == 0);
             CHECK(same_nodes(after.tree(), before.tree()));
             for (std::uint32_t place = 0; place < m.triangle_count(); ++place) {

@@ -342,13 +342,13 @@ TEST_CASE("a slab leaves out no triangle that meets one of the leaf, of any shap
                 for (int k = 0; k < 3; ++k) edges[static_cast<std::size_t>(k)] = both.max[k] - both.min[k] + 2 * margin;
                 leaf_slab slab;
                 slab.fit(blocks[0], edges);
-                const std::uint32_t reached = slab.reached_by(blocks[1]);
+                const std::uint32_t reached = slab.triangles_inside(blocks[1]);
                 // Before it moved to where it is, by no more than the margin.
                 triangle_block before = blocks[1];
                 for (auto& corner : before.corner)
                     for (std::size_t k = 0; k < 3; ++k)
                         for (float& x : corner[k]) x -= margin * (k == 0 ? 0.6F : k == 1 ? -0.63F : 0.47F);
-                const std::uint32_t near = slab.reached_by(before, margin);
+                const std::uint32_t near = slab.triangles_inside(before, margin);
                 for (std::size_t j = 0; j < 8; ++j)
                     for (std::size_t i = 0; i < 8; ++i) {
                         if (!exact_triangle::intersects(sides[0][i], sides[1][j])) continue;
@@ -389,7 +389,7 @@ TEST_CASE("a slab leaves out no triangle that touches a plane of large odd numbe
         for (triangle_block& b : blocks) b.triangles = 8;
         leaf_slab slab;
         slab.fit(blocks[0], {1e7F, 1e7F, 1e7F});
-        RC_ASSERT(slab.reached_by(blocks[1]) == 0xff);
+        RC_ASSERT(slab.triangles_inside(blocks[1]) == 0xff);
     }));
 }
 
@@ -417,8 +417,8 @@ TEST_CASE("a slab leaves out what lies parallel, though its boxes meet, of every
         REQUIRE(boxes[0].overlaps(boxes[1]) != 0);
         leaf_slab slab;
         slab.fit(here, {2 * size, 2 * size, 2 * size});
-        CHECK(slab.reached_by(here) == 0xff);
-        CHECK(slab.reached_by(above) == 0);
+        CHECK(slab.triangles_inside(here) == 0xff);
+        CHECK(slab.triangles_inside(above) == 0);
     }
 }
 
@@ -593,7 +593,7 @@ TEST_CASE("of pairs those two are found whose centres are the least distance apa
             }
             return sum;
         };
-        const auto [first, second] = two_nearest(asked, node, others);
+        const auto [first, second] = find_two_nearest(asked, node, others);
         RC_ASSERT(are_two_of(asked, first, second));
         const auto follows = [&](std::uint32_t p, std::uint32_t q) {
             return distance(p) <= distance(q) * (1 + 1e-4) + 1e-6;
@@ -614,7 +614,7 @@ TEST_CASE("two pairs are found where boxes are of any size, as far apart as floa
         for (std::size_t j = 0; j < boxes.size(); ++j)
             for (std::size_t i = 0; i < children.size(); ++i) pairs |= std::uint64_t{1} << (8 * j + i);
         const std::uint64_t asked = any_of(pairs);
-        const auto [first, second] = two_nearest(asked, node, in_eight(boxes));
+        const auto [first, second] = find_two_nearest(asked, node, in_eight(boxes));
         RC_ASSERT(are_two_of(asked, first, second));
     }));
 }
@@ -673,16 +673,16 @@ TEST_CASE("pairs of leaves within a margin are given up at the first one too man
     const two_models of(shell(g, 3000, 1), shell(g, 3000, 1));
     const relative_pose to_a({}, {}, of.b.bounds());
     batched_walk<implicit_tree, exact_triangle, no_counters> walk;
-    std::vector<kept_pair> all;
+    std::vector<front_pair> all;
     REQUIRE(walk.near(of.a, of.b, to_a, 0.1, std::numeric_limits<std::size_t>::max(), all));
     REQUIRE(all.size() > 1000);
     for (const std::size_t most : {std::size_t{0}, std::size_t{1}, std::size_t{64}, all.size() - 1}) {
         CAPTURE(most);
-        std::vector<kept_pair> pairs;
+        std::vector<front_pair> pairs;
         CHECK_FALSE(walk.near(of.a, of.b, to_a, 0.1, most, pairs));
         CHECK(pairs.size() == most + 1);
     }
-    std::vector<kept_pair> again;
+    std::vector<front_pair> again;
     CHECK(walk.near(of.a, of.b, to_a, 0.1, all.size(), again));
     CHECK(again.size() == all.size());
 }

@@ -30,7 +30,7 @@ public:
     void search(std::vector<index_pair>& pairs) final {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_whole(pairs, [&] { find_pairs(pairs); });
+        append_or_restore(pairs, [&] { find_pairs(pairs); });
     }
 
     [[nodiscard]] work_counters counters() const final { return {}; }

@@ -37,7 +37,7 @@ class mesh_engine : public local_stage {
 public:
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                    std::vector<index_pair>& pairs) final {
-        append_whole(pairs, [&] { find_pairs(model_a, pose_a, model_b, pose_b, pairs); });
+        append_or_restore(pairs, [&] { find_pairs(model_a, pose_a, model_b, pose_b, pairs); });
     }
     [[nodiscard]] std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                             const pose& pose_b) final {
@@ -49,7 +49,7 @@ public:
     void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final {
         std::vector<index_pair> both_ways;
         all_pairs(model, {}, model, {}, both_ways);
-        append_whole(pairs, [&] {
+        append_or_restore(pairs, [&] {
             for (const index_pair pair : both_ways)
                 if (pair.a < pair.b) pairs.push_back(pair);
         });
