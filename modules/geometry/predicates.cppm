@@ -5,8 +5,7 @@ export module aabb.geometry:predicates;
 import aabb.std;
 import :points;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 export namespace aabb {
 

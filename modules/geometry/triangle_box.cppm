@@ -3,8 +3,7 @@ export module aabb.geometry:triangle_box;
 import aabb.std;
 import :box;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 namespace aabb::detail {
 

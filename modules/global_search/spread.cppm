@@ -4,8 +4,7 @@ import aabb.std;
 import :membership;
 import :projection;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 // The distribution of boxes along the axes, by which strategies choose axes.
 

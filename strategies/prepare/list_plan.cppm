@@ -5,8 +5,7 @@ export import aabb.prepare.displacement_law;
 export import aabb.prepare.sample;
 import aabb.std;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 // The cost per frame of a Verlet list whose boxes are grown by a margin m and which serves k frames, including the one
 // that makes it (Verlet, "Computer 'experiments' on classical fluids", 1967; Chialvo and Debenedetti, "On the use of

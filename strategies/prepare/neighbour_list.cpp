@@ -5,8 +5,7 @@ import aabb.prepare.pair_list;
 import aabb.prepare.mean_extent;
 import aabb.prepare.relative_motion;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 namespace aabb {
 

@@ -4,8 +4,7 @@ export module aabb.prepare.pieces;
 import aabb.policy;
 import aabb.std;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 export namespace aabb {
 

@@ -2,8 +2,7 @@ module aabb.prepare.split_mesh;
 
 import aabb.split_mesh;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 namespace aabb {
 

@@ -4,8 +4,7 @@ import aabb.local_detection;
 import aabb.std;
 import aabb.triangle.orientation_test;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 namespace aabb::detail {
 

@@ -3,8 +3,7 @@ export module aabb.triangle.interval_test;
 export import aabb.local_detection;
 import aabb.std;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 export namespace aabb {
 

@@ -3,8 +3,7 @@ export module aabb.triangle.separating_axes;
 import aabb.std;
 import aabb.triangle.precision;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 export namespace aabb {
 

@@ -4,8 +4,7 @@ export import aabb.geometry;
 import aabb.std;
 export import aabb.wide_tree.kernels;
 
-// Floating-point expressions are evaluated as written: see aabb.base:floating_point.
-#pragma clang fp contract(off) reassociate(off) reciprocal(off)
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 export namespace aabb {
 

@@ -3,8 +3,7 @@ export module aabb.wide_tree.triangle_filter;
 import aabb.simd;
 import aabb.std;
 
-// Fused multiply-adds are allowed, which the error bounds include; nothing else is.
-#pragma clang fp reassociate(off) reciprocal(off)
+#pragma clang fp reassociate(off) reciprocal(off)  // fused multiply-adds are allowed: error bounds include them
 
 export namespace aabb {
 
