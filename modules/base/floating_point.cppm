@@ -24,8 +24,7 @@ inline const volatile double not_a_number = std::numeric_limits<double>::quiet_N
     if (!keeps_denormals)
         throw input_error(
             "results cannot be exact: this thread flushes denormal numbers to zero, perhaps because a library was "
-            "linked "
-            "with -ffast-math; clear FTZ and DAZ before the query");
+            "linked with -ffast-math; clear FTZ and DAZ before the query");
     if (!rounds_to_nearest)
         throw input_error(
             "results cannot be exact: this thread does not round to nearest; call std::fesetround(FE_TONEAREST) before "

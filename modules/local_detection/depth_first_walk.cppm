@@ -15,28 +15,28 @@ class depth_first_walk {
 public:
     /// Passes each pair of intersecting triangles (a of A, b of B) to `emit` as a list of one, until it returns true.
     template <class Emit>
-    void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                 walk_goal /*goal*/, Emit emit) {
+    void find_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                    walk_goal /*goal*/, Emit emit) {
         begin();
         push_if_overlapping(a, b, to_a, {a.root(), b.root(), to_a(b.bounds())}, side::both);
         test_pending(test, a, b, to_a, emit);
     }
 
-    /// The same for the pairs of one mesh, in either order.
+    /// The same for the pairs of one mesh, in either order: tests the two children of each node against each other.
     template <class Emit>
-    void within(const Triangle& test, const model<Tree>& m, Emit emit) {
-        constexpr same_frame here;
+    void find_self_pairs(const Triangle& test, const model<Tree>& m, Emit emit) {
+        constexpr same_frame identity;
         begin();
         nodes_.assign(1, m.root());
         while (!nodes_.empty()) {
-            const cursor at = nodes_.back();
+            const cursor node = nodes_.back();
             nodes_.pop_back();
-            if (m.tree().is_leaf(at)) continue;
-            const auto [left, right] = m.tree().children(at, m.triangles());
+            if (m.tree().is_leaf(node)) continue;
+            const auto [left, right] = m.tree().children(node, m.triangles());
             nodes_.push_back(left);
             nodes_.push_back(right);
-            push_if_overlapping(m, m, here, {left, right, m.tree().bounds(right)}, side::both);
-            test_pending(test, m, m, here, emit);
+            push_if_overlapping(m, m, identity, {left, right, m.tree().bounds(right)}, side::both);
+            test_pending(test, m, m, identity, emit);
         }
         assert(stack_.empty());
     }
@@ -70,42 +70,44 @@ private:
         image_of_ = no_triangle;
     }
 
+    /// Opens the pending node pairs, the longer node first, and tests the triangles of two leaves, until no pair is
+    /// pending or `emit` returns true.
     template <class Frame, class Emit>
     void test_pending(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a, Emit& emit) {
         const Tree& tree_a = a.tree();
         const Tree& tree_b = b.tree();
         while (!stack_.empty()) {
-            const node_pair at = stack_.back();
+            const node_pair p = stack_.back();
             stack_.pop_back();
             counters_.add(work::node_visits);
-            const bool a_is_leaf = tree_a.is_leaf(at.a);
-            const bool b_is_leaf = tree_b.is_leaf(at.b);
+            const bool a_is_leaf = tree_a.is_leaf(p.a);
+            const bool b_is_leaf = tree_b.is_leaf(p.b);
             if (a_is_leaf && b_is_leaf) {
-                if (!intersect(test, a, b, to_a, at)) continue;
-                const index_pair triangles{tree_a.triangle(at.a), tree_b.triangle(at.b)};
+                if (!triangles_intersect(test, a, b, to_a, p)) continue;
+                const index_pair triangles{tree_a.triangle(p.a), tree_b.triangle(p.b)};
                 if (emit(std::span<const index_pair>(&triangles, 1))) return;
-            } else if (b_is_leaf || (!a_is_leaf && length(tree_a.bounds(at.a)) >= length(at.b_bounds))) {
-                const auto [left, right] = tree_a.children(at.a, a.triangles());
-                push_if_overlapping(a, b, to_a, {right, at.b, at.b_bounds}, side::a);
-                push_if_overlapping(a, b, to_a, {left, at.b, at.b_bounds}, side::a);
+            } else if (b_is_leaf || (!a_is_leaf && longest_extent(tree_a.bounds(p.a)) >= longest_extent(p.b_bounds))) {
+                const auto [left, right] = tree_a.children(p.a, a.triangles());
+                push_if_overlapping(a, b, to_a, {right, p.b, p.b_bounds}, side::a);
+                push_if_overlapping(a, b, to_a, {left, p.b, p.b_bounds}, side::a);
             } else {
-                const auto [left, right] = tree_b.children(at.b, b.triangles());
-                push_if_overlapping(a, b, to_a, {at.a, right, bounds_in_a(b, to_a, right, at.b_bounds)}, side::b);
-                push_if_overlapping(a, b, to_a, {at.a, left, bounds_in_a(b, to_a, left, at.b_bounds)}, side::b);
+                const auto [left, right] = tree_b.children(p.b, b.triangles());
+                push_if_overlapping(a, b, to_a, {p.a, right, bounds_in_a(b, to_a, right, p.b_bounds)}, side::b);
+                push_if_overlapping(a, b, to_a, {p.a, left, bounds_in_a(b, to_a, left, p.b_bounds)}, side::b);
             }
         }
     }
 
     template <class Frame>
-    [[nodiscard]] bool intersect(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a,
-                                 const node_pair& at) {
+    [[nodiscard]] bool triangles_intersect(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
+                                           const Frame& to_a, const node_pair& leaves) {
         counters_.add(work::triangle_tests);
-        return test.intersects(a.triangles().triangle(a.tree().triangle(at.a)), image(b, to_a, at.b));
+        return test.intersects(a.triangles().triangle(a.tree().triangle(leaves.a)), triangle_in_a(b, to_a, leaves.b));
     }
 
     /// The triangle of a leaf of B in A's frame. The last one is cached, since a leaf meets many nodes of A in a row.
     template <class Frame>
-    [[nodiscard]] const triangle3f& image(const model<Tree>& b, const Frame& to_a, const cursor& leaf) {
+    [[nodiscard]] const triangle3f& triangle_in_a(const model<Tree>& b, const Frame& to_a, const cursor& leaf) {
         const std::uint32_t triangle = b.tree().triangle(leaf);
         if (triangle != image_of_) image_ = to_a(b.triangles().triangle(triangle));
         image_of_ = triangle;
@@ -118,8 +120,9 @@ private:
     [[nodiscard]] box bounds_in_a(const model<Tree>& b, const Frame& to_a, const cursor& child, const box& parent) {
         if constexpr (!Tree::has_leaf_boxes)
             if (b.tree().is_leaf(child))
-                return b.tree().leaf_test() == leaf_test_choice::triangle_aabb ? bounds_of(image(b, to_a, child))
-                                                                               : parent;
+                return b.tree().leaf_test() == leaf_test_choice::triangle_aabb
+                           ? bounds_of(triangle_in_a(b, to_a, child))
+                           : parent;
         return to_a(b.tree().bounds(child));
     }
 
@@ -129,6 +132,7 @@ private:
         if (may_overlap(a, b, to_a, next, untested)) stack_.push_back(next);
     }
 
+    /// Tests the boxes of two nodes, or what replaces the box of a leaf in a layout without leaf boxes.
     template <class Frame>
     [[nodiscard]] bool may_overlap(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
                                    side untested) {
@@ -144,7 +148,7 @@ private:
             if (tests_triangles && a_is_leaf)
                 return intersects_box(a.triangles().triangle(a.tree().triangle(next.a)), next.b_bounds, test);
             if (tests_triangles && b_is_leaf)
-                return intersects_box(image(b, to_a, next.b), a.tree().bounds(next.a), test);
+                return intersects_box(triangle_in_a(b, to_a, next.b), a.tree().bounds(next.a), test);
         }
         counters_.add(work::box_tests);
         return overlaps(a.tree().bounds(next.a), next.b_bounds);
@@ -156,7 +160,7 @@ private:
     }
 
     /// The measure by which the node to open first is chosen.
-    [[nodiscard]] static float length(const box& b) noexcept {
+    [[nodiscard]] static float longest_extent(const box& b) noexcept {
         const int k = longest_axis(b);
         return b.max[k] - b.min[k];
     }

@@ -38,7 +38,7 @@ public:
     void all_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
         append_or_restore(pairs, [&] {
-            between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
+            walk(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
                 pairs.insert(pairs.end(), batch.begin(), batch.end());
                 return false;
             });
@@ -48,7 +48,7 @@ public:
     [[nodiscard]] std::uint64_t count_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                             const pose& pose_b) {
         std::uint64_t count = 0;
-        between(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
+        walk(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
             count += batch.size();
             return false;
         });
@@ -59,7 +59,7 @@ public:
     [[nodiscard]] std::optional<index_pair> first_pair(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                                        const pose& pose_b) {
         std::optional<index_pair> first;
-        between(a, pose_a, b, pose_b, walk_goal::first_pair, [&](std::span<const index_pair> batch) {
+        walk(a, pose_a, b, pose_b, walk_goal::first_pair, [&](std::span<const index_pair> batch) {
             first = batch.front();
             return true;
         });
@@ -74,7 +74,7 @@ public:
     /// Passes each of the same pairs to `take` as it is found, without storing any.
     template <class Take>
     void each_self_pair(const model<Tree>& m, const Take& take) {
-        walk_.within(triangle_, m, [&](std::span<const index_pair> batch) {
+        walk_.find_self_pairs(triangle_, m, [&](std::span<const index_pair> batch) {
             for (const index_pair p : batch) take(ordered_pair(p.a, p.b));
             return false;
         });
@@ -85,9 +85,9 @@ public:
 
 private:
     template <class Emit>
-    void between(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, walk_goal goal,
-                 Emit emit) {
-        walk_.between(triangle_, a, b, relative_pose(pose_a, pose_b, b.bounds()), goal, emit);
+    void walk(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, walk_goal goal,
+              Emit emit) {
+        walk_.find_pairs(triangle_, a, b, relative_pose(pose_a, pose_b, b.bounds()), goal, emit);
     }
 
     [[no_unique_address]] Triangle triangle_;

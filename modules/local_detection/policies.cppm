@@ -90,9 +90,9 @@ struct tree_builder {
 };
 
 template <BuildPolicy Build>
-[[nodiscard]] tree_builder as_tree_builder(const Build& by = {}) {
-    return {[by](const mesh& m, leaf_arrangement arrangement) { return by.build(m, arrangement); },
-            [by](const mesh& m) { return by.order(m); }};
+[[nodiscard]] tree_builder as_tree_builder(const Build& builder = {}) {
+    return {[builder](const mesh& m, leaf_arrangement arrangement) { return builder.build(m, arrangement); },
+            [builder](const mesh& m) { return builder.order(m); }};
 }
 
 /// The test that replaces the box test of a leaf without a box.

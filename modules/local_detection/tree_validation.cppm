@@ -20,20 +20,21 @@ class tree_validator {
 public:
     tree_validator(const Tree& tree, const mesh& m) : tree_(tree), mesh_(m), seen_(m.triangles.size()) {}
 
+    /// Visits all nodes depth first, up to the first fault.
     [[nodiscard]] tree_validation validate_tree() {
         open_.push_back({tree_.root(mesh_), empty_box(), 0});
         // An explicit stack, since trees may be too deep for recursion.
         while (!open_.empty() && result_.fault.empty()) {
-            node& at = open_.back();
-            if (tree_.is_leaf(at.cursor))
-                visit_leaf(at);
-            else if (at.opened < 2) {
-                const auto child = tree_.children(at.cursor, mesh_)[at.opened++];
+            node& current = open_.back();
+            if (tree_.is_leaf(current.cursor))
+                visit_leaf(current);
+            else if (current.opened < 2) {
+                const auto child = tree_.children(current.cursor, mesh_)[current.opened++];
                 open_.push_back({child, empty_box(), 0});
                 if (open_.size() > seen_.size()) result_.fault = "the tree has more levels than triangles";
                 continue;
             }
-            close(at);
+            close(current);
         }
         if (result_.fault.empty())
             if (const auto absent = std::ranges::find(seen_, 0); absent != seen_.end())
@@ -67,13 +68,14 @@ private:
             return Tree::has_leaf_boxes || !tree_.is_leaf(at);
     }
 
-    void close(const node& at) {
+    /// Compares the node's box with that of its triangles, and adds these to its parent's.
+    void close(const node& closed) {
         result_.depth = std::max(result_.depth, open_.size() - 1);
         if (!result_.fault.empty()) return;
-        const box below = at.below;
-        const box bounds = tree_.bounds(at.cursor);
+        const box below = closed.below;
+        const box bounds = tree_.bounds(closed.cursor);
         if (!contains(bounds, below)) result_.fault = "a box does not contain the triangles below it";
-        if (has_box(at.cursor)) {
+        if (has_box(closed.cursor)) {
             result_.tight &= bounds == below;
             area_ += surface_area(bounds);
             smallest_ += surface_area(below);

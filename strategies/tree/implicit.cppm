@@ -165,7 +165,7 @@ public:
     [[nodiscard]] inline bool keeps_fronts() const noexcept { return config_.front == front_choice::kept; }
     /// Prefetches the list of the leaf's vertices.
     inline void prefetch_vertices(std::uint32_t leaf) const noexcept {
-        if (!vertices_.empty()) vertices_.fetch(leaf);
+        if (!vertices_.empty()) vertices_.prefetch(leaf);
     }
     /// Prefetches the indices of the leaf's triangles.
     inline void prefetch_triangles(std::uint32_t leaf) const noexcept {

@@ -17,54 +17,56 @@ class batched_walk {
 public:
     /// Passes intersecting pairs of triangles (a of A, b of B) to `emit`, in batches, until `emit` returns true.
     template <class Emit>
-    void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                 walk_goal goal, Emit emit) {
-        if (goal == walk_goal::first_pair) return find(test, a, b, to_a, emit);
-        walk(test, a, b, to_a, extent::two_meshes, emit);
+    void find_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                    walk_goal goal, Emit emit) {
+        if (goal == walk_goal::first_pair) return find_first_pair(test, a, b, to_a, emit);
+        find_all_pairs(test, a, b, to_a, query_kind::two_meshes, emit);
     }
 
     /// Finds the self-intersections of a mesh; each pair is reported once, in either order.
     template <class Emit>
-    void within(const Triangle& test, const model<Tree>& m, Emit emit) {
-        walk(test, m, m, relative_pose({}, {}, m.bounds()), extent::one_mesh, emit);
+    void find_self_pairs(const Triangle& test, const model<Tree>& m, Emit emit) {
+        find_all_pairs(test, m, m, relative_pose({}, {}, m.bounds()), query_kind::one_mesh, emit);
     }
 
-    /// Appends the pairs of leaves with triangles within a margin of each other, less rounding (`rounding_bound`).
+    /// Appends the pairs of leaves with triangles within a margin of each other, less rounding (`rounding_bound`): the
+    /// BVTT front of this pose.
     /// @returns false if there are more than `most`, where it stops
-    [[nodiscard]] bool near(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin,
-                            std::size_t most, std::vector<front_pair>& pairs) {
-        leaves_.begin(a, b, to_a, false, false,
-                      std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
-        return !descend(a, b, to_a, extent::two_meshes, margin,
-                        [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
-                            return leaves_.for_each_within_margin(a, b, to_a, of_a, of_b, counters_,
-                                                                  [&](std::size_t p, std::uint64_t which) {
-                                                                      pairs.push_back({of_a[p], of_b[p], which});
-                                                                      return pairs.size() > most;
-                                                                  });
-                        });
+    [[nodiscard]] bool collect_front(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                     double margin, std::size_t most, std::vector<front_pair>& pairs) {
+        leaf_pairs_.begin(a, b, to_a, false, false,
+                          std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
+        const auto collect = [&](std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b) {
+            const auto append = [&](std::size_t p, std::uint64_t mask) {
+                pairs.push_back({leaves_a[p], leaves_b[p], mask});
+                return pairs.size() > most;
+            };
+            return leaf_pairs_.for_each_within_margin(a, b, to_a, leaves_a, leaves_b, counters_, append);
+        };
+        return !descend_to_leaves(a, b, to_a, query_kind::two_meshes, margin, collect);
     }
 
-    /// The same as `between`, restricted to these pairs of leaves.
+    /// The same as `find_pairs`, restricted to the pairs of leaves of a front.
     template <class Emit>
-    void among(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-               std::span<const front_pair> pairs, front_leaves<Tree>& leaves, walk_goal goal, Emit emit) {
+    void find_pairs_in_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
+                             const relative_pose& to_a, std::span<const front_pair> pairs, front_leaves<Tree>& leaves,
+                             walk_goal goal, Emit emit) {
         const bool any_pair = goal == walk_goal::first_pair;
-        const auto triangles_at = naming(a, b);
-        waiting_.clear();
-        const auto test_pair = [&](const front_pair& p, const triangle_block& of_a, const triangle_block& of_b) {
-            queue_pairs(a.tree(), b.tree(), p, of_a, of_b);
-            return (any_pair || waiting_.is_full()) && waiting_.decide(test, any_pair, triangles_at, emit);
+        const auto triangles_at = triangle_lookup(a, b);
+        queue_.clear();
+        const auto test_pair = [&](const front_pair& p, const triangle_block& block_a, const triangle_block& block_b) {
+            queue_pairs(a.tree(), b.tree(), p, block_a, block_b);
+            return (any_pair || queue_.is_full()) && queue_.test_queued(test, any_pair, triangles_at, emit);
         };
-        if (!leaves(a, b, to_a, pairs, leaves_.reader(), test_pair))
-            static_cast<void>(waiting_.decide(test, true, triangles_at, emit));
+        if (!leaves.for_each_pair(a, b, to_a, pairs, leaf_pairs_.reader(), test_pair))
+            static_cast<void>(queue_.test_queued(test, true, triangles_at, emit));
     }
 
     [[nodiscard]] Counters& counters() noexcept { return counters_; }
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t total =
-            sizeof *this + bytes_of(pairs_) + steps_.bytes() + children_.bytes() + leaves_.bytes() + nearest_.bytes();
+        std::size_t total = sizeof *this + bytes_of(pairs_) + steps_.bytes() + child_pairs_.bytes() +
+                            leaf_pairs_.bytes() + nearest_.bytes();
         for (const node_pairs& p : pairs_) total += bytes_of(p.a, p.b);
         return total;
     }
@@ -76,7 +78,7 @@ private:
     /// Only exact tests have a floating-point filter in front.
     static constexpr bool is_filtered = requires { requires Triangle::filtered; };
 
-    enum class extent : std::uint8_t { two_meshes, one_mesh };
+    enum class query_kind : std::uint8_t { two_meshes, one_mesh };
 
     /// The pending node pairs of one step of the descent.
     struct node_pairs {
@@ -92,44 +94,49 @@ private:
         }
     };
 
+    /// Finds all pairs. The caches of leaves are reset only when the descent reaches leaves, so that a query which ends
+    /// above them costs little.
     template <class Emit>
-    void walk(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what,
-              const Emit& emit) {
-        const auto triangles_at = naming(a, b);
-        waiting_.clear();
+    void find_all_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                        query_kind kind, const Emit& emit) {
+        const auto triangles_at = triangle_lookup(a, b);
+        queue_.clear();
         bool reached_leaves = false;
-        const bool stopped =
-            descend(a, b, to_a, what, 0, [&](std::span<const std::uint32_t> of_a, std::span<const std::uint32_t> of_b) {
-                if (!reached_leaves) leaves_.begin(a, b, to_a, what == extent::one_mesh, !is_filtered, 0);
-                reached_leaves = true;
-                return test_leaves(test, a, b, to_a, what, of_a, of_b, triangles_at, emit);
-            });
-        if (!stopped) static_cast<void>(waiting_.decide(test, true, triangles_at, emit));
+        const auto test_batch = [&](std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b) {
+            if (!reached_leaves) leaf_pairs_.begin(a, b, to_a, kind == query_kind::one_mesh, !is_filtered, 0);
+            reached_leaves = true;
+            return test_leaves(test, a, b, to_a, kind, leaves_a, leaves_b, triangles_at, emit);
+        };
+        if (!descend_to_leaves(a, b, to_a, kind, 0, test_batch))
+            static_cast<void>(queue_.test_queued(test, true, triangles_at, emit));
     }
 
     /// Finds any one pair: tests each pair of leaves before it reads the next.
     template <class Emit>
-    void find(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-              const Emit& emit) {
+    void find_first_pair(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                         const Emit& emit) {
         require_ready(a, b);
-        const auto triangles_at = naming(a, b);
-        waiting_.clear();
+        const auto triangles_at = triangle_lookup(a, b);
+        queue_.clear();
         bool reached_leaves = false;
-        nearest_(a, b, to_a, counters_, [&](const std::uint32_t& of_a, const std::uint32_t& of_b) {
-            if (!reached_leaves) leaves_.begin(a, b, to_a, false, !is_filtered, 0);
-            reached_leaves = true;
-            return test_leaves(test, a, b, to_a, extent::two_meshes, {&of_a, 1}, {&of_b, 1}, triangles_at, emit) ||
-                   waiting_.decide(test, true, triangles_at, emit);
-        });
+        nearest_.for_each_leaf_pair(a, b, to_a, counters_,
+                                    [&](const std::uint32_t& leaf_a, const std::uint32_t& leaf_b) {
+                                        if (!reached_leaves) leaf_pairs_.begin(a, b, to_a, false, !is_filtered, 0);
+                                        reached_leaves = true;
+                                        return test_leaves(test, a, b, to_a, query_kind::two_meshes, {&leaf_a, 1},
+                                                           {&leaf_b, 1}, triangles_at, emit) ||
+                                               queue_.test_queued(test, true, triangles_at, emit);
+                                    });
     }
 
-    /// Descends to the pairs of leaves whose boxes overlap.
+    /// Descends to the pairs of leaves whose boxes overlap. Each iteration takes a batch of the lowest step that has
+    /// pending pairs, so that few pairs are pending at a time; of leaves it takes all.
     /// @param margin the distance up to which boxes count as overlapping
     /// @param at_leaves called with a batch of pairs, as leaves of A and leaves of B; returns whether to stop
     /// @returns whether `at_leaves` stopped the walk
     template <class AtLeaves>
-    bool descend(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, extent what, double margin,
-                 const AtLeaves& at_leaves) {
+    bool descend_to_leaves(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, query_kind kind,
+                           double margin, const AtLeaves& at_leaves) {
         begin(a, b, to_a, margin);
         for (std::size_t step = 0;;) {
             if (pairs_[step].size == 0) {
@@ -145,7 +152,7 @@ private:
             from.size = begin;
             counters_.add(work::node_visits, end - begin);
             if (!is_last) {
-                open(a.tree(), b.tree(), what, step, begin, end);
+                open_nodes(a.tree(), b.tree(), kind, step, begin, end);
                 ++step;
                 continue;
             }
@@ -160,6 +167,7 @@ private:
         b.require_fit();
     }
 
+    /// Starts a query with one pending pair, the roots.
     void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, double margin) {
         require_ready(a, b);
         steps_.begin({a.tree().levels(), b.tree().levels()});
@@ -168,44 +176,44 @@ private:
         pairs_[0].make_room();
         pairs_[0].a[0] = pairs_[0].b[0] = 0;
         pairs_[0].size = 1;
-        children_.begin(a.tree(), b.tree(), to_a, a.bounds(), margin);
+        child_pairs_.begin(a.tree(), b.tree(), to_a, a.bounds(), margin);
     }
 
     /// Maps places in two leaves to triangles of the meshes.
-    [[nodiscard]] static auto naming(const model<Tree>& a, const model<Tree>& b) {
+    [[nodiscard]] static auto triangle_lookup(const model<Tree>& a, const model<Tree>& b) {
         return [&](std::uint32_t leaf_a, std::uint32_t i, std::uint32_t leaf_b, std::uint32_t j) {
             return index_pair{a.tree().triangle_at(children * leaf_a + i), b.tree().triangle_at(children * leaf_b + j)};
         };
     }
 
-    /// Pushes the overlapping pairs of children to the next step, which is a stack; pairs of leaves are taken all at
-    /// once.
-    void open(const Tree& a, const Tree& b, extent what, std::size_t step, std::size_t begin, std::size_t end) {
+    /// Opens the node pairs `begin` to `end` of a step: pushes their overlapping pairs of children to the next step.
+    void open_nodes(const Tree& a, const Tree& b, query_kind kind, std::size_t step, std::size_t begin,
+                    std::size_t end) {
         const wide_node* const nodes_a = a.level(steps_[step].a - 1);
         const wide_node* const nodes_b = b.level(steps_[step].b - 1);
         const bool opens_a = steps_.opens_a(step);
         const bool opens_b = steps_.opens_b(step);
         const node_pairs& from = pairs_[step];
         node_pairs& to = pairs_[step + 1];
-        const std::span some_a = std::span(from.a).subspan(begin, end - begin);
-        const std::span some_b = std::span(from.b).subspan(begin, end - begin);
-        for (auto [pair, met] : children_(nodes_a, some_a, nodes_b, some_b, counters_)) {
+        const std::span batch_a = std::span(from.a).subspan(begin, end - begin);
+        const std::span batch_b = std::span(from.b).subspan(begin, end - begin);
+        for (auto [pair, mask] : child_pairs_.find_overlapping(nodes_a, batch_a, nodes_b, batch_b, counters_)) {
             to.make_room();
-            const std::uint32_t node_a = some_a[pair];
-            const std::uint32_t node_b = some_b[pair];
-            if (what == extent::one_mesh && node_a == node_b) met &= each_pair_once;
-            const std::uint64_t to_open = steps_.opened(step, met);
+            const std::uint32_t node_a = batch_a[pair];
+            const std::uint32_t node_b = batch_b[pair];
+            if (kind == query_kind::one_mesh && node_a == node_b) mask &= each_pair_once;
+            const std::uint64_t to_open = steps_.pairs_to_open(step, mask);
             const std::uint32_t first_a = opens_a ? children * node_a : node_a;
             const std::uint32_t first_b = opens_b ? children * node_b : node_b;
-            alignas(64) std::array<std::uint8_t, most_children_of_pair> places{};
-            simd::store_set_bits(places.data(), to_open);
+            alignas(64) std::array<std::uint8_t, most_children_of_pair> bits{};  // 8 j + i
+            simd::store_set_bits(bits.data(), to_open);
             const auto count = static_cast<std::size_t>(std::popcount(to_open));
             std::size_t p = 0;
             do {  // almost always one iteration, so that the branch is predicted
-                const auto place =
-                    __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&places[p]), simd::eight_words);
-                simd::store_eight(&to.a[to.size + p], first_a + (place & 7U));
-                simd::store_eight(&to.b[to.size + p], first_b + (place >> 3U));
+                const auto bit =
+                    __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&bits[p]), simd::eight_words);
+                simd::store_eight(&to.a[to.size + p], first_a + (bit & 7U));
+                simd::store_eight(&to.b[to.size + p], first_b + (bit >> 3U));
                 p += children;
             } while (p < count);
             to.size += count;
@@ -216,48 +224,48 @@ private:
     /// @returns whether to stop
     template <class TrianglesAt, class Emit>
     [[nodiscard]] bool test_leaves(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
-                                   const relative_pose& to_a, extent what, std::span<const std::uint32_t> leaves_a,
+                                   const relative_pose& to_a, query_kind kind, std::span<const std::uint32_t> leaves_a,
                                    std::span<const std::uint32_t> leaves_b, const TrianglesAt& triangles_at,
                                    const Emit& emit) {
         // Inlined, because a call would cost up to a tenth of the work in it.
-        const auto take = [&](std::size_t p, const read_leaf& of_a, const read_leaf& of_b,
-                              std::uint64_t met) __attribute__((always_inline)) {
-            if (what == extent::one_mesh) {
-                if (leaves_a[p] == leaves_b[p]) met &= each_pair_once & distinct_children;
-                if (emit_adjacent(met, leaves_a[p], leaves_b[p], triangles_at, emit)) return true;
-                if (met == 0) return false;
+        const auto test_pair = [&](std::size_t p, const read_leaf& leaf_a, const read_leaf& leaf_b,
+                                   std::uint64_t mask) __attribute__((always_inline)) {
+            if (kind == query_kind::one_mesh) {
+                if (leaves_a[p] == leaves_b[p]) mask &= each_pair_once & distinct_children;
+                if (emit_adjacent(mask, leaves_a[p], leaves_b[p], triangles_at, emit)) return true;
+                if (mask == 0) return false;
             }
-            queue_pairs(a.tree(), b.tree(), {leaves_a[p], leaves_b[p], met}, of_a.block, of_b.block);
-            return waiting_.is_full() && waiting_.decide(test, false, triangles_at, emit);
+            queue_pairs(a.tree(), b.tree(), {leaves_a[p], leaves_b[p], mask}, leaf_a.block, leaf_b.block);
+            return queue_.is_full() && queue_.test_queued(test, false, triangles_at, emit);
         };
-        return leaves_(a, b, to_a, leaves_a, leaves_b, counters_, take);
+        return leaf_pairs_.for_each_meeting(a, b, to_a, leaves_a, leaves_b, counters_, test_pair);
     }
 
     /// Queues pairs of triangles for the test, and prefetches the indices of the triangles.
     [[gnu::always_inline]] inline void queue_pairs(const Tree& a, const Tree& b, const front_pair& p,
-                                                   const triangle_block& of_a, const triangle_block& of_b) {
-        counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.which)));
-        waiting_.add(p.which, p.leaf_a, of_a, p.leaf_b, of_b);
+                                                   const triangle_block& block_a, const triangle_block& block_b) {
+        counters_.add(work::triangle_tests, static_cast<std::uint64_t>(std::popcount(p.mask)));
+        queue_.add(p.mask, p.leaf_a, block_a, p.leaf_b, block_b);
         a.prefetch_triangles(p.leaf_a);
         b.prefetch_triangles(p.leaf_b);
     }
 
     /// Reports adjacent triangles without a test, because an exact test always accepts a shared corner.
-    /// @param met the overlapping pairs; reported pairs are removed
+    /// @param mask the overlapping pairs (bit 8 j + i); reported pairs are removed
     /// @returns whether to stop
     template <class TrianglesAt, class Emit>
-    [[nodiscard]] bool emit_adjacent(std::uint64_t& met, std::uint32_t leaf_a, std::uint32_t leaf_b,
+    [[nodiscard]] bool emit_adjacent(std::uint64_t& mask, std::uint32_t leaf_a, std::uint32_t leaf_b,
                                      const TrianglesAt& triangles_at, const Emit& emit) const {
         if constexpr (is_filtered) {
-            const std::uint64_t shared = leaves_.neighbours(leaf_a, leaf_b);
-            std::array<index_pair, most_children_of_pair> neighbours;
+            const std::uint64_t sharing = leaf_pairs_.pairs_sharing_corners(leaf_a, leaf_b);
+            std::array<index_pair, most_children_of_pair> adjacent;
             std::size_t count = 0;
-            for (std::uint64_t left = met & shared; left != 0; left &= left - 1) {
-                const auto place = static_cast<std::uint32_t>(std::countr_zero(left));
-                neighbours[count++] = triangles_at(leaf_a, place & 7U, leaf_b, place >> 3U);
+            for (std::uint64_t rest = mask & sharing; rest != 0; rest &= rest - 1) {
+                const auto bit = static_cast<std::uint32_t>(std::countr_zero(rest));
+                adjacent[count++] = triangles_at(leaf_a, bit & 7U, leaf_b, bit >> 3U);
             }
-            met &= ~shared;
-            return count != 0 && emit(std::span<const index_pair>(neighbours).first(count));
+            mask &= ~sharing;
+            return count != 0 && emit(std::span<const index_pair>(adjacent).first(count));
         }
         return false;
     }
@@ -269,9 +277,9 @@ private:
     [[no_unique_address]] Counters counters_;
     level_steps steps_;
     std::vector<node_pairs> pairs_;  // by step
-    child_pairs<Tree> children_;
-    leaf_pairs<Tree> leaves_;
-    triangle_batch<Triangle> waiting_;
+    child_pairs<Tree> child_pairs_;
+    leaf_pairs<Tree> leaf_pairs_;
+    triangle_batch<Triangle> queue_;
     nearest_walk<Tree> nearest_;
 };
 

@@ -10,6 +10,7 @@ export namespace aabb {
 /// Transforms the boxes of a node's children into another frame: each box contains the image of the child's box.
 class box_images {
 public:
+    /// Sets the motion of the boxes, as rows of the rotation.
     void begin(const box_motion& motion) noexcept {
         for (std::size_t k = 0; k < 3; ++k) {
             const auto axis = static_cast<int>(k);
@@ -19,9 +20,10 @@ public:
         }
     }
 
-    /// Computes in double, adds the margin of the motion, and rounds to nearest, which is monotone, as for vertices.
-    /// Planes lie further out than the vertices that the margin is for, by a 60th of the node, 2^-22 of the coordinate
-    /// or the smallest step. The additional rounding errors stay within the rest of the margin, or within `least`.
+    /// Stores the boxes of a node's children in the other frame: computes in double, adds the margin of the motion, and
+    /// rounds to nearest, which is monotone, as for vertices. Planes lie further out than the vertices that the margin
+    /// is for, by a 60th of the node, 2^-22 of the coordinate or the smallest step. The additional rounding errors stay
+    /// within the rest of the margin, or within `least`.
     void store(const wide_node& n, eight_boxes& to) const noexcept {
 #pragma clang fp contract(fast)
         // Centres and half extents are exact: integer or half codes times powers of two.
@@ -35,14 +37,14 @@ public:
             half[j] = (upper - lower) * half_step;
         }
         for (std::size_t k = 0; k < 3; ++k) {
-            simd::eight_doubles at = simd::eight_doubles{} + shift_[k];
+            simd::eight_doubles image = simd::eight_doubles{} + shift_[k];
             simd::eight_doubles radius = simd::eight_doubles{} + margin_[k];
             for (std::size_t j = 0; j < 3; ++j) {
-                at += turn_[k][j] * centre[j];
+                image += turn_[k][j] * centre[j];
                 radius += std::abs(turn_[k][j]) * half[j];
             }
-            simd::store_eight(to.lower[k].data(), __builtin_convertvector(at - radius, simd::eight_floats));
-            simd::store_eight(to.upper[k].data(), __builtin_convertvector(at + radius, simd::eight_floats));
+            simd::store_eight(to.lower[k].data(), __builtin_convertvector(image - radius, simd::eight_floats));
+            simd::store_eight(to.upper[k].data(), __builtin_convertvector(image + radius, simd::eight_floats));
         }
         to.count = n.children;
     }
@@ -71,7 +73,8 @@ public:
         cached_.fill(no_node);
     }
 
-    [[nodiscard]] inline const eight_boxes& operator()(const wide_node& n) {
+    /// The boxes of the node's children in the other frame.
+    [[nodiscard]] inline const eight_boxes& of(const wide_node& n) {
         const auto number = static_cast<std::uint32_t>(&n - first_);
         const std::size_t place = number & (boxes_.size() - 1);
         if (cached_[place] != number) {

@@ -16,7 +16,7 @@ struct model_pair {
 struct front_pair {
     std::uint32_t leaf_a;
     std::uint32_t leaf_b;
-    std::uint64_t which;
+    std::uint64_t mask;
 };
 
 /// BVTT front tracking with a skin: the pairs of leaves of two trees whose triangles were within a margin at one pose.
@@ -31,11 +31,11 @@ public:
     bool is_used = false;
 
     /// Resets the front and reuses its memory.
-    void begin(const model_pair& of) noexcept {
-        numbers_ = of.numbers;
+    void begin(const model_pair& models) noexcept {
+        numbers_ = models.numbers;
         last_states_ = {};
         margin_ = -1;
-        near_queries_ = failures_ = waits_ = 0;
+        near_queries_ = failures_ = backoff_ = 0;
         hit.reset();
         is_used = false;
     }
@@ -44,37 +44,39 @@ public:
 
     /// Whether the pairs include all that meet at this pose.
     /// @param bounds the box of B's vertices, in B's frame
-    [[nodiscard]] bool holds(const model_pair& of, const box_motion& at, const box& bounds) const noexcept {
-        return margin_ >= 0 && front_states_ == of.states && displacement_bound(front_motion_, at, bounds) <= margin_;
+    [[nodiscard]] bool is_valid(const model_pair& models, const box_motion& motion, const box& bounds) const noexcept {
+        return margin_ >= 0 && front_states_ == models.states &&
+               displacement_bound(front_motion_, motion, bounds) <= margin_;
     }
     /// Whether the last query had the same models at a nearby pose.
-    [[nodiscard]] bool is_near(const model_pair& of, const box_motion& at, const box& bounds,
+    [[nodiscard]] bool is_near(const model_pair& models, const box_motion& motion, const box& bounds,
                                double near) const noexcept {
-        return numbers_ == of.numbers && displacement_bound(last_at_, at, bounds) <= near;
+        return numbers_ == models.numbers && displacement_bound(last_motion_, motion, bounds) <= near;
     }
 
-    struct outlook {
-        bool holds;                    ///< whether the pairs are valid for this query
+    struct decision {
+        bool is_valid;                 ///< whether the pairs are valid for this query
         std::optional<double> margin;  ///< the margin of a new front, if one is worth its cost
     };
     /// Records a query. A front that is not valid for it is dropped. A new one is worth its cost if the last two such
     /// queries moved B little and changed neither mesh, unless earlier fronts were of no use. A larger margin lasts
     /// longer but has more pairs, so that the margin grows with the square root of the step.
     /// @param size the edge length of a leaf
-    [[nodiscard]] outlook note(const model_pair& of, const box_motion& at, const box& bounds, double size) noexcept {
-        const bool same_states = last_states_ == of.states;
-        const box_motion before = std::exchange(last_at_, at);
-        last_states_ = of.states;
-        if (holds(of, at, bounds)) {
+    [[nodiscard]] decision record_query(const model_pair& models, const box_motion& motion, const box& bounds,
+                                        double size) noexcept {
+        const bool same_states = last_states_ == models.states;
+        const box_motion before = std::exchange(last_motion_, motion);
+        last_states_ = models.states;
+        if (is_valid(models, motion, bounds)) {
             ++served_;
             return {true, std::nullopt};
         }
         const double step =
-            same_states ? displacement_bound(before, at, bounds) : std::numeric_limits<double>::infinity();
+            same_states ? displacement_bound(before, motion, bounds) : std::numeric_limits<double>::infinity();
         near_queries_ = step <= most_step * size ? near_queries_ + 1 : 0;
         if (margin_ >= 0) update_backoff();
-        if (waits_ > 0) {
-            --waits_;
+        if (backoff_ > 0) {
+            --backoff_;
             return {false, std::nullopt};
         }
         if (near_queries_ < least_near_queries) return {false, std::nullopt};
@@ -85,15 +87,15 @@ public:
     /// @param fill called as `fill(pairs)` with an empty list; returns false if there are too many pairs
     /// @returns whether the front is kept
     template <class Fill>
-    bool make(const model_pair& of, const box_motion& at, double margin, const Fill& fill) {
+    bool build(const model_pair& models, const box_motion& motion, double margin, const Fill& fill) {
         pairs_.clear();
         served_ = 0;
         if (!fill(pairs_)) {
             update_backoff();
             return false;
         }
-        front_states_ = of.states;
-        front_motion_ = at;
+        front_states_ = models.states;
+        front_motion_ = motion;
         margin_ = margin;
         return true;
     }
@@ -109,15 +111,16 @@ private:
     static constexpr std::uint32_t least_served = 2;  // fewer do not repay the front
     static constexpr std::uint32_t most_failures = 6;
 
+    /// Ends the front. After fronts in a row that served too few queries, ever more queries follow without one.
     void update_backoff() noexcept {
         failures_ = served_ < least_served ? std::min(failures_ + 1, most_failures) : 0;
-        waits_ = (1U << failures_) - 1;
+        backoff_ = (1U << failures_) - 1;
         margin_ = -1;
     }
 
     std::array<std::uint64_t, 2> numbers_{};
     std::array<std::uint64_t, 2> last_states_{};  // of the last query; initially of no model
-    box_motion last_at_{};
+    box_motion last_motion_{};
     std::array<std::uint64_t, 2> front_states_{};
     box_motion front_motion_{};
     double margin_ = -1;  // negative without a front
@@ -125,7 +128,7 @@ private:
     std::uint32_t near_queries_ = 0;  // in a row
     std::uint32_t served_ = 0;        // queries since the front was built
     std::uint32_t failures_ = 0;      // in a row
-    std::uint32_t waits_ = 0;         // back-off, in queries
+    std::uint32_t backoff_ = 0;       // queries left without a front
 };
 
 /// Caches the fronts of many pairs of objects. Queries carry no object ids: a front is recognised by its models and
@@ -139,9 +142,9 @@ public:
     /// @param bounds the box of B's vertices, in B's frame
     /// @param near how far B may have moved since the front's last query
     /// @returns the cached front, or a new, empty one
-    [[nodiscard]] bvtt_front& find(const model_pair& of, const box_motion& at, const box& bounds, double near) {
-        const std::array<float, 3> centre = centre_of(at, bounds);
-        const std::size_t place = place_of(of, at, bounds, near, centre);
+    [[nodiscard]] bvtt_front& find(const model_pair& models, const box_motion& motion, const box& bounds, double near) {
+        const std::array<float, 3> centre = centre_of(motion, bounds);
+        const std::size_t place = place_of(models, motion, bounds, near, centre);
         for (std::size_t k = 0; k < 3; ++k) centres_[place / width][k][place % width] = centre[k];
         last_ = place;
         return fronts_[place];
@@ -158,22 +161,25 @@ private:
     using row = std::array<float, width>;
 
     /// The centre of B in A's frame, which moves no further than the furthest point of B.
-    [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& at, const box& bounds) noexcept {
-        vec3d centre = at.shift;
+    [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& motion, const box& bounds) noexcept {
+        vec3d centre = motion.shift;
         for (int j = 0; j < 3; ++j)
             for (int k = 0; k < 3; ++k)
-                centre[k] +=
-                    at.columns[static_cast<std::size_t>(j)][k] * ((double{bounds.min[j]} + double{bounds.max[j]}) / 2);
+                centre[k] += motion.columns[static_cast<std::size_t>(j)][k] *
+                             ((double{bounds.min[j]} + double{bounds.max[j]}) / 2);
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])};
     }
 
-    [[nodiscard]] std::size_t place_of(const model_pair& of, const box_motion& at, const box& bounds, double near,
-                                       const std::array<float, 3>& centre) {
-        const auto is_it = [&](std::size_t place) {
-            return fronts_[place].holds(of, at, bounds) || fronts_[place].is_near(of, at, bounds, near);
+    /// Finds the front of a query, or adds one. Centres near that of B are found eight at a time; only these fronts are
+    /// compared in full.
+    [[nodiscard]] std::size_t place_of(const model_pair& models, const box_motion& motion, const box& bounds,
+                                       double near, const std::array<float, 3>& centre) {
+        const auto matches = [&](std::size_t place) {
+            return fronts_[place].is_valid(models, motion, bounds) ||
+                   fronts_[place].is_near(models, motion, bounds, near);
         };
         const std::size_t next = last_ + 1 < fronts_.size() ? last_ + 1 : 0;
-        if (next < fronts_.size() && is_it(next)) return mark_used(next);
+        if (next < fronts_.size() && matches(next)) return mark_used(next);
         for (std::size_t group = 0; group < centres_.size(); ++group) {
             simd::eight_floats furthest{};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -184,10 +190,10 @@ private:
             for (std::uint32_t near_fronts = simd::bits_of_eight(furthest <= static_cast<float>(near));
                  near_fronts != 0; near_fronts &= near_fronts - 1) {
                 const std::size_t place = group * width + static_cast<std::size_t>(std::countr_zero(near_fronts));
-                if (place < fronts_.size() && is_it(place)) return mark_used(place);
+                if (place < fronts_.size() && matches(place)) return mark_used(place);
             }
         }
-        return add_front(of);
+        return add_front(models);
     }
 
     [[nodiscard]] std::size_t mark_used(std::size_t place) noexcept {
@@ -195,8 +201,8 @@ private:
         return place;
     }
 
-    /// Evicts a front that was not reused lately, by the clock algorithm, when the cache is full.
-    [[nodiscard]] std::size_t add_front(const model_pair& of) {
+    /// Adds a front. If the cache is full, it evicts one that was not reused lately, by the clock algorithm.
+    [[nodiscard]] std::size_t add_front(const model_pair& models) {
         std::size_t place = fronts_.size();
         if (place < most) {
             if (place == centres_.size() * width) centres_.emplace_back();
@@ -206,7 +212,7 @@ private:
             place = hand_;
             hand_ = (hand_ + 1) % most;
         }
-        fronts_[place].begin(of);
+        fronts_[place].begin(models);
         return place;
     }
 

@@ -19,7 +19,7 @@ struct eight_boxes {
     std::uint32_t count;
 
     /// @param rows in the order of the members
-    inline void take(const std::array<simd::eight_floats, 6>& rows, std::size_t boxes) noexcept {
+    inline void set(const std::array<simd::eight_floats, 6>& rows, std::size_t boxes) noexcept {
         for (std::size_t k = 0; k < 3; ++k) {
             simd::store_eight(lower[k].data(), rows[k]);
             simd::store_eight(upper[k].data(), rows[3 + k]);
@@ -53,11 +53,11 @@ struct quantized_aabbs {
 
     /// Tests 64 pairs at once: sets bit 8 j + i where box i of these may overlap box j of `others`.
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {
-        std::uint64_t met = ~std::uint64_t{0} >> (64U - 8U * others.count);
+        std::uint64_t mask = ~std::uint64_t{0} >> (64U - 8U * others.count);
         for (std::size_t k = 0; k < 3; ++k)
-            met &= simd::pairs_no_greater(lower[k].data(), from_below(grid, k, others.upper[k])) &
-                   simd::pairs_no_greater(upper[k].data(), from_above(grid, k, others.lower[k]));
-        return met;
+            mask &= simd::pairs_no_greater(lower[k].data(), from_below(grid, k, others.upper[k])) &
+                    simd::pairs_no_greater(upper[k].data(), from_above(grid, k, others.lower[k]));
+        return mask;
     }
 
     /// Empties the places from `count` on.
@@ -131,7 +131,8 @@ class leaf_boxes {
 public:
     /// @param rows lower bounds along each axis, then upper bounds
     /// @param count the number of boxes; places beyond overlap nothing
-    inline void take(const leaf_grid& grid, const std::array<simd::eight_floats, 6>& rows, std::size_t count) noexcept {
+    inline void quantize(const leaf_grid& grid, const std::array<simd::eight_floats, 6>& rows,
+                         std::size_t count) noexcept {
         for (std::size_t i = 0; i < 3; ++i) {
             const auto numbers = grid.numbers(i, simd::joined(rows[2 * i], rows[2 * i + 1]));
             std::memcpy(&at_[2 * i], &numbers, sizeof numbers);

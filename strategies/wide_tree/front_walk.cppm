@@ -12,18 +12,18 @@ class front_walk {
 public:
     /// Passes intersecting pairs of triangles (a of A, b of B) to `emit`, in batches, until `emit` returns true.
     template <class Emit>
-    void between(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                 walk_goal goal, Emit emit) {
+    void find_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                    walk_goal goal, Emit emit) {
         if constexpr (requires { requires Triangle::filtered; })
             if (a.tree().keeps_fronts() && leaves_of(a) + leaves_of(b) >= front_cache::least_leaves)
-                return follow(test, a, b, to_a, goal, emit);
-        walk_.between(test, a, b, to_a, goal, emit);
+                return find_pairs_with_front(test, a, b, to_a, goal, emit);
+        walk_.find_pairs(test, a, b, to_a, goal, emit);
     }
 
     /// Finds the self-intersections of a mesh; each pair is reported once, in either order.
     template <class Emit>
-    void within(const Triangle& test, const model<Tree>& m, Emit emit) {
-        walk_.within(test, m, emit);
+    void find_self_pairs(const Triangle& test, const model<Tree>& m, Emit emit) {
+        walk_.find_self_pairs(test, m, emit);
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return walk_.counters(); }
@@ -35,33 +35,36 @@ public:
     }
 
 private:
-    /// A first-pair query tries the last hit first, and builds a front only if nothing intersects.
+    /// Tests only the pairs of the front if it is still valid, or of a new one if that is worth its cost; otherwise
+    /// walks from the roots. A first-pair query tries the last hit first, and builds a front only if nothing
+    /// intersects.
     template <class Emit>
-    void follow(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                walk_goal goal, const Emit& emit) {
+    void find_pairs_with_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
+                               const relative_pose& to_a, walk_goal goal, const Emit& emit) {
         require_ieee_arithmetic();
         a.require_fit();
         b.require_fit();
-        const model_pair of{{a.number(), b.number()}, {a.state(), b.state()}};
-        const box_motion at = to_a.to_boxes();
+        const model_pair models{{a.number(), b.number()}, {a.state(), b.state()}};
+        const box_motion motion = to_a.to_boxes();
         const double size = std::sqrt(std::min(area_of_leaf(a), area_of_leaf(b)));
         const double near = bvtt_front::most_step * size;
         // If rounding alone moves B further than that, a front is not worth its cost.
-        if (!(2 * rounding_bound(at) <= near)) return walk_.between(test, a, b, to_a, goal, emit);
+        if (!(2 * rounding_bound(motion) <= near)) return walk_.find_pairs(test, a, b, to_a, goal, emit);
 
         if (!fronts_) fronts_ = std::make_unique<front_cache>();
-        bvtt_front& front = fronts_->find(of, at, b.bounds(), near);
-        const bvtt_front::outlook outlook = front.note(of, at, b.bounds(), size);
-        const auto is_kept = [&] {
-            return outlook.margin && front.make(of, at, *outlook.margin, [&](std::vector<front_pair>& pairs) {
-                return walk_.near(a, b, to_a, *outlook.margin, leaves_of(a) + leaves_of(b), pairs);
-            });
+        bvtt_front& front = fronts_->find(models, motion, b.bounds(), near);
+        const bvtt_front::decision decision = front.record_query(models, motion, b.bounds(), size);
+        const auto builds_front = [&] {
+            return decision.margin &&
+                   front.build(models, motion, *decision.margin, [&](std::vector<front_pair>& pairs) {
+                       return walk_.collect_front(a, b, to_a, *decision.margin, leaves_of(a) + leaves_of(b), pairs);
+                   });
         };
         if (goal == walk_goal::every_pair) {
-            if (outlook.holds || is_kept())
-                serve(test, a, b, to_a, front, goal, emit);
+            if (decision.is_valid || builds_front())
+                test_front(test, a, b, to_a, front, goal, emit);
             else
-                walk_.between(test, a, b, to_a, goal, emit);
+                walk_.find_pairs(test, a, b, to_a, goal, emit);
             return;
         }
         if (front.hit) {
@@ -76,17 +79,17 @@ private:
             front.hit = hits.front();
             return emit(hits);
         };
-        if (outlook.holds) return serve(test, a, b, to_a, front, goal, emit_and_keep);
-        walk_.between(test, a, b, to_a, goal, emit_and_keep);
-        if (!front.hit) static_cast<void>(is_kept());
+        if (decision.is_valid) return test_front(test, a, b, to_a, front, goal, emit_and_keep);
+        walk_.find_pairs(test, a, b, to_a, goal, emit_and_keep);
+        if (!front.hit) static_cast<void>(builds_front());
     }
 
     template <class Emit>
-    void serve(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-               const bvtt_front& front, walk_goal goal, const Emit& emit) {
+    void test_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                    const bvtt_front& front, walk_goal goal, const Emit& emit) {
         if (front.pairs().empty()) return;
         if (!leaves_) leaves_ = std::make_unique<front_leaves<Tree>>();
-        walk_.among(test, a, b, to_a, front.pairs(), *leaves_, goal, emit);
+        walk_.find_pairs_in_front(test, a, b, to_a, front.pairs(), *leaves_, goal, emit);
     }
 
     /// An estimate: the area of the mesh's box, divided among its leaves.

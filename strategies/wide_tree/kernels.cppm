@@ -144,7 +144,7 @@ export namespace aabb::simd {
 }
 
 /// Permutes eight numbers; only the lowest three bits of each place are used.
-[[nodiscard, gnu::always_inline]] inline eight_floats taken(const float* from, eight_words places) noexcept {
+[[nodiscard, gnu::always_inline]] inline eight_floats permuted(const float* from, eight_words places) noexcept {
     eight_floats v;
 #if defined(__AVX2__)
     detail::take_eight(from, &places, &v);
@@ -169,8 +169,8 @@ export namespace aabb::simd {
 #else
     std::array<float, 16> halves;
     std::memcpy(halves.data(), &from, sizeof from);
-    const eight_floats low = taken(halves.data(), at);
-    const eight_floats high = taken(halves.data() + 8, at);
+    const eight_floats low = permuted(halves.data(), at);
+    const eight_floats high = permuted(halves.data() + 8, at);
     return (at & 8U) != 0 ? high : low;
 #endif
 }

@@ -21,6 +21,7 @@ struct read_leaf_of_b : read_leaf {
 template <WideTreePolicy Tree>
 class leaf_pairs {
 public:
+    /// Starts a query.
     /// @param one_mesh whether A and B are the same mesh, so that triangles may share corners
     /// @param reject_by_exact_boxes whether to reject pairs whose boxes overlap only because the grid rounds them; for
     /// inexact tests, whose result for such pairs would otherwise depend on the grid
@@ -30,11 +31,11 @@ public:
         grid_.begin(a.bounds(), to_a(b.bounds()));
         reject_by_exact_boxes_ = reject_by_exact_boxes;
         margin_ = margin;
-        of_a_.begin(leaves_of(a));
-        of_b_.begin(leaves_of(b));
+        cache_a_.begin(leaves_of(a));
+        cache_b_.begin(leaves_of(b));
         if (one_mesh) {
-            corners_of_a_.resize(of_a_.places());
-            corners_of_b_.resize(of_b_.places());
+            corners_of_a_.resize(cache_a_.places());
+            corners_of_b_.resize(cache_b_.places());
         }
         one_mesh_ = one_mesh;
     }
@@ -45,23 +46,26 @@ public:
     /// @param take called with the index of a pair, its leaves, and a mask of pairs of triangles (bit 8 j + i for
     /// triangle i of A's leaf and j of B's); returns whether to stop
     template <class Counters, class Take>
-    [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                                  std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b,
-                                  Counters& counters, const Take& take) {
+    [[nodiscard]] bool for_each_meeting(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                        std::span<const std::uint32_t> leaves_a,
+                                        std::span<const std::uint32_t> leaves_b, Counters& counters, const Take& take) {
         return for_each_group(
             a, b, to_a, leaves_a, leaves_b, counters,
-            [&](std::span<const overlap> meeting) {
-                fit_missing_slabs(leaves_b, meeting);
-                std::size_t left = 0;
-                for (const overlap& f : meeting) {
-                    const std::uint64_t which =
-                        f.which & columns(of_b_[leaves_b[f.pair]].slab.triangles_inside(of_a_[leaves_a[f.pair]].block));
-                    left_[left] = {f.pair, which};
-                    left += which != 0;
+            [&](std::span<const overlap> overlapping) {
+                fit_missing_slabs(leaves_b, overlapping);
+                std::size_t count = 0;
+                for (const auto& [pair, box_mask] : overlapping) {
+                    const std::uint64_t mask =
+                        box_mask &
+                        copied_to_rows(cache_b_[leaves_b[pair]].slab.triangles_inside(cache_a_[leaves_a[pair]].block));
+                    in_slab_[count] = {pair, mask};
+                    count += mask != 0;
                 }
-                return std::span<const overlap>(left_).first(left);
+                return std::span<const overlap>(in_slab_).first(count);
             },
-            [&](const overlap& f) { return take(f.pair, of_a_[leaves_a[f.pair]], of_b_[leaves_b[f.pair]], f.which); });
+            [&](const overlap& o) {
+                return take(o.pair, cache_a_[leaves_a[o.pair]], cache_b_[leaves_b[o.pair]], o.mask);
+            });
     }
 
     /// Passes on, in the same way, the pairs of triangles that may lie within the margin of each other.
@@ -72,29 +76,31 @@ public:
                                               const Take& take) {
         return for_each_group(
             a, b, to_a, leaves_a, leaves_b, counters,
-            [&](std::span<const overlap> meeting) {
-                fit_missing_slabs(leaves_b, meeting);
-                return meeting;
+            [&](std::span<const overlap> overlapping) {
+                fit_missing_slabs(leaves_b, overlapping);
+                return overlapping;
             },
-            [&](const overlap& f) {
-                const read_leaf& of_a = of_a_[leaves_a[f.pair]];
-                const read_leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
+            [&](const overlap& o) {
+                const read_leaf& leaf_a = cache_a_[leaves_a[o.pair]];
+                const read_leaf_of_b& leaf_b = cache_b_[leaves_b[o.pair]];
                 leaf_slab slab_of_a;
-                slab_of_a.fit(of_a.block, grid_.edges());
-                const std::uint64_t which = f.which & rows(slab_of_a.triangles_inside(of_b.block, margin_)) &
-                                            columns(of_b.slab.triangles_inside(of_a.block, margin_));
-                return which != 0 && take(f.pair, which);
+                slab_of_a.fit(leaf_a.block, grid_.edges());
+                const std::uint64_t mask = o.mask &
+                                           expanded_to_rows(slab_of_a.triangles_inside(leaf_b.block, margin_)) &
+                                           copied_to_rows(leaf_b.slab.triangles_inside(leaf_a.block, margin_));
+                return mask != 0 && take(o.pair, mask);
             });
     }
 
     /// For one mesh: sets bit 8 j + i where triangle i of A's leaf and j of B's share a corner.
-    [[nodiscard]] inline std::uint64_t neighbours(std::uint32_t leaf_a, std::uint32_t leaf_b) const noexcept {
-        return corners_of_a_[of_a_.place(leaf_a)].sharing_corners_with(corners_of_b_[of_b_.place(leaf_b)]);
+    [[nodiscard]] inline std::uint64_t pairs_sharing_corners(std::uint32_t leaf_a,
+                                                             std::uint32_t leaf_b) const noexcept {
+        return corners_of_a_[cache_a_.place(leaf_a)].pairs_sharing_corners(corners_of_b_[cache_b_.place(leaf_b)]);
     }
 
     [[nodiscard]] leaf_reader<Tree>& reader() noexcept { return reader_; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return of_a_.bytes() + of_b_.bytes() + bytes_of(corners_of_a_, corners_of_b_);
+        return cache_a_.bytes() + cache_b_.bytes() + bytes_of(corners_of_a_, corners_of_b_);
     }
 
 private:
@@ -111,14 +117,14 @@ private:
     /// Returns a function that computes the boxes and corners of a leaf's triangles.
     /// @tparam OfB whether the leaf is B's, whose boxes the margin inflates
     template <bool OfB, class Leaf>
-    [[nodiscard]] inline auto box_builder(const model<Tree>& m, const leaf_cache<Leaf>& store,
+    [[nodiscard]] inline auto box_builder(const model<Tree>& m, const leaf_cache<Leaf>& cache,
                                           std::vector<corner_indices>& corners) const {
-        return [this, &m, &store, &corners](Leaf& leaf, std::uint32_t number, const vertex_list&) {
+        return [this, &m, &cache, &corners](Leaf& leaf, std::uint32_t number, const vertex_list&) {
             auto bounds = leaf.block.bounds();
             if (OfB && margin_ > 0) grow(bounds);
-            leaf.boxes.take(grid_, bounds, leaf.block.triangles);
+            leaf.boxes.quantize(grid_, bounds, leaf.block.triangles);
             if constexpr (requires { leaf.slab; }) leaf.has_slab = false;
-            if (one_mesh_) corners[store.place(number)].load(m.triangles(), m.tree(), number);
+            if (one_mesh_) corners[cache.place(number)].load(m.triangles(), m.tree(), number);
         };
     }
 
@@ -133,110 +139,113 @@ private:
         }
     }
 
+    /// The index of a pair of leaves, and a mask of its overlapping pairs of triangles.
     struct overlap {
         std::size_t pair;
-        std::uint64_t which;
+        std::uint64_t mask;
     };
 
     /// Reads the leaves of one group of pairs at a time, keeps the pairs with overlapping triangle boxes, filters them
-    /// by `sift` and passes on the rest. The vertex lists of the next group are prefetched meanwhile.
+    /// by `filter` and passes on the rest. The vertex lists of the next group are prefetched meanwhile.
     /// @returns whether `take` stopped the loop
-    template <class Counters, class Sift, class Take>
+    template <class Counters, class Filter, class Take>
     [[nodiscard]] inline bool for_each_group(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                              std::span<const std::uint32_t> leaves_a,
                                              std::span<const std::uint32_t> leaves_b, Counters& counters,
-                                             const Sift& sift, const Take& take) {
+                                             const Filter& filter, const Take& take) {
         const auto claim = [&](std::size_t begin) {
-            return reader_.claim(a, of_a_, b, of_b_, begin, leaves_a.size(),
+            return reader_.claim(a, cache_a_, b, cache_b_, begin, leaves_a.size(),
                                  [&](std::size_t i) { return std::pair(leaves_a[i], leaves_b[i]); });
         };
         std::size_t begin = 0;
         std::size_t end = claim(begin);
         while (begin < end) {
-            reader_.read_missing_of_a(a, of_a_, triangle_loader<read_leaf>(a),
-                                      box_builder<false>(a, of_a_, corners_of_a_));
-            reader_.read_missing_of_b(b, of_b_, triangle_loader<read_leaf_of_b>(b, to_a),
-                                      box_builder<true>(b, of_b_, corners_of_b_));
+            reader_.read_missing_of_a(a, cache_a_, triangle_loader<read_leaf>(a),
+                                      box_builder<false>(a, cache_a_, corners_of_a_));
+            reader_.read_missing_of_b(b, cache_b_, triangle_loader<read_leaf_of_b>(b, to_a),
+                                      box_builder<true>(b, cache_b_, corners_of_b_));
             const std::size_t next = claim(end);
-            for (const overlap& f : sift(meet(leaves_a, leaves_b, begin, end, counters)))
-                if (take(f)) return true;
+            for (const overlap& o : filter(find_overlaps(leaves_a, leaves_b, begin, end, counters)))
+                if (take(o)) return true;
             begin = end;
             end = next;
         }
         return false;
     }
 
-    /// Finds the pairs of leaves with overlapping triangle boxes.
+    /// Finds the pairs of leaves, from `begin` to `end`, with overlapping triangle boxes.
     template <class Counters>
-    [[nodiscard]] inline std::span<const overlap> meet(std::span<const std::uint32_t> leaves_a,
-                                                       std::span<const std::uint32_t> leaves_b, std::size_t begin,
-                                                       std::size_t end, Counters& counters) {
-        std::size_t meeting = 0;
+    [[nodiscard]] inline std::span<const overlap> find_overlaps(std::span<const std::uint32_t> leaves_a,
+                                                                std::span<const std::uint32_t> leaves_b,
+                                                                std::size_t begin, std::size_t end,
+                                                                Counters& counters) {
+        std::size_t count = 0;
         for (; begin < end; ++begin) {
-            const read_leaf& of_a = of_a_[leaves_a[begin]];
-            const read_leaf& of_b = of_b_[leaves_b[begin]];
-            counters.add(work::box_tests, std::uint64_t{of_a.block.triangles} * of_b.block.triangles);
-            std::uint64_t which = of_a.boxes.overlaps(of_b.boxes);
-            if (reject_by_exact_boxes_ || std::popcount(which) > many_overlaps) which &= float_overlaps(of_a, of_b);
-            overlapping_[meeting] = {begin, which};
-            meeting += which != 0;
+            const read_leaf& leaf_a = cache_a_[leaves_a[begin]];
+            const read_leaf& leaf_b = cache_b_[leaves_b[begin]];
+            counters.add(work::box_tests, std::uint64_t{leaf_a.block.triangles} * leaf_b.block.triangles);
+            std::uint64_t mask = leaf_a.boxes.overlaps(leaf_b.boxes);
+            if (reject_by_exact_boxes_ || std::popcount(mask) > many_overlaps) mask &= float_overlaps(leaf_a, leaf_b);
+            overlapping_[count] = {begin, mask};
+            count += mask != 0;
         }
-        return std::span(overlapping_).first(meeting);
+        return std::span(overlapping_).first(count);
     }
 
     /// Fits the missing slabs of B's leaves in these pairs. Slabs are fitted lazily, because many leaves have no
     /// overlapping boxes, and for B's leaves, which are read less often: a node of B is opened with many nodes of A in
     /// a row.
-    inline void fit_missing_slabs(std::span<const std::uint32_t> leaves_b, std::span<const overlap> meeting) noexcept {
+    inline void fit_missing_slabs(std::span<const std::uint32_t> leaves_b,
+                                  std::span<const overlap> overlapping) noexcept {
         std::size_t missing = 0;
-        for (const overlap& f : meeting) {
-            read_leaf_of_b& of_b = of_b_[leaves_b[f.pair]];
-            missing_slabs_[missing] = &of_b;
-            missing += !of_b.has_slab;
-            of_b.has_slab = true;
+        for (const overlap& o : overlapping) {
+            read_leaf_of_b& leaf = cache_b_[leaves_b[o.pair]];
+            missing_slabs_[missing] = &leaf;
+            missing += !leaf.has_slab;
+            leaf.has_slab = true;
         }
-        for (read_leaf_of_b* const of_b : std::span(missing_slabs_).first(missing))
-            of_b->slab.fit(of_b->block, grid_.edges());
+        for (read_leaf_of_b* const leaf : std::span(missing_slabs_).first(missing))
+            leaf->slab.fit(leaf->block, grid_.edges());
     }
 
     /// Sets bit 8 j + i where the float boxes of triangle i of A's leaf and j of B's overlap or lie within the margin.
     /// Sets all bits where 16 bits are precise enough.
-    [[nodiscard, gnu::noinline]] std::uint64_t float_overlaps(const read_leaf& of_a,
-                                                              const read_leaf& of_b) const noexcept {
-        const bool are_coarse = of_a.boxes.are_coarse() && of_b.boxes.are_coarse();
+    [[nodiscard, gnu::noinline]] std::uint64_t float_overlaps(const read_leaf& leaf_a,
+                                                              const read_leaf& leaf_b) const noexcept {
+        const bool are_coarse = leaf_a.boxes.are_coarse() && leaf_b.boxes.are_coarse();
         if (!are_coarse && !reject_by_exact_boxes_) return ~std::uint64_t{0};
         eight_boxes boxes_a;
         eight_boxes boxes_b;
-        auto bounds_of_b = of_b.block.bounds();
-        grow(bounds_of_b);
-        boxes_a.take(of_a.block.bounds(), of_a.block.triangles);
-        boxes_b.take(bounds_of_b, of_b.block.triangles);
+        auto bounds_b = leaf_b.block.bounds();
+        grow(bounds_b);
+        boxes_a.set(leaf_a.block.bounds(), leaf_a.block.triangles);
+        boxes_b.set(bounds_b, leaf_b.block.triangles);
         return boxes_a.overlaps(boxes_b);
     }
 
     /// Expands bit j to all bits of row j.
-    [[nodiscard]] static constexpr std::uint64_t rows(std::uint64_t which) noexcept {
-        const std::uint64_t bit_of_row = which * 0x0101010101010101 & 0x8040201008040201;
+    [[nodiscard]] static constexpr std::uint64_t expanded_to_rows(std::uint64_t bits) noexcept {
+        const std::uint64_t bit_of_row = bits * 0x0101010101010101 & 0x8040201008040201;
         constexpr std::uint64_t low_bits = 0x7f7f7f7f7f7f7f7f;
         return ((((bit_of_row & low_bits) + low_bits) | bit_of_row) >> 7U & 0x0101010101010101) * 0xff;
     }
 
     /// Copies bit i to bit i of each row.
-    [[nodiscard]] static constexpr std::uint64_t columns(std::uint64_t which) noexcept {
-        return which * 0x0101010101010101;
+    [[nodiscard]] static constexpr std::uint64_t copied_to_rows(std::uint64_t bits) noexcept {
+        return bits * 0x0101010101010101;
     }
 
     leaf_grid grid_;
     bool one_mesh_ = false;
     bool reject_by_exact_boxes_ = false;
     float margin_ = 0;
-    leaf_cache<read_leaf> of_a_;
-    leaf_cache<read_leaf_of_b> of_b_;
+    leaf_cache<read_leaf> cache_a_;
+    leaf_cache<read_leaf_of_b> cache_b_;
     std::vector<corner_indices> corners_of_a_;  // for one mesh only; indexed as the leaves
     std::vector<corner_indices> corners_of_b_;
     std::array<overlap, most_claims + 1> overlapping_{};
     std::array<read_leaf_of_b*, most_claims + 1> missing_slabs_{};
-    std::array<overlap, most_claims + 1> left_{};
+    std::array<overlap, most_claims + 1> in_slab_{};  // those with triangles of A in the slab of B's leaf
     leaf_reader<Tree> reader_;
 };
 

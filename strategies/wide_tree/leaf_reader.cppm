@@ -25,6 +25,7 @@ public:
 
     void release_claims() noexcept { ++claim_; }
 
+    /// Reserves the leaf's place for the current group, and lists the leaf as missing if it is not cached.
     /// @returns false if another claimed leaf occupies the place
     [[nodiscard]] inline bool claim(std::uint32_t number) noexcept {
         const std::size_t at = place(number);
@@ -74,62 +75,63 @@ template <WideTreePolicy Tree>
 class leaf_reader {
 public:
     /// Claims the leaves of the next group and prefetches the vertex lists of the missing ones. The previous group must
-    /// have been made; its leaves stay valid until the next group is made.
+    /// have been read; its leaves stay valid until the next group is read.
     /// @param begin the first pair of the group
     /// @param end the end of all pairs
     /// @param pair_at returns the leaves of pair i, in A's tree and in B's
     /// @returns the end of the group
     template <class LeafOfA, class LeafOfB, class PairAt>
-    [[nodiscard]] inline std::size_t claim(const model<Tree>& a, leaf_cache<LeafOfA>& of_a, const model<Tree>& b,
-                                           leaf_cache<LeafOfB>& of_b, std::size_t begin, std::size_t end,
+    [[nodiscard]] inline std::size_t claim(const model<Tree>& a, leaf_cache<LeafOfA>& cache_a, const model<Tree>& b,
+                                           leaf_cache<LeafOfB>& cache_b, std::size_t begin, std::size_t end,
                                            const PairAt& pair_at) {
         end = std::min(end, begin + most_claims);
-        of_a.release_claims();
-        of_b.release_claims();
+        cache_a.release_claims();
+        cache_b.release_claims();
         for (; begin < end; ++begin) {
             const auto [leaf_a, leaf_b] = pair_at(begin);
-            if (!of_a.claim(leaf_a) || !of_b.claim(leaf_b)) break;
+            if (!cache_a.claim(leaf_a) || !cache_b.claim(leaf_b)) break;
         }
-        missing_a_ = of_a.take_missing();
-        missing_b_ = of_b.take_missing();
+        missing_a_ = cache_a.take_missing();
+        missing_b_ = cache_b.take_missing();
         for (const std::uint32_t number : missing_a_) a.tree().prefetch_vertices(number);
         for (const std::uint32_t number : missing_b_) b.tree().prefetch_vertices(number);
         return begin;
     }
 
-    /// Makes the leaves of the group that are missing in A's cache.
+    /// Reads the leaves of the group that are missing in A's cache.
     /// @param steps called as `step(leaf, number, vertices)`; each step runs over all leaves before the next one
     /// starts, so that no leaf stalls on its own previous step
     template <class Leaf, class... Steps>
-    inline void read_missing_of_a(const model<Tree>& a, leaf_cache<Leaf>& store, const Steps&... steps) {
-        make(a, missing_a_, store, steps...);
+    inline void read_missing_of_a(const model<Tree>& a, leaf_cache<Leaf>& cache, const Steps&... steps) {
+        read_missing(a, missing_a_, cache, steps...);
     }
     /// The same for B.
     template <class Leaf, class... Steps>
-    inline void read_missing_of_b(const model<Tree>& b, leaf_cache<Leaf>& store, const Steps&... steps) {
-        make(b, missing_b_, store, steps...);
+    inline void read_missing_of_b(const model<Tree>& b, leaf_cache<Leaf>& cache, const Steps&... steps) {
+        read_missing(b, missing_b_, cache, steps...);
     }
 
 private:
     static constexpr std::size_t ahead = 10;  // leaves; most of their vertices are cached already
 
+    /// Reads the vertex lists of the missing leaves and takes the steps, the first of which reads vertices.
     template <class Leaf, class First, class... Others>
-    inline void make(const model<Tree>& m, std::span<const std::uint32_t> missing, leaf_cache<Leaf>& store,
-                     const First& first, const Others&... others) {
-        const auto fetch = [&](std::size_t i) {
+    inline void read_missing(const model<Tree>& m, std::span<const std::uint32_t> missing, leaf_cache<Leaf>& cache,
+                             const First& first, const Others&... others) {
+        const auto prefetch = [&](std::size_t i) {
             m.tree().read_vertices(missing[i], lists_[i]);
-            lists_[i].fetch(m.triangles());
+            lists_[i].prefetch(m.triangles());
         };
-        const auto do_step = [&](std::size_t i, const auto& step) { step(store[missing[i]], missing[i], lists_[i]); };
-        for (std::size_t i = 0; i < std::min(ahead, missing.size()); ++i) fetch(i);
+        const auto do_step = [&](std::size_t i, const auto& step) { step(cache[missing[i]], missing[i], lists_[i]); };
+        for (std::size_t i = 0; i < std::min(ahead, missing.size()); ++i) prefetch(i);
         for (std::size_t i = 0; i < missing.size(); ++i) {
-            if (i + ahead < missing.size()) fetch(i + ahead);
+            if (i + ahead < missing.size()) prefetch(i + ahead);
             do_step(i, first);
         }
-        const auto run = [&](const auto& step) {
+        const auto do_step_for_all = [&](const auto& step) {
             for (std::size_t i = 0; i < missing.size(); ++i) do_step(i, step);
         };
-        (run(others), ...);
+        (do_step_for_all(others), ...);
     }
 
     std::span<const std::uint32_t> missing_a_;
@@ -141,42 +143,42 @@ private:
 template <WideTreePolicy Tree>
 class front_leaves {
 public:
-    /// @param read a reader, which others may share
+    /// @param reader a reader, which others may share
     /// @param take called with a pair and the triangles of both leaves; returns whether to stop
     template <class Take>
-    [[nodiscard]] bool operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                                  std::span<const front_pair> pairs, leaf_reader<Tree>& read, const Take& take) {
-        of_a_.begin(leaves_of(a));
-        of_b_.begin(leaves_of(b));
+    [[nodiscard]] bool for_each_pair(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                                     std::span<const front_pair> pairs, leaf_reader<Tree>& reader, const Take& take) {
+        cache_a_.begin(leaves_of(a));
+        cache_b_.begin(leaves_of(b));
         const auto claim = [&](std::size_t begin) {
-            return read.claim(a, of_a_, b, of_b_, begin, pairs.size(),
-                              [&](std::size_t i) { return std::pair(pairs[i].leaf_a, pairs[i].leaf_b); });
+            return reader.claim(a, cache_a_, b, cache_b_, begin, pairs.size(),
+                                [&](std::size_t i) { return std::pair(pairs[i].leaf_a, pairs[i].leaf_b); });
         };
         std::size_t begin = 0;
         std::size_t end = claim(begin);
         while (begin < end) {
-            read.read_missing_of_a(a, of_a_,
-                                   [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
-                                       leaf.load(a.triangles(), a.tree(), number, vertices);
-                                   });
-            read.read_missing_of_b(b, of_b_,
-                                   [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
-                                       leaf.load(b.triangles(), b.tree(), number, vertices, to_a);
-                                   });
+            reader.read_missing_of_a(a, cache_a_,
+                                     [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+                                         leaf.load(a.triangles(), a.tree(), number, vertices);
+                                     });
+            reader.read_missing_of_b(b, cache_b_,
+                                     [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+                                         leaf.load(b.triangles(), b.tree(), number, vertices, to_a);
+                                     });
             const std::size_t next = claim(end);
             for (const front_pair& p : pairs.subspan(begin, end - begin))
-                if (take(p, of_a_[p.leaf_a], of_b_[p.leaf_b])) return true;
+                if (take(p, cache_a_[p.leaf_a], cache_b_[p.leaf_b])) return true;
             begin = end;
             end = next;
         }
         return false;
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return of_a_.bytes() + of_b_.bytes(); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return cache_a_.bytes() + cache_b_.bytes(); }
 
 private:
-    leaf_cache<triangle_block> of_a_;
-    leaf_cache<triangle_block> of_b_;
+    leaf_cache<triangle_block> cache_a_;
+    leaf_cache<triangle_block> cache_b_;
 };
 
 }  // namespace aabb

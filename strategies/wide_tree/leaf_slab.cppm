@@ -11,6 +11,7 @@ export namespace aabb {
 /// it is much thinner than their boxes. A triangle outside intersects none of them.
 class leaf_slab {
 public:
+    /// Fits the slab to a leaf; it stays infinite if arithmetic could overflow.
     /// @param edges extents of a box around the leaf's vertices and all that are compared with the slab
     void fit(const triangle_block& block, const std::array<float, 3>& edges) noexcept {
         set_normal(block);
@@ -66,6 +67,7 @@ private:
         }
     };
 
+    /// Sums the cross products of the triangles' edges, which weights each normal by its triangle's area.
     void set_normal(const triangle_block& block) noexcept {
 #pragma clang fp contract(fast)
         std::array<simd::eight_floats, 3> p;

@@ -17,6 +17,7 @@ public:
         friend bool operator==(const heights&, const heights&) = default;
     };
 
+    /// Computes the steps from these roots, unless they are those of the last query.
     void begin(heights roots) {
         if (!steps_.empty() && steps_.front() == roots) return;
         // Reserves first, so that a failed allocation leaves the old steps intact.
@@ -36,20 +37,20 @@ public:
 
     /// Maps overlapping pairs of children (bit 8 j + i for child i of A's node and j of B's) to the pairs that the next
     /// step opens: a node that is not opened takes the place of its first child.
-    [[nodiscard]] inline std::uint64_t opened(std::size_t step, std::uint64_t met) const noexcept {
+    [[nodiscard]] inline std::uint64_t pairs_to_open(std::size_t step, std::uint64_t mask) const noexcept {
         if (!opens_a(step)) {
-            met |= met >> 4U;
-            met |= met >> 2U;
-            met |= met >> 1U;
-            met &= 0x0101010101010101;
+            mask |= mask >> 4U;
+            mask |= mask >> 2U;
+            mask |= mask >> 1U;
+            mask &= 0x0101010101010101;
         }
         if (!opens_b(step)) {
-            met |= met >> 32U;
-            met |= met >> 16U;
-            met |= met >> 8U;
-            met &= 0xff;
+            mask |= mask >> 32U;
+            mask |= mask >> 16U;
+            mask |= mask >> 8U;
+            mask &= 0xff;
         }
-        return met;
+        return mask;
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(steps_); }

@@ -16,14 +16,14 @@ struct nearest_places {
     std::uint32_t second;  ///< equal to `first` if there is only one
 };
 
-/// Picks the two nearest of the pairs in `met` (bit 8 j + i for child i and box j), which must not be empty. It
-/// computes all 64 distances, so that they do not depend on `met`.
-[[nodiscard]] inline nearest_places find_two_nearest(std::uint64_t met, const wide_node& node,
+/// Picks the two nearest of the pairs in the mask (bit 8 j + i for child i and box j), which must not be empty. It
+/// computes all 64 distances, so that they do not depend on the mask.
+[[nodiscard]] inline nearest_places find_two_nearest(std::uint64_t mask, const wide_node& node,
                                                      const eight_boxes& boxes) noexcept {
     // Rounding may decide which of two equally near pairs comes first; no result depends on that.
 #pragma clang fp contract(fast)
-    std::array<simd::eight_floats, 3> of_node;
-    std::array<eight_boxes::row, 3> of_boxes;
+    std::array<simd::eight_floats, 3> node_centres;
+    std::array<eight_boxes::row, 3> box_centres;
     const auto floats_of = [](const quantized_aabbs::row& codes) {
         return __builtin_convertvector(simd::load_eight<simd::eight_bytes>(codes.data()), simd::eight_floats);
     };
@@ -31,9 +31,9 @@ struct nearest_places {
         // Twice the coordinates of the centres, so that nothing is halved.
         const auto step = static_cast<float>(node.step(k));
         const float twice_origin = 2 * static_cast<float>(node.origin[k]) + 255;
-        of_node[k] = (floats_of(node.planes.lower[k]) - floats_of(node.planes.upper[k]) + twice_origin) * step;
-        simd::store_eight(of_boxes[k].data(), simd::load_eight<simd::eight_floats>(boxes.lower[k].data()) +
-                                                  simd::load_eight<simd::eight_floats>(boxes.upper[k].data()));
+        node_centres[k] = (floats_of(node.planes.lower[k]) - floats_of(node.planes.upper[k]) + twice_origin) * step;
+        simd::store_eight(box_centres[k].data(), simd::load_eight<simd::eight_floats>(boxes.lower[k].data()) +
+                                                     simd::load_eight<simd::eight_floats>(boxes.upper[k].data()));
     }
     // Non-negative floats compare like their bits, of which the last six hold the pair. NaN compares greater than any
     // number.
@@ -44,11 +44,11 @@ struct nearest_places {
     for (std::uint32_t j = 0; j < eight_boxes::most; ++j) {
         simd::eight_floats distance{};
         for (std::size_t k = 0; k < 3; ++k) {
-            const simd::eight_floats difference = of_node[k] - of_boxes[k][j];
+            const simd::eight_floats difference = node_centres[k] - box_centres[k][j];
             distance += difference * difference;
         }
         const simd::eight_words key = (__builtin_bit_cast(simd::eight_words, distance) & ~63U) | places | 8 * j;
-        const simd::eight_words candidate = key | ~simd::flags_of_eight(static_cast<std::uint8_t>(met >> (8 * j)));
+        const simd::eight_words candidate = key | ~simd::flags_of_eight(static_cast<std::uint8_t>(mask >> (8 * j)));
         next = __builtin_elementwise_min(next, __builtin_elementwise_max(least, candidate));
         least = __builtin_elementwise_min(least, candidate);
     }
@@ -65,21 +65,21 @@ class nearest_walk {
 public:
     /// @param at_leaves called with a leaf of A and one of B whose boxes may overlap; returns whether to stop
     template <class Counters, class AtLeaves>
-    void operator()(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, Counters& counters,
-                    const AtLeaves& at_leaves) {
+    void for_each_leaf_pair(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, Counters& counters,
+                            const AtLeaves& at_leaves) {
         begin(a.tree(), b.tree(), to_a);
         const std::size_t leaves = steps_.size() - 1;
         std::size_t missed = 0;  // pairs of leaves without an intersection
         std::size_t step = 0;
-        node_pair at{0, 0};
+        node_pair nodes{0, 0};
         for (;;) {
             counters.add(work::node_visits, 1);
             if (step < leaves) {
-                const bool goes_on = open(a.tree(), b.tree(), step, at, counters);
+                const bool goes_on = descend_to_nearest(a.tree(), b.tree(), step, nodes, counters);
                 ++step;
                 if (goes_on) continue;
             } else {
-                if (at_leaves(at.a, at.b)) return;
+                if (at_leaves(nodes.a, nodes.b)) return;
                 // Near surfaces may be parallel everywhere. So the walk restarts, mostly a few levels up, sometimes at
                 // the root, with the frequencies of the universal restart strategy (Luby, Sinclair, Zuckerman, "Optimal
                 // speedup of Las Vegas algorithms", 1993), and takes the highest pairs from there on.
@@ -90,13 +90,13 @@ public:
             if (postponed_steps_ == 0) return;
             if ((postponed_steps_ & bit(step)) == 0)
                 step = static_cast<std::size_t>(std::bit_width(postponed_steps_)) - 1;
-            at = take(step);
+            nodes = pop(step);
         }
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t total = steps_.bytes() + in_a_.bytes() + bytes_of(waiting_);
-        for (const waiting& w : waiting_) total += bytes_of(w.left);
+        std::size_t total = steps_.bytes() + images_.bytes() + bytes_of(stacks_);
+        for (const postponed_stack& s : stacks_) total += bytes_of(s.entries);
         return total;
     }
 
@@ -112,86 +112,90 @@ private:
     /// The postponed pairs of children of two nodes.
     struct postponed_children {
         node_pair first;
-        std::uint64_t which;  // bit 8 j + i for child i of A's node and j of B's
-        std::uint32_t next;   // the pair to open next
+        std::uint64_t mask;  // bit 8 j + i for child i of A's node and j of B's
+        std::uint32_t next;  // the pair to open next
     };
 
     /// The postponed pairs of one step, as a stack.
-    struct waiting {
-        std::vector<postponed_children> left;
+    struct postponed_stack {
+        std::vector<postponed_children> entries;
         std::size_t size = 0;
     };
 
+    /// Starts a query without postponed pairs.
     void begin(const Tree& a, const Tree& b, const relative_pose& to_a) {
         steps_.begin({a.levels(), b.levels()});
-        if (waiting_.size() < steps_.size()) waiting_.resize(steps_.size());
-        for (waiting& w : waiting_) w.size = 0;
+        if (stacks_.size() < steps_.size()) stacks_.resize(steps_.size());
+        for (postponed_stack& s : stacks_) s.size = 0;
         assert(steps_.size() <= 64);
         postponed_steps_ = 0;
-        in_a_.begin(b.level(0), nodes_of(b), to_a.to_boxes());
+        images_.begin(b.level(0), nodes_of(b), to_a.to_boxes());
     }
 
     /// Descends to the nearest pair of children and postpones the others.
     /// @returns whether any pair overlaps
     template <class Counters>
-    [[nodiscard]] inline bool open(const Tree& a, const Tree& b, std::size_t step, node_pair& at, Counters& counters) {
-        const wide_node& of_a = a.level(steps_[step].a - 1)[at.a];
-        const wide_node& of_b = b.level(steps_[step].b - 1)[at.b];
-        counters.add(work::box_tests, std::uint64_t{of_a.children} * of_b.children);
-        const eight_boxes& boxes = in_a_(of_b);
-        const std::uint64_t met = of_a.planes.overlaps(of_a.grid(), boxes);
-        if (met == 0) return false;
-        const auto [first, second] = find_two_nearest(met, of_a, boxes);
+    [[nodiscard]] inline bool descend_to_nearest(const Tree& a, const Tree& b, std::size_t step, node_pair& nodes,
+                                                 Counters& counters) {
+        const wide_node& node_a = a.level(steps_[step].a - 1)[nodes.a];
+        const wide_node& node_b = b.level(steps_[step].b - 1)[nodes.b];
+        counters.add(work::box_tests, std::uint64_t{node_a.children} * node_b.children);
+        const eight_boxes& boxes = images_.of(node_b);
+        const std::uint64_t mask = node_a.planes.overlaps(node_a.grid(), boxes);
+        if (mask == 0) return false;
+        const auto [first, second] = find_two_nearest(mask, node_a, boxes);
         const bool opens_a = steps_.opens_a(step);
         const bool opens_b = steps_.opens_b(step);
         const std::uint32_t opened = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
-        const node_pair first_children{opens_a ? children_of(at.a) : at.a, opens_b ? children_of(at.b) : at.b};
-        at = pair_of(first_children, first & opened);
-        const std::uint64_t others = steps_.opened(step, met) & ~bit(first & opened);
-        if (others != 0) leave(step + 1, first_children, others, second & opened);
+        const node_pair first_children{opens_a ? first_child(nodes.a) : nodes.a,
+                                       opens_b ? first_child(nodes.b) : nodes.b};
+        nodes = pair_of(first_children, first & opened);
+        const std::uint64_t others = steps_.pairs_to_open(step, mask) & ~bit(first & opened);
+        if (others != 0) postpone(step + 1, first_children, others, second & opened);
         return true;
     }
 
-    [[nodiscard]] static constexpr std::uint32_t children_of(std::uint32_t node) noexcept {
+    [[nodiscard]] static constexpr std::uint32_t first_child(std::uint32_t node) noexcept {
         return static_cast<std::uint32_t>(children) * node;
     }
     [[nodiscard]] static constexpr node_pair pair_of(const node_pair& first, std::uint32_t place) noexcept {
         return {first.a + (place & 7U), first.b + (place >> 3U)};
     }
 
-    /// @param next the pair to open next, if `which` has it
-    inline void leave(std::size_t step, const node_pair& first, std::uint64_t which, std::uint32_t next) {
-        waiting& here = waiting_[step];
-        if (here.size == here.left.size()) here.left.resize(2 * here.size + children);
-        postponed_children& left = here.left[here.size++];
-        left.first = first;
-        left.which = which;
-        left.next = (which & bit(next)) != 0 ? next : last_of(which);
+    /// Pushes the pairs of children in the mask onto the step's stack.
+    /// @param next the pair to open next, if the mask has it
+    inline void postpone(std::size_t step, const node_pair& first, std::uint64_t mask, std::uint32_t next) {
+        postponed_stack& stack = stacks_[step];
+        if (stack.size == stack.entries.size()) stack.entries.resize(2 * stack.size + children);
+        postponed_children& entry = stack.entries[stack.size++];
+        entry.first = first;
+        entry.mask = mask;
+        entry.next = (mask & bit(next)) != 0 ? next : last_of(mask);
         postponed_steps_ |= bit(step);
     }
 
     /// Pops the next pair of the step's most recent entry.
-    [[nodiscard]] inline node_pair take(std::size_t step) noexcept {
-        waiting& here = waiting_[step];
-        postponed_children& left = here.left[here.size - 1];
-        const node_pair taken = pair_of(left.first, left.next);
-        left.which &= ~bit(left.next);
-        if (left.which != 0)
-            left.next = last_of(left.which);
-        else if (--here.size == 0)
+    [[nodiscard]] inline node_pair pop(std::size_t step) noexcept {
+        postponed_stack& stack = stacks_[step];
+        postponed_children& entry = stack.entries[stack.size - 1];
+        const node_pair popped = pair_of(entry.first, entry.next);
+        entry.mask &= ~bit(entry.next);
+        if (entry.mask != 0)
+            entry.next = last_of(entry.mask);
+        else if (--stack.size == 0)
             postponed_steps_ &= ~bit(step);
-        return taken;
+        return popped;
     }
 
     [[nodiscard]] static constexpr std::uint64_t bit(std::size_t place) noexcept { return std::uint64_t{1} << place; }
-    [[nodiscard]] static constexpr std::uint32_t last_of(std::uint64_t which) noexcept {
-        return static_cast<std::uint32_t>(std::bit_width(which)) - 1;
+    [[nodiscard]] static constexpr std::uint32_t last_of(std::uint64_t mask) noexcept {
+        return static_cast<std::uint32_t>(std::bit_width(mask)) - 1;
     }
 
     level_steps steps_;
-    image_cache in_a_;                   // nodes of B
-    std::vector<waiting> waiting_;       // by step
-    std::uint64_t postponed_steps_ = 0;  // bit s: step s has postponed pairs
+    image_cache images_;                   // of nodes of B, in A's frame
+    std::vector<postponed_stack> stacks_;  // by step
+    std::uint64_t postponed_steps_ = 0;    // bit s: step s has postponed pairs
 };
 
 }  // namespace aabb

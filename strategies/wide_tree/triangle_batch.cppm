@@ -14,25 +14,25 @@ public:
     void clear() noexcept { pairs_ = leaf_pairs_ = 0; }
     [[nodiscard]] bool is_full() const noexcept { return pairs_ + most_per_leaf_pair > capacity; }
 
-    /// Adds the pairs in `which` (bit 8 j + i for triangle i of `a` and j of `b`), not zero. `is_full` must not hold.
-    inline void add(std::uint64_t which, std::uint32_t leaf_a, const triangle_block& a, std::uint32_t leaf_b,
+    /// Adds the pairs in the mask (bit 8 j + i for triangle i of `a` and j of `b`), not zero. `is_full` must not hold.
+    inline void add(std::uint64_t mask, std::uint32_t leaf_a, const triangle_block& a, std::uint32_t leaf_b,
                     const triangle_block& b) noexcept {
-        alignas(64) std::array<std::uint8_t, most_per_leaf_pair> place{};
-        simd::store_set_bits(place.data(), which);
+        alignas(64) std::array<std::uint8_t, most_per_leaf_pair> bits{};
+        simd::store_set_bits(bits.data(), mask);
         leaves_[leaf_pairs_] = {leaf_a, leaf_b};
         const auto from = static_cast<std::uint32_t>(leaf_pairs_++ << pair_bits);
-        const auto count = static_cast<std::size_t>(std::popcount(which));
+        const auto count = static_cast<std::size_t>(std::popcount(mask));
         // Almost always one iteration, so that the branch is predicted.
         std::size_t first = 0;
         do {
-            const auto chosen =
-                __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&place[first]), simd::eight_words);
+            const auto bit =
+                __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&bits[first]), simd::eight_words);
             const std::size_t to = pairs_ + first;
             for (std::size_t row = 0; row < rows; ++row) {
-                simd::store_eight(&a_[row][to], simd::taken(a.corner[row / 3][row % 3].data(), chosen));
-                simd::store_eight(&b_[row][to], simd::taken(b.corner[row / 3][row % 3].data(), chosen >> 3));
+                simd::store_eight(&a_[row][to], simd::permuted(a.corner[row / 3][row % 3].data(), bit));
+                simd::store_eight(&b_[row][to], simd::permuted(b.corner[row / 3][row % 3].data(), bit >> 3));
             }
-            simd::store_eight(&origin_[to], chosen | from);
+            simd::store_eight(&origin_[to], bit | from);
             first += triangle_block::width;
         } while (first < count);
         pairs_ += count;
@@ -43,12 +43,13 @@ public:
     /// @param triangles_at maps places in two leaves to triangles of the meshes, as `(leaf_a, i, leaf_b, j)`
     /// @returns what `emit` returned: whether to stop
     template <class TrianglesAt, class Emit>
-    [[nodiscard]] bool decide(const Triangle& test, bool flush, const TrianglesAt& triangles_at, const Emit& emit) {
+    [[nodiscard]] bool test_queued(const Triangle& test, bool flush, const TrianglesAt& triangles_at,
+                                   const Emit& emit) {
         std::size_t done = 0;
         std::size_t hit_count = 0;
         for (; done + simd::width <= pairs_ || (flush && done < pairs_); done += simd::width) {
             const std::uint32_t present = simd::lanes_below(pairs_ - done);
-            const filtered_pairs by_filter = filtered(done);
+            const filtered_pairs by_filter = filter(done);
             std::uint32_t hits = by_filter.hits & present;
             for (std::uint32_t open = by_filter.undecided & present; open != 0; open &= open - 1) {
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
@@ -61,7 +62,7 @@ public:
             const auto& [leaf_a, leaf_b] = leaves_[origin >> pair_bits];
             pairs_of_hits_[i] = triangles_at(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U);
         }
-        keep_from(std::min(done, pairs_));
+        drop_first(std::min(done, pairs_));
         return hit_count != 0 && emit(std::span<const index_pair>(pairs_of_hits_).first(hit_count));
     }
 
@@ -72,7 +73,7 @@ private:
     static constexpr unsigned pair_bits = 6;  // of the place 8 j + i within a leaf pair
     using corners = std::array<std::array<float, capacity + triangle_block::width>, rows>;
 
-    [[nodiscard]] inline filtered_pairs filtered(std::size_t first) const noexcept {
+    [[nodiscard]] inline filtered_pairs filter(std::size_t first) const noexcept {
         if constexpr (requires { requires Triangle::filtered; })
             return triangle_filter::decide(&a_[0][first], &b_[0][first], a_[0].size());
         else
@@ -86,8 +87,8 @@ private:
         return t;
     }
 
-    /// Moves the rest to the front: less than a vector, so that one vector per row suffices.
-    void keep_from(std::size_t done) noexcept {
+    /// Drops the tested pairs and moves the rest to the front: less than a vector, so that one vector per row suffices.
+    void drop_first(std::size_t done) noexcept {
         pairs_ -= done;
         if (pairs_ == 0) return clear();
         for (std::size_t row = 0; row < rows; ++row) {

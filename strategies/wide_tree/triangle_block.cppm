@@ -38,9 +38,9 @@ struct triangle_block {
         const auto greater = [](simd::eight_floats p, simd::eight_floats q) { return p > q ? p : q; };
         std::array<simd::eight_floats, 6> rows;
         for (std::size_t k = 0; k < 3; ++k) {
-            const auto at = [&](std::size_t c) { return simd::load_eight<simd::eight_floats>(corner[c][k].data()); };
-            rows[k] = lesser(lesser(at(0), at(1)), at(2));
-            rows[3 + k] = greater(greater(at(0), at(1)), at(2));
+            const auto x = [&](std::size_t c) { return simd::load_eight<simd::eight_floats>(corner[c][k].data()); };
+            rows[k] = lesser(lesser(x(0), x(1)), x(2));
+            rows[3 + k] = greater(greater(x(0), x(1)), x(2));
         }
         return rows;
     }
@@ -71,6 +71,7 @@ private:
         }
     }
 
+    /// Loads the triangles without a vertex list, corner by corner.
     template <class Tree, class Change>
     void load_from_mesh(const mesh& m, const Tree& tree, std::uint32_t leaf, Change change) noexcept {
         std::array<const std::uint32_t*, width> vertices;
@@ -102,7 +103,7 @@ struct corner_indices {
     }
 
     /// Sets bit 8 j + i where triangle i of these and triangle j of the others share a corner.
-    [[nodiscard]] inline std::uint64_t sharing_corners_with(const corner_indices& other) const noexcept {
+    [[nodiscard]] inline std::uint64_t pairs_sharing_corners(const corner_indices& other) const noexcept {
         return simd::columns_with_shared_number(vertex[0].data(), other.vertex[0].data());
     }
 };

@@ -27,30 +27,32 @@ public:
 #pragma clang fp contract(fast)
         corners s = load(a, stride);
         corners t = load(b, stride);
-        const simd::floats x = spread(s, t, 0);
-        const simd::floats y = spread(s, t, 1);
-        const simd::floats z = spread(s, t, 2);
-        const bound most(0x1p-18F * (x * y * z) + 0x1p-140F * (x + y + z + 1));
+        const simd::floats x = extent_of(s, t, 0);
+        const simd::floats y = extent_of(s, t, 1);
+        const simd::floats z = extent_of(s, t, 2);
+        const error_bound error(0x1p-18F * (x * y * z) + 0x1p-140F * (x + y + z + 1));
 
         const point s_normal = cross(s[1] - s[0], s[2] - s[0]);
-        const sides of_t = most.of(dot(s_normal, t[0] - s[0]), dot(s_normal, t[1] - s[0]), dot(s_normal, t[2] - s[0]));
+        const sides of_t =
+            error.signs_of(dot(s_normal, t[0] - s[0]), dot(s_normal, t[1] - s[0]), dot(s_normal, t[2] - s[0]));
         const point t_normal = cross(t[1] - t[0], t[2] - t[0]);
-        const sides of_s = most.of(dot(t_normal, s[0] - t[0]), dot(t_normal, s[1] - t[0]), dot(t_normal, s[2] - t[0]));
+        const sides of_s =
+            error.signs_of(dot(t_normal, s[0] - t[0]), dot(t_normal, s[1] - t[0]), dot(t_normal, s[2] - t[0]));
         const simd::flags separated = of_t.all_above() | of_t.all_below() | of_s.all_above() | of_s.all_below();
-        const simd::flags sure = of_t.sure() & of_s.sure();
+        const simd::flags certain = of_t.certain() & of_s.certain();
 
-        const simd::flags t_apex_above = turn_to_apex(t, of_t.above);
-        const simd::flags s_apex_above = turn_to_apex(s, of_s.above);
+        const simd::flags t_apex_above = rotate_to_apex(t, of_t.above);
+        const simd::flags s_apex_above = rotate_to_apex(s, of_s.above);
         // Reorders corners so that each apex lies above the other triangle.
         swap_where(~s_apex_above, t[1], t[2]);
         swap_where(~t_apex_above, s[1], s[2]);
         const point between = t[0] - s[0];
         const simd::floats first = dot(cross(s[1] - s[0], between), t[1] - s[0]);
         const simd::floats second = dot(cross(s[2] - s[0], t[2] - s[0]), between);
-        const simd::flags beyond = most.above(first) | most.above(second);
-        const simd::flags crossing = most.below(first) & most.below(second);
-        const std::uint32_t hits = simd::bits(~separated & sure & crossing);
-        const std::uint32_t undecided = simd::bits(~separated & ~(sure & (beyond | crossing)));
+        const simd::flags beyond = error.above(first) | error.above(second);
+        const simd::flags crossing = error.below(first) & error.below(second);
+        const std::uint32_t hits = simd::bits(~separated & certain & crossing);
+        const std::uint32_t undecided = simd::bits(~separated & ~(certain & (beyond | crossing)));
         if (undecided == 0) return {hits, 0};
         const std::uint32_t touching = undecided & simd::bits(share_corner(s, t));
         return {hits | touching, undecided & ~touching};
@@ -77,19 +79,19 @@ private:
         [[nodiscard, gnu::always_inline]] inline simd::flags all_below() const noexcept {
             return below[0] & below[1] & below[2];
         }
-        [[nodiscard, gnu::always_inline]] inline simd::flags sure() const noexcept {
+        [[nodiscard, gnu::always_inline]] inline simd::flags certain() const noexcept {
             return (above[0] | below[0]) & (above[1] | below[1]) & (above[2] | below[2]);
         }
     };
 
-    /// An error bound, which tells which signs are certain.
-    class bound {
+    /// A bound of the rounding error: signs of greater magnitudes are certain.
+    class error_bound {
     public:
-        explicit inline bound(simd::floats most) noexcept : most_(most) {}
+        explicit inline error_bound(simd::floats most) noexcept : most_(most) {}
         [[nodiscard, gnu::always_inline]] inline simd::flags above(simd::floats v) const noexcept { return v > most_; }
         [[nodiscard, gnu::always_inline]] inline simd::flags below(simd::floats v) const noexcept { return v < -most_; }
-        [[nodiscard, gnu::always_inline]] inline sides of(simd::floats p, simd::floats q,
-                                                          simd::floats r) const noexcept {
+        [[nodiscard, gnu::always_inline]] inline sides signs_of(simd::floats p, simd::floats q,
+                                                                simd::floats r) const noexcept {
             return {{above(p), above(q), above(r)}, {below(p), below(q), below(r)}};
         }
 
@@ -123,8 +125,9 @@ private:
         return any;
     }
 
-    [[nodiscard, gnu::always_inline]] static inline simd::floats spread(const corners& s, const corners& t,
-                                                                        std::size_t k) noexcept {
+    /// The extent of both triangles on axis k.
+    [[nodiscard, gnu::always_inline]] static inline simd::floats extent_of(const corners& s, const corners& t,
+                                                                           std::size_t k) noexcept {
         const auto lesser = [](simd::floats p, simd::floats q) { return p < q ? p : q; };
         const auto greater = [](simd::floats p, simd::floats q) { return p > q ? p : q; };
         const simd::floats low = lesser(lesser(lesser(s[0].at[k], s[1].at[k]), lesser(s[2].at[k], t[0].at[k])),
@@ -134,25 +137,25 @@ private:
         return high - low;
     }
 
-    [[nodiscard, gnu::always_inline]] static inline point chosen(simd::flags which, const point& p,
+    [[nodiscard, gnu::always_inline]] static inline point select(simd::flags mask, const point& p,
                                                                  const point& q) noexcept {
-        return {{which ? p.at[0] : q.at[0], which ? p.at[1] : q.at[1], which ? p.at[2] : q.at[2]}};
+        return {{mask ? p.at[0] : q.at[0], mask ? p.at[1] : q.at[1], mask ? p.at[2] : q.at[2]}};
     }
-    [[gnu::always_inline]] static inline void swap_where(simd::flags which, point& p, point& q) noexcept {
-        const point kept = p;
-        p = chosen(which, q, p);
-        q = chosen(which, kept, q);
+    [[gnu::always_inline]] static inline void swap_where(simd::flags mask, point& p, point& q) noexcept {
+        const point before = p;
+        p = select(mask, q, p);
+        q = select(mask, before, q);
     }
 
     /// Rotates the triangle until corner 0 is alone on its side of the other's plane.
     /// @returns whether it is above
-    [[nodiscard, gnu::always_inline]] static inline simd::flags turn_to_apex(
+    [[nodiscard, gnu::always_inline]] static inline simd::flags rotate_to_apex(
         corners& t, const std::array<simd::flags, 3>& above) noexcept {
         const simd::flags is_1 = (above[0] ^ above[1]) & ~(above[0] ^ above[2]);
         const simd::flags is_2 = ~(above[0] ^ above[1]) & (above[0] ^ above[2]);
-        const corners turned = t;
+        const corners before = t;
         for (std::size_t c = 0; c < 3; ++c)
-            t[c] = chosen(is_2, turned[(c + 2) % 3], chosen(is_1, turned[(c + 1) % 3], turned[c]));
+            t[c] = select(is_2, before[(c + 2) % 3], select(is_1, before[(c + 1) % 3], before[c]));
         return is_2 ? above[2] : is_1 ? above[1] : above[0];
     }
 };

@@ -15,7 +15,7 @@ struct vertex_list {
     std::uint32_t count;                                   ///< 0 if the vertices must be read from the mesh
 
     /// Prefetches every second vertex, since neighbours mostly share a cache line.
-    inline void fetch(const mesh& m) const noexcept {
+    inline void prefetch(const mesh& m) const noexcept {
         if (count == 0) return;
         for (std::size_t i = 0; i < most; i += 2) __builtin_prefetch(&m.vertices[vertices[i]]);
     }
@@ -51,7 +51,7 @@ public:
             for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l) {
                 for (const std::uint32_t t : triangles_of(l + ahead)) __builtin_prefetch(&m.triangles[t]);
                 begins_[l] = static_cast<std::uint32_t>(end - begin);
-                end = add(m, triangles_of(l), end);
+                end = write_list(m, triangles_of(l), end);
             }
             sizes[p] = static_cast<std::size_t>(end - begin);
         });
@@ -74,7 +74,7 @@ public:
 
     [[nodiscard]] inline bool empty() const noexcept { return begins_.empty(); }
 
-    inline void fetch(std::uint32_t leaf) const noexcept { __builtin_prefetch(&lists_[begins_[leaf]]); }
+    inline void prefetch(std::uint32_t leaf) const noexcept { __builtin_prefetch(&lists_[begins_[leaf]]); }
     inline void read(std::uint32_t leaf, vertex_list& to) const noexcept {
         const std::byte* at = &lists_[begins_[leaf]];
         to.count = static_cast<std::uint32_t>(*at);
@@ -107,7 +107,7 @@ private:
 
     /// Writes the list of one leaf at `to`.
     /// @returns the end of the list
-    std::byte* add(const mesh& m, std::span<const std::uint32_t> of_leaf, std::byte* to) const {
+    std::byte* write_list(const mesh& m, std::span<const std::uint32_t> of_leaf, std::byte* to) const {
         constexpr std::size_t corners = 3 * triangles;
         alignas(32) std::array<std::uint32_t, corners> vertices;
         for (std::size_t i = 0; i < triangles; ++i)

@@ -38,6 +38,7 @@ struct wide_node {
         return g;
     }
 
+    /// Decodes the box of child i.
     [[nodiscard]] inline box child(std::size_t i) const noexcept {
         box b;
         for (int k = 0; k < 3; ++k) {
@@ -60,6 +61,7 @@ private:
         return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52U);
     }
 
+    /// Encodes axis k with the finest grid on which all planes have codes.
     void encode_axis(std::span<const box> boxes, int k) noexcept {
         // In double, products with powers of 2 are exact, and so are their integer parts.
         simd::eight_doubles least = simd::eight_doubles{} + boxes[0].min[k];

@@ -128,8 +128,8 @@ TEST_CASE("children within a margin of each other are found, however one node is
         pairs.begin(a.tree(), b.tree(), relative_pose({}, pose_b, b.bounds()), a.bounds(), margin);
         no_counters counters;
         const std::array<std::uint32_t, 1> roots{0};
-        const auto found = pairs(a.tree().level(0), roots, b.tree().level(0), roots, counters);
-        const std::uint64_t met = found.empty() ? 0 : found[0].met;
+        const auto found = pairs.find_overlapping(a.tree().level(0), roots, b.tree().level(0), roots, counters);
+        const std::uint64_t met = found.empty() ? 0 : found[0].mask;
         for (std::uint32_t i = 0; i < 8; ++i)
             for (std::uint32_t j = 0; j < 8; ++j)
                 if (a.tree().triangle_at(8 * i) / 8 == b.tree().triangle_at(8 * j) / 8)
@@ -223,7 +223,7 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     const auto at = [&](double x) { return relative_pose({}, shifted({x, 0, 0}), reach).to_boxes(); };
     bvtt_front front;
     front.begin(of);
-    const auto is_planned = [&](double x) { return front.note(of, at(x), reach, 1).margin.has_value(); };
+    const auto is_planned = [&](double x) { return front.record_query(of, at(x), reach, 1).margin.has_value(); };
     CHECK_FALSE(is_planned(0));
     CHECK_FALSE(is_planned(0.01));
     CHECK(is_planned(0.02));
@@ -235,7 +235,7 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     // Of another state it is another mesh.
     CHECK_FALSE(is_planned(6));
     for (const bool planned : {false, false, true})
-        CHECK(front.note({{1, 2}, {3, 5}}, at(6), reach, 1).margin.has_value() == planned);
+        CHECK(front.record_query({{1, 2}, {3, 5}}, at(6), reach, 1).margin.has_value() == planned);
 
     // Each front is left behind at once.
     front.begin(of);
@@ -243,7 +243,7 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     for (int i = 0; i < 100; ++i)
         if (is_planned(0.03 * i)) {
             planned.push_back(i);
-            front.make(of, at(0.03 * i), 0.001, [](std::vector<front_pair>&) { return true; });
+            front.build(of, at(0.03 * i), 0.001, [](std::vector<front_pair>&) { return true; });
         }
     CHECK(planned == std::vector{2, 4, 8, 16, 32, 64});
     // One that holds too much is not kept.
@@ -251,8 +251,8 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     static_cast<void>(is_planned(0));
     static_cast<void>(is_planned(0));
     CHECK(is_planned(0));
-    CHECK_FALSE(front.make(of, at(0), 0.1, [](std::vector<front_pair>&) { return false; }));
-    CHECK_FALSE(front.note(of, at(0), reach, 1).holds);
+    CHECK_FALSE(front.build(of, at(0), 0.1, [](std::vector<front_pair>&) { return false; }));
+    CHECK_FALSE(front.record_query(of, at(0), reach, 1).is_valid);
 }
 
 TEST_CASE("a front holds all that meets at the ends of the range of floats, which margins pass") {

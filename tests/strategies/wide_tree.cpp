@@ -228,7 +228,7 @@ TEST_CASE("boxes of leaves in 16 bits meet where boxes do, and not where these a
                 rows[3 + k] = simd::load_eight<simd::eight_floats>(eight.upper[k].data());
             }
             leaf_boxes made;
-            made.take(grid, rows, boxes.size());
+            made.quantize(grid, rows, boxes.size());
             return made;
         };
         // Along an axis with a grid of steps that floats can tell apart.
@@ -412,8 +412,8 @@ TEST_CASE("a slab leaves out what lies parallel, though its boxes meet, of every
         const triangle_block here = sheet(size, 0);
         const triangle_block above = sheet(size, 0.001F);
         std::array<eight_boxes, 2> boxes;
-        boxes[0].take(here.bounds(), 8);
-        boxes[1].take(above.bounds(), 8);
+        boxes[0].set(here.bounds(), 8);
+        boxes[1].set(above.bounds(), 8);
         REQUIRE(boxes[0].overlaps(boxes[1]) != 0);
         leaf_slab slab;
         slab.fit(here, {2 * size, 2 * size, 2 * size});
@@ -674,16 +674,16 @@ TEST_CASE("pairs of leaves within a margin are given up at the first one too man
     const relative_pose to_a({}, {}, of.b.bounds());
     batched_walk<implicit_tree, exact_triangle, no_counters> walk;
     std::vector<front_pair> all;
-    REQUIRE(walk.near(of.a, of.b, to_a, 0.1, std::numeric_limits<std::size_t>::max(), all));
+    REQUIRE(walk.collect_front(of.a, of.b, to_a, 0.1, std::numeric_limits<std::size_t>::max(), all));
     REQUIRE(all.size() > 1000);
     for (const std::size_t most : {std::size_t{0}, std::size_t{1}, std::size_t{64}, all.size() - 1}) {
         CAPTURE(most);
         std::vector<front_pair> pairs;
-        CHECK_FALSE(walk.near(of.a, of.b, to_a, 0.1, most, pairs));
+        CHECK_FALSE(walk.collect_front(of.a, of.b, to_a, 0.1, most, pairs));
         CHECK(pairs.size() == most + 1);
     }
     std::vector<front_pair> again;
-    CHECK(walk.near(of.a, of.b, to_a, 0.1, all.size(), again));
+    CHECK(walk.collect_front(of.a, of.b, to_a, 0.1, all.size(), again));
     CHECK(again.size() == all.size());
 }
 
@@ -790,17 +790,17 @@ TEST_CASE("pairs of nodes asked for together have the children that meet of each
         no_counters counters;
         child_pairs<implicit_tree> together;
         together.begin(a.tree(), b.tree(), to_a, a.bounds(), 0);
-        const auto found = together(of_a, some_a, of_b, some_b, counters);
+        const auto found = together.find_overlapping(of_a, some_a, of_b, some_b, counters);
         std::size_t next = 0;
         for (std::size_t p = 0; p < some_a.size(); ++p) {
             child_pairs<implicit_tree> alone;
             alone.begin(a.tree(), b.tree(), to_a, a.bounds(), 0);
-            const auto one =
-                alone(of_a, std::span(some_a).subspan(p, 1), of_b, std::span(some_b).subspan(p, 1), counters);
+            const auto one = alone.find_overlapping(of_a, std::span(some_a).subspan(p, 1), of_b,
+                                                    std::span(some_b).subspan(p, 1), counters);
             if (one.empty()) continue;
             RC_ASSERT(next < found.size());
             RC_ASSERT(found[next].pair == p);
-            RC_ASSERT(found[next].met == one[0].met);
+            RC_ASSERT(found[next].mask == one[0].mask);
             ++next;
         }
         RC_ASSERT(next == found.size());
