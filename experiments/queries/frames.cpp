@@ -66,7 +66,7 @@ void hit_geometry::set_meshes(const aabb::mesh& a, const aabb::pose& pose_a, con
 aabb::triangle_intersection hit_geometry::operator()(aabb::index_pair triangles) const {
     const aabb::triangle3f s = a_->triangle(triangles.a);
     const aabb::triangle3f t = (*to_a_)(b_->triangle(triangles.b));
-    return aabb::carried(test_->intersection(in_double(s), in_double(t)), pose_a_);
+    return aabb::transformed(test_->intersection(in_double(s), in_double(t)), pose_a_);
 }
 
 search_method method_of(const search_choice& choice, const aabb::scene_traits& traits) {

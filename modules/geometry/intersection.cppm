@@ -38,7 +38,7 @@ struct triangle_intersection {
 /// R x + t is summed left to right, so a product rounds at most 4 times and t once: γ₄ (Σ |rⱼ xⱼ| + |t|), u = 2^-53,
 /// plus half the smallest denormal for a product that underflows. An error e of the given corner becomes Σ |rⱼ| eⱼ. The
 /// last factor covers rounding in the bound itself.
-[[nodiscard]] inline triangle_intersection carried(const triangle_intersection& common, const pose& by) noexcept {
+[[nodiscard]] inline triangle_intersection transformed(const triangle_intersection& common, const pose& by) noexcept {
     if (by == pose{}) return common;
     constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
     triangle_intersection moved = common;

@@ -57,6 +57,27 @@ struct triangle3 {
 using triangle3f = triangle3<float>;
 using triangle3d = triangle3<double>;
 
+/// Rotates a triangle until corner 0 is its apex: alone on its side of a plane, or alone on the plane with both other
+/// corners on one side.
+/// @param heights signed distances of the corners from the plane, on any scale
+/// @returns whether the apex lies below the plane (the others above it), so that the other triangle must be flipped
+template <class Real, class Height>
+inline bool rotate_to_apex(triangle3<Real>& t, const std::array<Height, 3>& heights) noexcept {
+    const auto is_apex = [&](int i, Height up) {
+        const Height own = up * heights[static_cast<std::size_t>(i)];
+        const Height p = up * heights[static_cast<std::size_t>((i + 1) % 3)];
+        const Height q = up * heights[static_cast<std::size_t>((i + 2) % 3)];
+        return (own > 0 && p <= 0 && q <= 0) || (own == 0 && p < 0 && q < 0);
+    };
+    for (int i = 0; i < 3; ++i)
+        for (const Height up : {Height{1}, Height{-1}})
+            if (is_apex(i, up)) {
+                t = {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
+                return up < 0;
+            }
+    return false;
+}
+
 /// The input of a triangle test.
 template <class Real>
 struct triangle_pair {

@@ -32,7 +32,8 @@ public:
         order_.bounds.resize((n + leaf_triangles - 1) / leaf_triangles);
     }
 
-    [[nodiscard]] balanced_order order(std::uint32_t threads) {
+    /// Reads the triangles and splits them recursively down to leaves.
+    [[nodiscard]] balanced_order build(std::uint32_t threads) {
         worker_threads workers(threads);
         const std::size_t n = mesh_.triangles.size();
         std::vector<box> bounds((n + least_shared - 1) / least_shared);
@@ -41,16 +42,18 @@ public:
         });
         box root = empty_box();
         for (const box& b : bounds) root = merged(root, b);
-        halve(
+        split_recursively(
             workers, part{0, n, root, false},
             // The threads share a part while there are fewer parts than threads.
-            [&](const part& p) { return split(p, p.size() > n / workers.count() ? workers : alone_); },
-            [&](const part& p) { finish(p); });
+            [&](const part& p) { return split(p, p.size() > n / workers.count() ? workers : single_thread_); },
+            [&](const part& p) { split_to_leaves(p); });
         order_.threads = threads;
         return std::move(order_);
     }
 
 private:
+    /// Fills the items of a range of triangles.
+    /// @returns the box of the range
     item_bounds read(std::size_t begin, std::size_t end) noexcept {
         item_bounds range;
         for (std::size_t t = begin; t < end; ++t) {
@@ -68,15 +71,16 @@ private:
     }
 
     /// Splits a part down to leaves; the recursion is no deeper than a number has bits.
-    void finish(const part& p) {
+    void split_to_leaves(const part& p) {
         if (p.size() > leaf_triangles) {
-            for (const part& half : split(p, alone_)) finish(half);
+            for (const part& half : split(p, single_thread_)) split_to_leaves(half);
             return;
         }
         for (std::size_t i = p.begin; i < p.end; ++i) order_.triangles[i] = items_[p.in_second][i].triangle;
         order_.bounds[p.begin / leaf_triangles] = p.bounds;
     }
 
+    /// Splits a part behind the greatest power of two below its number of items, and moves these to the other array.
     [[nodiscard]] std::array<part, 2> split(const part& p, worker_threads& workers) {
         const std::size_t middle = p.begin + std::bit_ceil(p.size()) / 2;
         const std::span from = items_[p.in_second].subspan(p.begin, p.size());
@@ -111,6 +115,7 @@ private:
         std::uint64_t first;
     };
 
+    /// Picks the axis of few items by the rule, with the exact cost of each split.
     [[nodiscard]] few_split best_split(const few_items& items, const box& bounds, std::size_t left) const noexcept {
         const auto longest = static_cast<std::size_t>(longest_axis(bounds));
         few_split best{longest, items.first(longest, left)};
@@ -126,10 +131,12 @@ private:
         return best;
     }
 
+    /// Splits few items by a partition that keeps their order. Ties, which make the first side too large, are resolved
+    /// by the exact centres.
     void split_few(std::span<const balanced_item> from, std::span<balanced_item> to, const box& bounds,
                    std::size_t left) const noexcept {
         auto [axis, first] = best_split(few_items(from), bounds, left);
-        while (std::popcount(first) != static_cast<int>(left)) first &= ~last_of(from, first, axis);
+        while (std::popcount(first) != static_cast<int>(left)) first &= ~last_item(from, first, axis);
         std::size_t next_first = 0;
         std::size_t next_other = left;
         for (std::size_t i = 0; i < from.size(); ++i) {
@@ -140,17 +147,18 @@ private:
         }
     }
 
-    /// The bit of the last item in `which`, in the order of centres.
-    [[nodiscard]] static std::uint64_t last_of(std::span<const balanced_item> items, std::uint64_t which,
-                                               std::size_t axis) noexcept {
-        auto last = static_cast<std::size_t>(std::countr_zero(which));
-        for (std::uint64_t rest = which; rest != 0; rest &= rest - 1)
+    /// The bit of the last item in the mask, in the order of centres.
+    [[nodiscard]] static std::uint64_t last_item(std::span<const balanced_item> items, std::uint64_t mask,
+                                                 std::size_t axis) noexcept {
+        auto last = static_cast<std::size_t>(std::countr_zero(mask));
+        for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1)
             if (const auto i = static_cast<std::size_t>(std::countr_zero(rest));
                 centre_order{axis}(items[last], items[i]))
                 last = i;
         return std::uint64_t{1} << last;
     }
 
+    /// Picks the axis of many items by the rule, with costs estimated from a sample.
     [[nodiscard]] std::size_t best_axis(std::span<const balanced_item> items, const box& bounds,
                                         std::size_t left) const noexcept {
         const auto longest = static_cast<std::size_t>(longest_axis(bounds));
@@ -184,6 +192,7 @@ private:
         split_by_histogram(from, to, bounds, left, bin, workers, shares);
     }
 
+    /// Assigns items to bins of equal width by their centres along the axis.
     /// @param bin receives the bin of each item
     /// @returns the histogram
     static std::array<std::uint32_t, bins> count_in_bins(std::span<const balanced_item> items, std::size_t axis,
@@ -194,9 +203,9 @@ private:
         const auto take = [&](std::size_t i, std::size_t turn) {
             // NaN if all centres are equal.
             const float place = (items[i].centre(axis) - low) * scale;
-            const auto of_item = static_cast<std::uint8_t>(place > 0 ? std::min(place, float{bins - 1}) : 0);
-            bin[i] = of_item;
-            ++counts[turn][of_item];
+            const auto own_bin = static_cast<std::uint8_t>(place > 0 ? std::min(place, float{bins - 1}) : 0);
+            bin[i] = own_bin;
+            ++counts[turn][own_bin];
         };
         std::size_t i = 0;
         for (; i + turns <= items.size(); i += turns)
@@ -207,6 +216,9 @@ private:
         return counts[0];
     }
 
+    /// Splits in two passes over the items: the histogram tells the bin in which the split lies, then each item is
+    /// moved below, into or above that bin, and only the items of that bin are sorted. The order within each side is
+    /// kept.
     void split_by_histogram(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
                             std::size_t left, std::uint8_t* bin, worker_threads& workers,
                             std::span<share> shares) const {
@@ -221,25 +233,25 @@ private:
         for (const share& s : shares)
             for (std::size_t b = 0; b < bins; ++b) count[b] += s.count[b];
         std::size_t begin = 0;
-        std::size_t at = 0;
-        while (begin + count[at] <= left) begin += count[at++];
-        const std::size_t end = begin + count[at];
+        std::size_t split_bin = 0;
+        while (begin + count[split_bin] <= left) begin += count[split_bin++];
+        const std::size_t end = begin + count[split_bin];
 
         std::array<std::size_t, 3> next{0, begin, end};
         for (share& s : shares) {
             s.next = next;
             std::size_t below = 0;
-            for (std::size_t b = 0; b < at; ++b) below += s.count[b];
+            for (std::size_t b = 0; b < split_bin; ++b) below += s.count[b];
             next[0] += below;
-            next[1] += s.count[at];
-            next[2] += s.end - s.begin - below - s.count[at];
+            next[1] += s.count[split_bin];
+            next[2] += s.end - s.begin - below - s.count[split_bin];
         }
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
             // Copied to registers, since loads of recently stored values stall.
             auto [below, within, above] = shares[s].next;
             for (std::size_t i = shares[s].begin; i < shares[s].end; ++i) {
-                const bool is_below = bin[i] < at;
-                const bool is_above = bin[i] > at;
+                const bool is_below = bin[i] < split_bin;
+                const bool is_above = bin[i] > split_bin;
                 to[is_below ? below : is_above ? above : within] = from[i];
                 below += is_below;
                 above += is_above;
@@ -266,13 +278,13 @@ private:
     std::array<std::span<balanced_item>, 2> items_;
     large_vector<std::uint8_t> bin_;
     balanced_order order_;
-    worker_threads alone_{1};
+    worker_threads single_thread_{1};
 };
 
 }  // namespace
 
 balanced_order order_balanced(const mesh& m, axis_rule rule, std::uint32_t threads) {
-    return balanced_order_builder(m, rule).order(threads);
+    return balanced_order_builder(m, rule).build(threads);
 }
 
 }  // namespace aabb

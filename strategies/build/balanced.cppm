@@ -33,15 +33,15 @@ inline constexpr std::size_t most_shared_levels = 64;
 /// @param split returns the two parts of a part; runs in several threads, like `finish`, on disjoint parts
 /// @param finish completes a part
 template <class Part, class Split, class Finish>
-void halve(worker_threads& workers, const Part& whole, const Split& split, const Finish& finish) {
+void split_recursively(worker_threads& workers, const Part& whole, const Split& split, const Finish& finish) {
     const std::size_t enough =
         workers.count() > 1 ? std::max(least_shared, whole.size() / (std::size_t{16} * workers.count())) : whole.size();
-    const auto halve_part = [&](const auto& again, const Part& p, std::size_t levels) -> void {
+    const auto split_part = [&](const auto& self, const Part& p, std::size_t levels) -> void {
         if (p.size() <= enough || levels == 0) return finish(p);
         const auto halves = split(p);
-        workers.both([&] { again(again, halves[0], levels - 1); }, [&] { again(again, halves[1], levels - 1); });
+        workers.both([&] { self(self, halves[0], levels - 1); }, [&] { self(self, halves[1], levels - 1); });
     };
-    halve_part(halve_part, whole, most_shared_levels);
+    split_part(split_part, whole, most_shared_levels);
 }
 
 /// The axis along which a node's triangles are split, ordered by the centres of their boxes, when their numbers are
@@ -49,7 +49,8 @@ void halve(worker_threads& workers, const Part& whole, const Split& split, const
 /// (estimated from a sample if there are many).
 enum class axis_rule : std::uint8_t { longest, least_area };
 
-/// The order does not depend on the number of threads.
+/// Orders the triangles by recursive splits, in the order that `balanced_order` prescribes. The result does not depend
+/// on the number of threads.
 [[nodiscard]] balanced_order order_balanced(const mesh& m, axis_rule rule, std::uint32_t threads);
 
 }  // namespace aabb

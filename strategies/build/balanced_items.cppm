@@ -114,10 +114,10 @@ public:
         const auto cost = [](const item_bounds& side, std::size_t number) {
             return number == 0 ? 0 : surface_area(side.as_box()) * static_cast<double>(number);
         };
-        std::array<double, 3> both;
+        std::array<double, 3> costs;
         for (std::size_t k = 0; k < 3; ++k)
-            both[k] = cost(left_sides[k], in_left[k]) + cost(right_sides[k], count_ - in_left[k]);
-        return both;
+            costs[k] = cost(left_sides[k], in_left[k]) + cost(right_sides[k], count_ - in_left[k]);
+        return costs;
     }
 
 private:
@@ -158,14 +158,14 @@ public:
         return first_in<1>(axis, static_cast<std::int16_t>(left));
     }
 
-    /// The sum of area times number over the items in `which` and the others.
-    [[nodiscard]] inline double cost_of(std::uint64_t which) const noexcept {
+    /// The cost of a split into the items in the mask and the others: the sum over both of area times number.
+    [[nodiscard]] inline double cost_of(std::uint64_t mask) const noexcept {
         // Padding goes to the side of the last item.
-        const std::uint64_t fill = count_ < most && (which >> (count_ - 1) & 1) != 0 ? ~std::uint64_t{0} << count_ : 0;
+        const std::uint64_t fill = count_ < most && (mask >> (count_ - 1) & 1) != 0 ? ~std::uint64_t{0} << count_ : 0;
         std::array<std::array<eight_floats, 6>, 2> sides;
         for (auto& side : sides) side.fill(eight_floats{} + std::numeric_limits<float>::infinity());
         for (std::size_t v = 0; v < vectors(); ++v) {
-            const auto present = static_cast<std::uint8_t>((which | fill) >> v * width);
+            const auto present = static_cast<std::uint8_t>((mask | fill) >> v * width);
             const auto in_first = simd::flags_of_eight(present);
             for (std::size_t row = 0; row < 6; ++row) {
                 const eight_floats x = row < 3 ? load(lower_[row], v) : load(negated_upper_[row - 3], v);
@@ -173,7 +173,7 @@ public:
                 sides[1][row] = in_first ? sides[1][row] : lesser(x, sides[1][row]);
             }
         }
-        const auto in_first = static_cast<std::size_t>(std::popcount(which));
+        const auto in_first = static_cast<std::size_t>(std::popcount(mask));
         const auto cost = [](const auto& side, std::size_t count) {
             return count == 0 ? 0 : half_area(side) * static_cast<double>(count);
         };
@@ -221,10 +221,10 @@ private:
         std::memcpy(centre.data(), centre_[axis].data(), sizeof centre);
         for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t v = 0; v < Vectors; ++v) before[v] -= centre_[axis][i] < centre[v];
-        std::uint64_t which = 0;
+        std::uint64_t mask = 0;
         for (std::size_t v = 0; v < Vectors; ++v)
-            which |= std::uint64_t{simd::bits_of_sixteen(before[v] < left)} << v * lanes;
-        return which & ~std::uint64_t{0} >> (most - count_);
+            mask |= std::uint64_t{simd::bits_of_sixteen(before[v] < left)} << v * lanes;
+        return mask & ~std::uint64_t{0} >> (most - count_);
     }
 
     [[nodiscard]] static inline eight_floats lesser(eight_floats p, eight_floats q) noexcept { return p < q ? p : q; }

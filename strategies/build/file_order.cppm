@@ -22,6 +22,7 @@ struct file_order_build : threaded_build {
         return build_top_down(m, arrangement, halves, threads);
     }
 
+    /// Keeps the order of the mesh and computes the boxes of the leaves.
     [[nodiscard]] balanced_order order(const mesh& m) const {
         constexpr std::size_t in_leaf = balanced_order::leaf_triangles;
         const std::size_t n = m.triangles.size();

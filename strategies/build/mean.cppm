@@ -7,6 +7,7 @@ import aabb.std;
 
 export namespace aabb {
 
+/// Splits at the mean of the centroids along the longest axis, or at the median if that leaves a side empty.
 [[nodiscard]] split_choice mean_split(std::span<const build_element> range, const box& bounds) {
     const int axis = longest_axis(bounds);
     double sum = 0;

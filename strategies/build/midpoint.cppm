@@ -7,6 +7,7 @@ import aabb.std;
 
 export namespace aabb {
 
+/// Splits in the middle of the box along its longest axis, or at the median if that leaves a side empty.
 [[nodiscard]] split_choice midpoint_split(std::span<const build_element> range, const box& bounds) {
     const int axis = longest_axis(bounds);
     // In double, so that the sum cannot overflow.

@@ -28,7 +28,7 @@ private:
     double scale_;
 };
 
-/// Updates `best` if a split along the axis costs less.
+/// Updates `best` if a split along the axis costs less, the sum over both sides of area times triangles.
 void try_sah_axis(std::span<const build_element> range, int axis, const box& centroids, double& least,
                   split_choice& best) noexcept {
     const sah_binning bin_of(centroids.min[axis], centroids.max[axis]);
@@ -61,6 +61,7 @@ void try_sah_axis(std::span<const build_element> range, int axis, const box& cen
 
 }  // namespace
 
+/// Tries the planes between bins on each axis along which centroids differ; the median split is the fallback.
 split_choice sah_split(std::span<const build_element> range, const box& bounds) {
     box centroids = empty_box();
     for (const build_element& e : range) centroids = merged(centroids, bounds_of(e.centroid));

@@ -6,6 +6,7 @@ namespace aabb {
 
 namespace {
 
+/// The triangle with its box and its rounded centroid.
 build_element element_of_triangle(const mesh& m, std::uint32_t triangle) {
     const triangle3f t = m.triangle(triangle);
     build_element e{bounds_of(t), {}, triangle};
@@ -23,7 +24,7 @@ box bounds_of(std::span<const build_element> range) {
 
 /// The number of triangles nearest to `left` that leaves pairs on both sides. It does not deepen a balanced tree: for
 /// 2m triangles, m odd and above 1, hence below some power of two, m + 1 do not exceed that power.
-std::size_t paired(std::size_t left, std::size_t count) {
+std::size_t rounded_to_pairs(std::size_t left, std::size_t count) {
     if (count % 2 != 0 || left % 2 == 0 || count == 2) return left;
     return left + 1 < count ? left + 1 : left - 1;
 }
@@ -37,11 +38,12 @@ struct task {
     [[nodiscard]] std::size_t size() const noexcept { return end - begin; }
 };
 
-class top_down {
+class top_down_builder {
 public:
-    top_down(const mesh& m, leaf_arrangement arrangement, const split_rule& split)
+    top_down_builder(const mesh& m, leaf_arrangement arrangement, const split_rule& split)
         : mesh_(m), arrangement_(arrangement), split_(split) {}
 
+    /// Reads the triangles and splits them recursively down to one triangle per leaf.
     [[nodiscard]] std::vector<build_node> build(std::uint32_t threads) {
         worker_threads workers(threads);
         const std::size_t n = mesh_.triangles.size();
@@ -51,7 +53,9 @@ public:
                 elements_[t] = element_of_triangle(mesh_, static_cast<std::uint32_t>(t));
         });
         nodes_.resize(2 * n - 1);
-        halve(workers, task{0, n, 0}, [&](const task& t) { return split_task(t); }, [&](const task& t) { finish(t); });
+        split_recursively(
+            workers, task{0, n, 0}, [&](const task& t) { return split_task(t); },
+            [&](const task& t) { build_subtree(t); });
         return std::move(nodes_);
     }
 
@@ -60,12 +64,13 @@ private:
         return std::span(elements_).subspan(t.begin, t.size());
     }
 
+    /// Writes the node of a range and partitions the range by the rule.
     [[nodiscard]] std::array<task, 2> split_task(const task& t) {
         const std::span range = range_of(t);
         const box bounds = bounds_of(range);
         const split_choice chosen = split_(range, bounds);
         const std::size_t left =
-            arrangement_ == leaf_arrangement::pairs ? paired(chosen.left, range.size()) : chosen.left;
+            arrangement_ == leaf_arrangement::pairs ? rounded_to_pairs(chosen.left, range.size()) : chosen.left;
         if (chosen.axis != split_choice::in_current_order)
             std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
                                      centroid_order{chosen.axis});
@@ -75,8 +80,8 @@ private:
         return {task{t.begin, t.begin + left, t.node + 1}, task{t.begin + left, t.end, right}};
     }
 
-    void finish(const task& whole) {
-        // An explicit stack, since trees may be deep.
+    /// Builds a subtree with an explicit stack, since trees may be too deep for recursion.
+    void build_subtree(const task& whole) {
         std::vector<task> tasks{whole};
         while (!tasks.empty()) {
             const task current = tasks.back();
@@ -102,7 +107,7 @@ private:
 
 std::vector<build_node> build_top_down(const mesh& m, leaf_arrangement arrangement, const split_rule& split,
                                        std::uint32_t threads) {
-    return top_down(m, arrangement, split).build(threads);
+    return top_down_builder(m, arrangement, split).build(threads);
 }
 
 }  // namespace aabb

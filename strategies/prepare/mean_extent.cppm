@@ -74,16 +74,4 @@ private:
     return present == 0 ? 0 : times * extents / (3 * static_cast<double>(present));
 }
 
-/// The median of the boxes' extents, each a mean over the three axes, which one huge box hardly changes; 0 without
-/// boxes.
-/// @param sample at most 16 boxes
-[[nodiscard]] inline double median_extent(std::span<const box> sample) noexcept {
-    std::array<double, 16> extents{};
-    for (std::size_t i = 0; i < sample.size(); ++i)
-        for (int k = 0; k < 3; ++k) extents[i] += (double{sample[i].max[k]} - double{sample[i].min[k]}) / 3;
-    const auto middle = extents.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-    std::nth_element(extents.begin(), middle, extents.begin() + static_cast<std::ptrdiff_t>(sample.size()));
-    return sample.empty() ? 0 : *middle;
-}
-
 }  // namespace aabb

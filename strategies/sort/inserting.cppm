@@ -12,21 +12,23 @@ struct ignore_swaps {
     }
 };
 
-/// Insertion sort: n + d comparisons for d inversions.
+/// Insertion sort of the entries at a distance of a gap: n + d comparisons for d inversions of such entries.
 /// @param on_swap gets the entry that is passed and the one that moves before it; returning false ends the sort there
-template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps>
-constexpr void insert_each(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}) {
-    for (std::size_t i = 1; i < list.size(); ++i) {
+/// @tparam Gap a number; by default the constant 1, the usual insertion sort
+template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps,
+          class Gap = std::integral_constant<std::size_t, 1>>
+constexpr void insert_each(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}, Gap gap = {}) {
+    for (std::size_t i = gap; i < list.size(); ++i) {
         const Entry inserted = list[i];
         std::size_t hole = i;
         bool goes_on = true;
-        while (goes_on && hole > 0) {
+        while (goes_on && hole >= gap) {
             counters.add(work::comparisons);
-            if (!precedes(inserted, list[hole - 1])) break;
-            goes_on = on_swap(list[hole - 1], inserted);
-            list[hole] = list[hole - 1];
+            if (!precedes(inserted, list[hole - gap])) break;
+            goes_on = on_swap(list[hole - gap], inserted);
+            list[hole] = list[hole - gap];
             counters.add(work::moves);
-            --hole;
+            hole -= gap;
         }
         if (hole == i) continue;
         list[hole] = inserted;

@@ -1,6 +1,7 @@
 export module aabb.sort.shell;
 
 import aabb.global_search;
+import aabb.sort.inserting;
 import aabb.std;
 
 export namespace aabb {
@@ -29,15 +30,16 @@ public:
     shell_sort() = default;
     explicit shell_sort(const config& c) : config_(c) {}
 
+    /// Sorts by insertion for each gap, in descending order.
     template <CounterPolicy Counters>
     constexpr void sort(std::span<projection> list, Counters& counters) const {
         if (config_.gaps == gap_sequence::shell) {
-            for (std::size_t gap = list.size() / 2; gap > 0; gap /= 2) pass(list, gap, counters);
+            for (std::size_t gap = list.size() / 2; gap > 0; gap /= 2) insert_each(list, counters, ignore_swaps{}, gap);
             return;
         }
         const std::span<const std::uint32_t> gaps = ascending(config_.gaps);
         for (std::size_t i = gaps.size(); i-- > 0;)
-            if (gaps[i] < list.size()) pass(list, gaps[i], counters);
+            if (gaps[i] < list.size()) insert_each(list, counters, ignore_swaps{}, std::size_t{gaps[i]});
     }
 
 private:
@@ -81,24 +83,6 @@ private:
             case gap_sequence::ciura_eight: return std::span(ciura).first(ciura_published);
             case gap_sequence::four_one: return std::span(ciura).first(2);
             default: return ciura;
-        }
-    }
-
-    template <CounterPolicy Counters>
-    static constexpr void pass(std::span<projection> list, std::size_t gap, Counters& counters) {
-        for (std::size_t i = gap; i < list.size(); ++i) {
-            const projection inserted = list[i];
-            std::size_t hole = i;
-            while (hole >= gap) {
-                counters.add(work::comparisons);
-                if (!precedes(inserted, list[hole - gap])) break;
-                list[hole] = list[hole - gap];
-                counters.add(work::moves);
-                hole -= gap;
-            }
-            if (hole == i) continue;
-            list[hole] = inserted;
-            counters.add(work::moves);
         }
     }
 

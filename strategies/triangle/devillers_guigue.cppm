@@ -20,12 +20,13 @@ public:
 
     template <class Real>
     [[nodiscard]] inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
-        return in_precision(s, t, [](const auto& first, const auto& second) { return meet(first, second); });
+        return in_precision(s, t,
+                            [](const auto& first, const auto& second) { return triangles_intersect(first, second); });
     }
 
 private:
     template <class Real>
-    [[nodiscard]] static inline bool meet(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
+    [[nodiscard]] static inline bool triangles_intersect(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
         const std::array<Real, 3> s_to_t = heights(s, t);
         if (on_one_side(s_to_t)) return false;
         const std::array<Real, 3> t_to_s = heights(t, s);
@@ -33,8 +34,8 @@ private:
         if (s_to_t == std::array<Real, 3>{}) return coplanar_intersects(s, t);
         triangle3<Real> u = s;
         triangle3<Real> v = t;
-        const bool t_turns = turn_to_apex(u, s_to_t);
-        const bool s_turns = turn_to_apex(v, t_to_s);
+        const bool t_turns = rotate_to_apex(u, s_to_t);
+        const bool s_turns = rotate_to_apex(v, t_to_s);
         // Now each apex lies above the other triangle, so that the intervals on the common line start at the edge to
         // corner 1 of one triangle and end at the edge to corner 2 of the other.
         if (t_turns) v = {v[0], v[2], v[1]};
@@ -59,26 +60,6 @@ private:
     template <class Real>
     [[nodiscard]] static inline bool on_one_side(const std::array<Real, 3>& d) noexcept {
         return d[0] * d[1] > 0 && d[0] * d[2] > 0;
-    }
-
-    /// Rotates the triangle until corner 0 is alone on its side of the other plane, or alone on the plane with both
-    /// other corners on one side.
-    /// @returns whether the apex lies below the plane (the others above it), so that the other triangle must be flipped
-    template <class Real>
-    static inline bool turn_to_apex(triangle3<Real>& s, const std::array<Real, 3>& d) noexcept {
-        const auto apex = [&](int i, Real up) {
-            const Real own = up * d[static_cast<std::size_t>(i)];
-            const Real p = up * d[static_cast<std::size_t>((i + 1) % 3)];
-            const Real q = up * d[static_cast<std::size_t>((i + 2) % 3)];
-            return (own > 0 && p <= 0 && q <= 0) || (own == 0 && p < 0 && q < 0);
-        };
-        for (int i = 0; i < 3; ++i)
-            for (const Real up : {Real{1}, Real{-1}})
-                if (apex(i, up)) {
-                    s = {s[i], s[(i + 1) % 3], s[(i + 2) % 3]};
-                    return up < 0;
-                }
-        return false;
     }
 
     /// Projects to the axis plane in which `s` has the largest area. The triangles are disjoint if one lies strictly

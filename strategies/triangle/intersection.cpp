@@ -68,6 +68,7 @@ struct hull {
     int size;
 };
 
+/// Reduces a triangle of zero area to a segment or point.
 hull hull_of(const triangle3d& t) {
     for (int axis = 0; axis < 3; ++axis)
         if (exact_turn(t[0], t[1], t[2], axis) != 0) return {{t[0], t[1], t[2]}, 3};
@@ -95,7 +96,7 @@ struct view {
     }
 
     /// Whether p, which is coplanar with the hull, lies in it.
-    [[nodiscard]] bool holds(const hull& h, const vec3d& p) const {
+    [[nodiscard]] bool contains(const hull& h, const vec3d& p) const {
         if (h.size == 1) return p == h.corner[0];
         if (h.size == 2) return turn(h.corner[0], h.corner[1], p) == 0 && between(p, h.corner[0], h.corner[1]);
         const int inside = turn(h.corner[0], h.corner[1], h.corner[2]);
@@ -125,14 +126,14 @@ triangle_intersection flat_intersection(const hull& g, const hull& h, const view
     result common;
     std::array<unsigned, 6> lines{};
     for (std::size_t i = 0; i < static_cast<std::size_t>(g.size); ++i)
-        if (seen.holds(h, g.corner[i])) {
+        if (seen.contains(h, g.corner[i])) {
             lines[common.size()] = seen.edges_through(g, g.corner[i]) | seen.edges_through(h, g.corner[i]) << 3;
             common.add_corner(g.corner[i]);
         }
     for (std::size_t i = 0; i < static_cast<std::size_t>(h.size); ++i) {
         const vec3d& p = h.corner[i];
         const auto* const end = g.corner.data() + g.size;
-        if (std::find(g.corner.data(), end, p) != end || !seen.holds(g, p)) continue;
+        if (std::find(g.corner.data(), end, p) != end || !seen.contains(g, p)) continue;
         lines[common.size()] = seen.edges_through(g, p) | seen.edges_through(h, p) << 3;
         common.add_corner(p);
     }
@@ -162,6 +163,8 @@ triangle_intersection flat_intersection(const hull& g, const hull& h, const view
     return common.by_size();
 }
 
+/// Intersects coplanar hulls in a projection in which their plane is not edge-on; hulls on a line are intersected along
+/// it.
 triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
     if (g.size < 3 && h.size < 3) {
         // Two crossing segments span a plane; otherwise everything is on one line.
@@ -207,31 +210,17 @@ triangle_intersection segment_intersection(const hull& segment, const triangle3d
     return common.as(intersection_kind::point);
 }
 
-/// Rotates the triangle until corner 0 is the apex: alone on its side of the other plane, or alone on the plane.
-/// @param up receives the sign of the apex's side
-triangle3d turned_to_apex(const triangle3d& s, const signs_of_corners& d, int& up) {
-    for (int i = 0; i < 3; ++i)
-        for (const int side : {1, -1}) {
-            const auto at = [&](int j) { return side * d[static_cast<std::size_t>((i + j) % 3)]; };
-            if ((at(0) > 0 && at(1) <= 0 && at(2) <= 0) || (at(0) == 0 && at(1) < 0 && at(2) < 0)) {
-                up = side;
-                return {{s[i], s[(i + 1) % 3], s[(i + 2) % 3]}};
-            }
-        }
-    return s;
-}
-
 /// Intersects triangles with area in different planes that are known to intersect: returns the overlap of their
 /// intervals on the common line. Each is flipped so that the other's apex lies above it; then the interval of s runs
 /// from the cut on edge 01 to that on edge 02, and the interval of t in the opposite direction.
 triangle_intersection crossing_intersection(const triangle3d& original_s, const signs_of_corners& s_to_t,
                                             const triangle3d& original_t, const signs_of_corners& t_to_s) {
-    int s_up = 1;
-    int t_up = 1;
-    triangle3d s = turned_to_apex(original_s, s_to_t, s_up);
-    triangle3d t = turned_to_apex(original_t, t_to_s, t_up);
-    if (t_up < 0) std::swap(s[1], s[2]);
-    if (s_up < 0) std::swap(t[1], t[2]);
+    triangle3d s = original_s;
+    triangle3d t = original_t;
+    const bool s_is_below = rotate_to_apex(s, s_to_t);
+    const bool t_is_below = rotate_to_apex(t, t_to_s);
+    if (t_is_below) std::swap(s[1], s[2]);
+    if (s_is_below) std::swap(t[1], t[2]);
     const auto heights_over = [](const triangle3d& plane, const triangle3d& of) {
         const auto height = [&](int i) { return exact_volume(plane[0], plane[1], plane[2], of[i]); };
         return std::array{height(0), height(1), height(2)};

@@ -105,13 +105,14 @@ private:
         return corner_sides(std::array{of(s[0]), of(s[1]), of(s[2])});
     }
 
+    /// The sign of all numbers in the interval; if they differ, that of the fallback.
     template <class Compute>
-    [[nodiscard]] inline int sign(const bracket& of, Compute compute) noexcept {
-        if (of.low > 0) return 1;
-        if (of.high < 0) return -1;
-        if (of.is_zero()) return 0;
+    [[nodiscard]] inline int sign(const bracket& interval, Compute compute_exactly) noexcept {
+        if (interval.low > 0) return 1;
+        if (interval.high < 0) return -1;
+        if (interval.is_zero()) return 0;
         if constexpr (Exact)
-            return compute();
+            return compute_exactly();
         else
             unsure_ = true;
         return 0;

@@ -86,6 +86,7 @@ private:
         return epsilon * extent * std::sqrt(double{dot(normal, normal)});
     }
 
+    /// Signed distances of the corners from a plane, times the length of its normal.
     [[nodiscard]] static std::array<Real, 3> distances(const triangle3<Real>& s, const vec3<Real>& on_plane,
                                                        const vec3<Real>& normal, double zero_below) noexcept {
         const Real offset = -dot(normal, on_plane);
@@ -176,6 +177,7 @@ private:
         return corner_is_inside(s[0], t, x, y) || corner_is_inside(t[0], s, x, y);
     }
 
+    /// Whether two segments in the axis plane intersect, by Cramer's rule for their parameters d / f and e / f.
     [[nodiscard]] static bool edges_cross(const vec3<Real>& p, const vec3<Real>& p_end, const vec3<Real>& q,
                                           const vec3<Real>& q_end, int x, int y) noexcept {
         const Real ax = p_end[x] - p[x];

@@ -21,12 +21,13 @@ public:
 
     template <class Real>
     [[nodiscard]] inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
-        return in_precision(s, t, [](const auto& first, const auto& second) { return meet(first, second); });
+        return in_precision(s, t,
+                            [](const auto& first, const auto& second) { return triangles_intersect(first, second); });
     }
 
 private:
     template <class Real>
-    [[nodiscard]] static inline bool meet(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
+    [[nodiscard]] static inline bool triangles_intersect(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
         const auto edges_of = [](const triangle3<Real>& of) {
             return std::array{of[1] - of[0], of[2] - of[1], of[0] - of[2]};
         };
@@ -34,7 +35,7 @@ private:
         const auto edges_t = edges_of(t);
         const vec3<Real> normal_s = cross(edges_s[0], edges_s[1]);
         const vec3<Real> normal_t = cross(edges_t[0], edges_t[1]);
-        const auto separates = [&](const vec3<Real>& axis) { return apart(s, t, axis); };
+        const auto separates = [&](const vec3<Real>& axis) { return axis_separates(s, t, axis); };
         if (separates(normal_s) || separates(normal_t)) return false;
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j)
@@ -46,8 +47,8 @@ private:
 
     /// Whether the axis separates the triangles; an axis of length zero never does.
     template <class Real>
-    [[nodiscard]] static inline bool apart(const triangle3<Real>& s, const triangle3<Real>& t,
-                                           const vec3<Real>& axis) noexcept {
+    [[nodiscard]] static inline bool axis_separates(const triangle3<Real>& s, const triangle3<Real>& t,
+                                                    const vec3<Real>& axis) noexcept {
         // Relative to a corner of `s`, which avoids cancellation far from the origin.
         const auto projection = [&](const triangle3<Real>& of) {
             return std::minmax({dot(axis, of[0] - s[0]), dot(axis, of[1] - s[0]), dot(axis, of[2] - s[0])});

@@ -116,7 +116,7 @@ TEST_CASE("what is carried to the world is within its error there, and stays as 
         pose.rotation = {std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1};
         for (int k = 0; k < 3; ++k)
             pose.translation[k] = any(1) * scale * std::ldexp(1, triangle_pairs::integer(g, -30, 30));
-        const triangle_intersection world = aabb::carried(computed, pose);
+        const triangle_intersection world = aabb::transformed(computed, pose);
         for (std::size_t c = 0; c < 6; ++c)
             for (int k = 0; k < 3; ++k) {
                 number image(pose.translation[k]);
@@ -124,8 +124,8 @@ TEST_CASE("what is carried to the world is within its error there, and stays as 
                     image += number(pose.rotation[static_cast<std::size_t>(3 * k + j)]) * number(exact.corners[c][j]);
                 wrong += static_cast<int>(CGAL::abs(number(world.corners[c][k]) - image) > number(world.error[k]));
             }
-        CHECK(aabb::carried(computed, {}).corners == computed.corners);
-        CHECK(aabb::carried(computed, {}).error == computed.error);
+        CHECK(aabb::transformed(computed, {}).corners == computed.corners);
+        CHECK(aabb::transformed(computed, {}).error == computed.error);
         // What the pose adds is some roundings, not more.
         double reach = 0;
         for (std::size_t c = 0; c < 6; ++c)
