@@ -47,7 +47,7 @@ public:
 
     /// @param ids ids of the boxes; empty if the index is the id
     /// @param most_in_group limit on the boxes of a group, copies included; beyond it the result is `crowded`
-    /// @returns `whole`, or else there are no groups
+    /// @returns `complete`, or else there are no groups
     [[nodiscard]] fill_result distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                          const column_plan& plan, std::size_t most_in_group, worker_threads& threads) {
         clear();
@@ -60,16 +60,16 @@ public:
         wide_.resize(boxes.size() + simd::width * parts_.size());
         wide_first_.resize(wide_.size());
         wide_last_.resize(wide_.size());
-        threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { classify(boxes, p); });
+        threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { find_groups(boxes, p); });
         std::size_t copies = 0;
         for (const part& p : parts_) {
-            if (p.result != fill_result::whole) return p.result;
+            if (p.result != fill_result::complete) return p.result;
             copies += p.copies;
         }
         if (copies > most_copies(boxes.size())) return fill_result::crowded;
-        if (!make_room(most_in_group)) return fill_result::crowded;
-        threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { put(boxes, ids, parts_[p]); });
-        return fill_result::whole;
+        if (!allocate_groups(most_in_group)) return fill_result::crowded;
+        threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { copy_boxes(boxes, ids, parts_[p]); });
+        return fill_result::complete;
     }
 
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
@@ -134,7 +134,9 @@ private:
     /// The limit on copies above which groups are not worth their cost.
     [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept { return 65'536 + 4 * boxes; }
 
-    void classify(std::span<const box> boxes, std::size_t number) {
+    /// Quantizes the boxes of a part to find the first group of each and, of boxes in several groups, the last one.
+    /// Counts the boxes of each group, so that the prefix sums over the parts are the places to write to.
+    void find_groups(std::span<const box> boxes, std::size_t number) {
         part& p = parts_[number];
         const std::size_t length = (boxes.size() / parts_.size() + simd::width) / simd::width * simd::width;
         p.begin = std::min(boxes.size(), number * length);
@@ -150,9 +152,10 @@ private:
         for_each_vector(boxes.subspan(p.begin, p.end - p.begin), [&](std::size_t i, const simd::floats(&c)[6],
                                                                      std::uint32_t present) {
             invalid |= are_invalid(c);
-            const simd::words first = simd::high_products(plan_.whole(c[u], u) | plan_.whole(c[v], v) << 16, across);
+            const simd::words first =
+                simd::high_products(plan_.quantized(c[u], u) | plan_.quantized(c[v], v) << 16, across);
             const simd::words last =
-                simd::high_products(plan_.whole(c[3 + u], u) | plan_.whole(c[3 + v], v) << 16, across);
+                simd::high_products(plan_.quantized(c[3 + u], u) | plan_.quantized(c[3 + v], v) << 16, across);
             simd::store_low_halves(&keys_[p.begin + i], (first & 0xffffU) + (first >> 16) * plan_.across[0]);
             const std::uint32_t wide = simd::bits(first != last) & present;
             simd::compress_store(&wide_first_[p.wide_end], first, wide);
@@ -160,10 +163,10 @@ private:
             p.wide_end += simd::compress_store(&wide_[p.wide_end],
                                                simd::places() + static_cast<std::uint32_t>(p.begin + i), wide);
         });
-        p.result = simd::bits(invalid) == 0 ? fill_result::whole : fill_result::invalid;
+        p.result = simd::bits(invalid) == 0 ? fill_result::complete : fill_result::invalid;
         if (p.result == fill_result::invalid) return;
-        std::size_t* const begin_there = p.next.data();
-        for (const std::uint16_t key : std::span(keys_).subspan(p.begin, p.end - p.begin)) ++begin_there[key];
+        std::size_t* const counts = p.next.data();
+        for (const std::uint16_t key : std::span(keys_).subspan(p.begin, p.end - p.begin)) ++counts[key];
         for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
             for_each_later_group(w, [&](std::uint32_t group, std::uint32_t) {
                 ++p.next_copy[group];
@@ -178,15 +181,15 @@ private:
 
     /// Turns counts into start indices by a prefix sum.
     /// @returns whether no group exceeds the limit
-    [[nodiscard]] bool make_room(std::size_t most_in_group) {
+    [[nodiscard]] bool allocate_groups(std::size_t most_in_group) {
         const std::uint32_t groups = plan_.columns();
         starts_.resize(groups + 1);
         fullest_ = 0;
         std::size_t total = 0;
         const auto place = [&](std::size_t& count) {
-            const std::size_t here = count;
+            const std::size_t own = count;
             count = total;
-            total += here;
+            total += own;
         };
         for (std::uint32_t g = 0; g < groups; ++g) {
             starts_[g] = total;
@@ -212,7 +215,7 @@ private:
     }
 
     /// Reads each box once and writes it to all its groups.
-    void put(std::span<const box> boxes, std::span<const std::uint32_t> ids, part& p) {
+    void copy_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids, part& p) {
         std::size_t* const next = p.next.data();
         std::size_t* const next_copy = p.next_copy.data();
         const std::uint16_t* const keys = keys_.data();

@@ -15,7 +15,7 @@ public:
     /// @param ids by index in `boxes`; empty if the index is the id
     /// @param by_keys whether to sort by exact keys even if the sort policy would accept unsorted buckets
     /// @param most_copies limit on the copies; beyond it the result is `crowded`
-    /// @returns `whole`, or else there is nothing to sweep
+    /// @returns `complete`, or else there is nothing to sweep
     template <class Sort, CounterPolicy Counters>
     [[nodiscard]] fill_result fill(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                    const column_plan& plan, bool by_keys, std::size_t most_copies, Sort& sort,
@@ -24,14 +24,14 @@ public:
         plan_ = plan;
         const bool in_buckets = BucketSort<Sort> && !by_keys;
         bucket_bits_ = in_buckets ? plan.bucket_bits(boxes.size()) : 0;
-        if (const fill_result result = take(most_copies); result != fill_result::whole) return result;
-        const std::uint32_t entries = make_room();
-        distribute();
+        if (const fill_result result = count_boxes(most_copies); result != fill_result::complete) return result;
+        const std::uint32_t entries = allocate_columns();
+        write_entries();
         counters.add(work::moves, copies());
         if (!in_buckets) sort_columns(sort, counters);
         block_.entries = std::span(entries_).first(entries);
         block_.ends = ends_;
-        return fill_result::whole;
+        return fill_result::complete;
     }
 
     /// Total number of boxes over all columns.
@@ -39,18 +39,18 @@ public:
     [[nodiscard]] const column_block& block() const noexcept { return block_; }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return bytes_of(places_, copies_, entries_, ends_, list_, moved_, column_ends_);
+        return bytes_of(quantized_, copies_, entries_, ends_, list_, moved_, column_ends_);
     }
 
 private:
     static constexpr std::uint32_t width = simd::width;
     static constexpr std::size_t at_a_time = 1024;
 
-    /// A quantized box.
-    struct place {
+    /// A box as an entry of its first column.
+    struct quantized_box {
         std::uint32_t lower;
         std::uint32_t upper;
-        std::uint32_t reach;
+        std::uint32_t end_bucket;
         std::uint32_t bucket;  ///< bucket of its lower end in its first column
     };
     /// A copy of a box in another column.
@@ -60,25 +60,27 @@ private:
     };
 
     /// Quantizes and counts boxes in blocks, so that quantized boxes are still in the L1 cache when they are counted.
-    [[nodiscard]] fill_result take(std::size_t most_copies) {
-        places_.resize(block_.boxes.size() + width);
+    [[nodiscard]] fill_result count_boxes(std::size_t most_copies) {
+        quantized_.resize(block_.boxes.size() + width);
         copies_.clear();
         ends_.clear();
         ends_.resize((std::size_t{plan_.columns()} << bucket_bits_) + width);
         for (std::size_t begin = 0; begin < block_.boxes.size(); begin += at_a_time) {
             const auto boxes = block_.boxes.subspan(begin, std::min(at_a_time, block_.boxes.size() - begin));
-            const bool valid = plan_.axis == 0   ? classify<0>(boxes, begin)
-                               : plan_.axis == 1 ? classify<1>(boxes, begin)
-                                                 : classify<2>(boxes, begin);
+            const bool valid = plan_.axis == 0   ? quantize<0>(boxes, begin)
+                               : plan_.axis == 1 ? quantize<1>(boxes, begin)
+                                                 : quantize<2>(boxes, begin);
             if (!valid) return fill_result::invalid;
-            for (const place& p : std::span(places_).subspan(begin, boxes.size())) ++ends_[p.bucket];
+            for (const quantized_box& b : std::span(quantized_).subspan(begin, boxes.size())) ++ends_[b.bucket];
             if (!add_copies(most_copies)) return fill_result::crowded;
         }
-        return fill_result::whole;
+        return fill_result::complete;
     }
 
+    /// Quantizes a block of boxes along columns of a constant axis, and lists those that overlap several columns.
+    /// @returns whether all boxes are valid
     template <int Axis>
-    [[nodiscard]] bool classify(std::span<const box> boxes, std::size_t begin) {
+    [[nodiscard]] bool quantize(std::span<const box> boxes, std::size_t begin) {
         constexpr int u = (Axis + 1) % 3;
         constexpr int v = (Axis + 2) % 3;
         const column_plan plan = plan_;
@@ -88,14 +90,14 @@ private:
         std::size_t wide = 0;
         for_each_vector(boxes, [&](std::size_t i, const simd::floats(&c)[6], std::uint32_t present) {
             invalid |= are_invalid(c);
-            const simd::words lower = plan.whole(c[u], u) | plan.whole(c[v], v) << 16;
-            const simd::words upper = plan.whole(c[3 + u], u) | plan.whole(c[3 + v], v) << 16;
+            const simd::words lower = plan.quantized(c[u], u) | plan.quantized(c[v], v) << 16;
+            const simd::words upper = plan.quantized(c[3 + u], u) | plan.quantized(c[3 + v], v) << 16;
             const simd::words first = simd::high_products(lower, across);
             const simd::words last = simd::high_products(upper, across);
             const simd::words bucket = ((first & 0xffffU) + (first >> 16) * plan.across[0]) << bits;
-            simd::store_rows_of_four(&places_[begin + i].lower,
-                                     {lower, upper, bucket + (plan.whole(c[3 + Axis], Axis) >> (16 - bits)),
-                                      bucket + (plan.whole(c[Axis], Axis) >> (16 - bits))});
+            simd::store_rows_of_four(&quantized_[begin + i].lower,
+                                     {lower, upper, bucket + (plan.quantized(c[3 + Axis], Axis) >> (16 - bits)),
+                                      bucket + (plan.quantized(c[Axis], Axis) >> (16 - bits))});
             wide += simd::compress_store(&wide_[wide], simd::places() + static_cast<std::uint32_t>(begin + i),
                                          simd::bits(first != last) & present);
         });
@@ -110,22 +112,22 @@ private:
                                                  column_entry::begins_earlier(plan_.axis_across(1))};
         const std::uint32_t column = std::uint32_t{1} << bucket_bits_;
         const std::uint32_t row = plan_.across[0] << bucket_bits_;
-        const auto reached = [&](const place& p, int shift, std::size_t k) {
-            return ((p.upper >> shift & 0xffffU) * plan_.across[k] >> 16) -
-                   ((p.lower >> shift & 0xffffU) * plan_.across[k] >> 16);
+        const auto further_columns = [&](const quantized_box& b, int shift, std::size_t k) {
+            return ((b.upper >> shift & 0xffffU) * plan_.across[k] >> 16) -
+                   ((b.lower >> shift & 0xffffU) * plan_.across[k] >> 16);
         };
         std::array<copy, 64> buffer;
         std::size_t n = 0;
         const auto flush = [&] { copies_.insert(copies_.end(), buffer.begin(), buffer.begin() + std::exchange(n, 0)); };
         for (const std::uint32_t i : std::span(wide_).first(wide_boxes_)) {
-            const place p = places_[i];
-            const std::uint32_t nu = reached(p, 0, 0);
-            const std::uint32_t nv = reached(p, 16, 1);
+            const quantized_box b = quantized_[i];
+            const std::uint32_t nu = further_columns(b, 0, 0);
+            const std::uint32_t nv = further_columns(b, 16, 1);
             const auto add = [&](std::uint32_t u, std::uint32_t v, std::uint32_t times) {
                 const std::uint32_t buckets = u * column + v * row;
                 buffer[n] = {i | (u ? begins_earlier[0] : 0) | (v ? begins_earlier[1] : 0), buckets};
                 n += times;
-                ends_[p.bucket + buckets * times] += times;
+                ends_[b.bucket + buckets * times] += times;
             };
             if (nu <= 1 && nv <= 1) {
                 // Branch-free, since which of the three copies exist is hard to predict.
@@ -148,7 +150,7 @@ private:
 
     /// Turns counts into start indices and pads each column to a whole number of vectors.
     /// @returns the number of entries, including padding
-    std::uint32_t make_room() {
+    std::uint32_t allocate_columns() {
         const std::uint32_t columns = plan_.columns();
         const std::size_t most = block_.boxes.size() + copies_.size() + std::size_t{columns} * (width - 1);
         // Growth by a 16th instead of doubling: the number of entries changes little between frames.
@@ -172,33 +174,34 @@ private:
     /// Exclusive prefix sum over the buckets of a column.
     static std::uint32_t bucket_starts(std::uint32_t* counts, std::uint32_t buckets, std::uint32_t next) noexcept {
         for (std::uint32_t b = 0; b < buckets; b += width) {
-            const simd::words here = simd::load(counts + b);
-            const simd::words ends = simd::prefix_sum(here) + next;
-            simd::store(counts + b, ends - here);
+            const simd::words own = simd::load(counts + b);
+            const simd::words ends = simd::prefix_sum(own) + next;
+            simd::store(counts + b, ends - own);
             next = ends[width - 1];
         }
         return next;
     }
 
     /// Writes the entries; afterwards `ends_` holds the end of each bucket.
-    void distribute() {
+    void write_entries() {
         if (block_.ids.empty())
-            distribute([](std::uint32_t) { return std::uint32_t{0}; });
+            write_entries([](std::uint32_t) { return std::uint32_t{0}; });
         else
-            distribute([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_bits; });
+            write_entries([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_bits; });
     }
-    template <class LaterOn>
-    void distribute(LaterOn begins_earlier) {
+    /// @param group_bits returns the bits of `begins_earlier` that box i has in its group
+    template <class GroupBits>
+    void write_entries(GroupBits group_bits) {
         const auto boxes = static_cast<std::uint32_t>(block_.boxes.size());
         for (std::uint32_t i = 0; i < boxes; ++i) {
-            const place p = places_[i];
-            entries_[ends_[p.bucket]++] = {p.lower, p.upper, p.reach, i | begins_earlier(i)};
+            const quantized_box b = quantized_[i];
+            entries_[ends_[b.bucket]++] = {b.lower, b.upper, b.end_bucket, i | group_bits(i)};
         }
         for (const copy& c : copies_) {
             const std::uint32_t i = c.index & column_entry::index_bits;
-            const place p = places_[i];
-            entries_[ends_[p.bucket + c.buckets]++] = {p.lower, p.upper, p.reach + c.buckets,
-                                                       c.index | begins_earlier(i)};
+            const quantized_box b = quantized_[i];
+            entries_[ends_[b.bucket + c.buckets]++] = {b.lower, b.upper, b.end_bucket + c.buckets,
+                                                       c.index | group_bits(i)};
         }
     }
 
@@ -217,13 +220,14 @@ private:
             for (std::uint32_t i = begin; i < end; ++i) moved_.push_back(entries_[i]);
             for (std::uint32_t i = begin; i < end; ++i) {
                 entries_[i] = moved_[list_[i - begin].id - begin];
-                entries_[i].reach = i;
+                entries_[i].end_bucket = i;
                 const float upper = box_of(entries_[i]).max[plan_.axis];
                 ends_[i] = begin + static_cast<std::uint32_t>(
                                        std::ranges::upper_bound(list_, upper, {}, &projection::key) - list_.begin());
             }
             begin = (end + width - 1) / width * width;
-            for (std::uint32_t i = end; i < begin; ++i) entries_[i].reach = static_cast<std::uint32_t>(entries_.size());
+            for (std::uint32_t i = end; i < begin; ++i)
+                entries_[i].end_bucket = static_cast<std::uint32_t>(entries_.size());
         }
         ends_[entries_.size()] = 0;
     }
@@ -235,7 +239,7 @@ private:
     column_block block_{};
     column_plan plan_;
     std::uint32_t bucket_bits_ = 0;
-    std::vector<place> places_;                          // by box
+    std::vector<quantized_box> quantized_;               // by box
     std::array<std::uint32_t, at_a_time + width> wide_;  // boxes of the current block that overlap several columns
     std::size_t wide_boxes_ = 0;                         // number of boxes in `wide_`
     std::vector<copy> copies_;

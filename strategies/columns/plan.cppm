@@ -43,11 +43,11 @@ struct column_plan {
     }
 
     /// Quantizes a coordinate: monotone in x, and clamped to the range.
-    [[nodiscard]] inline std::uint32_t whole(float x, int k) const noexcept {
+    [[nodiscard]] inline std::uint32_t quantized(float x, int k) const noexcept {
         const float at = (x - origin[k]) * scale[k];
         return static_cast<std::uint32_t>(at > 0 ? std::min(at, 65'535.0F) : 0.0F);
     }
-    [[nodiscard, gnu::always_inline]] inline simd::words whole(simd::floats x, int k) const noexcept {
+    [[nodiscard, gnu::always_inline]] inline simd::words quantized(simd::floats x, int k) const noexcept {
         const simd::floats most = simd::all(65'535.0F);
         simd::floats at = (x - origin[k]) * scale[k];
         at = at > 0.0F ? at : simd::floats{};
@@ -60,8 +60,8 @@ struct column_plan {
 struct column_entry {
     std::uint32_t lower;
     std::uint32_t upper;
-    std::uint32_t reach;  ///< index into `column_block::ends` of the bucket in which the box ends along the column
-    std::uint32_t index;  ///< index of the box in the block; for the three highest bits, see `begins_earlier`
+    std::uint32_t end_bucket;  ///< index into `column_block::ends` of the bucket in which the box ends along the column
+    std::uint32_t index;       ///< index of the box in the block; for the three highest bits, see `begins_earlier`
 
     static constexpr std::uint32_t index_bits = (std::uint32_t{1} << 29) - 1;
     /// Set if the box begins in an earlier column on axis k. If both copies have it set, another column owns the pair.
@@ -86,7 +86,7 @@ struct column_block {
 
 /// The result of distributing boxes: it fails if a box is invalid, or if there are too many copies or too many boxes in
 /// one place.
-enum class fill_result : std::uint8_t { whole, invalid, crowded };
+enum class fill_result : std::uint8_t { complete, invalid, crowded };
 
 inline constexpr box everywhere{
     {std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest()},
@@ -119,15 +119,15 @@ inline void for_each_vector(std::span<const box> boxes, Visit visit) {
     return ~valid;
 }
 
-/// A partition into columns: `plan(boxes, within)` is the plan for boxes clipped to the bounds, `few()` is the
-/// brute-force threshold, `group(n)` is the size of a group in a scene of n boxes, and `threads()` is the number of
-/// threads that search groups.
+/// A partition into columns: `plan(boxes, within)` is the plan for boxes clipped to the bounds,
+/// `brute_force_threshold()` the greatest number of boxes that are tested by brute force, `group_size(n)` the size of a
+/// group in a scene of n boxes, and `threads()` the number of threads that search groups.
 template <class P>
 concept ColumnPartition =
     PartitionPolicy<P> && requires(const P policy, std::span<const box> boxes, const box& within) {
         { policy.plan(boxes, within) } -> std::same_as<column_plan>;
-        { policy.few() } -> std::same_as<std::size_t>;
-        { policy.group(boxes.size()) } -> std::same_as<std::size_t>;
+        { policy.brute_force_threshold() } -> std::same_as<std::size_t>;
+        { policy.group_size(boxes.size()) } -> std::same_as<std::size_t>;
         { policy.threads() } -> std::same_as<unsigned>;
     };
 

@@ -12,7 +12,7 @@ export namespace aabb {
 class static_frame {
 public:
     /// @returns whether no box has moved since the kept frame, so that `pairs` is still the result
-    [[nodiscard]] bool lasts(std::span<const box> boxes, const membership& objects) {
+    [[nodiscard]] bool is_still_valid(std::span<const box> boxes, const membership& objects) {
         const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;
         if (!boxes_.empty()) {
             if (same_objects && are_same(boxes, boxes_)) {
@@ -31,6 +31,7 @@ public:
         return false;
     }
 
+    /// Keeps a frame and its pairs if the sample was at rest.
     void keep(std::span<const box> boxes, std::span<const index_pair> pairs) {
         if (!is_to_be_kept_) return;
         pairs_.assign(pairs.begin(), pairs.end());
@@ -78,10 +79,11 @@ public:
         return simd::bits(invalid) == 0;
     }
 
+    /// Appends the overlapping pairs: tests each vector of boxes against itself and all boxes before it.
     template <CounterPolicy Counters>
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         const std::size_t n = group_.boxes.size();
-        met_.resize(n * vectors_.size());
+        overlaps_.resize(n * vectors_.size());
         std::size_t rows = 0;
         std::size_t tests = 0;
         for (std::size_t v = 0; v < vectors_.size(); ++v) {
@@ -91,7 +93,7 @@ public:
             const auto test = [&](std::size_t i, std::uint32_t wanted) {
                 const std::uint32_t lanes = vector.overlap_mask(group_.boxes[i]) & wanted;
                 // Stored without a branch, which would be hard to predict.
-                met_[rows] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(first), lanes};
+                overlaps_[rows] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(first), lanes};
                 rows += static_cast<std::size_t>(lanes != 0);
             };
             for (std::size_t i = 0; i < first; ++i) test(i, present);
@@ -100,10 +102,10 @@ public:
             tests += end;
         }
         counters.add(work::box_tests, width * tests);
-        report(std::span(met_).first(rows), pairs);
+        append_pairs(std::span(overlaps_).first(rows), pairs);
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(vectors_, met_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(vectors_, overlaps_); }
 
 private:
     static constexpr std::size_t width = simd::width;
@@ -113,9 +115,9 @@ private:
 
         /// Bit l is set if box l of the vector overlaps `b`.
         [[nodiscard, gnu::always_inline]] inline std::uint32_t overlap_mask(const box& b) const noexcept {
-            simd::flags met = (coordinates[0] <= b.max[0]) & (coordinates[3] >= b.min[0]);
-            for (int k = 1; k < 3; ++k) met &= (coordinates[k] <= b.max[k]) & (coordinates[3 + k] >= b.min[k]);
-            return simd::bits(met);
+            simd::flags overlapping = (coordinates[0] <= b.max[0]) & (coordinates[3] >= b.min[0]);
+            for (int k = 1; k < 3; ++k) overlapping &= (coordinates[k] <= b.max[k]) & (coordinates[3 + k] >= b.min[k]);
+            return simd::bits(overlapping);
         }
     };
     /// A box and the later boxes of one vector that it overlaps.
@@ -125,15 +127,15 @@ private:
         std::uint32_t lanes;
     };
 
-    void report(std::span<const lane_overlaps> rows, std::vector<index_pair>& pairs) const {
+    void append_pairs(std::span<const lane_overlaps> rows, std::vector<index_pair>& pairs) const {
         std::size_t next = pairs.size();
         std::size_t end = next;
-        for (const lane_overlaps& met : rows) end += static_cast<std::size_t>(std::popcount(met.lanes));
+        for (const lane_overlaps& row : rows) end += static_cast<std::size_t>(std::popcount(row.lanes));
         pairs.resize(end);
-        for (const lane_overlaps& met : rows)
-            for (std::uint32_t lanes = met.lanes; lanes != 0; lanes &= lanes - 1)
-                pairs[next++] = {id_of(met.box),
-                                 id_of(met.first + static_cast<std::uint32_t>(std::countr_zero(lanes)))};
+        for (const lane_overlaps& row : rows)
+            for (std::uint32_t lanes = row.lanes; lanes != 0; lanes &= lanes - 1)
+                pairs[next++] = {id_of(row.box),
+                                 id_of(row.first + static_cast<std::uint32_t>(std::countr_zero(lanes)))};
     }
 
     [[nodiscard]] std::uint32_t id_of(std::uint32_t place) const noexcept {
@@ -142,7 +144,7 @@ private:
 
     column_group group_{};
     std::vector<vector_of_boxes> vectors_;
-    std::vector<lane_overlaps> met_;
+    std::vector<lane_overlaps> overlaps_;
 };
 
 /// Broad phase that cuts before it sorts: boxes are put into columns unsorted. Large scenes are processed group by
@@ -166,12 +168,12 @@ public:
     /// @throws input_error as `global_search::update`.
     void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
         boxes_ = boxes;
-        is_static_ = static_frame_.lasts(boxes, objects);
+        is_static_ = static_frame_.is_still_valid(boxes, objects);
         if (is_static_) return;
         if (boxes.size() > column_entry::index_bits) throw input_error("columns take at most 536,870,911 objects");
-        select(boxes, objects);
+        select_present(boxes, objects);
         const std::size_t n = present_.boxes.size();
-        uses_brute_force_ = n <= partition_.few();
+        uses_brute_force_ = n <= partition_.brute_force_threshold();
         if (uses_brute_force_) {
             planned_ = 0;
             if (!batch_.fill(present_)) require_valid(boxes);
@@ -182,11 +184,12 @@ public:
         if (is_new_plan) planned_bounds_ = bounds;
         planned_ = 0;
         age_ = is_new_plan ? 0 : age_ + 1;
-        if (!cut(is_new_plan, counters)) require_valid(boxes);
+        if (!cut_boxes(is_new_plan, counters)) require_valid(boxes);
         planned_ = n;
         collect_counters(counters);
     }
 
+    /// Appends the overlapping pairs, by the way that `update` chose.
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         for (worker& w : workers_) w.own.times().clear();
         if (is_static_) {
@@ -228,7 +231,7 @@ public:
     }
     /// The share of the last search's time that belongs to the update: `search` also cuts and sorts the groups.
     [[nodiscard]] double share_of_update() const {
-        const double total = sum_of([](const worker& w) { return w.own.times().all(); });
+        const double total = sum_of([](const worker& w) { return w.own.times().total(); });
         return total > 0 ? sum_of([](const worker& w) { return w.own.times().cut(); }) / total : 0;
     }
     [[nodiscard]] std::size_t sort_bytes() const noexcept {
@@ -260,7 +263,8 @@ private:
         std::size_t end = 0;
     };
 
-    void select(std::span<const box> boxes, const membership& objects) {
+    /// Sets `present_`, with copies of the boxes only if some objects are absent.
+    void select_present(std::span<const box> boxes, const membership& objects) {
         present_ = {boxes, {}};
         if (objects.size() == boxes.size()) return;
         require_valid(boxes);
@@ -304,13 +308,14 @@ private:
         return false;
     }
 
+    /// Puts the boxes into groups, or into columns if these make no groups.
     /// @returns whether all boxes are valid.
-    [[nodiscard]] bool cut(bool is_new_plan, Counters& counters) {
+    [[nodiscard]] bool cut_boxes(bool is_new_plan, Counters& counters) {
         const auto plan = [&] {
             age_ = 0;
-            kept_plan planned = workers_.front().own.planned(partition_, present_, everywhere);
+            kept_plan planned = workers_.front().own.make_plan(partition_, present_, everywhere);
             const std::size_t n = present_.boxes.size();
-            const double by_size = static_cast<double>(n) / static_cast<double>(partition_.group(n));
+            const double by_size = static_cast<double>(n) / static_cast<double>(partition_.group_size(n));
             planned.plan.groups = std::max(planned.plan.groups, by_size);
             return planned;
         };
@@ -319,8 +324,8 @@ private:
             cut_.in_groups = false;
         }
         const fill_result result = put_into_groups(present_, cut_, plan, groups_, threads_);
-        if (result == fill_result::whole) counters.add(work::moves, groups_.copies());
-        if (result != fill_result::crowded) return result == fill_result::whole;
+        if (result == fill_result::complete) counters.add(work::moves, groups_.copies());
+        if (result != fill_result::crowded) return result == fill_result::complete;
         groups_.clear();
         auto& own = workers_.front().own;
         if (!own.fill(partition_, present_, everywhere, cut_.columns)) return false;
@@ -328,6 +333,7 @@ private:
         return true;
     }
 
+    /// Searches all groups. Each thread takes the next group when it is done with one, which balances the load.
     void search_groups(std::vector<index_pair>& pairs) {
         if (threads_.count() == 1) {
             for (std::uint32_t g = 0; g < groups_.size(); ++g) search_group(g, workers_.front(), pairs);
@@ -352,11 +358,11 @@ private:
                 if (number > 0) group_pairs_[g] = {number, begin, to.size()};
             }
         });
-        collect(pairs);
+        append_worker_pairs(pairs);
     }
 
     /// Appends the pairs of the other workers by group, so that their order does not depend on the scheduling.
-    void collect(std::vector<index_pair>& pairs) {
+    void append_worker_pairs(std::vector<index_pair>& pairs) {
         std::size_t total = pairs.size();
         for (const worker& w : workers_) total += w.pairs.size();
         if (total > pairs.capacity()) pairs.reserve(std::max(total, 2 * pairs.capacity()));
@@ -371,6 +377,7 @@ private:
         w.own.search(partition_, groups_.group(g), groups_.region(g, everywhere), cut_.groups[g], pairs);
     }
 
+    /// Moves the counts of the workers to the search's own.
     void collect_counters(Counters& counters) {
         if constexpr (Counters::enabled)
             for (worker& w : workers_) {

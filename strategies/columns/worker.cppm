@@ -60,8 +60,8 @@ template <class Plan>
     fill_result result = distribute(std::numeric_limits<std::size_t>::max());
     if (result == fill_result::invalid) return result;
     const auto n = static_cast<double>(boxes.boxes.size());
-    if (result == fill_result::whole && 8 * groups.pairs() > 7 * n * n) result = fill_result::crowded;
-    if (result == fill_result::whole)
+    if (result == fill_result::complete && 8 * groups.pairs() > 7 * n * n) result = fill_result::crowded;
+    if (result == fill_result::complete)
         kept.begin_groups(groups.fullest());
     else
         kept.columns.plan.groups = 1;
@@ -74,7 +74,7 @@ class phase_times {
 public:
     /// Calls both functions and may time them.
     template <class Cut, class Sweep>
-    void add(std::size_t boxes, const Cut& cut, const Sweep& sweep) {
+    void run(std::size_t boxes, const Cut& cut, const Sweep& sweep) {
         untimed_ += boxes;
         if (untimed_ < least_timed) return cut(), sweep();
         const auto begin = clock::now();
@@ -87,7 +87,7 @@ public:
     }
     void clear() noexcept { cut_ = sweep_ = 0; }
     [[nodiscard]] double cut() const noexcept { return cut_; }
-    [[nodiscard]] double all() const noexcept { return cut_ + sweep_; }
+    [[nodiscard]] double total() const noexcept { return cut_ + sweep_; }
 
 private:
     using clock = std::chrono::steady_clock;
@@ -109,7 +109,7 @@ public:
     column_worker(Sort sort, Sweep sweep) : sort_(std::move(sort)), sweep_(std::move(sweep)) {}
 
     /// A new plan for a group of boxes, clipped to the bounds.
-    [[nodiscard]] static kept_plan planned(const Partition& partition, const column_group& group, const box& within) {
+    [[nodiscard]] static kept_plan make_plan(const Partition& partition, const column_group& group, const box& within) {
         return {partition.plan(group.boxes, within), false, 0};
     }
 
@@ -117,22 +117,23 @@ public:
     void search(const Partition& partition, const column_group& group, const box& within, cut_plan& kept,
                 std::vector<index_pair>& pairs, std::size_t depth = 0) {
         if (group.boxes.size() < 2) return count(1, group.boxes.size());
-        const auto plan = [&] { return planned(partition, group, within); };
+        const auto plan = [&] { return make_plan(partition, group, within); };
         if (!kept.is_planned()) kept.columns = plan();
         if (kept.in_groups || kept.columns.plan.groups > 1) {
             while (levels_.size() <= depth) levels_.emplace_back();
             column_groups& groups = levels_[depth];
-            worker_threads alone(1);
+            worker_threads single_thread(1);
             fill_result filled{};
-            times_.add(group.boxes.size(), [&] { filled = put_into_groups(group, kept, plan, groups, alone); }, [] {});
-            if (filled == fill_result::whole) {
+            times_.run(
+                group.boxes.size(), [&] { filled = put_into_groups(group, kept, plan, groups, single_thread); }, [] {});
+            if (filled == fill_result::complete) {
                 counters_.add(work::moves, groups.copies());
                 for (std::uint32_t g = 0; g < groups.size(); ++g)
                     search(partition, groups.group(g), groups.region(g, within), kept.groups[g], pairs, depth + 1);
                 return;
             }
         }
-        times_.add(
+        times_.run(
             group.boxes.size(), [&] { static_cast<void>(fill(partition, group, within, kept.columns)); },
             [&] { sweep(partition, group, within, kept.columns, pairs); });
         count(0, copies());
@@ -145,9 +146,9 @@ public:
             const fill_result result = columns_.fill(group.boxes, group.ids, kept.plan, kept.by_keys,
                                                      most_copies(group.boxes.size()), sort_, counters_);
             if (result == fill_result::invalid) return false;
-            if (result == fill_result::whole) break;
+            if (result == fill_result::complete) break;
             if (kept.most_tests > 0)
-                kept = planned(partition, group, within);
+                kept = make_plan(partition, group, within);
             else
                 kept.plan.across = {1, 1};
         }
@@ -173,7 +174,7 @@ public:
             }
             pairs.resize(before);
             is_filled_ = false;
-            kept = is_new ? kept_plan{kept.plan, true, 0} : planned(partition, group, within);
+            kept = is_new ? kept_plan{kept.plan, true, 0} : make_plan(partition, group, within);
         }
     }
 

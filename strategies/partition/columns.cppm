@@ -67,8 +67,8 @@ public:
             const int u = candidate.axis_across(0);
             const int v = candidate.axis_across(1);
             if (!seen.varies(axis) && (seen.varies(u) || seen.varies(v))) continue;
-            const double most_u = most(seen, u, config_.axes > 0);
-            const double most_v = most(seen, v, config_.axes > 1);
+            const double most_u = most_columns_on(seen, u, config_.axes > 0);
+            const double most_v = most_columns_on(seen, v, config_.axes > 1);
             for (const std::uint32_t nu : numbers) {
                 if (nu > most_u) break;
                 for (const std::uint32_t nv : numbers) {
@@ -84,17 +84,16 @@ public:
         }
         best.fit(seen.bounds);
         best.most_along = static_cast<std::uint32_t>(
-            std::min(most(seen, best.axis, true) / columns_per_extent, double{most_columns}));
+            std::min(most_columns_on(seen, best.axis, true) / columns_per_extent, double{most_columns}));
         // A group of fewer boxes than a plan samples is not worth its own plan.
         if (!config_.group && are_clustered(seen, best, boxes.size(), least))
             best.groups = std::clamp(static_cast<double>(boxes.size()) / samples, 4.0, double{most_groups});
         return best;
     }
 
-    /// The brute-force threshold.
-    [[nodiscard]] std::size_t few() const noexcept { return config_.few.value_or(4 * simd::width); }
+    [[nodiscard]] std::size_t brute_force_threshold() const noexcept { return config_.few.value_or(4 * simd::width); }
     /// The approximate size of a group in a scene of this many boxes.
-    [[nodiscard]] std::size_t group(std::size_t boxes) const noexcept {
+    [[nodiscard]] std::size_t group_size(std::size_t boxes) const noexcept {
         if (config_.group) return std::min(boxes, std::size_t{*config_.group});
         return boxes <= 40'000 ? boxes : std::max(std::size_t{9'000}, boxes / std::size_t{most_groups});
     }
@@ -133,6 +132,7 @@ private:
         [[nodiscard]] box kept_box(std::size_t i) const {
             return {{ends[0][i], ends[1][i], ends[2][i]}, {ends[3][i], ends[4][i], ends[5][i]}};
         }
+        /// Adds the extents of a box and their products to the sums, from which the means are computed.
         void add_extents(const box& b) {
             vec3d e{};
             for (int k = 0; k < 3; ++k) e[k] = std::max(0.0, double{b.max[k]} - double{b.min[k]});
@@ -160,7 +160,7 @@ private:
             random = random * 6364136223846793005U + 1442695040888963407U;
             const std::size_t i = begin + (random >> 33U) % step;
             if (i >= boxes.size()) break;
-            const box b = common(boxes[i], within);
+            const box b = clipped(boxes[i], within);
             for (int k = 0; k < 3; ++k) {
                 ends[static_cast<std::size_t>(k)][count] = b.min[k];
                 ends[static_cast<std::size_t>(3 + k)][count] = b.max[k];
@@ -179,7 +179,7 @@ private:
             // Parts of boxes outside the bounds belong to the columns at the border, however large they are.
             seen.extent = seen.product = {};
             seen.volume = 0;
-            for (std::size_t i = 0; i < seen.kept; ++i) seen.add_extents(common(seen.kept_box(i), seen.bounds));
+            for (std::size_t i = 0; i < seen.kept; ++i) seen.add_extents(clipped(seen.kept_box(i), seen.bounds));
             count = seen.kept;
         }
         const auto n = static_cast<double>(count);
@@ -224,7 +224,7 @@ private:
 
     /// Clips a box. NaN, which would break `nth_element`, becomes a bound; invalid boxes are detected later, when they
     /// are put into columns.
-    [[nodiscard]] static box common(const box& b, const box& within) {
+    [[nodiscard]] static box clipped(const box& b, const box& within) {
         box c = b;
         for (int k = 0; k < 3; ++k) {
             c.min[k] = std::min(std::max(within.min[k], b.min[k]), within.max[k]);
@@ -234,7 +234,7 @@ private:
     }
 
     /// The greatest useful number of columns on an axis; narrower ones gain nothing.
-    [[nodiscard]] static double most(const sample& seen, int k, bool cut) {
+    [[nodiscard]] static double most_columns_on(const sample& seen, int k, bool cut) {
         if (!cut || !seen.varies(k)) return 1;
         return seen.extent[k] > 0 ? std::max(1.0, columns_per_extent * seen.width(k) / seen.extent[k]) : numbers.back();
     }
@@ -264,17 +264,18 @@ private:
         simd::words first, last;   ///< column numbers, packed like the coordinates in `lower`
         simd::words begin, end;    ///< bucket numbers
 
-        void fill(const sample& seen, std::size_t at, const column_plan& plan, std::uint32_t bucket_bits) {
-            for (std::size_t k = 0; k < 6; ++k) std::memcpy(&ends[k], &seen.ends[k][at], sizeof ends[k]);
+        /// Quantizes the sampled boxes from index `first` on.
+        void fill(const sample& seen, std::size_t first_box, const column_plan& plan, std::uint32_t bucket_bits) {
+            for (std::size_t k = 0; k < 6; ++k) std::memcpy(&ends[k], &seen.ends[k][first_box], sizeof ends[k]);
             const int u = plan.axis_across(0);
             const int v = plan.axis_across(1);
             const simd::words across = simd::all(plan.across[0] | plan.across[1] << 16);
-            lower = plan.whole(ends[u], u) | plan.whole(ends[v], v) << 16;
-            upper = plan.whole(ends[3 + u], u) | plan.whole(ends[3 + v], v) << 16;
+            lower = plan.quantized(ends[u], u) | plan.quantized(ends[v], v) << 16;
+            upper = plan.quantized(ends[3 + u], u) | plan.quantized(ends[3 + v], v) << 16;
             first = simd::high_products(lower, across);
             last = simd::high_products(upper, across);
-            begin = plan.whole(ends[plan.axis], plan.axis) >> (16 - bucket_bits);
-            end = plan.whole(ends[3 + plan.axis], plan.axis) >> (16 - bucket_bits);
+            begin = plan.quantized(ends[plan.axis], plan.axis) >> (16 - bucket_bits);
+            end = plan.quantized(ends[3 + plan.axis], plan.axis) >> (16 - bucket_bits);
         }
 
         /// Bit l is set if box l shares a column, and a range of buckets in it, with the other box.

@@ -32,7 +32,9 @@ public:
               std::numeric_limits<std::uint64_t>::max(), counters);
     }
 
-    /// Sweeps columns.
+    /// Sweeps columns, a vector of entries at a time.
+    /// @param most the sweep stops early after this many vector tests
+    /// @returns the number of vector tests
     template <CounterPolicy Counters>
     std::uint64_t sweep(const column_block& block, std::vector<index_pair>& pairs, std::uint64_t most,
                         Counters& counters) {
@@ -45,7 +47,7 @@ public:
         std::size_t window = 0;  // the entry from which vectors are numbered
         for (std::size_t first = 0; first < n && tests <= most; first += width) {
             if (candidate_count_ > enough || first - window >= most_vectors * width) {
-                report(block, window, pairs);
+                append_overlapping(block, window, pairs);
                 window = first;
             }
             // Reserve space for all candidates that this vector may add.
@@ -56,7 +58,7 @@ public:
             active = test_active(block, vector, number, first, active);
             test_within(block, vector, number, first);
         }
-        report(block, window, pairs);
+        append_overlapping(block, window, pairs);
         counters.add(work::box_tests, width * tests);
         return tests;
     }
@@ -103,8 +105,8 @@ private:
     }
 
     /// Stores the entries that may overlap any lane as candidates, branch-free since that is hard to predict.
-    inline void keep(simd::words entries, std::uint32_t present, const lane_overlaps& met, simd::words lanes,
-                     std::uint32_t vector) noexcept {
+    inline void keep_candidates(simd::words entries, std::uint32_t present, const lane_overlaps& met, simd::words lanes,
+                                std::uint32_t vector) noexcept {
         const simd::words overlapped = simd::load_halves(met.data()) & lanes;
         const std::uint32_t any = simd::bits(overlapped != 0U) & present;
         simd::compress_store(&candidates_[candidate_count_], entries, any);
@@ -126,11 +128,11 @@ private:
         for (std::size_t q = 0; q < active; q += width) {
             const simd::words entries = simd::load(&active_[q]);
             const simd::words ends = simd::load(&active_ends_[q]);
-            const std::size_t here = std::min(width, active - q);
-            for (std::size_t l = 0; l < here; ++l)
+            const std::size_t count = std::min(width, active - q);
+            for (std::size_t l = 0; l < count; ++l)
                 met[l] = static_cast<std::uint16_t>(vector.overlap_mask(block.entries[active_[q + l]]));
-            const std::uint32_t present = simd::lanes_below(here);
-            keep(entries, present, met, simd::lanes_below(ends - static_cast<std::uint32_t>(first)), number);
+            const std::uint32_t present = simd::lanes_below(count);
+            keep_candidates(entries, present, met, simd::lanes_below(ends - static_cast<std::uint32_t>(first)), number);
             take(entries, ends, present);
         }
         take(simd::places() + static_cast<std::uint32_t>(first), vector.ends, simd::every_lane);
@@ -146,11 +148,11 @@ private:
 #pragma clang loop unroll(full)
         for (std::size_t l = 0; l + 1 < width; ++l)
             met[l] = static_cast<std::uint16_t>(vector.overlap_mask(block.entries[first + l]));
-        keep(simd::places() + static_cast<std::uint32_t>(first), simd::every_lane, met, lanes, number);
+        keep_candidates(simd::places() + static_cast<std::uint32_t>(first), simd::every_lane, met, lanes, number);
     }
 
     /// Tests the candidates exactly and appends the overlapping pairs.
-    void report(const column_block& block, std::size_t window, std::vector<index_pair>& pairs) {
+    void append_overlapping(const column_block& block, std::size_t window, std::vector<index_pair>& pairs) {
         std::size_t next = pairs.size();
         std::size_t most = next;
         for (std::size_t c = 0; c < candidate_count_; ++c)
@@ -189,9 +191,9 @@ private:
         for (std::size_t i = 0; i < list.size(); ++i) {
             const box& b = subset.boxes[list[i].id];
             const axis_set begins_earlier = every_axis & ~Subset::owned(list[i]);
-            entries_[i] = {plan.whole(b.min[u], u) | plan.whole(b.min[v], v) << 16,
-                           plan.whole(b.max[u], u) | plan.whole(b.max[v], v) << 16, static_cast<std::uint32_t>(i),
-                           list[i].id | begins_earlier << 29};
+            entries_[i] = {plan.quantized(b.min[u], u) | plan.quantized(b.min[v], v) << 16,
+                           plan.quantized(b.max[u], u) | plan.quantized(b.max[v], v) << 16,
+                           static_cast<std::uint32_t>(i), list[i].id | begins_earlier << 29};
             const auto begins_within = [&](const auto& e) {
                 return subset.boxes[e.id].min[plan.axis] <= b.max[plan.axis];
             };

@@ -454,10 +454,10 @@ TEST_CASE("whole numbers rise with what they stand for, and are the same one by 
         std::ranges::sort(at);
         std::uint32_t before = 0;
         for (const float x : at) {
-            const std::uint32_t here = plan.whole(x, 0);
+            const std::uint32_t here = plan.quantized(x, 0);
             RC_ASSERT(here >= before);
             RC_ASSERT(here <= 65'535U);
-            RC_ASSERT(plan.whole(simd::all(x), 0)[0] == here);
+            RC_ASSERT(plan.quantized(simd::all(x), 0)[0] == here);
             before = here;
         }
     }));
