@@ -41,12 +41,14 @@ public:
 
     /// @param exponent that of this law, passed in so that repeated calls compute it once
     /// @param frames at least 1
-    [[nodiscard]] double after(std::size_t frames, double exponent) const noexcept {
+    [[nodiscard]] double displacement_after(std::size_t frames, double exponent) const noexcept {
         return farthest_ * std::pow(static_cast<double>(frames) / static_cast<double>(age_), exponent);
     }
-    [[nodiscard]] double after(std::size_t frames) const noexcept { return after(frames, exponent()); }
+    [[nodiscard]] double displacement_after(std::size_t frames) const noexcept {
+        return displacement_after(frames, exponent());
+    }
     /// The age at which the displacement reaches a distance; infinite if it never does.
-    [[nodiscard]] double until(double distance) const noexcept {
+    [[nodiscard]] double age_at(double distance) const noexcept {
         return static_cast<double>(age_) * std::pow(distance / farthest_, 1 / exponent());
     }
 

@@ -11,10 +11,10 @@ export namespace aabb {
 /// Then a sample of boxes is watched for eight frames, repeatedly with a rest in between, until a list may be worth it.
 class list_backoff {
 public:
-    [[nodiscard]] bool lasts() const noexcept { return left_ > 0; }
+    [[nodiscard]] bool is_active() const noexcept { return left_ > 0; }
 
     void begin(std::size_t boxes) noexcept {
-        left_ = std::max(next_, rest(boxes)) + motion_sample::longest;
+        left_ = std::max(next_, frames_between_samples(boxes)) + motion_sample::longest;
         next_ = std::min(2 * next_, longest);
     }
     /// Begins by watching a sample of boxes from this frame on.
@@ -26,8 +26,9 @@ public:
     /// far for any list, so does the whole scene, and the rest of the eight frames is skipped.
     /// @param outlook estimates; its law is that of the sample
     /// @param drawn as in `draw_id`
-    /// @returns whether all eight frames were in vain; another sample is watched next
-    bool pass(std::span<const box> boxes, const membership& objects, list_estimate& estimate, std::uint32_t& drawn) {
+    /// @returns whether all eight frames passed without a list; another sample is watched next
+    bool advance_frame(std::span<const box> boxes, const membership& objects, list_estimate& estimate,
+                       std::uint32_t& drawn) {
         --left_;
         const unsigned age = motion_sample::longest - std::min(left_, motion_sample::longest);
         if (std::has_single_bit(age) && !move_too_far_) {
@@ -39,15 +40,15 @@ public:
             }
             move_too_far_ = plan.is_hopeless();
         }
-        const bool in_vain = left_ == 0;
-        if (in_vain) left_ = motion_sample::longest + rest(objects.size());
+        const bool has_failed = left_ == 0;
+        if (has_failed) left_ = motion_sample::longest + frames_between_samples(objects.size());
         if (left_ == motion_sample::longest) {
             estimate.resample(boxes, objects, drawn);
             estimate.law.forget();
             sample_.keep(boxes, drawn);
             move_too_far_ = false;
         }
-        return in_vain;
+        return has_failed;
     }
 
 private:
@@ -56,7 +57,7 @@ private:
 
     /// The number of frames between samples. Watching a sample for eight frames takes about as long as searching 70
     /// boxes, whatever the size of the scene, and is to cost about a twentieth of the searches meanwhile.
-    [[nodiscard]] static unsigned rest(std::size_t boxes) noexcept {
+    [[nodiscard]] static unsigned frames_between_samples(std::size_t boxes) noexcept {
         return 1400 / static_cast<unsigned>(std::max<std::size_t>(boxes, 1));
     }
 

@@ -52,13 +52,13 @@ public:
         }
     }
 
-    [[nodiscard]] double at(double margin) const {
-        const double by = 4 * margin;
-        return sum_[0] > 0 ? 1 + by * (sum_[1] + by * (sum_[2] + by * sum_[3])) / sum_[0] : 1;
+    [[nodiscard]] double factor(double margin) const {
+        const double x = 4 * margin;
+        return sum_[0] > 0 ? 1 + x * (sum_[1] + x * (sum_[2] + x * sum_[3])) / sum_[0] : 1;
     }
     /// The share of the overlapping pairs that overlap by more than two margins.
-    [[nodiscard]] double certain(double margin) const {
-        return 8 * margin < longest_margin_ ? std::max(at(-margin), 0.0) : 0;
+    [[nodiscard]] double certain_share(double margin) const {
+        return 8 * margin < longest_margin_ ? std::max(factor(-margin), 0.0) : 0;
     }
     /// Four mean extents; beyond that the model is not reliable.
     [[nodiscard]] double longest_margin() const { return longest_margin_; }
@@ -91,15 +91,15 @@ struct list_estimate {
         growth = growth_of_pairs(draw_boxes(boxes_by_id, objects, drawn, sample));
     }
     /// The estimated number of pairs in a list with this margin.
-    [[nodiscard]] double listed(double margin) const {
-        return static_cast<double>(pairs + 1) * (1 + correction * (growth.at(margin) - 1));
+    [[nodiscard]] double listed_pairs(double margin) const {
+        return static_cast<double>(pairs + 1) * (1 + correction * (growth.factor(margin) - 1));
     }
     /// Learns the correction from a finished list. Adding one damps the ratio of small counts; the lower bound keeps a
     /// sample that overestimates the growth from predicting nearly empty lists for other margins.
-    void learn(double margin, std::size_t listed_pairs) {
+    void learn(double margin, std::size_t listed) {
         constexpr double least = 0.3;
-        const double estimate = static_cast<double>(pairs + 1) * (growth.at(margin) - 1);
-        const double excess = listed_pairs < pairs ? 0 : static_cast<double>(listed_pairs - pairs);
+        const double estimate = static_cast<double>(pairs + 1) * (growth.factor(margin) - 1);
+        const double excess = listed < pairs ? 0 : static_cast<double>(listed - pairs);
         correction = std::max(least, (excess + 1) / (estimate + 1));
     }
 };
@@ -154,18 +154,18 @@ inline constexpr double worth_a_list = 0.9;
 [[nodiscard]] inline bool is_shortening_worth_it(std::size_t boxes, std::size_t pairs, std::size_t tested,
                                                  std::size_t frames, const cost_model& cost = machine_costs()) {
     const auto n = static_cast<double>(boxes);
-    const double once = static_cast<double>(tested) * cost.test_pair;
-    // Each pair is tested twice: whether it stays listed, and whether it is sure.
-    const double shortened = n * cost.keep_box + 2 * once;
+    const double one_round = static_cast<double>(tested) * cost.test_pair;
+    // Each pair is tested twice: whether it stays listed, and whether it is certain.
+    const double shortened = n * cost.keep_box + 2 * one_round;
     const double made_sooner = n * cost.keep_box + cost_of_search(n, static_cast<double>(pairs), cost);
-    return once / 2 * static_cast<double>(frames) > shortened + made_sooner;
+    return one_round / 2 * static_cast<double>(frames) > shortened + made_sooner;
 }
 
-/// Whether it is worth its cost to find the sure pairs of a list, which later frames then do not test. Finding them
+/// Whether it is worth its cost to find the certain pairs of a list, which later frames then do not test. Finding them
 /// takes as long as two tests of each pair.
 [[nodiscard]] inline bool is_marking_worth_it(const list_estimate& estimate, std::size_t listed, double margin) {
-    const double certain = static_cast<double>(estimate.pairs) * estimate.growth.certain(margin);
-    const double frames_left = estimate.law.until(margin) - static_cast<double>(estimate.law.age());
+    const double certain = static_cast<double>(estimate.pairs) * estimate.growth.certain_share(margin);
+    const double frames_left = estimate.law.age_at(margin) - static_cast<double>(estimate.law.age());
     return certain * frames_left > 2 * static_cast<double>(listed);
 }
 
@@ -179,15 +179,15 @@ inline constexpr double worth_a_list = 0.9;
     list_plan best;
     const std::size_t frames_left = estimate.horizon.frames_left;
     if (estimate.law.age() == 0 || frames_left < 2) return best;
-    const double search = cost_of_search(n, estimate.listed(0), cost);
+    const double search = cost_of_search(n, estimate.listed_pairs(0), cost);
     const double exponent = estimate.law.exponent();
     // Numbers of served frames after the one that makes the list: 1, 2, 3, 4, 6, 8, 12, …, up to all remaining frames.
     for (std::size_t after = 1, next = 2; after < longest;
          after = std::exchange(next, next + std::bit_floor(next) / 2)) {
         after = std::min(after, frames_left - 1);
-        const double margin = estimate.law.after(after, exponent);
+        const double margin = estimate.law.displacement_after(after, exponent);
         if (!(margin <= estimate.growth.longest_margin())) break;
-        const double listed = estimate.listed(margin);
+        const double listed = estimate.listed_pairs(margin);
         const double served = cost_of_service(n, listed, cost) / search;
         if (served >= std::min(best.cost, worth)) break;
         const double making = cost_of_making(n, listed, cost) / static_cast<double>(after + 1) +

@@ -21,15 +21,15 @@ enum class state : std::uint8_t {
 };
 
 /// What the boxes of the current frame show about the kept ones.
-enum class sight : std::uint8_t {
-    as_before,  ///< the kept pairs are still complete; without kept pairs, no list is worth its cost yet
-    settled,    ///< the kept pairs are still complete, and boxes have stopped moving
-    changed,    ///< the kept pairs may be incomplete; without kept pairs, a list may be worth its cost
-    arrival     ///< an object has been inserted
+enum class observation : std::uint8_t {
+    complete,  ///< the kept pairs are still complete; without kept pairs, no list is worth its cost yet
+    settled,   ///< the kept pairs are still complete, and boxes have stopped moving
+    changed,   ///< the kept pairs may be incomplete; without kept pairs, a list may be worth its cost
+    arrival    ///< an object has been inserted
 };
 
 /// How the pairs of the current frame are computed.
-enum class step : std::uint8_t {
+enum class action : std::uint8_t {
     search,  ///< search the boxes as they are
     keep,    ///< search them and keep their pairs until a box moves, to measure how far it moves
     plan,    ///< plan a new list, or the next frames without one
@@ -38,12 +38,12 @@ enum class step : std::uint8_t {
     settle   ///< report the listed pairs that overlap, and keep only these
 };
 
-/// Transition table, indexed by state and sight.
-constexpr step steps[5][4]{{step::plan, step::plan, step::plan, step::plan},
-                           {step::search, step::search, step::keep, step::search},
-                           {step::search, step::search, step::plan, step::plan},
-                           {step::repeat, step::repeat, step::plan, step::keep},
-                           {step::serve, step::settle, step::plan, step::plan}};
+/// The action of a frame, by state and observation.
+constexpr action actions[5][4]{{action::plan, action::plan, action::plan, action::plan},
+                               {action::search, action::search, action::keep, action::search},
+                               {action::search, action::search, action::plan, action::plan},
+                               {action::repeat, action::repeat, action::plan, action::keep},
+                               {action::serve, action::settle, action::plan, action::plan}};
 
 class neighbour_list_stage final : public global_stage {
 public:
@@ -79,15 +79,15 @@ public:
             state_ = state::nothing;
             search_->update(boxes);
         } else {
-            const sight seen = look(boxes, any_arrivals);
-            switch (steps[static_cast<std::size_t>(state_)][static_cast<std::size_t>(seen)]) {
-                case step::search: search_->update(boxes); break;
-                case step::keep: keep(boxes, {0, 0}); break;
+            const observation seen = observe_motion(boxes, any_arrivals);
+            switch (actions[static_cast<std::size_t>(state_)][static_cast<std::size_t>(seen)]) {
+                case action::search: search_->update(boxes); break;
+                case action::keep: start_list(boxes, {0, 0}); break;
                 // Objects inserted since the boxes were kept have no valid kept box, so their motion is unknown.
-                case step::plan: plan(boxes, seen == sight::changed && age_ > 0 && !any_arrivals); break;
-                case step::repeat: has_rested_ = true; break;
-                case step::serve: serve(boxes); break;
-                case step::settle: settle(boxes); break;
+                case action::plan: plan(boxes, seen == observation::changed && age_ > 0 && !any_arrivals); break;
+                case action::repeat: has_rested_ = true; break;
+                case action::serve: serve(boxes); break;
+                case action::settle: settle(boxes); break;
             }
         }
         ++frames_;
@@ -99,13 +99,13 @@ public:
         require_ieee_arithmetic();
         const std::size_t before = pairs.size();
         const bool searches = is_list_pending_ || state_ <= state::watching;
-        if (is_list_pending_) search_->search(list_.begin());
+        if (is_list_pending_) search_->search(list_.begin_search());
         is_list_pending_ = false;
         switch (state_) {
             case state::nothing:
             case state::searching:
             case state::watching: search_->search(pairs); break;
-            case state::resting: pairs.insert(pairs.end(), list_.whole().begin(), list_.whole().end()); break;
+            case state::resting: pairs.insert(pairs.end(), list_.pairs().begin(), list_.pairs().end()); break;
             case state::listing:
                 append_or_restore(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, certain_pairs_hold())); });
                 break;
@@ -163,7 +163,7 @@ private:
     [[nodiscard]] bool is_below_list_threshold() const noexcept {
         return is_adaptive() && objects_.size() < fewest_boxes;
     }
-    /// Whether the pairs marked as sure are guaranteed to overlap in this frame.
+    /// Whether the pairs marked as certain are guaranteed to overlap in this frame.
     [[nodiscard]] bool certain_pairs_hold() const noexcept { return moved_.in_both_directions <= margin_; }
 
     /// An arrival ends every list. The next one is expected after the interval between the last two, or is overdue.
@@ -178,41 +178,43 @@ private:
                              .in_new_memory = grown_.capacity() == 0};
     }
 
-    [[nodiscard]] sight look(std::span<const box> boxes, bool any_arrivals) {
-        if (state_ == state::nothing) return sight::changed;
+    /// Measures how far boxes have moved since they were kept, and what that means for the kept pairs.
+    [[nodiscard]] observation observe_motion(std::span<const box> boxes, bool any_arrivals) {
+        if (state_ == state::nothing) return observation::changed;
         if (state_ == state::searching) return observe_sample(boxes);
         if (any_arrivals || boxes.size() != kept_.size())
             // An object inserted among resting boxes does not make them move.
-            return state_ == state::resting && !has_rested_ ? sight::changed : sight::arrival;
+            return state_ == state::resting && !has_rested_ ? observation::changed : observation::arrival;
         if (state_ == state::resting && std::memcmp(boxes.data(), kept_.data(), boxes.size_bytes()) == 0)
-            return sight::as_before;
+            return observation::complete;
         ++age_;
         // While watching no result depends on the motion, so it is measured at power-of-two ages only.
-        if (state_ == state::watching && !std::has_single_bit(age_)) return sight::as_before;
+        if (state_ == state::watching && !std::has_single_bit(age_)) return observation::complete;
         const bool is_due = config_.every > 0 && age_ >= config_.every;
-        if (config_.every > 0 && config_.margin) return is_due ? sight::changed : sight::as_before;
+        if (config_.every > 0 && config_.margin) return is_due ? observation::changed : observation::complete;
         const relative_motion before = std::exchange(moved_, motion_between(kept_, boxes, objects_));
         estimate_.law.observe(age_, moved_.margin);
-        if (config_.every > 0) return is_due ? sight::changed : sight::as_before;
-        if (state_ != state::listing || moved_.margin > margin_) return sight::changed;
-        if (!is_adaptive()) return sight::as_before;
+        if (config_.every > 0) return is_due ? observation::changed : observation::complete;
+        if (state_ != state::listing || moved_.margin > margin_) return observation::changed;
+        if (!is_adaptive()) return observation::complete;
         if (age_ == age_when_made_ + 1 && !is_list_worth_it(objects_.size(), estimate_.pairs, list_.size())) {
             planned_ = 0;  // the list ends because of its length, not because boxes moved too far
-            return sight::changed;
+            return observation::changed;
         }
         // Boxes at rest keep the same motion bit for bit; boxes that fall together differ by rounding errors.
-        return age_ > 1 && moved_ == before ? sight::settled : sight::as_before;
+        return age_ > 1 && moved_ == before ? observation::settled : observation::complete;
     }
 
-    [[nodiscard]] sight observe_sample(std::span<const box> boxes) {
-        if (!backoff_.lasts()) return sight::changed;
-        if (backoff_.pass(boxes, objects_, estimate_, drawn_)) {
+    /// Watches a sample during a back-off, whose end may allow a list again.
+    [[nodiscard]] observation observe_sample(std::span<const box> boxes) {
+        if (!backoff_.is_active()) return observation::changed;
+        if (backoff_.advance_frame(boxes, objects_, estimate_, drawn_)) {
             estimate_.correction = 1;  // learned from lists that are too old to predict the next one
             release(kept_);
             release(grown_);
             list_.release();
         }
-        return backoff_.lasts() ? sight::as_before : sight::changed;
+        return backoff_.is_active() ? observation::complete : observation::changed;
     }
 
     /// Whether even half of the estimated list would not be worth its cost. A sampled count guards against scenes in
@@ -260,11 +262,13 @@ private:
         // but not relative to those of this frame, which may be at an extreme of the oscillation.
         constexpr double random_walk = 0.5;
         if (best.frames > 1 && has_ended && estimate_.law.exponent() < random_walk)
-            next = {best.frames, estimate_.law.after(age_ + best.frames - 1), true};
+            next = {best.frames, estimate_.law.displacement_after(age_ + best.frames - 1), true};
         if (best.frames < 2 || is_far_too_long(boxes, next.margin)) return std::nullopt;
         return next;
     }
 
+    /// Starts a list with the configured, estimated or default margin. If none is worth its cost, watches boxes that
+    /// moved farther than expected for some frames, and then gives lists up for a back-off.
     void plan(std::span<const box> boxes, bool has_ended) {
         std::optional<next_list> next;
         if (config_.margin) {
@@ -272,13 +276,13 @@ private:
             next = {0, typical_extents(*config_.margin, boxes, objects_)};
         } else if (config_.every > 0) {
             const displacement_law& law = estimate_.law;
-            next = {0, law.age() == 0 || config_.every == 1 ? 0 : law.after(config_.every - 1)};
+            next = {0, law.age() == 0 || config_.every == 1 ? 0 : law.displacement_after(config_.every - 1)};
         } else if (state_ == state::nothing) {
             next = first_list(boxes);
         } else {
             next = planned_list(boxes, has_ended);
         }
-        if (next) return keep(boxes, *next);
+        if (next) return start_list(boxes, *next);
         if (state_ != state::nothing && has_ended && age_ < longest_watch) {
             state_ = state::watching;
         } else {
@@ -289,7 +293,7 @@ private:
     }
 
     /// Starts a list. In adaptive mode a list without margin keeps the pairs of these boxes until one of them moves.
-    void keep(std::span<const box> boxes, next_list next) {
+    void start_list(std::span<const box> boxes, next_list next) {
         state_ = state::nothing;
         margin_ = margin_when_made_ = next.margin;
         if (!next.around_kept_boxes) {
@@ -324,7 +328,7 @@ private:
     void settle(std::span<const box> boxes) {
         require_valid(boxes);
         if (!certain_pairs_hold()) list_.forget_certain();
-        count_tests(list_.tested());
+        count_tests(list_.tests_per_frame());
         list_.keep_overlapping(boxes);
         list_.forget_certain();
         kept_.assign(boxes.begin(), boxes.end());
@@ -341,19 +345,19 @@ private:
     /// that many listed pairs are tested in vain. The smaller list is planned for four times the current age. The check
     /// runs at power-of-two ages only.
     void shorten_if_worth_it() {
-        constexpr std::size_t first_look = 8;
+        constexpr std::size_t least_age = 8;
         constexpr std::size_t times_as_long = 4;
         // A smaller margin would hardly shorten the list, and rounding errors could end it.
         constexpr double shortest = 1.0 / 16;
-        if (age_ < first_look || !std::has_single_bit(age_)) return;
+        if (age_ < least_age || !std::has_single_bit(age_)) return;
         const std::size_t frames = times_as_long * age_;
-        if (!is_shortening_worth_it(objects_.size(), estimate_.pairs, list_.tested(), frames - age_)) return;
-        const double margin = std::max(estimate_.law.after(frames), shortest * margin_when_made_);
+        if (!is_shortening_worth_it(objects_.size(), estimate_.pairs, list_.tests_per_frame(), frames - age_)) return;
+        const double margin = std::max(estimate_.law.displacement_after(frames), shortest * margin_when_made_);
         if (!(margin < margin_ / 2)) return;
         margin_ = margin;
         planned_ = 0;
         grow(kept_, margin_, grown_);
-        count_tests(list_.tested());
+        count_tests(list_.tests_per_frame());
         list_.keep_overlapping(grown_);
         list_.mark_certain_pairs(kept_, margin_);
     }

@@ -25,7 +25,7 @@ using corner = float __attribute__((vector_size(16)));
 }
 
 /// Same result as `overlaps`, but tests the three axes at once.
-[[nodiscard, gnu::always_inline]] inline bool meet(const box& a, const box& b) noexcept {
+[[nodiscard, gnu::always_inline]] inline bool overlap_at_once(const box& a, const box& b) noexcept {
     using bools = bool __attribute__((ext_vector_type(4)));
     const auto overlapping = (lower_of(a) <= upper_of(b)) & (lower_of(b) <= upper_of(a));
     return (std::bit_cast<std::uint8_t>(__builtin_convertvector(overlapping, bools)) & 7U) == 7U;
@@ -43,14 +43,14 @@ inline std::size_t store_overlapping(std::span<const box> boxes, std::span<const
         std::uint32_t both_words = 0;
 #pragma clang loop unroll(full)
         for (std::size_t k = 0; k < at_a_time; ++k)
-            both_words |= (meet(boxes[list[i + k].a], boxes[list[i + k].b]) ? 3U : 0U) << 2 * k;
+            both_words |= (overlap_at_once(boxes[list[i + k].a], boxes[list[i + k].b]) ? 3U : 0U) << 2 * k;
         simd::words block;
         std::memcpy(&block, &list[i], sizeof block);
         end += simd::compress_store(&to[end].a, block, both_words) / 2;
     }
     for (const index_pair pair : list.subspan(i)) {
         to[end] = pair;
-        end += static_cast<std::size_t>(meet(boxes[pair.a], boxes[pair.b]));
+        end += static_cast<std::size_t>(overlap_at_once(boxes[pair.a], boxes[pair.b]));
     }
     return end;
 }
@@ -68,94 +68,97 @@ inline void append_overlapping(std::span<const box> boxes, std::span<const index
     }
 }
 
-/// The pairs of a Verlet list. Some of them are sure: they overlap by so much that they keep overlapping whatever the
-/// boxes do within the margin of the list, and are reported without a test.
+/// The pairs of a Verlet list. Some of them are certain: they overlap by so much that they keep overlapping whatever
+/// the boxes do within the margin of the list, and are reported without a test.
 class pair_list {
 public:
-    [[nodiscard]] std::size_t size() const noexcept { return sure_.size() + open_.size(); }
-    [[nodiscard]] std::size_t bytes() const { return bytes_of(sure_, open_); }
+    [[nodiscard]] std::size_t size() const noexcept { return certain_.size() + uncertain_.size(); }
+    [[nodiscard]] std::size_t bytes() const { return bytes_of(certain_, uncertain_); }
 
     /// Empties the list and returns the vector to which a search appends its pairs.
-    [[nodiscard]] std::vector<index_pair>& begin() noexcept {
-        sure_.clear();
-        open_.clear();
-        return open_;
+    [[nodiscard]] std::vector<index_pair>& begin_search() noexcept {
+        certain_.clear();
+        uncertain_.clear();
+        return uncertain_;
     }
 
-    /// Finds the sure pairs.
+    /// Moves the certain pairs out of those that each frame tests, by compress-stores of one vector of pairs each.
     /// @param kept the boxes from which the list was made
     void mark_certain_pairs(std::span<const box> kept, double margin) {
         const float depth = certain_depth(margin);
         if (std::isinf(depth)) return;
         constexpr std::size_t at_a_time = simd::width / 2;
         constexpr std::uint32_t all_words = (1U << simd::width) - 1;
-        const std::size_t count = open_.size();
-        std::size_t end = sure_.size();
+        const std::size_t count = uncertain_.size();
+        std::size_t end = certain_.size();
         // A compress-store may write one vector beyond the last pair.
-        sure_.resize(end + count + at_a_time);
-        std::size_t still_open = 0;
+        certain_.resize(end + count + at_a_time);
+        std::size_t uncertain = 0;
         std::size_t i = 0;
         for (; i + at_a_time <= count; i += at_a_time) {
             std::uint32_t both_words = 0;
 #pragma clang loop unroll(full)
             for (std::size_t k = 0; k < at_a_time; ++k)
-                both_words |= (overlap_deeper_than(depth, kept[open_[i + k].a], kept[open_[i + k].b]) ? 3U : 0U)
-                              << 2 * k;
+                both_words |=
+                    (overlap_deeper_than(depth, kept[uncertain_[i + k].a], kept[uncertain_[i + k].b]) ? 3U : 0U)
+                    << 2 * k;
             simd::words block;
-            std::memcpy(&block, &open_[i], sizeof block);
-            end += simd::compress_store(&sure_[end].a, block, both_words) / 2;
-            still_open += simd::compress_store(&open_[still_open].a, block, ~both_words & all_words) / 2;
+            std::memcpy(&block, &uncertain_[i], sizeof block);
+            end += simd::compress_store(&certain_[end].a, block, both_words) / 2;
+            uncertain += simd::compress_store(&uncertain_[uncertain].a, block, ~both_words & all_words) / 2;
         }
         for (; i < count; ++i) {
-            const index_pair pair = open_[i];
+            const index_pair pair = uncertain_[i];
             const bool certain = overlap_deeper_than(depth, kept[pair.a], kept[pair.b]);
-            sure_[end] = pair;
+            certain_[end] = pair;
             end += static_cast<std::size_t>(certain);
-            open_[still_open] = pair;
-            still_open += static_cast<std::size_t>(!certain);
+            uncertain_[uncertain] = pair;
+            uncertain += static_cast<std::size_t>(!certain);
         }
-        sure_.resize(end);
-        open_.resize(still_open);
+        certain_.resize(end);
+        uncertain_.resize(uncertain);
     }
 
-    /// Removes the pairs whose boxes do not overlap; sure pairs stay.
-    void keep_overlapping(std::span<const box> boxes) { open_.resize(store_overlapping(boxes, open_, open_.data())); }
+    /// Removes the pairs whose boxes do not overlap; certain pairs stay.
+    void keep_overlapping(std::span<const box> boxes) {
+        uncertain_.resize(store_overlapping(boxes, uncertain_, uncertain_.data()));
+    }
 
+    /// Tests all pairs again, since boxes have left the margin.
     void forget_certain() {
-        open_.insert(open_.end(), sure_.begin(), sure_.end());
-        sure_.clear();
+        uncertain_.insert(uncertain_.end(), certain_.begin(), certain_.end());
+        certain_.clear();
     }
 
     template <class Gone>
     void erase_if(Gone gone) {
-        std::erase_if(sure_, gone);
-        std::erase_if(open_, gone);
+        std::erase_if(certain_, gone);
+        std::erase_if(uncertain_, gone);
     }
 
-    /// The whole list, which must have no sure pairs.
-    [[nodiscard]] std::span<const index_pair> whole() const noexcept {
-        assert(sure_.empty());
-        return open_;
+    /// The whole list, which must have no certain pairs.
+    [[nodiscard]] std::span<const index_pair> pairs() const noexcept {
+        assert(certain_.empty());
+        return uncertain_;
     }
 
     /// Appends the overlapping pairs.
-    /// @param within whether boxes are still within the margin, so that sure pairs need no test
+    /// @param hold whether boxes are still within the margin, so that certain pairs need no test
     /// @returns the number of tests
-    std::size_t append_to(std::vector<index_pair>& pairs, std::span<const box> boxes, bool within) const {
-        if (within)
-            pairs.insert(pairs.end(), sure_.begin(), sure_.end());
+    std::size_t append_to(std::vector<index_pair>& pairs, std::span<const box> boxes, bool hold) const {
+        if (hold)
+            pairs.insert(pairs.end(), certain_.begin(), certain_.end());
         else
-            append_overlapping(boxes, sure_, pairs);
-        append_overlapping(boxes, open_, pairs);
-        return within ? open_.size() : size();
+            append_overlapping(boxes, certain_, pairs);
+        append_overlapping(boxes, uncertain_, pairs);
+        return hold ? uncertain_.size() : size();
     }
 
-    /// The number of tests per frame.
-    [[nodiscard]] std::size_t tested() const noexcept { return open_.size(); }
+    [[nodiscard]] std::size_t tests_per_frame() const noexcept { return uncertain_.size(); }
 
     void release() {
-        aabb::release(sure_);
-        aabb::release(open_);
+        aabb::release(certain_);
+        aabb::release(uncertain_);
     }
 
 private:
@@ -175,8 +178,8 @@ private:
         return (std::bit_cast<std::uint8_t>(__builtin_convertvector(deep, bools)) & 7U) == 7U;
     }
 
-    std::vector<index_pair> sure_;
-    std::vector<index_pair> open_;
+    std::vector<index_pair> certain_;
+    std::vector<index_pair> uncertain_;
 };
 
 }  // namespace aabb

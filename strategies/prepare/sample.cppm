@@ -51,9 +51,9 @@ struct pair_estimate {
     for (std::size_t k = 0; k < others && !boxes.empty(); ++k) {
         const box& b = boxes[draw_id(drawn, boxes.size())];
         for (std::size_t i = 0; i < sample.size(); ++i) {
-            if (!meet(b, grown[i]) || b == sample[i]) continue;
+            if (!overlap_at_once(b, grown[i]) || b == sample[i]) continue;
             ++estimate.counted;
-            overlapping += static_cast<std::size_t>(meet(b, sample[i]));
+            overlapping += static_cast<std::size_t>(overlap_at_once(b, sample[i]));
         }
     }
     const auto n = static_cast<double>(objects.size());

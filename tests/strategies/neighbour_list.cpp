@@ -585,8 +585,8 @@ TEST_CASE("the fewer boxes fly, the longer nobody looks whether they still do") 
             for (int frames = 1;; ++frames) {
                 for (std::uint32_t id = 0; id < n; ++id)
                     boxes[id] = cube(boxes[id].min[0] + (id % 2 == 0 ? 50.0F : -50.0F));
-                if (pause.pass(boxes, objects, traits, drawn)) return frames;
-                REQUIRE(pause.lasts());
+                if (pause.advance_frame(boxes, objects, traits, drawn)) return frames;
+                REQUIRE(pause.is_active());
             }
         };
         const int first = look_in_vain();
@@ -893,8 +893,8 @@ TEST_CASE("pairs in reach grow on the axes on which boxes lie apart") {
                           {4 * at + 1, 3 * static_cast<float>(i * 7 % 16) + 1, 5 * at + 1}});
     }
     // Two boxes of 1 reach 2; grown by 0.5 on every side, 4.
-    CHECK(growth_of_pairs(along).at(0.5) == 2);
-    CHECK(growth_of_pairs(spread).at(0.5) == 8);
+    CHECK(growth_of_pairs(along).factor(0.5) == 2);
+    CHECK(growth_of_pairs(spread).factor(0.5) == 8);
 }
 
 TEST_CASE("how far boxes get goes on by the power of time with which it did") {
@@ -905,25 +905,25 @@ TEST_CASE("how far boxes get goes on by the power of time with which it did") {
     };
     const displacement_law drift = law_of([](double age) { return 0.5 * age; });
     CHECK(drift.exponent() == Catch::Approx(1));
-    CHECK(drift.after(40) == Catch::Approx(20));
-    CHECK(drift.after(3) == Catch::Approx(1.5));
+    CHECK(drift.displacement_after(40) == Catch::Approx(20));
+    CHECK(drift.displacement_after(3) == Catch::Approx(1.5));
     const displacement_law walk = law_of([](double age) { return std::sqrt(age); });
-    CHECK(walk.after(300) == Catch::Approx(std::sqrt(300)));
+    CHECK(walk.displacement_after(300) == Catch::Approx(std::sqrt(300)));
     // Where it has been counts, not where it is.
     const displacement_law swing = law_of([](double age) { return std::fmod(age, 3); });
     CHECK(swing.exponent() == 0);
-    CHECK(swing.after(1000) == 2);
+    CHECK(swing.displacement_after(1000) == 2);
     const displacement_law fall = law_of([](double age) { return age * age; });
-    CHECK(fall.after(24) == Catch::Approx(24 * 24));
+    CHECK(fall.displacement_after(24) == Catch::Approx(24 * 24));
     CHECK(law_of([](double age) { return age * age * age; }).exponent() == 2);
     // Of one frame nobody knows, but of how it was before.
     displacement_law young;
     young.observe(1, 3);
-    CHECK(young.after(4) == Catch::Approx(12));
+    CHECK(young.displacement_after(4) == Catch::Approx(12));
     displacement_law known = walk;
     known.begin();
     known.observe(1, 3);
-    CHECK(known.after(4) == Catch::Approx(6));
+    CHECK(known.displacement_after(4) == Catch::Approx(6));
 }
 
 TEST_CASE("of few frames no list is made before boxes have shown that it repays its making") {
