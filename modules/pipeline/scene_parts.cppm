@@ -60,13 +60,8 @@ private:
 /// A scene whose objects the broad phase has divided (`global_stage::divide`). The broad phase sees pieces, which are
 /// parts of objects or whole objects, numbered in the order of the objects. The narrow phase sees models, which are
 /// the meshes of parts and of whole objects.
-class scene_parts {
+class scene_parts : public kept_in_place {
 public:
-    scene_parts() = default;
-    scene_parts(const scene_parts&) = delete;
-    scene_parts& operator=(const scene_parts&) = delete;
-    virtual ~scene_parts() = default;
-
     std::vector<index_pair> found;  ///< pairs of pieces; after `append_objects`, one per candidate
 
     [[nodiscard]] virtual std::uint32_t pieces() const noexcept = 0;

@@ -156,21 +156,13 @@ private:
             if (config_.limit == limit_choice::on && !cuts.empty()) {
                 for (; list[begun].key < cuts.back(); ++begun)
                     reached = std::max(reached, boxes[list[begun].id].max[static_cast<int>(k)]);
-                place = std::max(place, first_beyond(list, reached));
+                const auto beyond = std::ranges::upper_bound(list, reached, {}, &projection::key);
+                place = std::max(place, static_cast<std::size_t>(beyond - list.begin()));
                 if (place == list.size()) return;
             }
             cuts.push_back(list[place].key);
         }
-        assert(is_ascending(cuts));
-    }
-
-    /// Whether cuts ascend strictly.
-    [[nodiscard]] static bool is_ascending(std::span<const float> cuts) {
-        return std::ranges::adjacent_find(cuts, std::ranges::greater_equal{}) == cuts.end();
-    }
-
-    [[nodiscard]] static std::size_t first_beyond(std::span<const projection> list, float key) {
-        return static_cast<std::size_t>(std::ranges::upper_bound(list, key, {}, &projection::key) - list.begin());
+        assert(std::ranges::adjacent_find(cuts, std::ranges::greater_equal{}) == cuts.end());
     }
 
     /// The list is sorted, so the segments of all lower ends are found in one pass.

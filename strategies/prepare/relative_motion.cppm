@@ -6,6 +6,17 @@ import aabb.std;
 
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
+export namespace aabb {
+
+struct relative_motion {
+    double margin;              ///< see `motion_between`
+    double in_both_directions;  ///< also bounds the margin by which the earlier boxes, shrunk, lie in the later ones
+
+    bool operator==(const relative_motion&) const = default;
+};
+
+}  // namespace aabb
+
 namespace aabb::detail {
 
 /// The least and the greatest displacement of box planes along each axis. The initial values are finite, so that
@@ -77,21 +88,6 @@ struct plane_motion {
     for (std::size_t i = whole; i < to.size(); ++i) motion.take(from[i], to[i]);
     return motion;
 }
-
-}  // namespace aabb::detail
-
-export namespace aabb {
-
-struct relative_motion {
-    double margin;              ///< see `motion_between`
-    double in_both_directions;  ///< also bounds the margin by which the earlier boxes, shrunk, lie in the later ones
-
-    bool operator==(const relative_motion&) const = default;
-};
-
-}  // namespace aabb
-
-namespace aabb::detail {
 
 /// Half of the range, rounded up by the largest possible rounding error.
 [[nodiscard]] inline double margin_between(double least, double most) noexcept {

@@ -40,22 +40,81 @@ part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
 
 class divided_scene final : public scene_parts {
 public:
-    divided_scene(const mesh_scene& scene, mesh_division division);
+    divided_scene(const mesh_scene& scene, mesh_division division) : scene_(scene) {
+        division.resize(scene.meshes.size());
+        std::size_t parts = 0;
+        for (const auto& of_mesh : division) parts += of_mesh.size();
+        parts_.reserve(parts);  // models keep pointers to them
+        std::vector<std::uint32_t> first_model;
+        for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+            triangles_.push_back(scene.meshes[m].triangles.size());
+            first_model.push_back(models());
+            if (division[m].size() < 2) {
+                models_.push_back({m, whole, bounds_of(scene.meshes[m])});
+                continue;
+            }
+            for (std::vector<std::uint32_t>& triangles : division[m]) {
+                parts_.push_back(part_of(scene.meshes[m], std::move(triangles)));
+                models_.push_back({m, static_cast<std::uint32_t>(parts_.size() - 1), bounds_of(parts_.back().own)});
+            }
+        }
+        first_model.push_back(models());
+        for (std::uint32_t object = 0; object < scene.mesh_of.size(); ++object)
+            for (std::uint32_t m = first_model[scene.mesh_of[object]]; m < first_model[scene.mesh_of[object] + 1]; ++m)
+                pieces_.push_back({object, m});
+        boxes_.resize(pieces_.size());
+    }
 
     [[nodiscard]] std::uint32_t pieces() const noexcept override { return static_cast<std::uint32_t>(pieces_.size()); }
-    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> pieces_of(std::uint32_t object) const noexcept override;
+    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> pieces_of(std::uint32_t object) const noexcept override {
+        const auto own = std::ranges::equal_range(pieces_, object, {}, &piece::object);
+        return {static_cast<std::uint32_t>(own.begin() - pieces_.begin()),
+                static_cast<std::uint32_t>(own.end() - pieces_.begin())};
+    }
     [[nodiscard]] std::uint32_t models() const noexcept override { return static_cast<std::uint32_t>(models_.size()); }
-    [[nodiscard]] const mesh& mesh_of(std::uint32_t model) const noexcept override;
+    [[nodiscard]] const mesh& mesh_of(std::uint32_t model) const noexcept override {
+        const auto& [source, part, bounds] = models_[model];
+        return part == whole ? scene_.meshes[source] : parts_[part].own;
+    }
     [[nodiscard]] bool deforms(std::uint32_t model) const override { return scene_.deforms(models_[model].source); }
-    void follow() override;
-    void place(std::span<const pose> poses) override;
+    void follow() override {
+        for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m)
+            if (scene_.deforms(m)) require_still_valid(scene_.meshes[m], triangles_[m]);
+        for (auto& [source, number, bounds] : models_) {
+            if (!scene_.deforms(source)) continue;
+            if (number != whole) {
+                part& own = parts_[number];
+                for (std::size_t v = 0; v < own.vertices.size(); ++v)
+                    own.own.vertices[v] = scene_.meshes[source].vertices[own.vertices[v]];
+            }
+            bounds = bounds_of(number == whole ? scene_.meshes[source] : parts_[number].own);
+        }
+    }
+    void place(std::span<const pose> poses) override {
+        require_poses(scene_, poses);
+        for (std::size_t i = 0; i < pieces_.size(); ++i)
+            boxes_[i] = posed_box(models_[pieces_[i].model].bounds, poses[pieces_[i].object], pieces_[i].object);
+    }
     [[nodiscard]] std::span<const box> boxes() const noexcept override { return boxes_; }
-    void append_objects(std::vector<index_pair>& objects) override;
+    void append_objects(std::vector<index_pair>& objects) override {
+        const auto objects_of = [&](index_pair p) { return index_pair{pieces_[p.a].object, pieces_[p.b].object}; };
+        std::erase_if(found, [&](index_pair p) { return objects_of(p).a == objects_of(p).b; });
+        for (const index_pair p : found) objects.push_back(objects_of(p));
+    }
     [[nodiscard]] index_pair models_of(index_pair pieces) const noexcept override {
         return {pieces_[pieces.a].model, pieces_[pieces.b].model};
     }
-    void map_triangles(index_pair models, std::span<index_pair> triangles) const noexcept override;
-    [[nodiscard]] std::size_t bytes() const noexcept override;
+    void map_triangles(index_pair models, std::span<index_pair> triangles) const noexcept override {
+        for (auto& [a, b] : triangles) {
+            a = triangle_of(models.a, a);
+            b = triangle_of(models.b, b);
+        }
+    }
+    [[nodiscard]] std::size_t bytes() const noexcept override {
+        std::size_t total = bytes_of(triangles_, parts_, models_, pieces_, boxes_);
+        for (const part& p : parts_) total += bytes_of(p.own.vertices, p.own.triangles, p.vertices, p.triangles);
+        return total;
+    }
 
 private:
     struct model {
@@ -81,81 +140,6 @@ private:
     std::vector<piece> pieces_;
     std::vector<box> boxes_;
 };
-
-divided_scene::divided_scene(const mesh_scene& scene, mesh_division division) : scene_(scene) {
-    division.resize(scene.meshes.size());
-    std::size_t parts = 0;
-    for (const auto& of_mesh : division) parts += of_mesh.size();
-    parts_.reserve(parts);  // models keep pointers to them
-    std::vector<std::uint32_t> first_model;
-    for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-        triangles_.push_back(scene.meshes[m].triangles.size());
-        first_model.push_back(models());
-        if (division[m].size() < 2) {
-            models_.push_back({m, whole, bounds_of(scene.meshes[m])});
-            continue;
-        }
-        for (std::vector<std::uint32_t>& triangles : division[m]) {
-            parts_.push_back(part_of(scene.meshes[m], std::move(triangles)));
-            models_.push_back({m, static_cast<std::uint32_t>(parts_.size() - 1), bounds_of(parts_.back().own)});
-        }
-    }
-    first_model.push_back(models());
-    for (std::uint32_t object = 0; object < scene.mesh_of.size(); ++object)
-        for (std::uint32_t m = first_model[scene.mesh_of[object]]; m < first_model[scene.mesh_of[object] + 1]; ++m)
-            pieces_.push_back({object, m});
-    boxes_.resize(pieces_.size());
-}
-
-std::pair<std::uint32_t, std::uint32_t> divided_scene::pieces_of(std::uint32_t object) const noexcept {
-    const auto own = std::ranges::equal_range(pieces_, object, {}, &piece::object);
-    return {static_cast<std::uint32_t>(own.begin() - pieces_.begin()),
-            static_cast<std::uint32_t>(own.end() - pieces_.begin())};
-}
-
-const mesh& divided_scene::mesh_of(std::uint32_t model) const noexcept {
-    const auto& [source, part, bounds] = models_[model];
-    return part == whole ? scene_.meshes[source] : parts_[part].own;
-}
-
-void divided_scene::follow() {
-    for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m)
-        if (scene_.deforms(m)) require_still_valid(scene_.meshes[m], triangles_[m]);
-    for (auto& [source, number, bounds] : models_) {
-        if (!scene_.deforms(source)) continue;
-        if (number != whole) {
-            part& own = parts_[number];
-            for (std::size_t v = 0; v < own.vertices.size(); ++v)
-                own.own.vertices[v] = scene_.meshes[source].vertices[own.vertices[v]];
-        }
-        bounds = bounds_of(number == whole ? scene_.meshes[source] : parts_[number].own);
-    }
-}
-
-void divided_scene::place(std::span<const pose> poses) {
-    require_poses(scene_, poses);
-    for (std::size_t i = 0; i < pieces_.size(); ++i)
-        boxes_[i] = posed_box(models_[pieces_[i].model].bounds, poses[pieces_[i].object], pieces_[i].object);
-}
-
-void divided_scene::append_objects(std::vector<index_pair>& objects) {
-    const auto objects_of = [&](index_pair p) { return index_pair{pieces_[p.a].object, pieces_[p.b].object}; };
-    std::erase_if(found, [&](index_pair p) { return objects_of(p).a == objects_of(p).b; });
-    for (const index_pair p : found) objects.push_back(objects_of(p));
-}
-
-void divided_scene::map_triangles(index_pair models, std::span<index_pair> triangles) const noexcept {
-    for (auto& [a, b] : triangles) {
-        a = triangle_of(models.a, a);
-        b = triangle_of(models.b, b);
-    }
-}
-
-std::size_t divided_scene::bytes() const noexcept {
-    std::size_t total = bytes_of(triangles_, parts_, models_, pieces_, boxes_);
-    for (const part& p : parts_) total += bytes_of(p.own.vertices, p.own.triangles, p.vertices, p.triangles);
-    return total;
-}
 
 }  // namespace
 

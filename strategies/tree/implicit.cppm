@@ -105,7 +105,7 @@ public:
             total += below;
         }
         nodes_.resize(total);
-        fit(order.bounds, workers);
+        encode_nodes(order.bounds, workers);
     }
 
     void refit(const mesh& m, std::vector<box>& boxes) {
@@ -120,20 +120,26 @@ public:
             }
             same &= vertices_.empty() || vertices_.matches(m, leaf, std::span(numbers).first(count));
         }
-        worker_threads alone(1);
-        if (!same) list_vertices(m, alone);
-        fit(merged_in_eights(boxes), alone);
+        worker_threads single_thread(1);
+        if (!same) {  // the mesh's vertices were renumbered
+            std::vector<std::uint32_t> order(triangles_);
+            for (std::uint32_t place = 0; place < triangles_; ++place) order[place] = triangle_at(place);
+            vertices_ = vertex_lists(m, order, single_thread);
+        }
+        encode_nodes(merge_in_eights(boxes), single_thread);
     }
 
     [[nodiscard]] inline cursor root(const mesh&) const noexcept {
-        return normal({static_cast<std::uint32_t>(std::bit_width(triangles_ - 1)), 0});
+        return skip_single_children({static_cast<std::uint32_t>(std::bit_width(triangles_ - 1)), 0});
     }
     [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.height == 0; }
     /// Whether the node has its own box.
     [[nodiscard]] static inline bool has_box(const cursor& at) noexcept { return at.height >= leaf_height; }
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh&) const noexcept {
-        return {normal({at.height - 1, 2 * at.index}), normal({at.height - 1, 2 * at.index + 1})};
+        return {skip_single_children({at.height - 1, 2 * at.index}),
+                skip_single_children({at.height - 1, 2 * at.index + 1})};
     }
+    /// Merges the boxes of the children, in the nearest level of wide nodes, that the binary node consists of.
     [[nodiscard]] inline box bounds(const cursor& at) const noexcept {
         const std::uint32_t height = std::max(at.height, leaf_height) - leaf_height;  // above the leaves
         const std::uint32_t index = at.height < leaf_height ? at.index >> (leaf_height - at.height) : at.index;
@@ -205,20 +211,21 @@ private:
     }
 
     /// Replaces a node with one child by that child.
-    [[nodiscard]] inline cursor normal(cursor at) const noexcept {
-        while (at.height > 0 && (std::uint64_t{2} * at.index + 1) << (at.height - 1) >= triangles_)
-            at = {at.height - 1, 2 * at.index};
-        return at;
+    [[nodiscard]] inline cursor skip_single_children(cursor node) const noexcept {
+        while (node.height > 0 && (std::uint64_t{2} * node.index + 1) << (node.height - 1) >= triangles_)
+            node = {node.height - 1, 2 * node.index};
+        return node;
     }
 
+    /// Encodes the nodes level by level; each level leaves the boxes of its nodes for the next one.
     /// @param boxes the boxes of the leaves, which are overwritten
-    void fit(std::span<box> boxes, worker_threads& workers) {
+    void encode_nodes(std::span<box> boxes, worker_threads& workers) {
         for (std::size_t l = 0; l < levels(); ++l) {
             workers.for_each_range(boxes.size(), least_shared_boxes, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; i += wide_node::most_children)
                     nodes_[begins_[l] + i / wide_node::most_children].encode(
                         boxes.subspan(i, std::min(wide_node::most_children, end - i)));
-                merged_in_eights(boxes.subspan(begin, end - begin));
+                merge_in_eights(boxes.subspan(begin, end - begin));
             });
             // Compacts the boxes, which each range left at its beginning.
             std::size_t merged_count = 0;
@@ -229,15 +236,8 @@ private:
         }
     }
 
-    /// Rewrites the vertex lists after the mesh's vertices were renumbered.
-    void list_vertices(const mesh& m, worker_threads& workers) {
-        std::vector<std::uint32_t> order(triangles_);
-        for (std::uint32_t place = 0; place < triangles_; ++place) order[place] = triangle_at(place);
-        vertices_ = vertex_lists(m, order, workers);
-    }
-
     /// Merges boxes in groups of eight, in place.
-    static std::span<box> merged_in_eights(std::span<box> boxes) noexcept {
+    static std::span<box> merge_in_eights(std::span<box> boxes) noexcept {
         std::size_t merged_count = 0;
         for (std::size_t i = 0; i < boxes.size(); i += wide_node::most_children) {
             box group = empty_box();

@@ -53,10 +53,13 @@ struct quantized_aabbs {
 
     /// Tests 64 pairs at once: sets bit 8 j + i where box i of these may overlap box j of `others`.
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {
+        const auto on_grid = [&](std::size_t k, const eight_boxes::row& x) {
+            return simd::load_eight<simd::eight_floats>(x.data()) * grid.scale[k] - grid.offset[k];
+        };
         std::uint64_t mask = ~std::uint64_t{0} >> (64U - 8U * others.count);
         for (std::size_t k = 0; k < 3; ++k)
-            mask &= simd::pairs_no_greater(lower[k].data(), from_below(grid, k, others.upper[k])) &
-                    simd::pairs_no_greater(upper[k].data(), from_above(grid, k, others.lower[k]));
+            mask &= simd::pairs_no_greater(lower[k].data(), simd::whole_bytes(on_grid(k, others.upper[k]))) &
+                    simd::pairs_no_greater(upper[k].data(), simd::whole_bytes(255 - on_grid(k, others.lower[k])));
         return mask;
     }
 
@@ -65,25 +68,10 @@ struct quantized_aabbs {
         for (std::size_t i = count; i < eight_boxes::most; ++i)
             for (std::size_t k = 0; k < 3; ++k) lower[k][i] = upper[k][i] = no_box;
     }
-
-private:
-    [[nodiscard]] static inline simd::eight_floats place(const code_grid& grid, std::size_t k,
-                                                         const eight_boxes::row& x) noexcept {
-        return simd::load_eight<simd::eight_floats>(x.data()) * grid.scale[k] - grid.offset[k];
-    }
-    [[nodiscard]] static inline simd::eight_bytes from_below(const code_grid& grid, std::size_t k,
-                                                             const eight_boxes::row& x) noexcept {
-        return simd::whole_bytes(place(grid, k, x));
-    }
-    [[nodiscard]] static inline simd::eight_bytes from_above(const code_grid& grid, std::size_t k,
-                                                             const eight_boxes::row& x) noexcept {
-        return simd::whole_bytes(255 - place(grid, k, x));
-    }
 };
 
 /// The grid of a query, on which coordinates are 16-bit integers: 65,000 steps where the boxes of both meshes overlap,
-/// clamped outside. The number of x is the integer part of x * scale - offset, computed in float. It is monotone in x,
-/// whatever the rounding, as long as all numbers are rounded in the same way. That is why the pragma matters.
+/// clamped outside. The number of x is monotone in x, as on a `code_grid`.
 class leaf_grid {
 public:
     /// @param a,b boxes of the meshes, in A's frame
