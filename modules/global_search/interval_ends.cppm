@@ -42,28 +42,19 @@ inline void sort_ends(std::vector<interval_end>& list) {
     std::ranges::sort(list, [](const auto& e, const auto& f) { return precedes(e, f); });
 }
 
-/// Updates the pairs after a swap: inserts a pair whose overlap begins, and erases one whose overlap ends.
-/// @param before the boxes of the previous frame
-template <CounterPolicy Counters>
-inline void update_pairs_after_swap(const interval_end& passed, const interval_end& mover, std::span<const box> before,
-                                    std::span<const box> boxes, pair_set& pairs, Counters& counters) {
-    if (passed.is_upper == mover.is_upper) return;
-    const index_pair pair = ordered_pair(passed.id, mover.id);
-    counters.add(work::box_tests);
-    // Few pairs that stop overlapping on this axis overlapped on the others, so a test avoids most look-ups.
-    if (mover.is_upper) {
-        if (overlaps(before[pair.a], before[pair.b])) pairs.erase(pair);
-    } else if (overlaps(boxes[pair.a], boxes[pair.b])) {
-        pairs.insert(pair);
-    }
-}
-
-/// The kept pairs, and the rule which strategies these sweeps can be combined with.
+/// What such sweeps share: the kept pairs, their changes by swaps, and the rule which strategies can be combined.
 class kept_pairs {
 public:
+    /// Why the sweep rejects these strategies; empty if it accepts them.
     template <class... All>
     static constexpr std::string_view rejects() {
-        return rejection_of_coherent_sweep<All...>();
+        if (((CuttingPartition<All> || SearchingPartition<All>) || ...))
+            return "a sweep that keeps its pairs between frames cannot use a partition that changes its subsets in "
+                   "each frame; it can be combined with none only";
+        if (((SortPolicy<All> && !SwapReportingSort<All>) || ...))
+            return "a sweep that keeps its pairs between frames follows the swaps of neighbours, which this sort does "
+                   "not report; it can be combined with insertion only";
+        return {};
     }
 
     void search(std::vector<index_pair>& pairs) const {
@@ -71,7 +62,29 @@ public:
     }
 
 protected:
+    /// Sorts a list of ends and updates the pairs after each swap: inserts a pair whose overlap begins, and erases one
+    /// whose overlap ends. Stops early when no steps are left.
+    template <class Sort, CounterPolicy Counters>
+    void follow_swaps(std::vector<interval_end>& list, std::span<const box> boxes, Sort& sort, Counters& counters) {
+        sort.sort(std::span(list), counters, [&](const interval_end& passed, const interval_end& mover) {
+            counters.add(work::inversions);
+            if (--steps_left_ == 0) return false;
+            if (passed.is_upper == mover.is_upper) return true;
+            const index_pair pair = ordered_pair(passed.id, mover.id);
+            counters.add(work::box_tests);
+            // Few pairs that stop overlapping on this axis overlapped on the others, so a test avoids most look-ups.
+            if (mover.is_upper) {
+                if (overlaps(before_[pair.a], before_[pair.b])) pairs_.erase(pair);
+            } else if (overlaps(boxes[pair.a], boxes[pair.b])) {
+                pairs_.insert(pair);
+            }
+            return true;
+        });
+    }
+
     pair_set pairs_;
+    std::vector<box> before_;       // boxes of the previous frame, by id
+    std::uint64_t steps_left_ = 0;  // remaining steps of this frame; 0: the frame restarts
 };
 
 /// Sweeps a list of ends for all pairs with at least one new object.

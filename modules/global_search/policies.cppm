@@ -118,18 +118,6 @@ concept CoherentSweep =
         { policy.axes() } -> std::same_as<axis_set>;
     };
 
-/// Why a coherent sweep rejects these strategies; empty if it accepts them.
-template <class... All>
-constexpr std::string_view rejection_of_coherent_sweep() {
-    if (((CuttingPartition<All> || SearchingPartition<All>) || ...))
-        return "a sweep that keeps its pairs between frames cannot use a partition that changes its subsets in each "
-               "frame; it can be combined with none only";
-    if (((SortPolicy<All> && !SwapReportingSort<All>) || ...))
-        return "a sweep that keeps its pairs between frames follows the swaps of neighbours, which this sort does not "
-               "report; it can be combined with insertion only";
-    return {};
-}
-
 template <class S>
 concept SweepPolicy = ListSweep<S> || CoherentSweep<S>;
 

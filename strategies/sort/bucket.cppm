@@ -16,6 +16,7 @@ public:
         "bucket sort with one bucket of equal width per entry: linear for uniformly spread entries";
     static constexpr bool is_done_by_columns = true;
 
+    /// Distributes the entries by a counting sort of their buckets, and sorts each bucket.
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {
         if (list.size() < 2) return;

@@ -33,9 +33,9 @@ public:
             if (next[digit(from[0], pass)] == list.size()) continue;
             std::uint32_t before = 0;
             for (std::uint32_t& n : next) {
-                const std::uint32_t here = n;
+                const std::uint32_t count = n;
                 n = before;
-                before += here;
+                before += count;
             }
             for (const projection& p : from) to[next[digit(p, pass)]++] = p;
             counters.add(work::moves, list.size());

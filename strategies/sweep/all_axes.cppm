@@ -38,7 +38,7 @@ public:
             }
         if (n_lists == 0 || lists[0].size() < 2) return;
         const std::size_t n = lists[0].size();
-        rank(subset.boxes, lists[0], axis[0]);
+        rank_objects(subset.boxes, lists[0], axis[0]);
         const auto report = [&](std::size_t i, std::size_t j) {
             const auto& a = lists[0][i];
             const auto& b = lists[0][j];
@@ -54,7 +54,7 @@ public:
         }
         const auto overlap_on_first = [&](std::size_t i, std::size_t j) { return j < end_[i]; };
         if (n_lists == 2) {
-            walk(subset.boxes, lists[1], axis[1], 0, n, counters, [&](std::size_t i, std::size_t j) {
+            for_each_overlap(subset.boxes, lists[1], axis[1], 0, n, counters, [&](std::size_t i, std::size_t j) {
                 if (overlap_on_first(i, j)) report(i, j);
             });
             return;
@@ -65,10 +65,10 @@ public:
             const std::size_t last = std::min(first + rows, n);
             marks_.assign((last - first) * words, 0);
             assert(marks_.size() <= std::max(most_words, words));
-            walk(subset.boxes, lists[1], axis[1], first, last, counters, [&](std::size_t i, std::size_t j) {
+            for_each_overlap(subset.boxes, lists[1], axis[1], first, last, counters, [&](std::size_t i, std::size_t j) {
                 if (overlap_on_first(i, j)) marks_[(i - first) * words + j / 64] |= std::uint64_t{1} << j % 64;
             });
-            walk(subset.boxes, lists[2], axis[2], first, last, counters, [&](std::size_t i, std::size_t j) {
+            for_each_overlap(subset.boxes, lists[2], axis[2], first, last, counters, [&](std::size_t i, std::size_t j) {
                 if (marks_[(i - first) * words + j / 64] >> j % 64 & 1) report(i, j);
             });
         }
@@ -87,7 +87,7 @@ private:
 
     /// Ranks the objects by their place in the first list, and finds for each the end of its overlaps there.
     template <class Entry>
-    void rank(std::span<const box> boxes, std::span<const Entry> list, int axis) {
+    void rank_objects(std::span<const box> boxes, std::span<const Entry> list, int axis) {
         if (rank_.size() < boxes.size()) rank_.resize(boxes.size());
         end_.resize(list.size());
         for (std::size_t i = 0; i < list.size(); ++i) {
@@ -102,8 +102,8 @@ private:
     /// Visits every pair that overlaps on the axis, by ranks i < j, where first <= i < last. Pairs with both ranks
     /// above the block are skipped, so that no two blocks visit the same pair.
     template <class Entry, CounterPolicy Counters, class Visit>
-    void walk(std::span<const box> boxes, std::span<const Entry> list, int axis, std::size_t first, std::size_t last,
-              Counters& counters, Visit visit) {
+    void for_each_overlap(std::span<const box> boxes, std::span<const Entry> list, int axis, std::size_t first,
+                          std::size_t last, Counters& counters, Visit visit) {
         swept_.clear();
         within_.clear();
         swept_.reserve(list.size());

@@ -27,13 +27,14 @@ public:
     static constexpr std::string_view summary =
         "keeps the overlapping pairs between frames and follows the swaps of insertion sort";
 
+    /// Updates the lists and pairs to a frame.
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         if (boxes.size() > most_interval_objects)
             throw input_error("incremental takes at most 2^31 objects, not " + std::to_string(boxes.size()));
         if (objects.any_departures()) forget_departures(objects);
         const axis_set before = axes_;
-        swaps_left_ = restart_steps();
+        steps_left_ = restart_steps();
         for (std::size_t k = 0; k < 3; ++k)
             if (has_axis(before, k)) sort_known(boxes, k, sort, counters);
         const vec3d separation = separation_of(boxes, objects);
@@ -43,7 +44,7 @@ public:
             if (has_axis(axes_ & before, k)) merge_arrivals(boxes, objects, k);
             if (!has_axis(axes_, k)) release(ends_[k]);
         }
-        if (swaps_left_ == 0) {
+        if (steps_left_ == 0) {
             counters.add(work::restarts);
             pairs_.clear();
             restart_tests_ = 0;
@@ -64,6 +65,7 @@ private:
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
     }
 
+    /// Sorts the list of an axis, except arrivals: by swaps, or from scratch if the frame restarts.
     template <class Sort, CounterPolicy Counters>
     void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         bool moved = false;
@@ -73,18 +75,8 @@ private:
             e.key = key;
         }
         if (!moved) return;
-        if (swaps_left_ > 0) follow_swaps(boxes, axis, sort, counters);
-        if (swaps_left_ == 0) sort_ends(ends_[axis]);
-    }
-
-    template <class Sort, CounterPolicy Counters>
-    void follow_swaps(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
-        sort.sort(std::span(ends_[axis]), counters, [&](const interval_end& passed, const interval_end& mover) {
-            counters.add(work::inversions);
-            if (--swaps_left_ == 0) return false;
-            update_pairs_after_swap(passed, mover, before_, boxes, pairs_, counters);
-            return true;
-        });
+        if (steps_left_ > 0) follow_swaps(ends_[axis], boxes, sort, counters);
+        if (steps_left_ == 0) sort_ends(ends_[axis]);
     }
 
     /// The estimated number of steps of a restart, which sorts all lists and sweeps one; never 0.
@@ -115,6 +107,7 @@ private:
         sort_ends(list);
     }
 
+    /// Merges the ends of arriving objects into the list of an axis, from the back.
     void merge_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         arriving_.clear();
         objects.for_each_arrival([&](std::uint32_t id) {
@@ -165,8 +158,6 @@ private:
 
     axis_set axes_ = 0;                              // axes with a list
     std::array<std::vector<interval_end>, 3> ends_;  // sorted
-    std::vector<box> before_;                        // boxes of the previous frame, by id
-    std::uint64_t swaps_left_ = 0;                   // remaining swaps of this frame; 0: the frame restarts
     std::uint64_t restart_tests_ = 0;                // greatest number of tests of a list sweep since the last restart
     // Used for arrivals and restarts:
     std::vector<interval_end> arriving_;

@@ -45,7 +45,7 @@ public:
             swept_.push_back(
                 {{b.max[u], b.max[v], -b.min[u], -b.min[v]}, b.min[axis_], b.max[axis_], e.id, Subset::owned(e)});
         }
-        scan<Subset>(pairs, counters);
+        test_pairs<Subset>(pairs, counters);
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(swept_); }
@@ -68,8 +68,9 @@ private:
         return __builtin_reduce_and(lower <= upper) != 0;
     }
 
+    /// Tests each box against those that begin before it ends.
     template <class Subset, CounterPolicy Counters>
-    void scan(std::vector<index_pair>& pairs, Counters& counters) const {
+    void test_pairs(std::vector<index_pair>& pairs, Counters& counters) const {
         for (std::size_t i = 0; i < swept_.size(); ++i) {
             const swept_box a = swept_[i];
             const quad lower = {-a.bounds[2], -a.bounds[3], -a.bounds[0], -a.bounds[1]};

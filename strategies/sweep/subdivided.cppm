@@ -47,7 +47,7 @@ public:
             restart(boxes, objects, counters);
         } else {
             steps_left_ = restart_steps_;
-            follow(boxes, objects, sort, counters);
+            update_lists(boxes, objects, sort, counters);
             if (steps_left_ == 0) {
                 counters.add(work::restarts);
                 restart(boxes, objects, counters);
@@ -118,10 +118,11 @@ private:
 
     void spend(std::uint64_t steps) noexcept { steps_left_ -= std::min(steps, steps_left_); }
 
-    static void erase_ends(region& r, auto goes) {
-        for (auto& list : r.ends) std::erase_if(list, [&](const interval_end& e) { return goes(e.id); });
+    static void erase_ends(region& r, auto is_leaving) {
+        for (auto& list : r.ends) std::erase_if(list, [&](const interval_end& e) { return is_leaving(e.id); });
     }
 
+    /// Removes departed objects from the pairs and from the lists of their regions.
     void forget_departures(const membership& objects) {
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
         for (std::uint32_t id = 0; id < places_.size(); ++id) {
@@ -138,7 +139,7 @@ private:
 
     /// Updates lists and pairs to the frame, and stops early when no steps are left.
     template <class Sort, CounterPolicy Counters>
-    void follow(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
+    void update_lists(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         moved_.assign(boxes.size(), 0);
         for (std::uint32_t id = 0; id < boxes.size() && steps_left_ > 0; ++id) {
             if (!objects.contains(id) || (!objects.is_arrival(id) && boxes[id] == before_[id])) continue;
@@ -148,8 +149,8 @@ private:
             if (steps_left_ == 0) return;
             for_each_region(range, {}, [&](std::uint32_t r) { touch(r); });
             if (range == places_[id]) continue;
-            for_each_region(places_[id], range, [&](std::uint32_t r) { leave(r, id, boxes, counters); });
-            for_each_region(range, places_[id], [&](std::uint32_t r) { enter(r, id, boxes); });
+            for_each_region(places_[id], range, [&](std::uint32_t r) { leave_region(r, id, boxes, counters); });
+            for_each_region(range, places_[id], [&](std::uint32_t r) { enter_region(r, id, boxes); });
             places_[id] = range;
         }
         for (const std::uint32_t r : touched_) {
@@ -161,7 +162,7 @@ private:
 
     /// Removes an object from a region. No swap reports pairs that end because of this, so they are tested here.
     template <CounterPolicy Counters>
-    void leave(std::uint32_t r, std::uint32_t id, std::span<const box> boxes, Counters& counters) {
+    void leave_region(std::uint32_t r, std::uint32_t id, std::span<const box> boxes, Counters& counters) {
         spend(regions_[r].ends[0].size());
         erase_ends(regions_[r], [id](std::uint32_t other) { return other == id; });
         for (const interval_end& e : regions_[r].ends[0]) {
@@ -172,13 +173,14 @@ private:
     }
 
     /// Appends the ends of an object, as if it came from beyond all others, so that sorting finds its pairs.
-    void enter(std::uint32_t r, std::uint32_t id, std::span<const box> boxes) {
+    void enter_region(std::uint32_t r, std::uint32_t id, std::span<const box> boxes) {
         for (std::size_t k = 0; k < 3; ++k) {
             regions_[r].ends[k].push_back(lower_end(boxes, id, k));
             regions_[r].ends[k].push_back(upper_end(boxes, id, k));
         }
     }
 
+    /// Updates the keys of moved objects in a region's list, and sorts it by swaps if necessary.
     template <class Sort, CounterPolicy Counters>
     void sort_region(std::uint32_t r, std::size_t axis, std::span<const box> boxes, Sort& sort, Counters& counters) {
         std::vector<interval_end>& list = regions_[r].ends[axis];
@@ -189,17 +191,13 @@ private:
             is_sorted &= i == 0 || !precedes(list[i], list[i - 1]);
         }
         if (is_sorted || steps_left_ == 0) return;
-        sort.sort(std::span(list), counters, [&](const interval_end& passed, const interval_end& mover) {
-            counters.add(work::inversions);
-            if (--steps_left_ == 0) return false;
-            update_pairs_after_swap(passed, mover, before_, boxes, pairs_, counters);
-            return true;
-        });
+        follow_swaps(list, boxes, sort, counters);
     }
 
+    /// Plans a new grid, fills and sorts all lists, and sweeps those of one axis for all pairs.
     template <CounterPolicy Counters>
     void restart(std::span<const box> boxes, const membership& objects, Counters& counters) {
-        plan(boxes, objects);
+        plan_grid(boxes, objects);
         for (region& r : regions_) {
             for (auto& list : r.ends) list.clear();
             r.is_touched = false;
@@ -210,7 +208,7 @@ private:
         for (std::uint32_t id = 0; id < boxes.size(); ++id) {
             if (!objects.contains(id)) continue;
             places_[id] = range_of(boxes[id]);
-            for_each_region(places_[id], {}, [&](std::uint32_t r) { enter(r, id, boxes); });
+            for_each_region(places_[id], {}, [&](std::uint32_t r) { enter_region(r, id, boxes); });
         }
         std::uint64_t tests = 0;
         restart_steps_ = 1;
@@ -227,7 +225,7 @@ private:
     }
 
     /// Cuts the two axes with the greatest variance of the boxes' centres.
-    void plan(std::span<const box> boxes, const membership& objects) {
+    void plan_grid(std::span<const box> boxes, const membership& objects) {
         planned_ = objects.size();
         const spread along = spread_of(boxes, objects);
         int least = 2;
@@ -259,8 +257,6 @@ private:
     std::vector<std::uint32_t> touched_;  // regions with objects that moved in this frame
     std::vector<region_range> places_;    // by id
     std::vector<std::uint8_t> moved_;     // whether the object moved in this frame, by id
-    std::vector<box> before_;             // boxes of the previous frame, by id
-    std::uint64_t steps_left_ = 0;        // remaining steps of this frame; 0: the frame restarts
     std::uint64_t restart_steps_ = 1;     // number of steps of the last restart
     interval_sweep sweep_;
 };

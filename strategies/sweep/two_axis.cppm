@@ -37,13 +37,13 @@ public:
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         const auto& list = subset.lists[static_cast<std::size_t>(swept_axis_)];
         if (list.size() < 2) return;
-        rank(subset, subset.lists[static_cast<std::size_t>(kept_axis_)]);
+        rank_boxes(subset, subset.lists[static_cast<std::size_t>(kept_axis_)]);
         std::uint64_t tests = 0;
         for (const auto& e : list) {
-            tests += meet<Subset>(rank_[e.id]);
-            if (pair_count_ > enough) report(pairs);
+            tests += test_and_activate<Subset>(rank_[e.id]);
+            if (pair_count_ > enough) append_pairs(pairs);
         }
-        report(pairs);
+        append_pairs(pairs);
         counters.add(work::box_tests, tests);
     }
 
@@ -75,14 +75,14 @@ private:
         return b.bounds[0] + b.bounds[2] > longest_short_;
     }
 
-    void report(std::vector<index_pair>& pairs) {
+    void append_pairs(std::vector<index_pair>& pairs) {
         pairs.insert(pairs.end(), pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(pair_count_));
         pair_count_ = 0;
     }
 
     /// Ranks boxes by their place in the kept list, and finds the first candidate word of each.
     template <class Subset, class List>
-    void rank(const Subset& subset, const List& list) {
+    void rank_boxes(const Subset& subset, const List& list) {
         const std::size_t n = list.size();
         ranked_.resize(n);
         first_word_.resize(n);
@@ -116,7 +116,7 @@ private:
 
     /// Lists the active boxes from a word up to the last word that begins at or below `last`. Most words have up to
     /// three bits, which are extracted without branches, since their number is hard to predict.
-    std::size_t candidates(std::size_t word, float last) noexcept {
+    std::size_t list_candidates(std::size_t word, float last) noexcept {
         std::size_t count = 0;
         for (; word < active_.size() && word_begins_[word] <= last; ++word) {
             std::uint64_t left = active_[word];
@@ -138,25 +138,25 @@ private:
     /// ended boxes are hard to predict.
     /// @returns the number of tests
     template <class Subset>
-    std::size_t meet(std::uint32_t rank) {
+    std::size_t test_and_activate(std::uint32_t rank) {
         const ranked_box a = ranked_[rank];
         const quad lower = {-a.bounds[2], -a.bounds[3], -a.bounds[0], -a.bounds[1]};
         const auto overlaps = [&](const ranked_box& b) {
             return static_cast<std::size_t>(b.end >= a.begin) & static_cast<std::size_t>(all_at_most(lower, b.bounds)) &
                    static_cast<std::size_t>(Subset::owns(a.owned, b.owned));
         };
-        const std::size_t near = candidates(first_word_[rank], a.bounds[0]);
+        const std::size_t short_count = list_candidates(first_word_[rank], a.bounds[0]);
         std::size_t count = pair_count_;
-        for (std::size_t c = 0; c < near; ++c) {
+        for (std::size_t c = 0; c < short_count; ++c) {
             const std::uint32_t other = candidates_[c];
             const ranked_box& b = ranked_[other];
             pairs_[count] = ordered_pair(a.id, b.id);
             count += overlaps(b);
             active_[other / bits] &= ~(std::uint64_t{b.end < a.begin} << other % bits);
         }
-        const std::size_t far = long_active_.size();
+        const std::size_t long_count = long_active_.size();
         std::size_t stay = 0;
-        for (std::size_t c = 0; c < far; ++c) {
+        for (std::size_t c = 0; c < long_count; ++c) {
             const ranked_box& b = ranked_[long_active_[c]];
             pairs_[count] = ordered_pair(a.id, b.id);
             count += overlaps(b);
@@ -169,7 +169,7 @@ private:
             long_active_.push_back(rank);
         else
             active_[rank / bits] |= std::uint64_t{1} << rank % bits;
-        return near + far;
+        return short_count + long_count;
     }
 
     chosen_axis swept_;
