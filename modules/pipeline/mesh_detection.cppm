@@ -57,6 +57,14 @@ public:
                 {"refit", bytes_of(refitted_)}};
     }
 
+    [[nodiscard]] static std::vector<omission> left_out() {
+        std::vector<omission> absent;
+        if constexpr (requires { Tree::leaves_out; })
+            for (const absence feature : Tree::leaves_out) absent.push_back({feature});
+        if constexpr (!Counters::enabled) absent.push_back({absence::counters});
+        return absent;
+    }
+
 private:
     [[no_unique_address]] Build build_;
     Tree tree_;  // without nodes
@@ -65,15 +73,11 @@ private:
     std::vector<box> refitted_;  // scratch memory for refits
 };
 
+/// A statically composed narrow phase, a `mesh_detection`, behind the interface of a stage.
 template <class Detection>
-class detected_by;
-
-/// A statically composed narrow phase behind the interface of a stage.
-template <TreeBuilder Build, TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
-class detected_by<mesh_detection<Build, Tree, Triangle, Counters>> final : public local_stage {
+class detected_by final : public local_stage {
 public:
-    explicit detected_by(mesh_detection<Build, Tree, Triangle, Counters> detection)
-        : detection_(std::move(detection)) {}
+    explicit detected_by(Detection detection) : detection_(std::move(detection)) {}
 
     std::uint32_t add_model(const mesh& m) override { return detection_.add_model(m); }
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
@@ -100,17 +104,10 @@ public:
     }
     [[nodiscard]] work_counters counters() const override { return work_of(detection_.counters()); }
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return detection_.bytes(); }
-
-    [[nodiscard]] std::vector<omission> left_out() const override {
-        std::vector<omission> absent;
-        if constexpr (requires { Tree::leaves_out; })
-            for (const absence feature : Tree::leaves_out) absent.push_back({feature});
-        if constexpr (!Counters::enabled) absent.push_back({absence::counters});
-        return absent;
-    }
+    [[nodiscard]] std::vector<omission> left_out() const override { return Detection::left_out(); }
 
 private:
-    mesh_detection<Build, Tree, Triangle, Counters> detection_;
+    Detection detection_;
 };
 
 }  // namespace aabb

@@ -2,7 +2,7 @@ export module aabb.wide_tree.child_pairs;
 
 import aabb.std;
 import aabb.wide_tree.box_images;
-export import aabb.wide_tree.policy;
+export import aabb.wide_tree.wide_node;
 
 export namespace aabb {
 

@@ -14,10 +14,8 @@ namespace aabb::simd::detail {
 #if defined(__AVX512VBMI2__)
 [[gnu::always_inline]] inline void store_set_bits_of_sixty_four(std::uint64_t set, void* to) noexcept {
     static constexpr auto identity = [] {
-        struct {
-            std::uint8_t at[64];
-        } places{};
-        for (std::uint8_t i = 0; i < 64; ++i) places.at[i] = i;
+        std::array<std::uint8_t, 64> places{};
+        for (std::uint8_t i = 0; i < 64; ++i) places[i] = i;
         return places;
     }();
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi8(set, _mm512_loadu_si512(&identity)));

@@ -6,7 +6,7 @@ export module aabb.wide_tree.nearest_walk;
 import aabb.std;
 import aabb.wide_tree.box_images;
 export import aabb.wide_tree.level_steps;
-export import aabb.wide_tree.policy;
+export import aabb.wide_tree.wide_node;
 
 export namespace aabb {
 

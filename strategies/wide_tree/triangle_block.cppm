@@ -1,7 +1,7 @@
 export module aabb.wide_tree.triangle_block;
 
 import aabb.std;
-export import aabb.wide_tree.policy;
+export import aabb.wide_tree.wide_node;
 
 export namespace aabb {
 

@@ -3,7 +3,7 @@
 export module aabb.wide_tree;
 
 export import aabb.wide_tree.front_walk;
-export import aabb.wide_tree.policy;
+export import aabb.wide_tree.wide_node;
 
 import aabb.std;
 import aabb.wide_tree.bvtt_front;
