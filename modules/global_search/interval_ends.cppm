@@ -26,11 +26,10 @@ static_assert(sizeof(interval_end) == 8);
 /// The number of ids that `interval_end` can represent.
 inline constexpr std::size_t most_interval_objects = std::size_t{1} << 31;
 
-[[nodiscard]] inline interval_end lower_end(std::span<const box> boxes, std::uint32_t id, std::size_t axis) {
-    return {boxes[id].min[static_cast<int>(axis)], id, 0};
-}
-[[nodiscard]] inline interval_end upper_end(std::span<const box> boxes, std::uint32_t id, std::size_t axis) {
-    return {boxes[id].max[static_cast<int>(axis)], id, 1};
+/// Appends both ends of an object's interval.
+inline void append_ends(std::vector<interval_end>& list, std::span<const box> boxes, std::uint32_t id, int axis) {
+    list.push_back({boxes[id].min[axis], id, 0});
+    list.push_back({boxes[id].max[axis], id, 1});
 }
 
 /// The current coordinate of the end.

@@ -60,11 +60,11 @@ public:
     [[nodiscard]] const mesh& triangles() const noexcept { return *mesh_; }
     [[nodiscard]] const Tree& tree() const noexcept { return tree_; }
     /// The node at which every query begins.
-    /// @throws input_error if the last refit failed
     [[nodiscard]] typename Tree::cursor root() const {
         require_fit();
         return tree_.root(*mesh_);
     }
+    /// Called by `root`, `bounds` and every query.
     /// @throws input_error if the last refit failed
     void require_fit() const { fit_.require(); }
     /// Unique among models, except that copies share it.
@@ -72,7 +72,6 @@ public:
     /// Models of equal state have the same boxes of the same mesh; each refit changes the state.
     [[nodiscard]] std::uint64_t state() const noexcept { return state_; }
     /// The box of the root.
-    /// @throws input_error if the last refit failed
     [[nodiscard]] const box& bounds() const {
         require_fit();
         return bounds_;

@@ -93,8 +93,7 @@ public:
         });
     }
 
-    /// Alternatives to `detect`: some contact, and the number of contacts.
-    /// @throws input_error as `detect`
+    /// Alternatives to `detect`, which throw likewise: some contact, and the number of contacts.
     [[nodiscard]] std::optional<contact> first_contact() {
         require_searched();
         for (std::size_t i = 0; i < candidates_.size(); ++i) {

@@ -118,10 +118,10 @@ public:
     [[nodiscard]] virtual bool takes_double() const = 0;
 
     /// Tests many pairs in one call, so that the virtual call does not dominate the time.
-    /// @param answers output, as long as `pairs`: 1 if the triangles intersect, else 0
-    virtual void intersect(std::span<const triangle_pair<float>> pairs, std::span<std::uint8_t> answers) const = 0;
+    /// @param results output, as long as `pairs`: 1 if the triangles intersect, else 0
+    virtual void intersect(std::span<const triangle_pair<float>> pairs, std::span<std::uint8_t> results) const = 0;
     /// @throws input_error if the test only takes floats
-    virtual void intersect(std::span<const triangle_pair<double>> pairs, std::span<std::uint8_t> answers) const = 0;
+    virtual void intersect(std::span<const triangle_pair<double>> pairs, std::span<std::uint8_t> results) const = 0;
 
     /// The intersection of two triangles.
     /// @throws input_error if the test does not construct it

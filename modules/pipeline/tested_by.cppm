@@ -27,12 +27,12 @@ public:
     }
     [[nodiscard]] bool takes_double() const override { return DoubleTrianglePolicy<Triangle>; }
 
-    void intersect(std::span<const triangle_pair<float>> pairs, std::span<std::uint8_t> answers) const override {
-        answer(pairs, answers);
+    void intersect(std::span<const triangle_pair<float>> pairs, std::span<std::uint8_t> results) const override {
+        test_pairs(pairs, results);
     }
-    void intersect(std::span<const triangle_pair<double>> pairs, std::span<std::uint8_t> answers) const override {
+    void intersect(std::span<const triangle_pair<double>> pairs, std::span<std::uint8_t> results) const override {
         if constexpr (DoubleTrianglePolicy<Triangle>)
-            answer(pairs, answers);
+            test_pairs(pairs, results);
         else
             reject_doubles();
     }
@@ -49,11 +49,11 @@ public:
 
 private:
     template <class Real>
-    void answer(std::span<const triangle_pair<Real>> pairs, std::span<std::uint8_t> answers) const {
-        assert(pairs.size() == answers.size());
+    void test_pairs(std::span<const triangle_pair<Real>> pairs, std::span<std::uint8_t> results) const {
+        assert(pairs.size() == results.size());
         require_ieee_arithmetic();
         for (std::size_t i = 0; i < pairs.size(); ++i)
-            answers[i] = static_cast<std::uint8_t>(triangle_.intersects(pairs[i].a, pairs[i].b));
+            results[i] = static_cast<std::uint8_t>(triangle_.intersects(pairs[i].a, pairs[i].b));
     }
 
     [[noreturn]] static void reject_doubles() {

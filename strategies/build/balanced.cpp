@@ -131,8 +131,7 @@ private:
         return best;
     }
 
-    /// Splits few items by a partition that keeps their order. Ties, which make the first side too large, are resolved
-    /// by the exact centres.
+    /// Splits few items and keeps their order. The exact centres resolve ties, which make the first side too large.
     void split_few(std::span<const balanced_item> from, std::span<balanced_item> to, const box& bounds,
                    std::size_t left) const noexcept {
         auto [axis, first] = best_split(few_items(from), bounds, left);

@@ -178,7 +178,6 @@ public:
         }
     }
 
-    /// Total number of boxes over all columns.
     [[nodiscard]] std::size_t copies() const noexcept { return columns_.copies(); }
     void count(std::size_t subsets, std::size_t copies) {
         counters_.add(work::subsets, subsets);

@@ -53,7 +53,7 @@ public:
     /// are not cut.
     axis_set axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
         const spread along = spread_of(boxes, objects);
-        const std::array<int, 3> order = in_order(along, swept);
+        const std::array<int, 3> order = axes_by_variance(along, swept);
         const bool may_leave_out = !config_.axes && !config_.segments;
         candidate_cut best{0, 1, may_leave_out ? cost_without_cuts(along, swept) : never};
         if (cut_ == 0) best.cost *= preference;
@@ -145,6 +145,8 @@ private:
         return ranges;
     }
 
+    /// Places the desired cuts of an axis at quantiles of its lower ends, and moves or drops those that the limit
+    /// forbids.
     void choose_cuts(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         std::vector<float>& cuts = cuts_[k];
         // The greatest upper end of the boxes that begin before the last cut.
@@ -183,7 +185,7 @@ private:
 
     /// Axes in descending variance of centres, with a bonus for axes that are cut already. The only swept axis comes
     /// last, except for axes without variance.
-    [[nodiscard]] std::array<int, 3> in_order(const spread& along, axis_set swept) const {
+    [[nodiscard]] std::array<int, 3> axes_by_variance(const spread& along, axis_set swept) const {
         std::array<int, 3> order{0, 1, 2};
         const auto varies = [&](int k) { return along.variance[k] > 0; };
         const auto is_last = [&](int k) { return swept == axis_set{1} << k; };
@@ -220,6 +222,7 @@ private:
         return machine_costs().list_entry * static_cast<double>(along.objects) * std::popcount(needed);
     }
 
+    /// The cost of the whole scene as one subset.
     [[nodiscard]] static double cost_without_cuts(const spread& along, axis_set swept) {
         const vec3d share = shares_of(along);
         const auto objects = static_cast<double>(along.objects);

@@ -76,8 +76,9 @@ bool lies_right(const box& b, std::uint32_t axis, float plane) {
 
 }  // namespace
 
+/// Collects the present objects; a tree for other swept axes is discarded.
 axis_set kd_tree_partition::axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
-    // Costs of splits depend on the swept axes, so another axis invalidates the tree.
+    // The costs of splits depend on the swept axes.
     is_whole_ &= swept == swept_;
     swept_ = swept;
     present_.clear();
@@ -86,6 +87,7 @@ axis_set kd_tree_partition::axes(std::span<const box> boxes, const membership& o
     return 0;
 }
 
+/// Rebuilds what is stale, and finds the leaves of all boxes.
 void kd_tree_partition::fit(const whole_subset& scene) {
     built_nodes_ = 0;
     // After an exception, the next frame rebuilds the whole tree.
@@ -93,18 +95,18 @@ void kd_tree_partition::fit(const whole_subset& scene) {
         rebuild_all(scene.boxes);
     else if (!groups_.empty())
         rebuild_stale(scene.boxes);
-    [[maybe_unused]] bool placed = place(scene.boxes);
+    [[maybe_unused]] bool placed = place_boxes(scene.boxes);
     if (!placed) {
         rebuild_all(scene.boxes);
-        placed = place(scene.boxes);
+        placed = place_boxes(scene.boxes);
     }
-    compare();
+    find_stale_nodes();
     // Stale subtrees are usually rebuilt in the next frame, so that boxes are placed only once per frame, but not if
     // they make the current frame much more expensive.
     if (!groups_.empty() && pairs_ > 2 * initial_pairs_) {
         rebuild_stale(scene.boxes);
-        placed = place(scene.boxes);
-        compare();
+        placed = place_boxes(scene.boxes);
+        find_stale_nodes();
     }
     assert(placed);
     is_whole_ = true;
@@ -124,12 +126,12 @@ void kd_tree_partition::rebuild_all(std::span<const box> boxes) {
     initial_pairs_ = 0;
     ids_ = present_;
     homes_.clear();
-    choose(boxes, 0, ids_.size(), {empty_box().max, empty_box().min}, 0);
+    build_subtree(boxes, 0, ids_.size(), {empty_box().max, empty_box().min}, 0);
 }
 
 /// Rebuilds the stale subtrees from the boxes that were in them.
 void kd_tree_partition::rebuild_stale(std::span<const box> boxes) {
-    gather();
+    collect_group_boxes();
     old_.swap(nodes_);
     nodes_.clear();
     leaves_ = 0;
@@ -143,6 +145,7 @@ void kd_tree_partition::rebuild_stale(std::span<const box> boxes) {
     groups_.clear();
 }
 
+/// Copies a subtree of the old tree, except stale parts, which are rebuilt.
 void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_t old, std::size_t depth) {
     const auto self = static_cast<std::uint32_t>(nodes_.size());
     const auto group = std::ranges::lower_bound(groups_, old);
@@ -154,7 +157,7 @@ void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_
         ids_.resize(first + count);
         std::copy_n(ids_.begin() + static_cast<std::ptrdiff_t>(group_starts_[g]), count,
                     ids_.begin() + static_cast<std::ptrdiff_t>(first));
-        choose(boxes, first, count, old_[old].cell, depth);
+        build_subtree(boxes, first, count, old_[old].cell, depth);
         ids_.resize(first);
         std::uint32_t last = old;
         while (old_[last].axis != is_leaf) last = old_[last].children[1];
@@ -174,8 +177,8 @@ void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_
 }
 
 /// Builds the subtree of the boxes ids_[first .. first + count).
-void kd_tree_partition::choose(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell,
-                               std::size_t depth) {
+void kd_tree_partition::build_subtree(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell,
+                                      std::size_t depth) {
     const std::size_t self = nodes_.size();
     ++built_nodes_;
     nodes_.push_back({cell, 0, is_leaf, {leaves_, 0}, unknown});
@@ -193,10 +196,10 @@ void kd_tree_partition::choose(std::span<const box> boxes, std::size_t first, st
             cells[0].max[k] = std::min(at.plane, cell.max[k]);
             cells[1].min[k] = std::max(at.plane, cell.min[k]);
             nodes_[self].children[0] = static_cast<std::uint32_t>(nodes_.size());
-            choose(boxes, left, parts[0], cells[0], depth + 1);
+            build_subtree(boxes, left, parts[0], cells[0], depth + 1);
             nodes_[self].children[1] = static_cast<std::uint32_t>(nodes_.size());
             ids_.resize(left);
-            choose(boxes, right, parts[1], cells[1], depth + 1);
+            build_subtree(boxes, right, parts[1], cells[1], depth + 1);
             ids_.resize(right);
             return;
         }
@@ -238,6 +241,7 @@ bool kd_tree_partition::divide(std::span<const box> boxes, std::size_t first, st
     return true;
 }
 
+/// The cheapest split at a median of the sample's centres; none if it costs more than no split.
 kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxes, std::size_t first,
                                                        std::size_t count) const {
     constexpr double never = std::numeric_limits<double>::infinity();
@@ -266,7 +270,7 @@ kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxe
 
 /// Finds the leaves of all boxes.
 /// @returns false if there are too many copies, which requires a full rebuild
-bool kd_tree_partition::place(std::span<const box> boxes) {
+bool kd_tree_partition::place_boxes(std::span<const box> boxes) {
     const std::size_t most = 2 * most_copies * present_.size();
     starts_.resize(boxes.size() + 1);
     homes_.resize(boxes.size(), 0);
@@ -276,7 +280,7 @@ bool kd_tree_partition::place(std::span<const box> boxes) {
     for (const std::uint32_t id : present_) {
         const box& b = boxes[id];
         while (next <= id) starts_[next++] = static_cast<std::uint32_t>(entries_.size());
-        homes_[id] = put(b, lies_within(b, nodes_[homes_[id]].cell) ? homes_[id] : 0);
+        homes_[id] = place_box(b, lies_within(b, nodes_[homes_[id]].cell) ? homes_[id] : 0);
         if (entries_.size() > most) return false;
     }
     while (next <= boxes.size()) starts_[next++] = static_cast<std::uint32_t>(entries_.size());
@@ -285,7 +289,7 @@ bool kd_tree_partition::place(std::span<const box> boxes) {
 
 /// Puts a box into all leaves that it overlaps below a node whose cell contains it.
 /// @returns the lowest such node
-inline std::uint32_t kd_tree_partition::put(const box& b, std::uint32_t from) {
+inline std::uint32_t kd_tree_partition::place_box(const box& b, std::uint32_t from) {
     struct waiting {
         std::uint32_t at;
         axis_set owned;
@@ -316,7 +320,7 @@ inline std::uint32_t kd_tree_partition::put(const box& b, std::uint32_t from) {
 }
 
 /// Compares the number of copies below each node with that at its construction, and collects the stale nodes.
-void kd_tree_partition::compare() {
+void kd_tree_partition::find_stale_nodes() {
     copies_below_.resize(nodes_.size());
     for (std::size_t at = nodes_.size(); at-- > 0;) {
         node& n = nodes_[at];
@@ -331,7 +335,7 @@ void kd_tree_partition::compare() {
     if (is_stale(0))
         groups_.push_back(0);
     else
-        mark(0);
+        collect_stale_nodes(0);
 }
 
 /// Whether a node is stale: its number of copies has more than doubled or halved, with a tolerance for small numbers.
@@ -342,25 +346,25 @@ bool kd_tree_partition::is_stale(std::uint32_t at) const noexcept {
 }
 
 /// Collects the lowest nodes that are not stale but have a stale child: they can redistribute boxes among children.
-void kd_tree_partition::mark(std::uint32_t at) {
+void kd_tree_partition::collect_stale_nodes(std::uint32_t at) {
     if (nodes_[at].axis == is_leaf) return;
     const auto [left, right] = nodes_[at].children;
     if (is_stale(left) || is_stale(right)) {
         groups_.push_back(at);
         return;
     }
-    mark(left);
-    mark(right);
+    collect_stale_nodes(left);
+    collect_stale_nodes(right);
 }
 
 /// The first or the last leaf below a node.
-std::uint32_t kd_tree_partition::leaf_of(std::uint32_t at, std::size_t side) const noexcept {
+std::uint32_t kd_tree_partition::outermost_leaf(std::uint32_t at, std::size_t side) const noexcept {
     while (nodes_[at].axis != is_leaf) at = nodes_[at].children[side];
     return nodes_[at].children[0];
 }
 
 /// Collects the boxes of each group, ascending by id. The leaves of a box ascend, so those of a group are consecutive.
-void kd_tree_partition::gather() {
+void kd_tree_partition::collect_group_boxes() {
     group_of_.assign(leaves_, 0);
     group_starts_.resize(groups_.size());
     group_ends_.resize(groups_.size());
@@ -368,8 +372,8 @@ void kd_tree_partition::gather() {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         group_starts_[g] = group_ends_[g] = total;
         total += copies_below_[groups_[g]];
-        const std::uint32_t last = leaf_of(groups_[g], 1);
-        for (std::uint32_t leaf = leaf_of(groups_[g], 0); leaf <= last; ++leaf)
+        const std::uint32_t last = outermost_leaf(groups_[g], 1);
+        for (std::uint32_t leaf = outermost_leaf(groups_[g], 0); leaf <= last; ++leaf)
             group_of_[leaf] = static_cast<std::uint32_t>(g) + 1;
     }
     ids_.resize(total);

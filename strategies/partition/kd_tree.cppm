@@ -80,17 +80,18 @@ private:
     void rebuild_all(std::span<const box> boxes);
     void rebuild_stale(std::span<const box> boxes);
     void copy_or_rebuild(std::span<const box> boxes, std::uint32_t old, std::size_t depth);
-    void choose(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell, std::size_t depth);
-    std::uint32_t put(const box& b, std::uint32_t from);
-    [[nodiscard]] std::uint32_t leaf_of(std::uint32_t at, std::size_t side) const noexcept;
+    void build_subtree(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell,
+                       std::size_t depth);
+    std::uint32_t place_box(const box& b, std::uint32_t from);
+    [[nodiscard]] std::uint32_t outermost_leaf(std::uint32_t at, std::size_t side) const noexcept;
     [[nodiscard]] split best_split(std::span<const box> boxes, std::size_t first, std::size_t count) const;
     [[nodiscard]] bool divide(std::span<const box> boxes, std::size_t first, std::size_t count, const split& at,
                               std::array<std::size_t, 2>& parts);
-    [[nodiscard]] bool place(std::span<const box> boxes);
-    void compare();
+    [[nodiscard]] bool place_boxes(std::span<const box> boxes);
+    void find_stale_nodes();
     [[nodiscard]] bool is_stale(std::uint32_t at) const noexcept;
-    void mark(std::uint32_t at);
-    void gather();
+    void collect_stale_nodes(std::uint32_t at);
+    void collect_group_boxes();
 
     config config_;
     axis_set swept_ = 0;

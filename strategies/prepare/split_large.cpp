@@ -59,7 +59,7 @@ public:
         search_->search(piece_pairs_);
         append_or_restore(pairs, [&] {
             for (const auto [a, b] : piece_pairs_)
-                if (counts(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
+                if (owns_pair(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
         });
     }
 
@@ -116,6 +116,7 @@ private:
         return interval;
     }
 
+    /// Sets the splits of the current frame, without their slots.
     void find_splits(std::span<const box> boxes, double longest) {
         splits_now_.clear();
         std::size_t total = 0;
@@ -143,12 +144,12 @@ private:
             for (std::size_t end = first + splits_[known].further_pieces(); first < end; ++first) use(slots_[first]);
             ++known;
         };
-        const auto leave = [&](std::uint32_t slot) {
+        const auto free_slot = [&](std::uint32_t slot) {
             search_->remove(first_slot_ + slot);
             left_slots_.push_back(slot);
         };
         for (const split& current : splits_now_) {
-            while (known < splits_.size() && splits_[known].object < current.object) pass_known(leave);
+            while (known < splits_.size() && splits_[known].object < current.object) pass_known(free_slot);
             if (known < splits_.size() && splits_[known] == current) {
                 pass_known([&](std::uint32_t slot) { slots_now_.push_back(slot); });
                 continue;
@@ -159,11 +160,12 @@ private:
                 search_->insert(first_slot_ + slots_now_.back());
             }
         }
-        while (known < splits_.size()) pass_known(leave);
+        while (known < splits_.size()) pass_known(free_slot);
         splits_.swap(splits_now_);
         slots_.swap(slots_now_);
     }
 
+    /// A free slot, or a new one.
     [[nodiscard]] std::uint32_t take_slot() {
         if (free_slots_.empty()) {
             object_of_slot_.push_back(0);
@@ -180,6 +182,7 @@ private:
         splits_.clear();
     }
 
+    /// Cuts the boxes of divided objects: the first piece takes the place of its object, the others their slots.
     void make_pieces(std::span<const box> boxes, double longest) {
         pieces_.assign(boxes.begin(), boxes.end());
         pieces_.resize(boxes.size() + object_of_slot_.size(), box{});
@@ -198,7 +201,7 @@ private:
     }
 
     /// Whether this pair of pieces reports its objects: both pieces must contain the corner of the objects' overlap.
-    [[nodiscard]] bool counts(std::uint32_t piece_a, std::uint32_t piece_b) const {
+    [[nodiscard]] bool owns_pair(std::uint32_t piece_a, std::uint32_t piece_b) const {
         const std::uint32_t a = object_of(piece_a);
         const std::uint32_t b = object_of(piece_b);
         if (a == b) return false;

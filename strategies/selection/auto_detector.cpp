@@ -13,6 +13,7 @@ strategy_kind kind_named(std::string_view name) {
     throw input_error(unknown_name("kind of strategy", name, names));
 }
 
+/// Parses KIND=NAME:parameter=value,… for each text.
 named_strategies parse_choices(const std::vector<std::string>& texts) {
     named_strategies named;
     for (const std::string& text : texts) {
@@ -38,11 +39,11 @@ named_strategies parse_choices_for_boxes(const std::vector<std::string>& texts) 
 struct auto_detector::mesh_part {
     mesh_part(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of, global_stage& global,
               std::unique_ptr<local_stage> detection)
-        : scene(std::move(meshes), std::move(mesh_of)), local(std::move(detection)), both(scene, global, *local) {}
+        : scene(std::move(meshes), std::move(mesh_of)), local(std::move(detection)), stages(scene, global, *local) {}
 
     given_scene scene;
     std::unique_ptr<local_stage> local;
-    pipeline both;
+    pipeline stages;
 };
 
 auto_detector::auto_detector(const std::vector<std::string>& named, std::size_t frames)
@@ -69,11 +70,11 @@ auto_detector::auto_detector(const named_strategies& named, const scene_traits& 
 auto_detector::~auto_detector() = default;
 
 void auto_detector::insert(std::uint32_t object) {
-    meshes_ ? meshes_->both.insert(object) : global_->insert(object);
+    meshes_ ? meshes_->stages.insert(object) : global_->insert(object);
 }
 
 void auto_detector::remove(std::uint32_t object) {
-    meshes_ ? meshes_->both.remove(object) : global_->remove(object);
+    meshes_ ? meshes_->stages.remove(object) : global_->remove(object);
 }
 
 std::span<const index_pair> auto_detector::pairs(std::span<const box> boxes) {
@@ -84,25 +85,25 @@ std::span<const index_pair> auto_detector::pairs(std::span<const box> boxes) {
     return pairs_;
 }
 
-pipeline& auto_detector::searched(std::span<const pose> poses) {
+pipeline& auto_detector::find_candidates(std::span<const pose> poses) {
     if (!meshes_) throw input_error("this detector is for boxes: construct one with meshes to find contacts");
-    meshes_->both.update(poses);
-    meshes_->both.search();
-    return meshes_->both;
+    meshes_->stages.update(poses);
+    meshes_->stages.search();
+    return meshes_->stages;
 }
 
 std::span<const contact> auto_detector::contacts(std::span<const pose> poses) {
-    pipeline& both = searched(poses);
-    both.detect();
-    return both.contacts();
+    pipeline& stages = find_candidates(poses);
+    stages.detect();
+    return stages.contacts();
 }
 
 std::optional<contact> auto_detector::first_contact(std::span<const pose> poses) {
-    return searched(poses).first_contact();
+    return find_candidates(poses).first_contact();
 }
 
 std::uint64_t auto_detector::count_contacts(std::span<const pose> poses) {
-    return searched(poses).count_contacts();
+    return find_candidates(poses).count_contacts();
 }
 
 std::vector<part_bytes> auto_detector::bytes() const {
@@ -110,7 +111,7 @@ std::vector<part_bytes> auto_detector::bytes() const {
     std::size_t buffers = bytes_of(pairs_);
     if (meshes_) {
         for (part_bytes& part : meshes_->local->bytes()) parts.push_back(std::move(part));
-        buffers += meshes_->both.bytes() + meshes_->both.division_bytes();
+        buffers += meshes_->stages.bytes() + meshes_->stages.division_bytes();
     }
     parts.push_back({"buffers", buffers});
     return parts;

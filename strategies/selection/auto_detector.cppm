@@ -33,8 +33,7 @@ public:
     auto_detector& operator=(const auto_detector&) = delete;
     ~auto_detector();
 
-    /// Inserts or removes an object, as in the `detector` of boxes or of meshes.
-    /// @throws input_error likewise
+    /// Inserts or removes an object; throws input_error as the `detector` of boxes or of meshes.
     void insert(std::uint32_t object);
     void remove(std::uint32_t object);
 
@@ -58,7 +57,7 @@ private:
     struct mesh_part;
 
     auto_detector(const named_strategies& named, const scene_traits& scene);
-    [[nodiscard]] pipeline& searched(std::span<const pose> poses);
+    [[nodiscard]] pipeline& find_candidates(std::span<const pose> poses);
 
     std::vector<selected_strategy> selected_;
     std::unique_ptr<global_stage> global_;

@@ -15,6 +15,7 @@ struct part {
     std::vector<std::uint32_t> triangles;  // the same for triangles
 };
 
+/// Copies triangles of a mesh, with the vertices that they use in the same order.
 part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
     assert(!triangles.empty());
     part result;

@@ -99,21 +99,15 @@ private:
         std::vector<interval_end>& list = ends_[axis];
         assert(list.empty());
         list.reserve(2 * boxes.size());
-        for (std::uint32_t id = 0; id < boxes.size(); ++id) {
-            if (!objects.contains(id)) continue;
-            list.push_back(lower_end(boxes, id, axis));
-            list.push_back(upper_end(boxes, id, axis));
-        }
+        for (std::uint32_t id = 0; id < boxes.size(); ++id)
+            if (objects.contains(id)) append_ends(list, boxes, id, static_cast<int>(axis));
         sort_ends(list);
     }
 
     /// Merges the ends of arriving objects into the list of an axis, from the back.
     void merge_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         arriving_.clear();
-        objects.for_each_arrival([&](std::uint32_t id) {
-            arriving_.push_back(lower_end(boxes, id, axis));
-            arriving_.push_back(upper_end(boxes, id, axis));
-        });
+        objects.for_each_arrival([&](std::uint32_t id) { append_ends(arriving_, boxes, id, static_cast<int>(axis)); });
         sort_ends(arriving_);
         std::vector<interval_end>& list = ends_[axis];
         std::size_t known = list.size();

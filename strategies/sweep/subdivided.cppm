@@ -174,10 +174,7 @@ private:
 
     /// Appends the ends of an object, as if it came from beyond all others, so that sorting finds its pairs.
     void enter_region(std::uint32_t r, std::uint32_t id, std::span<const box> boxes) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            regions_[r].ends[k].push_back(lower_end(boxes, id, k));
-            regions_[r].ends[k].push_back(upper_end(boxes, id, k));
-        }
+        for (std::size_t k = 0; k < 3; ++k) append_ends(regions_[r].ends[k], boxes, id, static_cast<int>(k));
     }
 
     /// Updates the keys of moved objects in a region's list, and sorts it by swaps if necessary.

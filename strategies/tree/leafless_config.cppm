@@ -6,21 +6,6 @@ export import aabb.tree.sibling_planes;
 
 export namespace aabb {
 
-struct leafless_config {
-    leaf_test_choice leaf_test = leaf_test_choice::none;
-
-    /// Möller's original test may reject a touching pair.
-    [[nodiscard]] constexpr bool is_exact() const noexcept {
-        return leaf_test != leaf_test_choice::moller_triangle_box;
-    }
-};
-
-inline constexpr std::tuple leafless_parameters{
-    choice_parameter{"leaf_test", &leafless_config::leaf_test,
-                     std::array<std::string_view, 4>{"none", "triangle_box", "triangle_aabb", "moller_triangle_box"},
-                     "the test that replaces that of a leaf's box: none, the triangle against the other box, or the "
-                     "triangle's own box; moller_triangle_box is Möller's original form of the second, inexact"}};
-
 /// The common part of layouts without leaves: at a leaf the cursor carries the parent's box, or the triangle's own box
 /// if that is tested.
 class leafless_layout {
@@ -28,8 +13,19 @@ public:
     static constexpr std::array leaves_out{absence::triangle_boxes};
     static constexpr bool has_leaf_boxes = false;
 
-    using config = leafless_config;
-    static constexpr auto parameters = leafless_parameters;
+    struct config {
+        leaf_test_choice leaf_test = leaf_test_choice::none;
+
+        /// Möller's original test may reject a touching pair.
+        [[nodiscard]] constexpr bool is_exact() const noexcept {
+            return leaf_test != leaf_test_choice::moller_triangle_box;
+        }
+    };
+    static constexpr std::tuple parameters{choice_parameter{
+        "leaf_test", &config::leaf_test,
+        std::array<std::string_view, 4>{"none", "triangle_box", "triangle_aabb", "moller_triangle_box"},
+        "the test that replaces that of a leaf's box: none, the triangle against the other box, or the triangle's own "
+        "box; moller_triangle_box is Möller's original form of the second, inexact"}};
     using cursor = box_cursor;
 
     leafless_layout() = default;

@@ -6,7 +6,7 @@ import aabb.tree.quantized_planes;
 
 export namespace aabb {
 
-struct quantized_config : leafless_config {
+struct quantized_config : leafless_layout::config {
     unsigned bits = 8;
 };
 
@@ -24,14 +24,15 @@ public:
 
     using config = quantized_config;
     static constexpr auto parameters = std::tuple_cat(
-        leafless_parameters,
+        leafless_layout::parameters,
         std::tuple{integer_parameter{"bits", &config::bits, quantized_planes::least_bits, quantized_planes::most_bits,
                                      "bits per plane: fewer take less memory and make boxes larger"}});
 
     quantized_tree() = default;
     explicit quantized_tree(const config& c) : leafless_layout(c), planes_(c.bits) {}
 
-    /// @throws input_error when the nodes take more than 2 GiB.
+    /// Lays out the nodes in one pass, and encodes them in a second one, parents first.
+    /// @throws input_error if the nodes take more than 2 GiB
     void pack(std::span<const build_node> nodes) {
         const auto holds_leaves_only = [&](std::size_t i) {
             return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();

@@ -163,8 +163,7 @@ triangle_intersection flat_intersection(const hull& g, const hull& h, const view
     return common.by_size();
 }
 
-/// Intersects coplanar hulls in a projection in which their plane is not edge-on; hulls on a line are intersected along
-/// it.
+/// Intersects coplanar hulls in a projection in which their plane is not edge-on, or along their common line.
 triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
     if (g.size < 3 && h.size < 3) {
         // Two crossing segments span a plane; otherwise everything is on one line.

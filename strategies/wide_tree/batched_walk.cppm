@@ -94,8 +94,7 @@ private:
         }
     };
 
-    /// Finds all pairs. The caches of leaves are reset only when the descent reaches leaves, so that a query which ends
-    /// above them costs little.
+    /// Finds all pairs. The caches of leaves are reset only if the descent comes to leaves.
     template <class Emit>
     void find_all_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                         query_kind kind, const Emit& emit) {
