@@ -55,7 +55,7 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
     if (scene.meshes())
         text += text_of("narrow phase", text_of(name, aabb::stage::local_detection), runner.local_bytes());
     std::vector<std::string> planned;
-    for (const aabb::stage_plan& plan : runner.plans()) planned.push_back(to_text(plan.told));
+    for (const aabb::stage_plan& plan : runner.plans()) planned.push_back(to_text(plan.decision));
     text += indented_list("plans from earlier frames", planned);
     std::vector<std::string> left_out;
     for (const aabb::omission& absent : omissions_of(name, runner.left_out())) left_out.push_back(to_text(absent));

@@ -68,7 +68,7 @@ double median_ms(std::span<const observation> times) {
 std::vector<aabb::absence> omitted_by(const variant& v) {
     std::vector<aabb::absence> absences;
     for (const aabb::omission& absent : omissions_of(v.tested.name, v.times.back().left_out))
-        if (std::ranges::find(absences, absent.what) == absences.end()) absences.push_back(absent.what);
+        if (std::ranges::find(absences, absent.feature) == absences.end()) absences.push_back(absent.feature);
     return absences;
 }
 

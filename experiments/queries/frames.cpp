@@ -50,8 +50,8 @@ std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choi
     if (composed)
         std::erase_if(names, [&](const std::string& name) { return std::ranges::count(strategies, name) == 0; });
     throw aabb::input_error(
-        fmt::format("--geometry: {} decides whether triangles intersect, not what they have in "
-                    "common; give --triangle {}",
+        fmt::format("--geometry: {} decides whether triangles intersect, but does not construct their intersection; "
+                    "give --triangle {}",
                     choice.name, fmt::join(names, " or ")));
 }
 

@@ -142,7 +142,7 @@ void send_run(scene_frames& scene, const candidate& tested, std::size_t frames, 
     };
     const observation whole = observe(scene, tested, {.frames = frames, .on_frame = on_frame});
     std::string last = fmt::format("{} {}", last_line, whole.bytes);
-    for (const aabb::omission& absent : whole.left_out) last += fmt::format(" {}", static_cast<int>(absent.what));
+    for (const aabb::omission& absent : whole.left_out) last += fmt::format(" {}", static_cast<int>(absent.feature));
     send(last + "\n");
 }
 

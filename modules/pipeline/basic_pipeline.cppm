@@ -64,8 +64,8 @@ public:
         searched_ = false;
         candidates_.clear();
         if (parts_) {
-            parts_->found.clear();
-            global_->search(parts_->found);
+            parts_->piece_pairs.clear();
+            global_->search(parts_->piece_pairs);
             parts_->append_objects(candidates_);
         } else if (searches())
             global_->search(candidates_);
@@ -131,8 +131,8 @@ public:
         return static_cast<std::uint32_t>(scene_.meshes.size());
     }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return (world_ ? world_->bytes() : 0) + bytes_of(poses_, candidates_) + (parts_ ? bytes_of(parts_->found) : 0) +
-               bytes_of(triangle_pairs_, contacts_);
+        return (world_ ? world_->bytes() : 0) + bytes_of(poses_, candidates_) +
+               (parts_ ? bytes_of(parts_->piece_pairs) : 0) + bytes_of(triangle_pairs_, contacts_);
     }
     /// Additional heap bytes for the parts of divided meshes.
     [[nodiscard]] std::size_t division_bytes() const noexcept { return parts_ ? parts_->bytes() : 0; }
@@ -198,7 +198,7 @@ private:
         assert(poses_.size() == scene_.mesh_of.size());
     }
     [[nodiscard]] index_pair models_of(std::size_t candidate) const noexcept {
-        if (parts_) return parts_->models_of(parts_->found[candidate]);
+        if (parts_) return parts_->models_of(parts_->piece_pairs[candidate]);
         return {scene_.mesh_of[candidates_[candidate].a], scene_.mesh_of[candidates_[candidate].b]};
     }
 

@@ -62,7 +62,7 @@ private:
 /// the meshes of parts and of whole objects.
 class scene_parts : public kept_in_place {
 public:
-    std::vector<index_pair> found;  ///< pairs of pieces; after `append_objects`, one per candidate
+    std::vector<index_pair> piece_pairs;  ///< overlapping pieces; after `append_objects`, one per candidate
 
     [[nodiscard]] virtual std::uint32_t pieces() const noexcept = 0;
     /// The half-open range of an object's pieces.

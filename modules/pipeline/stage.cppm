@@ -17,8 +17,8 @@ struct part_bytes {
 /// A decision that a stage made for the current scene.
 enum class plan_kind : std::uint8_t { columns, groups_of_columns, neighbour_list, static_frame };
 struct stage_plan {
-    plan_kind what;
-    statement told;  ///< the decision in words, with its numbers
+    plan_kind kind;
+    statement decision;  ///< in words, with its numbers
 };
 
 /// The broad phase: takes boxes and finds overlapping pairs. After an exception such as std::bad_alloc has left a stage

@@ -33,14 +33,14 @@ static_assert(absence_texts.size() == static_cast<std::size_t>(absence::counters
 
 /// A feature that a stage lacks, and the reason.
 struct omission {
-    absence what;
-    std::string_view why{};  ///< must outlive this object; empty if the strategy never has the feature
+    absence feature;
+    std::string_view reason{};  ///< must outlive this object; empty if the strategy never has the feature
 
     bool operator==(const omission&) const = default;
 };
 /// "no sort: so few boxes are tested by brute force"
 [[nodiscard]] inline std::string to_text(const omission& o) {
-    return to_text(o.what) + (o.why.empty() ? "" : ": ") + std::string(o.why);
+    return to_text(o.feature) + (o.reason.empty() ? "" : ": ") + std::string(o.reason);
 }
 
 }  // namespace aabb

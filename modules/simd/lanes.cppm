@@ -48,10 +48,10 @@ using flags = std::int32_t __attribute__((vector_size(4 * width)));  ///< result
 
 inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1);
 
-[[nodiscard, gnu::always_inline]] inline floats all(float x) noexcept {
+[[nodiscard, gnu::always_inline]] inline floats broadcast(float x) noexcept {
     return floats{} + x;
 }
-[[nodiscard, gnu::always_inline]] inline words all(std::uint32_t x) noexcept {
+[[nodiscard, gnu::always_inline]] inline words broadcast(std::uint32_t x) noexcept {
     return words{} + x;
 }
 

@@ -215,7 +215,7 @@ private:
         return counts[0];
     }
 
-    /// Splits in two passes over the items: the histogram tells the bin in which the split lies, then each item is
+    /// Splits in two passes over the items: the histogram yields the bin in which the split lies, then each item is
     /// moved below, into or above that bin, and only the items of that bin are sorted. The order within each side is
     /// kept.
     void split_by_histogram(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,

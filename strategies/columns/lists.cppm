@@ -85,7 +85,7 @@ private:
         constexpr int v = (Axis + 2) % 3;
         const column_plan plan = plan_;
         const std::uint32_t bits = bucket_bits_;
-        const simd::words across = simd::all(plan.across[0] | plan.across[1] << 16);
+        const simd::words across = simd::broadcast(plan.across[0] | plan.across[1] << 16);
         simd::flags invalid{};
         std::size_t wide = 0;
         for_each_vector(boxes, [&](std::size_t i, const simd::floats(&c)[6], std::uint32_t present) {

@@ -48,7 +48,7 @@ struct column_plan {
         return static_cast<std::uint32_t>(at > 0 ? std::min(at, 65'535.0F) : 0.0F);
     }
     [[nodiscard, gnu::always_inline]] inline simd::words quantized(simd::floats x, int k) const noexcept {
-        const simd::floats most = simd::all(65'535.0F);
+        const simd::floats most = simd::broadcast(65'535.0F);
         simd::floats at = (x - origin[k]) * scale[k];
         at = at > 0.0F ? at : simd::floats{};
         at = at < most ? at : most;

@@ -269,7 +269,7 @@ private:
             for (std::size_t k = 0; k < 6; ++k) std::memcpy(&ends[k], &seen.ends[k][first_box], sizeof ends[k]);
             const int u = plan.axis_across(0);
             const int v = plan.axis_across(1);
-            const simd::words across = simd::all(plan.across[0] | plan.across[1] << 16);
+            const simd::words across = simd::broadcast(plan.across[0] | plan.across[1] << 16);
             lower = plan.quantized(ends[u], u) | plan.quantized(ends[v], v) << 16;
             upper = plan.quantized(ends[3 + u], u) | plan.quantized(ends[3 + v], v) << 16;
             first = simd::high_products(lower, across);
@@ -280,8 +280,8 @@ private:
 
         /// Bit l is set if box l shares a column, and a range of buckets in it, with the other box.
         [[nodiscard]] std::uint32_t overlap_mask(const sampled_entries& others, std::size_t other) const {
-            return simd::bits(((simd::saturated_difference(first, simd::all(others.last[other])) |
-                                simd::saturated_difference(simd::all(others.first[other]), last)) == 0U) &
+            return simd::bits(((simd::saturated_difference(first, simd::broadcast(others.last[other])) |
+                                simd::saturated_difference(simd::broadcast(others.first[other]), last)) == 0U) &
                               (begin <= others.end[other]) & (end >= others.begin[other]));
         }
         /// Bit l is set if box l does not overlap the other box, but the quantized test across the columns does not
@@ -290,8 +290,8 @@ private:
             simd::flags disjoint{};
             for (int k = 0; k < 3; ++k)
                 disjoint |= (ends[k] > others.ends[3 + k][other]) | (ends[3 + k] < others.ends[k][other]);
-            return simd::bits(((simd::saturated_difference(lower, simd::all(others.upper[other])) |
-                                simd::saturated_difference(simd::all(others.lower[other]), upper)) == 0U) &
+            return simd::bits(((simd::saturated_difference(lower, simd::broadcast(others.upper[other])) |
+                                simd::saturated_difference(simd::broadcast(others.lower[other]), upper)) == 0U) &
                               disjoint);
         }
     };

@@ -47,7 +47,7 @@ public:
     [[nodiscard]] double displacement_after(std::size_t frames) const noexcept {
         return displacement_after(frames, exponent());
     }
-    /// The age at which the displacement reaches a distance; infinite if it never does.
+    /// The age at which the displacement equals a distance; infinite if it never does.
     [[nodiscard]] double age_at(double distance) const noexcept {
         return static_cast<double>(age_) * std::pow(distance / farthest_, 1 / exponent());
     }

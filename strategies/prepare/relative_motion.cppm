@@ -152,8 +152,8 @@ inline void grow(std::span<const box> boxes, double margin, std::span<box> grown
             const simd::floats x = rows[v];
             const simd::floats size = x < 0.0F ? -x : x;
             simd::floats moved = x + sign[v] * (wide + 0x1p-22F * size);
-            moved = moved < greatest ? moved : simd::all(greatest);
-            rows[v] = moved > -greatest ? moved : simd::all(-greatest);
+            moved = moved < greatest ? moved : simd::broadcast(greatest);
+            rows[v] = moved > -greatest ? moved : simd::broadcast(-greatest);
         }
         std::memcpy(&grown[begin], rows, bytes);
     }

@@ -118,7 +118,7 @@ template <class Rows>
 
 /// The result of `make` for the named strategy with its settings.
 template <class Result, class... Strategies, class Make>
-[[nodiscard]] Result made(type_list<Strategies...>, const strategy_choice& choice, Make make) {
+[[nodiscard]] Result make_named(type_list<Strategies...>, const strategy_choice& choice, Make make) {
     Result result{};
     const auto try_strategy = [&]<class S>(type_list<S>) {
         if (S::name == choice.name) result = make(make_strategy<S>(configured<S>(choice.settings)));

@@ -99,8 +99,8 @@ public:
     [[nodiscard]] std::span<const box> boxes() const noexcept override { return boxes_; }
     void append_objects(std::vector<index_pair>& objects) override {
         const auto objects_of = [&](index_pair p) { return index_pair{pieces_[p.a].object, pieces_[p.b].object}; };
-        std::erase_if(found, [&](index_pair p) { return objects_of(p).a == objects_of(p).b; });
-        for (const index_pair p : found) objects.push_back(objects_of(p));
+        std::erase_if(piece_pairs, [&](index_pair p) { return objects_of(p).a == objects_of(p).b; });
+        for (const index_pair p : piece_pairs) objects.push_back(objects_of(p));
     }
     [[nodiscard]] index_pair models_of(index_pair pieces) const noexcept override {
         return {pieces_[pieces.a].model, pieces_[pieces.b].model};

@@ -90,8 +90,9 @@ private:
 
         /// Bit l is set if entry l may overlap `e` across the columns, and this column owns the pair.
         [[nodiscard]] inline std::uint32_t overlap_mask(const column_entry& e) const noexcept {
-            return simd::bits(((begins_earlier & e.index) | simd::saturated_difference(lower, simd::all(e.upper)) |
-                               simd::saturated_difference(simd::all(e.lower), upper)) == 0U);
+            return simd::bits(((begins_earlier & e.index) |
+                               simd::saturated_difference(lower, simd::broadcast(e.upper)) |
+                               simd::saturated_difference(simd::broadcast(e.lower), upper)) == 0U);
         }
     };
 
@@ -142,7 +143,7 @@ private:
     /// Tests the entries of the vector against each other.
     void test_within(const column_block& block, const vector_of_entries& vector, std::uint32_t number,
                      std::size_t first) noexcept {
-        const simd::words after = simd::all(~std::uint32_t{1}) << simd::places();
+        const simd::words after = simd::broadcast(~std::uint32_t{1}) << simd::places();
         const simd::words lanes = simd::lanes_below(vector.ends - static_cast<std::uint32_t>(first)) & after;
         lane_overlaps met{};
 #pragma clang loop unroll(full)

@@ -75,7 +75,7 @@ private:
     static constexpr std::size_t children = wide_node::most_children;
     static constexpr std::size_t most_children_of_pair = children * children;
     static constexpr std::size_t most_at_once = child_pairs<Tree>::most_at_once;
-    /// Only exact tests have a floating-point filter in front.
+    /// A floating-point filter precedes exact tests only.
     static constexpr bool is_filtered = requires { requires Triangle::filtered; };
 
     enum class query_kind : std::uint8_t { two_meshes, one_mesh };

@@ -42,7 +42,7 @@ public:
 
     [[nodiscard]] std::span<const front_pair> pairs() const noexcept { return pairs_; }
 
-    /// Whether the pairs include all that meet at this pose.
+    /// Whether the pairs include all intersecting ones at this pose.
     /// @param bounds the box of B's vertices, in B's frame
     [[nodiscard]] bool is_valid(const model_pair& models, const box_motion& motion, const box& bounds) const noexcept {
         return margin_ >= 0 && front_states_ == models.states &&
@@ -102,7 +102,7 @@ public:
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(pairs_); }
 
-    /// In leaf sizes. Larger steps need a margin with so many pairs that a walk from the roots is faster.
+    /// The longest step, in leaf sizes. For a longer one, the pairs of a front take longer than a walk from the roots.
     static constexpr double most_step = 1.0 / 32;
 
 private:

@@ -92,7 +92,7 @@ public:
             });
     }
 
-    /// For one mesh: sets bit 8 j + i where triangle i of A's leaf and j of B's share a corner.
+    /// Sets bit 8 j + i where triangle i of A's leaf and j of B's share a corner; for one mesh only.
     [[nodiscard]] inline std::uint64_t pairs_sharing_corners(std::uint32_t leaf_a,
                                                              std::uint32_t leaf_b) const noexcept {
         return corners_of_a_[cache_a_.place(leaf_a)].pairs_sharing_corners(corners_of_b_[cache_b_.place(leaf_b)]);

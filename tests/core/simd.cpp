@@ -31,7 +31,7 @@ TEST_CASE("lanes below an end are none below 0, and at most all") {
         const std::uint32_t expected = end <= 0                     ? 0
                                        : end >= static_cast<int>(n) ? simd::every_lane
                                                                     : (std::uint32_t{1} << end) - 1;
-        const simd::words all = simd::lanes_below(simd::all(static_cast<std::uint32_t>(end)));
+        const simd::words all = simd::lanes_below(simd::broadcast(static_cast<std::uint32_t>(end)));
         for (std::size_t i = 0; i < n; ++i) REQUIRE(all[i] == expected);
         if (end >= 0) REQUIRE(simd::lanes_below(static_cast<std::size_t>(end)) == expected);
     }

@@ -100,7 +100,7 @@ TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
             {{a, "--geometry", "--count"}, "--count stores no pairs, so --geometry cannot be combined with it"},
             {{a, "--geometry", "--first", "--engine", "cgal"}, "so --engine cannot be combined with it"},
             {{a, "--geometry", "--out", folder / "x.csv", "--triangle", "moller"},
-             "--geometry: moller decides whether triangles intersect, not what they have in common; give "
+             "--geometry: moller decides whether triangles intersect, but does not construct their intersection; give "
              "--triangle exact\n"},
         });
     check_all(

@@ -457,7 +457,7 @@ TEST_CASE("whole numbers rise with what they stand for, and are the same one by 
             const std::uint32_t here = plan.quantized(x, 0);
             RC_ASSERT(here >= before);
             RC_ASSERT(here <= 65'535U);
-            RC_ASSERT(plan.quantized(simd::all(x), 0)[0] == here);
+            RC_ASSERT(plan.quantized(simd::broadcast(x), 0)[0] == here);
             before = here;
         }
     }));

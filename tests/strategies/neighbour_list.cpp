@@ -44,7 +44,7 @@ std::vector<vec3f> scattered(std::size_t n, float edge, std::uint64_t& random) {
 /// What is told of the list that serves a frame; 0 where none does.
 double told_of_list(const global_stage& stage, const char* what) {
     for (const stage_plan& plan : stage.plans())
-        if (plan.what == plan_kind::neighbour_list) return plan.told[what];
+        if (plan.kind == plan_kind::neighbour_list) return plan.decision[what];
     return 0;
 }
 
@@ -176,11 +176,11 @@ TEST_CASE("what a list planned is told in numbers, and in a sentence that has th
     CHECK(found_by(*stage, std::vector<box>{cube(0), cube(1.75F)}).empty());
     const std::vector<stage_plan> plans = stage->plans();
     REQUIRE(!plans.empty());
-    CHECK(plans.back().what == plan_kind::neighbour_list);
-    CHECK(plans.back().told["pairs"] == 1);
-    CHECK(plans.back().told["margin"] == 0.5);
-    CHECK(plans.back().told["cells"] == 0);
-    CHECK(to_text(plans.back().told) == "a Verlet list of 1 pairs of boxes, with a skin of 0.5");
+    CHECK(plans.back().kind == plan_kind::neighbour_list);
+    CHECK(plans.back().decision["pairs"] == 1);
+    CHECK(plans.back().decision["margin"] == 0.5);
+    CHECK(plans.back().decision["cells"] == 0);
+    CHECK(to_text(plans.back().decision) == "a Verlet list of 1 pairs of boxes, with a skin of 0.5");
 }
 
 TEST_CASE("a neighbour list serves boxes that move alike, however far, and is exact whatever rounding does") {

@@ -19,7 +19,7 @@ inline std::unique_ptr<aabb::global_stage> search_of(const aabb::composition& c,
 template <class Search>
 bool leaves_out(const Search& search, aabb::absence what) {
     const std::vector<aabb::omission> all = search.left_out();
-    return std::ranges::find(all, what, &aabb::omission::what) != all.end();
+    return std::ranges::find(all, what, &aabb::omission::feature) != all.end();
 }
 
 inline aabb::box cube(float at, float edge) {

@@ -20,7 +20,7 @@ double listed_of(const std::vector<box>& boxes) {
     const auto stage = search_of(composed({{strategy_kind::prepare, "neighbour_list:margin=0.1"}}), boxes.size());
     found_by(*stage, boxes);
     for (const stage_plan& plan : stage->plans())
-        if (plan.what == plan_kind::neighbour_list) return plan.told["pairs"];
+        if (plan.kind == plan_kind::neighbour_list) return plan.decision["pairs"];
     return -1;
 }
 
