@@ -73,8 +73,7 @@ static_assert(sizeof(column_entry) == 16);
 /// boxes are ordered by bucket, but unordered within a bucket.
 struct column_block {
     std::span<const box> boxes;
-    std::span<const std::uint32_t>
-        ids;  ///< by index, possibly with bits of `begins_earlier`; empty if the index is the id
+    std::span<const std::uint32_t> ids;  ///< as in `column_group`, bits of `begins_earlier` included
     std::span<const column_entry> entries;
     std::span<const std::uint32_t> ends;  ///< by bucket: index of the entry after the bucket's last
     int axis;                             ///< the axis along which columns run

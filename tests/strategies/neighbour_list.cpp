@@ -536,9 +536,9 @@ TEST_CASE("a neighbour list is exact while boxes creep, rest, jump, come, go, ar
                 RC_ASSERT(found_by(*stage, boxes) == found_by(*exact, boxes));
                 const std::vector<stage_plan> plans = stage->plans();
                 kept +=
-                    static_cast<std::size_t>(std::ranges::count(plans, plan_kind::neighbour_list, &stage_plan::what));
+                    static_cast<std::size_t>(std::ranges::count(plans, plan_kind::neighbour_list, &stage_plan::kind));
                 rested +=
-                    static_cast<std::size_t>(std::ranges::count(plans, plan_kind::static_frame, &stage_plan::what));
+                    static_cast<std::size_t>(std::ranges::count(plans, plan_kind::static_frame, &stage_plan::kind));
             }
         }
     }));
