@@ -52,8 +52,7 @@ struct box_motion {
 };
 
 /// A bound on the rounding error of a vertex's image (`relative_pose::to_boxes`): rounding to float contributes, on
-/// each axis, 2^-24 of the magnitudes whose 2^-48 is the margin, or half the least denormal. Twice that also covers
-/// rounding in double.
+/// each axis, 2^-24 of the magnitudes whose 2^-48 is the margin, or half the least denormal; twice that covers double.
 [[nodiscard]] inline double rounding_bound(const box_motion& p) noexcept {
     return (p.margin[0] + p.margin[1] + p.margin[2]) * 0x1p25 + 0x1p-147;
 }
@@ -162,8 +161,7 @@ public:
         return {in_float(centre - radius), in_float(centre + radius)};
     }
 
-    /// The motion of boxes to A's frame. The image of every vertex stays inside if the bounds are rounded to nearest,
-    /// like the image.
+    /// The motion of boxes to A's frame. Images of vertices stay inside if the bounds are rounded to nearest, as they.
     [[nodiscard]] inline box_motion to_boxes() const noexcept {
         box_motion there;
         for (int i = 0; i < 3; ++i) {
@@ -179,8 +177,7 @@ public:
     ///
     /// The inverse is the adjugate over the determinant. Each entry is within 16 u of the true inverse, and the
     /// inverted matrix within 3 u; sums of six terms round five times, so 64 u of all magnitudes covers these errors.
-    /// Rounding the image to float adds 2^-24 of the magnitudes whose 2^-48 is the margin, and half the least
-    /// denormal.
+    /// Rounding the image to float adds 2^-24 of the magnitudes whose 2^-48 is the margin, and half a denormal.
     /// @param bounds box of A
     [[nodiscard]] inline box_motion back_to_boxes(const box& bounds) const noexcept {
         const auto cross = [](const lanes& p, const lanes& q) {

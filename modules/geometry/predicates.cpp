@@ -30,6 +30,7 @@ parts parts_of(double x) noexcept {
 /// whose upper halves collect carries until the sign is computed.
 class product_sum {
 public:
+    /// Adds a product: the mantissas are multiplied exactly, and the result is added to the digits at its place.
     void add(double x, double y, double z) noexcept {
         const parts a = parts_of(x);
         const parts b = parts_of(y);
@@ -86,6 +87,7 @@ public:
         return zero && carry == 0 ? 0 : 1;
     }
 
+    /// The sum, rounded to the precision of double.
     [[nodiscard]] scaled_double rounded() const noexcept {
         // The digits of the magnitude, lowest first.
         std::array<std::uint32_t, words + 2> digits{};
@@ -210,6 +212,7 @@ bool area_sign(const vec3i& p, const vec3i& q, int x, int y, bool is_exact, int&
     return is_exact || area >= least || area <= -least;
 }
 
+/// The determinant of `exact_side`, as a sum of products of differences, or of coordinates if one is inexact.
 product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
     product_sum sum;
     vec3d p{};
@@ -226,6 +229,7 @@ product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3
     return sum;
 }
 
+/// The component of `exact_turn`, likewise.
 product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int x, int y) noexcept {
     product_sum sum;
     vec3d p{};

@@ -8,8 +8,7 @@ import :projection;
 
 export namespace aabb {
 
-/// Sorts a projection list by ascending key; equal keys may have any order. Lists are almost sorted if objects move
-/// little between frames.
+/// Sorts a projection list by ascending key; equal keys may have any order. Little motion leaves it almost sorted.
 template <class S>
 concept SortPolicy = Strategy<S> && requires(S policy, std::span<projection> list, no_counters off, work_counters on) {
     policy.sort(list, off);

@@ -120,8 +120,7 @@ public:
         if (parts_) return parts_->boxes();
         return world_ ? world_->boxes() : std::span<const box>();
     }
-    /// Pairs of objects whose boxes overlap, in unspecified order; if meshes are divided, once per overlapping pair of
-    /// their pieces.
+    /// Pairs of objects whose boxes overlap, in unspecified order; of divided meshes, once per pair of their pieces.
     [[nodiscard]] std::span<const index_pair> candidates() const noexcept { return candidates_; }
     /// The contacts of the last `detect`, in unspecified order.
     [[nodiscard]] std::span<const contact> contacts() const noexcept { return contacts_; }

@@ -20,8 +20,7 @@ public:
     /// Whether each object is present in the current frame, by id, 0 or 1; empty if all are. The box of an absent
     /// object is valid and overlaps no other, so that a search which ignores this finds the same pairs.
     [[nodiscard]] virtual std::span<const std::uint8_t> present() const { return {}; }
-    /// Takes the sorted overlapping pairs of the current frame, before the next one is generated. Not called in runs
-    /// without a search.
+    /// Takes the sorted overlapping pairs of the current frame, before the next one. Not called without a search.
     virtual void take_pairs(std::span<const index_pair> /*pairs*/) {}
 };
 

@@ -87,8 +87,7 @@ public:
         for (const index_pair pair : pairs) take(pair);
     }
 
-    /// Updates the tree after vertices of the model's mesh have moved. If this throws, queries of the model throw too
-    /// until a refit succeeds.
+    /// Updates the tree after vertices of its mesh have moved. If this throws, queries throw until a refit succeeds.
     /// @throws input_error if the mesh is invalid or its number of triangles has changed
     virtual void refit(std::uint32_t model) = 0;
 

@@ -91,8 +91,7 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
     return end >= width ? every_lane : (std::uint32_t{1} << end) - 1;
 }
 
-/// Compress-store: stores the lanes whose bit is set contiguously. May overwrite the rest of a whole vector behind
-/// them.
+/// Compress-store: stores the lanes whose bit is set contiguously. May overwrite the memory of a whole vector.
 /// @returns the number of stored lanes
 [[gnu::always_inline]] inline std::size_t compress_store(std::uint32_t* to, words v, std::uint32_t set) noexcept {
     const auto stored = static_cast<std::size_t>(std::popcount(set));

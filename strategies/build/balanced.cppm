@@ -49,8 +49,7 @@ void split_recursively(worker_threads& workers, const Part& whole, const Split& 
 /// (estimated from a sample if there are many).
 enum class axis_rule : std::uint8_t { longest, least_area };
 
-/// Orders the triangles by recursive splits, in the order that `balanced_order` prescribes. The result does not depend
-/// on the number of threads.
+/// Orders the triangles by recursive splits, as `balanced_order` prescribes, whatever the number of threads.
 [[nodiscard]] balanced_order order_balanced(const mesh& m, axis_rule rule, std::uint32_t threads);
 
 }  // namespace aabb

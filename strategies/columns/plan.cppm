@@ -130,8 +130,7 @@ concept ColumnPartition =
         { policy.threads() } -> std::same_as<unsigned>;
     };
 
-/// A sweep that also takes columns. It returns its number of vector tests; once these exceed `most`, it stops early
-/// with incomplete pairs.
+/// A sweep that also takes columns. It returns its number of vector tests, and stops early once these exceed `most`.
 template <class S>
 concept ColumnSweep = SweepPolicy<S> && requires(S policy, const column_block& block, std::vector<index_pair>& pairs,
                                                  std::uint64_t most, no_counters off, work_counters on) {

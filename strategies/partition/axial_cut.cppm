@@ -145,8 +145,7 @@ private:
         return ranges;
     }
 
-    /// Places the desired cuts of an axis at quantiles of its lower ends, and moves or drops those that the limit
-    /// forbids.
+    /// Places the cuts of an axis at quantiles of its lower ends, and moves or drops those that the limit forbids.
     void choose_cuts(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         std::vector<float>& cuts = cuts_[k];
         // The greatest upper end of the boxes that begin before the last cut.

@@ -222,8 +222,7 @@ private:
         return bounds;
     }
 
-    /// Clips a box. NaN, which would break `nth_element`, becomes a bound; invalid boxes are detected later, when they
-    /// are put into columns.
+    /// Clips a box. NaN, which would break `nth_element`, becomes a bound; invalid boxes are detected later.
     [[nodiscard]] static box clipped(const box& b, const box& within) {
         box c = b;
         for (int k = 0; k < 3; ++k) {
@@ -284,8 +283,7 @@ private:
                                 simd::saturated_difference(simd::broadcast(others.first[other]), last)) == 0U) &
                               (begin <= others.end[other]) & (end >= others.begin[other]));
         }
-        /// Bit l is set if box l does not overlap the other box, but the quantized test across the columns does not
-        /// reject it.
+        /// Bit l is set if box l and the other box are disjoint, but the quantized test does not reject the pair.
         [[nodiscard]] std::uint32_t rejected_by_exact_test(const sampled_entries& others, std::size_t other) const {
             simd::flags disjoint{};
             for (int k = 0; k < 3; ++k)
@@ -327,8 +325,7 @@ private:
                 rejected += std::popcount(lanes & entries[first / simd::width].rejected_by_exact_test(others, other));
             }
         }
-        // Each pair is counted from both sides. Counts are Poisson-like, so three square roots are subtracted to make
-        // an overestimate unlikely.
+        // Each pair is counted from both sides. Counts are Poisson-like: three deviations less are hardly too many.
         const double pairs = 2 * static_cast<double>(tested) * (static_cast<double>(seen.kept) - 1);
         const auto at_least = [&](int count) {
             return std::max(0.0, count - 3 * std::sqrt(double(count))) * n / pairs;

@@ -169,8 +169,7 @@ inline constexpr double worth_a_list = 0.9;
     return certain * frames_left > 2 * static_cast<double>(listed);
 }
 
-/// The plan with the least cost per frame; among those within 1% of it the longest, since the displacement may be
-/// underestimated.
+/// The plan with the least cost per frame, or the longest within 1% of it, since motion may be underestimated.
 [[nodiscard]] inline list_plan plan_list(const list_estimate& estimate, double worth = worth_a_list,
                                          const cost_model& cost = machine_costs()) {
     constexpr double as_little = 1.01;

@@ -8,6 +8,7 @@ import aabb.std;
 
 export namespace aabb::composed {
 
+/// The registry's entry of a strategy; what the strategy does not declare is empty.
 template <Strategy S>
 [[nodiscard]] strategy_info strategy_info_of() {
     std::vector<absence> leaves_out;

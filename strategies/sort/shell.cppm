@@ -67,8 +67,7 @@ private:
     static_assert(tokuda[1] == 4 && tokuda[2] == 9 && tokuda[3] == 20 && tokuda[4] == 46 && tokuda[8] == 1182);
     static_assert(ciura.back() >= std::uint32_t{1} << 31 && tokuda.back() >= std::uint32_t{1} << 31);
 
-    /// Detects overflow: each gap is about 9/4 of the previous one, and one reduced by 2^32 would be less than twice
-    /// it.
+    /// Detects overflow: each gap is about 9/4 of the previous one; reduced by 2^32, it would be less than twice it.
     static constexpr auto more_than_double = [](const table& gaps) {
         for (std::size_t i = 1; i < gaps.size(); ++i)
             if (gaps[i] / 2 < gaps[i - 1]) return false;

@@ -85,8 +85,7 @@ private:
     static constexpr double objects_per_region = 16;
     static constexpr double extents_per_region = 4;
 
-    /// Monotone in x, rounding included, so that overlapping boxes share a region. Coordinates beyond the grid belong
-    /// to the outermost cells.
+    /// Monotone in x, rounding included, so that overlapping boxes share a region. Clamped to the outermost cells.
     [[nodiscard]] std::uint16_t cell(float x, std::size_t k) const noexcept {
         const double along = (double{x} - origin_[k]) * per_unit_[k];
         return static_cast<std::uint16_t>(std::clamp(along, 0.0, static_cast<double>(count_[k] - 1)));

@@ -16,6 +16,7 @@ public:
     /// The index of an internal node, or with the top bit set that of a leaf.
     using cursor = std::uint32_t;
 
+    /// Lays out internal nodes and leaves in two arrays, in preorder, and then links the children.
     void pack(std::span<const build_node> nodes) {
         internals_.clear();
         leaves_.clear();
@@ -34,6 +35,7 @@ public:
             if (!nodes[i].is_leaf()) internals_[packed[i]].child = {packed[i + 1], packed[nodes[i].right]};
     }
 
+    /// Recomputes all boxes bottom-up.
     void refit(const mesh& m, std::vector<box>&) {
         for (leaf& l : leaves_) l.bounds = bounds_of(m.triangle(l.triangle));
         // Children are stored behind their parents, so that a reverse pass is bottom-up.

@@ -19,6 +19,7 @@ public:
 
     using leafless_layout::leafless_layout;
 
+    /// Lays out the nodes with planes, then those above two leaves, and encodes the planes of each two siblings.
     void pack(std::span<const build_node> nodes) {
         const auto holds_leaves_only = [&](std::size_t i) {
             return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();
@@ -45,6 +46,7 @@ public:
         root_ = nodes[0].bounds;
     }
 
+    /// Recomputes all boxes bottom-up, and encodes their planes anew.
     void refit(const mesh& m, std::vector<box>& boxes) {
         boxes.resize(nodes_.size() + leaf_pairs_.size());
         const auto bounds_at = [&](std::size_t parent, std::size_t side) {
@@ -67,6 +69,7 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() && leaf_pairs_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
+    /// Decodes the boxes of the children from the box of their parent.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, m); };
         if (at.index >= nodes_.size()) {

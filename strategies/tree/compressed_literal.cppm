@@ -17,6 +17,7 @@ public:
 
     using leafless_layout::leafless_layout;
 
+    /// Lays out the internal nodes, links children, and encodes each box relative to its parent's.
     void pack(std::span<const build_node> nodes) {
         nodes_.assign(nodes.size() / 2, {});
         symbols_.assign(nodes_.size(), 0);
@@ -40,6 +41,7 @@ public:
         encode(boxes);
     }
 
+    /// Recomputes all boxes bottom-up, and encodes them anew.
     void refit(const mesh& m, std::vector<box>& boxes) {
         boxes.resize(nodes_.size());
         const auto bounds_at = [&](std::size_t parent, std::size_t side) {
@@ -54,6 +56,7 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
+    /// Decodes the boxes of the children from the box of their parent.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto child = [&](std::size_t side) {
             const std::uint32_t index = nodes_[at.index].child[side];

@@ -83,6 +83,7 @@ public:
         std::uint32_t index;
     };
 
+    /// Stores triangle indices and vertex lists in the order of the leaves, and encodes the levels of nodes.
     void pack(const mesh& m, balanced_order order) {
         worker_threads workers(order.threads);
         triangles_ = static_cast<std::uint32_t>(order.triangles.size());
@@ -108,6 +109,7 @@ public:
         encode_nodes(order.bounds, workers);
     }
 
+    /// Encodes all nodes anew, and rewrites the vertex lists if triangles have other vertices now.
     void refit(const mesh& m, std::vector<box>& boxes) {
         boxes.resize(triangles_);
         bool same = true;

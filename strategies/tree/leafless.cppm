@@ -16,6 +16,7 @@ public:
 
     using leafless_layout::leafless_layout;
 
+    /// Lays out the internal nodes in preorder, and links children: nodes, or triangles in place of leaves.
     void pack(std::span<const build_node> nodes) {
         nodes_.clear();
         nodes_.reserve(nodes.size() / 2);
@@ -29,6 +30,7 @@ public:
             if (!nodes[i].is_leaf()) nodes_[packed[i]].child = {packed[i + 1], packed[nodes[i].right]};
     }
 
+    /// Recomputes all boxes bottom-up.
     void refit(const mesh& m, std::vector<box>&) {
         const auto bounds_at = [&](std::uint32_t child) {
             return child & cursor::leaf_bit ? bounds_of(m.triangle(child & ~cursor::leaf_bit)) : nodes_[child].bounds;
@@ -41,6 +43,7 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() ? leaf_cursor(0, bounds_of(m.triangle(0)), m) : cursor{nodes_[0].bounds, 0};
     }
+    /// The children of an internal node; the cursor of a leaf has the box of its parent, or of its triangle.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto child = [&](std::uint32_t index) {
             if (!(index & cursor::leaf_bit)) return cursor{nodes_[index].bounds, index};

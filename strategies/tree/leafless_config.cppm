@@ -6,8 +6,7 @@ export import aabb.tree.sibling_planes;
 
 export namespace aabb {
 
-/// The common part of layouts without leaves: at a leaf the cursor carries the parent's box, or the triangle's own box
-/// if that is tested.
+/// The common part of layouts without leaves: at a leaf the cursor carries the parent's box, or the triangle's own.
 class leafless_layout {
 public:
     static constexpr std::array leaves_out{absence::triangle_boxes};

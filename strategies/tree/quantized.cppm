@@ -71,6 +71,7 @@ public:
         }
     }
 
+    /// Recomputes all boxes bottom-up, and encodes them again from the root down, since codes are relative to parents.
     void refit(const mesh& m, std::vector<box>& boxes) {
         const auto bounds_at = [&](const child& c) {
             return c.is_leaf ? bounds_of(m.triangle(c.index)) : boxes[place(c.index)];
@@ -142,6 +143,7 @@ private:
     /// Nodes have at least 8 bytes, so that no two begin in the same group of eight.
     [[nodiscard]] static std::size_t place(std::size_t at) noexcept { return at / pair_bytes; }
 
+    /// The children of the node at a byte: the left one follows it, unless it is a leaf.
     [[nodiscard]] inline std::array<child, 2> children_at(std::size_t at) const noexcept {
         const std::uint32_t first = word(at);
         if (first & pair_bit) return {child{first & ~pair_bit, true}, child{word(at + word_bytes), true}};

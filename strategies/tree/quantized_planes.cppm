@@ -48,6 +48,7 @@ public:
         std::copy_n(packed.begin(), bytes_, codes);
     }
 
+    /// The planes of codes, relative to the decoded box of the parent.
     [[nodiscard]] inline sibling_planes decode(const box& parent, const std::byte* codes) const noexcept {
         std::uint64_t lower = 0;
         std::uint64_t upper = 0;

@@ -17,6 +17,7 @@ public:
 
     using cursor = box_cursor;
 
+    /// Lays out internal nodes and leaves in two arrays, and encodes the planes of each two siblings.
     void pack(std::span<const build_node> nodes) {
         const std::size_t internals = nodes.size() / 2;
         nodes_.assign(internals, {});
@@ -42,6 +43,7 @@ public:
         root_ = nodes[0].bounds;
     }
 
+    /// Recomputes all boxes bottom-up, and encodes their planes anew.
     void refit(const mesh& m, std::vector<box>& boxes) {
         boxes.resize(nodes_.size());
         const auto bounds_at = [&](std::size_t parent, std::size_t side) {

@@ -16,8 +16,7 @@ class result {
 public:
     void add_corner(const vec3d& p) { common_.corners[common_.size++] = p; }
 
-    /// Adds where the edge ab crosses the other plane or edge, at distances p and q of opposite signs (or zero) from
-    /// it.
+    /// Adds where the edge ab crosses the other plane or edge, whose distances p and q have opposite signs, or zero.
     void add_crossing(vec3d a, vec3d b, scaled_double p, scaled_double q) {
         if (p.mantissa == 0) return add_corner(a);
         if (q.mantissa == 0) return add_corner(b);

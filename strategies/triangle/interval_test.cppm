@@ -55,8 +55,7 @@ public:
         if (on_one_side(t_to_s)) return false;
         if (s_to_t == std::array<Real, 3>{} || t_to_s == std::array<Real, 3>{})
             return coplanar_intersects(s, t, normal_s);
-        // Both triangles cut the common line of the planes; the test compares their intervals on the dominant axis of
-        // the line.
+        // Both triangles cut the common line of the planes; their intervals are compared on the line's dominant axis.
         const int axis = largest(cross(normal_s, normal_t));
         const cut_edges of_s(s, s_to_t, axis);
         const cut_edges of_t(t, t_to_s, axis);

@@ -29,8 +29,7 @@ public:
         find_all_pairs(test, m, m, relative_pose({}, {}, m.bounds()), query_kind::one_mesh, emit);
     }
 
-    /// Appends the pairs of leaves with triangles within a margin of each other, less rounding (`rounding_bound`): the
-    /// BVTT front of this pose.
+    /// Appends the BVTT front: pairs of leaves with triangles within a margin, less rounding (`rounding_bound`).
     /// @returns false if there are more than `most`, where it stops
     [[nodiscard]] bool collect_front(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                      double margin, std::size_t most, std::vector<front_pair>& pairs) {

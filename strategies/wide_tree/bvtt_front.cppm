@@ -170,8 +170,7 @@ private:
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])};
     }
 
-    /// Finds the front of a query, or adds one. Centres near that of B are found eight at a time; only these fronts are
-    /// compared in full.
+    /// Finds the front of a query, or adds one. Centres are compared eight at a time, and near fronts in full.
     [[nodiscard]] std::size_t place_of(const model_pair& models, const box_motion& motion, const box& bounds,
                                        double near, const std::array<float, 3>& centre) {
         const auto matches = [&](std::size_t place) {

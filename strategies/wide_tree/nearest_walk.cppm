@@ -35,8 +35,7 @@ struct nearest_places {
         simd::store_eight(box_centres[k].data(), simd::load_eight<simd::eight_floats>(boxes.lower[k].data()) +
                                                      simd::load_eight<simd::eight_floats>(boxes.upper[k].data()));
     }
-    // Non-negative floats compare like their bits, of which the last six hold the pair. NaN compares greater than any
-    // number.
+    // Non-negative floats compare like their bits; the last six hold the pair. NaN compares greater than any number.
     constexpr simd::eight_words places{0, 1, 2, 3, 4, 5, 6, 7};
     constexpr simd::eight_words none = ~simd::eight_words{};
     simd::eight_words least = none;  // of each column
