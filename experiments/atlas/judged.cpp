@@ -265,7 +265,7 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
     }
     const std::vector<double> levels = levels_together(evidence);
     for (std::size_t i = 0; i < judged.size(); ++i)
-        judged[i]->found = support_of(evidence[i].expected, evidence[i].p, levels[i]);
+        judged[i]->verdict = support_of(evidence[i].expected, evidence[i].p, levels[i]);
     for (judged_statement& s : verdicts) {
         std::vector<support> endpoints;
         for (const judged_ratio& r : s.ratios) endpoints.push_back(r.verdict);

@@ -23,7 +23,7 @@ double pairs(const scene_measures& m) {
 }
 /// The relative motion of neighbouring boxes in typical extents, at most 1.
 double renewed(const scene_measures& m) {
-    return m.motion && m.boxes.typical_extent > 0 ? std::min(1.0, m.motion->relative / m.boxes.typical_extent) : 0;
+    return m.motion && m.boxes.typical_extent > 0 ? std::min(1.0, m.motion->relative_displacement / m.boxes.typical_extent) : 0;
 }
 double inversions(const scene_measures& m) {
     return m.motion ? objects(m) * m.motion->inversions : 0;

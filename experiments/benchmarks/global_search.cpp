@@ -173,7 +173,7 @@ void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     aabb::no_counters none;
     constexpr auto no_limit = std::numeric_limits<std::uint64_t>::max();
     const aabb::column_plan plan = aabb::columns_partition().plan(frame.boxes(), aabb::everywhere);
-    if (columns.fill(frame.boxes(), {}, plan, false, no_limit, sort, none) != aabb::fill_result::whole)
+    if (columns.fill(frame.boxes(), {}, plan, false, no_limit, sort, none) != aabb::fill_result::complete)
         throw std::logic_error("the scene has a box that is not valid");
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;

@@ -1,5 +1,6 @@
-#include "composing.hpp"
 #include "command_parser.hpp"
+
+#include "composing.hpp"
 
 import aabb.selection;
 

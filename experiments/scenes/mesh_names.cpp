@@ -83,7 +83,7 @@ ordered_name split_name(std::string_view name, const std::filesystem::path& fold
                 "order=BUILD must end the name of a mesh and takes no parameters, as in "
                 "torus_knot:triangles=5000,order=sah, not as in '" +
                 std::string(name) + "'");
-        return {before.substr(0, at - 1), build};
+        return {before.substr(0, begin - 1), build};
     }
     return {name, {}};
 }

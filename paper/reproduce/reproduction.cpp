@@ -146,7 +146,7 @@ std::string macros_of(const reproduction& reproduced, const provenance& origin,
     tex.set_tex("band", fmt::format("{:.0f}\\,\\%", 100 * equivalence_band));
     tex.set("band.low", fmt::format("{:.3f}", 1 / (1 + equivalence_band)));
     tex.set("band.high", fmt::format("{:.2f}", 1 + equivalence_band));
-    tex.set("draws", draws_of_a_level);
+    tex.set("draws", draws_per_level);
     tex.set("failures",
             failures.empty() ? std::string("none") : std::to_string(failures.size()) + ", " + failures.front());
     std::string ids;

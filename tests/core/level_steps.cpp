@@ -33,7 +33,7 @@ TEST_CASE("pairs of children are one pair where a node is not opened") {
                 if ((met >> place & 1U) != 0)
                     expected |= std::uint64_t{1}
                                 << ((steps.opens_a(0) ? place & 7U : 0) | (steps.opens_b(0) ? place & 56U : 0));
-            RC_ASSERT(steps.opened(0, met) == expected);
+            RC_ASSERT(steps.pairs_to_open(0, met) == expected);
         }
     }));
 }

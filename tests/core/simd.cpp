@@ -92,7 +92,7 @@ TEST_CASE("sums run, places are gathered, comparisons become bits") {
 TEST_CASE("eight numbers at a time: taken by place, whole parts as bytes, compared each with each") {
     const std::array<float, 8> from{-1, 0.5F, 254.9F, 255, 256, 1e30F, std::numeric_limits<float>::quiet_NaN(), 7.99F};
     const simd::eight_words places{7, 8, 1, 2, 3, 4, 13, 15};
-    const simd::eight_floats taken = simd::taken(from.data(), places);
+    const simd::eight_floats taken = simd::permuted(from.data(), places);
     for (int i = 0; i < 8; ++i) {
         const float wanted = from[places[i] & 7U];
         REQUIRE((taken[i] == wanted || (taken[i] != taken[i] && wanted != wanted)));

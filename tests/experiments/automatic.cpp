@@ -106,7 +106,7 @@ TEST_CASE("Measures are told with their digits grouped, and what cannot be told 
     m.objects = 1200;
     m.triangles = 12'345;
     std::string text;
-    for (const auto& row : aabblab::reported(m).rows) text += row[0] + " " + row[1] + "\n";
+    for (const auto& row : aabblab::measures_table(m).rows) text += row[0] + " " + row[1] + "\n";
     for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, the longest edge"})
         CHECK(holds(text, line));
 }
@@ -117,7 +117,8 @@ TEST_CASE("A flat axis is one on which those overlap that are there") {
     aabblab::scene_measures flat = m;
     flat.boxes.overlaps[2] = static_cast<double>(flat.present - 1);
     const auto tells_flat_axis = [](const aabblab::scene_measures& of) {
-        return std::ranges::any_of(aabblab::reported(of).rows, [](const auto& row) { return row[0] == "flat axis"; });
+        return std::ranges::any_of(aabblab::measures_table(of).rows,
+                                   [](const auto& row) { return row[0] == "flat axis"; });
     };
     CHECK(tells_flat_axis(flat));
     CHECK_FALSE(tells_flat_axis(m));
@@ -129,14 +130,14 @@ TEST_CASE("Motion is measured: the way, what is not alike, rest, inversions") {
     for (const aabb::box& b : before) all_alike.push_back(cube(b.min[0] + 3, 4, 0));
     const aabblab::motion_measures alike = aabblab::measure_motion(before, all_alike, 0);
     CHECK(is_near(alike.displacement, 5));
-    CHECK(is_near(alike.relative, 0));
+    CHECK(is_near(alike.relative_displacement, 0));
     CHECK(is_near(alike.at_rest, 0));
     CHECK(is_near(alike.inversions, 0));
     std::vector<aabb::box> one_passes = before;
     one_passes[0] = cube(5, 0, 0);
     const aabblab::motion_measures passing = aabblab::measure_motion(before, one_passes, 0);
     CHECK(is_near(passing.displacement, 1.25));
-    CHECK(is_near(passing.relative, 2.5));
+    CHECK(is_near(passing.relative_displacement, 2.5));
     CHECK(is_near(passing.at_rest, 0.75));
     CHECK(is_near(passing.inversions, 0.5));
 }
@@ -149,8 +150,7 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     for (const char* part :
          {"objects       200\n", "frames        81, of which the first 4 are measured\n",
           "at rest       0 % of the objects\n", "counters of all work  ", "prepare    neighbour_list  frames follow",
-          "    plans from earlier frames
-", "one column: no axis is cut", " pairs of boxes, with a skin of ",
+          "    plans from earlier frames\n", "one column: no axis is cut", " pairs of boxes, with a skin of ",
           "as selected", "split_large", "axial_cut", "build, tree, triangle do not apply to this scene"})
         CHECK(holds(reported.out, part));
     CHECK_FALSE(holds(reported.out, "canonical"));

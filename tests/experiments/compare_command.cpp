@@ -100,7 +100,7 @@ TEST_CASE("What became slower against its base is found, though the machine is t
     REQUIRE(outcomes_of(b, {}) == std::vector{outcome::less, outcome::same});
     const auto scene = compare(run_of({}), run_of(b), aabblab::compared::ratios_and_times).scenes.at(0);
     REQUIRE(scene.scene == without_seed(brownian(1)));
-    REQUIRE(scene.base == "insertion");
+    REQUIRE(scene.baseline == "insertion");
     REQUIRE(scene.ratios[0].label == "std");
     CHECK(std::abs(scene.ratios[0].in_a - 2) < 0.02);
     CHECK(std::abs(scene.ratios[0].in_b - 2.4) < 0.02);

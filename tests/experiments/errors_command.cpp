@@ -212,7 +212,7 @@ TEST_CASE("errors plays compositions whole and draws the metrics that the config
     CHECK(holds(words, "hasthebestwrong_share,0,withaframe_msof"));
     std::map<std::string, std::set<std::string>> answers;
     for (const aabblab::row& r : aabblab::read_rows(folder / "out/results.csv"))
-        answers[r.name[aabb::strategy_kind::prepare]].insert(r.status + (*r.missing > 0 ? " misses" : "") +
+        answers[r.name[aabb::strategy_kind::prepare]].insert(r.status + (*r.false_negatives > 0 ? " misses" : "") +
                                                              (*r.false_positives > 0 ? " invents" : ""));
     const std::set<std::string> exact{"exact"};
     const std::set<std::string> stale{"inexact misses"};
@@ -269,9 +269,9 @@ TEST_CASE("what one seed of several gets wrong shows in the plot") {
     std::uint64_t seeds = 0, missing = 0, exact = 0;
     for (const aabblab::row& r : aabblab::read_rows(folder / "out/results.csv")) {
         if (r.name[aabb::strategy_kind::prepare] == "none") continue;
-        missing += *r.missing;
-        seeds += *r.missing > 0;
-        exact += r.candidates + *r.missing;
+        missing += *r.false_negatives;
+        seeds += *r.false_negatives > 0;
+        exact += r.candidates + *r.false_negatives;
     }
     // Fewer than half of the seeds, so that a median would be zero.
     CHECK_BETWEEN(0, seeds, 3);

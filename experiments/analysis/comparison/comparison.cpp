@@ -180,7 +180,7 @@ std::vector<number> numbers_of(const row& r) {
     for (std::size_t i = 0; i < r.counts.size(); ++i) numbers.emplace_back(aabb::work_names[i], r.counts[i]);
     for (std::size_t i = 0; i < r.bytes.size(); ++i)
         numbers.emplace_back("bytes_" + std::string(byte_columns[i]), r.bytes[i]);
-    numbers.emplace_back("missing", r.missing);
+    numbers.emplace_back("missing", r.false_negatives);
     numbers.emplace_back("invented", r.false_positives);
     return numbers;
 }
@@ -269,8 +269,8 @@ comparison compare(const run_results& a, const run_results& b, compared quantiti
         const std::size_t place = report.scenes.size();
         const std::vector<std::string> labels = labels_of(shared.names);
         compared_scene& scene = report.scenes.emplace_back();
-        scene.experiment = shared.any->experiment;
-        scene.scene = without_seed(shared.any->scene);
+        scene.experiment = shared.first_row->experiment;
+        scene.scene = without_seed(shared.first_row->scene);
         report.numbers_compared += compare_numbers(shared, of_a, of_b, labels, scene.changed);
         const std::optional<candidate_name> baseline = baseline_of(shared, of_a, of_b);
         if (!baseline) continue;

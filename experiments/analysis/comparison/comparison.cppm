@@ -50,7 +50,7 @@ struct changed_number {
 struct compared_scene {
     std::string experiment;
     scene_choice scene;  ///< `without_seed`
-    std::string base;    ///< denominator of `ratios`: the first in A that is timed in both; empty if there is none
+    std::string baseline;  ///< denominator of `ratios`: the first in A that is timed in both; empty if there is none
     std::vector<compared_time> ratios;
     std::vector<compared_time> times;
     std::vector<changed_number> changed;
