@@ -45,8 +45,8 @@ void calibrate(const calibrate_request& request) {
     if (file.empty())
         throw aabb::input_error("neither XDG_CONFIG_HOME nor HOME names a folder; give --out FILE for the costs");
     if (request.reset)
-        return print(std::filesystem::remove(file) ? "removed " + file.string() + ": costs are as shipped\n"
-                                                   : file.string() + " is not there: costs are as shipped\n");
+        return print(std::filesystem::remove(file) ? "removed " + file.string() + ": the shipped costs are used\n"
+                                                   : file.string() + " does not exist: the shipped costs are used\n");
     require_fine_clock();
     // An existing file is overwritten only if it is a file of costs.
     if (request.out && std::filesystem::is_regular_file(file) && std::filesystem::file_size(file) > 0)

@@ -220,6 +220,6 @@ TEST_CASE("atlas --judge makes maps of results that are there, and says where th
         CHECK(bytes_of_file(folder / "of" / source / "cells.csv") == bytes_of_file(folder / "map/cells.csv"));
     }
     CHECK(run_refused({"atlas", "--judge", folder / "gone"}).err ==
-          "aabblab: " + (folder / "gone").string() + " is not there\n");
+          "aabblab: " + (folder / "gone").string() + " does not exist\n");
     CHECK(holds(run_program({"atlas", folder / "map"}).err, "only --judge reads existing results"));
 }

@@ -197,7 +197,8 @@ TEST_CASE("Costs of another processor, instruction set or version are left alone
         INFO(explained.err);
         CHECK(explained.status == 0);
         CHECK(is_one_sentence(explained.err));
-        CHECK(holds(explained.err, "costs are as shipped until aabblab calibrate measures them here"));
+        CHECK(holds(explained.err,
+                    "so the shipped costs are used until aabblab calibrate measures those of this machine"));
         CHECK(explained.out.starts_with("strategies plan with costs as shipped\n"));
     }
 }
@@ -210,10 +211,10 @@ TEST_CASE("A malformed file of costs stops every command but calibrate, which re
     CHECK(wrong.run({"--version"}).status == 0);
     const program_result removed = wrong.run({"calibrate", "--reset"});
     CHECK(removed.status == 0);
-    CHECK(removed.out == "removed " + wrong.file().string() + ": costs are as shipped\n");
+    CHECK(removed.out == "removed " + wrong.file().string() + ": the shipped costs are used\n");
     CHECK_FALSE(std::filesystem::exists(wrong.file()));
     CHECK(wrong.run({"list"}).status == 0);
-    CHECK(holds(wrong.run({"calibrate", "--reset"}).out, "is not there: costs are as shipped"));
+    CHECK(holds(wrong.run({"calibrate", "--reset"}).out, "does not exist: the shipped costs are used"));
 }
 
 TEST_CASE("calibrate keeps what it measured, as a table too") {

@@ -197,7 +197,7 @@ TEST_CASE("What an external engine leaves running is killed when it ends, whatev
 
 TEST_CASE("An external engine that ends its process group has failed, and may be run where children are ignored") {
     const temporary_folder folder;
-    CHECK(holds(as_refused(run_with(folder, good + "kill 0\nsleep 1000\n")).err, "ended by signal 15"));
+    CHECK(holds(as_refused(run_with(folder, good + "kill 0\nsleep 1000\n")).err, "terminated by signal 15"));
     REQUIRE(run_with(folder, good, "brownian", "timeout_s = 20\n").status == 0);
     const program_result ignored = run_command(
         {"env", "--ignore-signal=CHLD", AABBLAB_UNDER_TEST, "run", folder / "joined.toml", "--out", folder / "again"});
@@ -219,8 +219,8 @@ TEST_CASE("An external engine that does not end is killed with what it started, 
     CAPTURE(result.err, result.out);
     REQUIRE(result.status == 1);
     CHECK(holds(result.err,
-                ":4: brownian (objects=150 frames=3 seed=1): the external engine 'mine' was killed: it had "
-                "not ended after 1 s, its timeout_s\n"));
+                ":4: brownian (objects=150 frames=3 seed=1): the external engine 'mine' was killed: it was "
+                "still running after 1 s, its timeout_s\n"));
     const std::vector<aabblab::row> rows = aabblab::read_rows(folder / "out/results.csv");
     CHECK(std::ranges::count_if(rows, [](const auto& r) { return r.name.engine.empty(); }) == 2);
     CHECK(static_cast<std::size_t>(

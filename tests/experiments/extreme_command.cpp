@@ -71,7 +71,7 @@ TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, 
     const std::filesystem::path out = folder / "results";
     const program_result ran = run_program({"validate", "extreme", "--quick", "--cases", file, "--out", out});
     CHECK(ran.status == 1);
-    CHECK(holds(ran.err, "aabblab: exact in double on lie: says that they intersect\n"));
+    CHECK(holds(ran.err, "aabblab: exact in double on lie: reports that they intersect\n"));
     CHECK(holds(ran.out, "results are not as expected.\n"));
     // Nothing but the lie is wrong.
     CHECK(holds(ran.out, "crossing      1      4 WRONG"));

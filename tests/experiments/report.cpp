@@ -270,7 +270,7 @@ TEST_CASE("run fits its tables to the terminal, prints work on request, and leav
     check_narrow(tables);
     CHECK_FALSE(holds(tables, "box tests"));
     CHECK(holds(tables, "pooled over 2 seeds"));
-    CHECK(holds(tables, "2 scenes with insertion + none + one_axis,\n"));
+    CHECK(holds(tables, "2 scenes with the baseline insertion + none + one_axis,\n"));
 
     const program_result counted = run_well({"run", config, "--counts", "--out", folder / "b"});
     CHECK(holds(counted.out, "box tests"));
