@@ -31,7 +31,7 @@ int run(const atlas_request& request) {
     std::vector<std::string> failures;
     if (!request.judge) failures = measure_atlas(out, request.quick);
     const std::vector<std::string> names(request.source ? 1 : 0, request.source.value_or(""));
-    source_list sources(names);
+    results_sources sources(names);
     if (names.empty()) sources.add(out);
     const results_source& source = sources.list().front();
     std::vector<atlas_scene> atlas;

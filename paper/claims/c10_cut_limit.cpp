@@ -17,18 +17,22 @@ bool limit_changes_cut(const condition& c, const std::string& segments) {
 
 }  // namespace
 
-/// Claim C10: with the limit against without it, for each number and size of huge boxes.
+/// Claim C10: times of the axial cut with its limit of one cut per box and axis over those without the limit, for each
+/// number and size of huge boxes, since only boxes longer than a segment can be cut twice.
 draft c10_claim(const measurements& m) {
     draft c10{
-        {.claim = "Cutting a box more than once on an axis is not worth its cost",
-         .measured = "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
-         .experiments = {"c10"}},
-        {{{"span", "0.5"}, {"huge", "10"}}}};
-    for (const condition& c : m.of("c10"))
+        .claim = {.claim = "Cutting a box more than once on an axis is not worth its cost",
+                  .measured =
+                      "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
+                  .experiments = {"c10"}},
+        .primary = {{{"span", "0.5"}, {"huge", "10"}}}};
+    for (const condition& c : m.conditions_of("c10"))
         for (const std::string segments : {"auto", "32"}) {
             if (!limit_changes_cut(c, segments)) continue;
-            const std::string subject = value_of(c.of(), "span").empty() ? "with at most one cut per box on mixed sizes"
-                                                                         : "with at most one cut of huge boxes";
+            // Only scenes with huge boxes have their edge, `span`, as a factor.
+            const std::string subject = value_of(c.scene(), "span").empty()
+                                            ? "with at most one cut per box on mixed sizes"
+                                            : "with at most one cut of huge boxes";
             c10.add(endpoint_of(c, with_limit("on", segments), with_limit("off", segments), "frame_cpu_ms",
                                 {{"segments", segments}}),
                     subject + (segments == "auto" ? "" : " and 32 segments"));

@@ -2,25 +2,25 @@ module aabblab.claims;
 
 namespace aabblab {
 
-/// Claim C12: counted box tests with the cut against without it, both with Shell sort.
+/// Claim C12: counted box tests with the axial cut over those without it, both with Shell sort.
 draft c12_claim(const measurements& m) {
-    draft c12{{.claim = "The axial cut avoids needless tests of boxes",
-               .measured = "box tests per frame, axial_cut over none, both with shell",
-               .experiments = {"figure1", "three_lists"}},
-              {drifting}};
-    for (const condition& c : m.of("figure1"))
+    draft c12{.claim = {.claim = "The axial cut avoids needless tests of boxes",
+                        .measured = "box tests per frame, axial_cut over none, both with shell",
+                        .experiments = {"figure1", "three_lists"}},
+              .primary = {drifting}};
+    for (const condition& c : m.conditions_of("figure1"))
         c12.add(endpoint_of(c, improved, uncut, "box_tests"), is_brownian(c) ? "on drifting boxes" : "in other scenes",
-                "", quantity::box_tests);
-    for (const condition& c : m.of("three_lists"))
+                /*along=*/"", quantity::box_tests);
+    for (const condition& c : m.conditions_of("three_lists"))
         c12.add(endpoint_of(c, improved.with(kind::sweep, "all_axes"), uncut.with(kind::sweep, "all_axes"), "box_tests",
                             {{"sweep", "all_axes"}}),
-                "with three sorted lists", "", quantity::box_tests);
+                "with three sorted lists", /*along=*/"", quantity::box_tests);
     figure& f = c12.claim.figures.emplace_back(
         log_log("c12", "Box tests per frame against the number of objects, with the axial cut and without.", "objects",
                 "box tests per frame"));
     const method methods[] = {{"no cut", uncut}, {"axial cut", improved}};
-    f.lines = series_of(methods, matching(m.of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}}), "objects",
-                        measured("box_tests"));
+    f.lines = series_of(methods, matching(m.conditions_of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}}),
+                        "objects", measured("box_tests"));
     return c12;
 }
 

@@ -7,7 +7,7 @@ namespace aabblab {
 namespace {
 
 /// The work of a sort at all sizes, on input with one displacement.
-struct sizes {
+struct work_by_size {
     std::vector<double> log_n;
     std::vector<cells> per_element;  // logarithms
 
@@ -28,14 +28,14 @@ row_value work() {
 
 /// "100 to 100000"
 std::string sizes_text(const std::vector<const condition*>& conditions) {
-    return value_of(conditions.front()->of(), "objects") + " to " + value_of(conditions.back()->of(), "objects");
+    return value_of(conditions.front()->scene(), "objects") + " to " + value_of(conditions.back()->scene(), "objects");
 }
 
-/// Inversions at all sizes, to check that "almost ordered" means the same for each.
+/// Inversions per element at all sizes, to check that "almost ordered" means the same for each.
 table inversions_table(const std::map<std::string, std::vector<const condition*>>& by_displacement) {
     table t{{{"displacement"}}, {}};
     for (const condition* c : by_displacement.begin()->second)
-        t.columns.push_back({value_of(c->of(), "objects") + " elements"});
+        t.columns.push_back({value_of(c->scene(), "objects") + " elements"});
     for (const auto& [displacement, conditions] : by_displacement) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{displacement});
         for (const condition* c : conditions) cells.push_back(digits_cell(inversions_of(*c)));
@@ -62,16 +62,17 @@ std::optional<double> inversions_of(const std::vector<const condition*>& conditi
     return values.empty() ? std::nullopt : std::optional(quartiles_of(values).median);
 }
 
-/// The sizes that are used for growth: with fewer elements the passes of the largest gaps are incomplete, and far from
-/// the origin, where floats cannot represent a move of a hundredth of an edge, the input is more ordered.
+/// The conditions from which growth with N is computed, without the sizes that disturb it: with few elements the
+/// passes of the largest gaps are incomplete, and with many, far from the origin, floats cannot represent a move of a
+/// hundredth of an edge, so that the input has fewer inversions.
 std::vector<const condition*> comparable_sizes(std::vector<const condition*> conditions) {
-    constexpr double fewest = 10'000;
-    constexpr double most_off = 0.1;
-    std::erase_if(conditions, [](const condition* c) { return number_of(c->of(), "objects") < fewest; });
+    constexpr double fewest_elements = 10'000;
+    constexpr double most_deviation = 0.1;
+    std::erase_if(conditions, [](const condition* c) { return number_of(c->scene(), "objects") < fewest_elements; });
     const std::optional<double> usual = inversions_of(conditions);
     std::erase_if(conditions, [&](const condition* c) {
         const std::optional<double> inversions = inversions_of(*c);
-        return usual && inversions && std::abs(*inversions - *usual) > most_off * *usual;
+        return usual && inversions && std::abs(*inversions - *usual) > most_deviation * *usual;
     });
     return conditions;
 }
@@ -80,37 +81,38 @@ std::vector<const condition*> comparable_sizes(std::vector<const condition*> con
 
 /// Claim C2: the growth of each sort's counted work per element, by displacement; a sort in O(N) has the ratio 1.
 draft c2_claim(const measurements& m) {
-    draft c2{{.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too",
-              .measured = "comparisons and moves per element at 10 N elements over those at N, by linear regression "
-                          "against log N, from 10,000 elements on",
-              .lead = "Per element, when N grows tenfold",
-              .experiments = {"c2"}},
-             {{{"sort", "insertion"}, {"displacement", "0.1"}},
-              {{"sort", "shell:gaps=four_one"}, {"displacement", "0.1"}},
-              {{"sort", "shell:gaps=ciura_eight"}, {"displacement", "0.1"}},
-              {{"sort", "shell:gaps=ciura"}, {"displacement", "0.1"}}}};
+    draft c2{.claim = {.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too",
+                       .measured =
+                           "comparisons and moves per element at 10 N elements over those at N, by linear regression "
+                           "against log N, from 10,000 elements on",
+                       .lead = "Per element, when N grows tenfold",
+                       .experiments = {"c2"}},
+             .primary = {{{"sort", "insertion"}, {"displacement", "0.1"}},
+                         {{"sort", "shell:gaps=four_one"}, {"displacement", "0.1"}},
+                         {{"sort", "shell:gaps=ciura_eight"}, {"displacement", "0.1"}},
+                         {{"sort", "shell:gaps=ciura"}, {"displacement", "0.1"}}}};
     std::map<std::string, std::vector<const condition*>> by_displacement;
-    for (const condition& c : m.of("c2")) by_displacement[value_of(c.of(), "displacement")].push_back(&c);
+    for (const condition& c : m.conditions_of("c2")) by_displacement[value_of(c.scene(), "displacement")].push_back(&c);
     for (const reported_sort& s : sorts)
         for (const auto& [displacement, of_all_sizes] : by_displacement) {
-            sizes measured_sizes;
+            work_by_size measured_work;
             const std::vector<const condition*> conditions = comparable_sizes(of_all_sizes);
             if (conditions.size() < 2) continue;
             for (const condition* c : conditions) {
-                measured_sizes.log_n.push_back(std::log10(number_of(c->of(), "objects")));
-                measured_sizes.per_element.push_back(c->logs({{kind::sort, s.sort}}, per_object(work())));
+                measured_work.log_n.push_back(std::log10(number_of(c->scene(), "objects")));
+                measured_work.per_element.push_back(c->logs({{kind::sort, s.sort}}, per_object(work())));
             }
-            endpoint c;
-            c.where = {{"scene", "line"},
-                       {"sort", s.sort},
-                       {"displacement", displacement},
-                       {"elements", sizes_text(conditions)}};
+            endpoint growth;
+            growth.where = {{"scene", "line"},
+                            {"sort", s.sort},
+                            {"displacement", displacement},
+                            {"elements", sizes_text(conditions)}};
             if (const auto inversions = inversions_of(conditions))
-                c.observed = {{"inversions", three_digits(*inversions)}};
-            c.log_ratios = {bootstrap(measured_sizes.per_element.front().size(),
-                                      [&](const resample& d) { return measured_sizes.growth(d); })};
-            c.source = "c2: growth of comparisons and moves of sort=" + std::string(s.sort);
-            c2.add(std::move(c), s.subject, "inversions", quantity::work);
+                growth.observed = {{"inversions", three_digits(*inversions)}};
+            growth.log_ratios = {bootstrap(measured_work.per_element.front().size(),
+                                           [&](const resample& d) { return measured_work.growth(d); })};
+            growth.source = "c2: growth of comparisons and moves of sort=" + std::string(s.sort);
+            c2.add(std::move(growth), s.subject, "inversions", quantity::work);
         }
     if (by_displacement.empty()) return c2;
     c2.claim.tables.push_back({"c2_inversions", "Inversions per element, which should be equal at all sizes.",

@@ -20,22 +20,23 @@ endpoint over_insertion(const condition& c, const std::string& gaps) {
     return ratio;
 }
 
-/// All gap sequences in all conditions, ordered by inversions.
-table map_of(const std::vector<condition>& conditions) {
+/// The time of Shell sort over that of insertion sort, for all gap sequences in all conditions, ordered by inversions.
+table gaps_table(const std::vector<condition>& conditions) {
     std::vector<const condition*> ordered = matching(conditions, {});
     std::ranges::stable_sort(ordered, {}, [](const condition* c) { return disorder_of(*c); });
     table t{{{"inversions per element"}, {"scene", false}, {"objects"}, {"displacement"}}, {}};
     for (const std::string& gaps : gap_sequences) t.columns.push_back({gaps});
     for (const condition* c : ordered) {
         std::vector<std::string>& cells =
-            t.rows.emplace_back(std::vector{three_digits(disorder_of(*c)), value_of(c->of(), "scene"),
-                                            value_of(c->of(), "objects"), value_of(c->of(), "displacement")});
+            t.rows.emplace_back(std::vector{three_digits(disorder_of(*c)), value_of(c->scene(), "scene"),
+                                            value_of(c->scene(), "objects"), value_of(c->scene(), "displacement")});
         for (const std::string& gaps : gap_sequences) cells.push_back(ratio_cell(over_insertion(*c, gaps)));
     }
     return t;
 }
 
-/// Ratios against inversions, in one panel for boxes in space and one for boxes on a line.
+/// The time of Shell sort over that of insertion sort against inversions per element, which decide between the two, in
+/// one panel for boxes in space and one for boxes on a line.
 figure figure_of(const std::vector<condition>& conditions) {
     figure f = log_log("c3",
                        "Time of Shell sort over that of insertion sort (the level 1) against inversions per element, "
@@ -60,26 +61,27 @@ figure figure_of(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Claim C3: Shell sort against insertion sort, ordered by inversions per element, which decide between the two.
+/// Claim C3: times of Shell sort over those of insertion sort, ordered by inversions per element.
 draft c3_claim(const measurements& m) {
-    // Few inversions and many. Boxes on a line that move by 300 edges have the inversions of 100,000 boxes in space
-    // that move by one edge (186 per element in full runs), and take a hundredth of the time.
-    draft c3{{.claim = "Shell sort beats insertion sort under temporal coherence",
-              .measured = "time per frame to update and sort the boxes, shell with Ciura's gaps over insertion",
-              .experiments = {"c3"}},
-             {drifting, {{"scene", "line"}, {"objects", "100000"}, {"displacement", "300"}}}};
-    const std::vector<condition>& conditions = m.of("c3");
+    // The primary conditions have few inversions and many. Boxes on a line that move by 300 edges have the inversions
+    // of 100,000 boxes in space that move by one edge (186 per element in full runs), and take a hundredth of the time.
+    draft c3{
+        .claim = {.claim = "Shell sort beats insertion sort under temporal coherence",
+                  .measured = "time per frame to update and sort the boxes, shell with Ciura's gaps over insertion",
+                  .experiments = {"c3"}},
+        .primary = {drifting, {{"scene", "line"}, {"objects", "100000"}, {"displacement", "300"}}}};
+    const std::vector<condition>& conditions = m.conditions_of("c3");
     for (const bool in_space : {true, false})
         for (const condition& c : conditions)
             if (is_brownian(c) == in_space)
                 c3.add(over_insertion(c, "ciura"),
-                       "on " + number_text(value_of(c.of(), "objects")) +
+                       "on " + number_text(value_of(c.scene(), "objects")) +
                            (in_space ? " boxes in space" : " boxes on a line"),
                        "inversions");
     if (conditions.empty()) return c3;
     c3.claim.tables.push_back({"c3_map",
                                "Time of Shell sort over that of insertion sort, for each gap sequence, by inversions.",
-                               map_of(conditions)});
+                               gaps_table(conditions)});
     c3.claim.figures.push_back(figure_of(conditions));
     return c3;
 }

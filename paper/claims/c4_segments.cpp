@@ -27,12 +27,13 @@ bool is_finer(const condition& c, int axes, int wanted, int before) {
     return segments && coarser && *segments > 1.1 * *coarser;
 }
 
-/// Times against the requested number of segments in one scene, with the limit of each number of axes as a mark.
+/// Times against the requested number of segments in one scene, a line for each number of cut axes. Marks show how many
+/// segments the limit of one cut per box allows: from there on, more of them are requested but not made.
 figure figure_of(const std::string& name, const condition& c) {
     figure f = log_log(
         name,
         "Time of the broad phase against the requested segments per axis, with one, two and three axes cut, on " +
-            value_of(c.of(), "scene") +
+            value_of(c.scene(), "scene") +
             ". Marks show how many segments the limit of one cut per box allows. The level is without a cut.",
         "requested segments per axis", "time per frame (ms)");
     for (int axes = 1; axes <= 3; ++axes) {
@@ -49,9 +50,10 @@ figure figure_of(const std::string& name, const condition& c) {
     return f;
 }
 
-/// The automatic number of segments compared with the limit: segments need not be tiny.
+/// The automatic number of segments, and its time over that of as many as the limit of one cut per box allows; it shows
+/// that segments need not be tiny. One row per condition and number of cut axes.
 table automatic_table(const std::vector<condition>& conditions) {
-    table t = place_table(places_of(conditions));
+    table t = factors_table(factors_of(conditions));
     const std::vector<std::vector<std::string>> places = std::exchange(t.rows, {});
     t.columns.insert(t.columns.end(), {{"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}});
     for (const condition& c : conditions)
@@ -70,28 +72,30 @@ table automatic_table(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Claim C4: finer cuts against coarser ones, and the automatic number of segments against the limit.
+/// Claim C4: times of finer cuts over those of coarser ones, and of the automatic number of segments over the most that
+/// the limit of one cut per box allows.
 draft c4_claim(const measurements& m) {
-    draft c4{{.claim = "The more segments, the faster, up to the limit; and segments need not be tiny",
-              .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
-                          "with each number of segments over that with the next smaller one, up to the limit; and "
-                          "with the automatic number over that at the limit",
-              .experiments = {"c4"}},
-             {{{"scene", "brownian"}, {"axes", "2"}, {"segments", "the limit"}},
-              {{"scene", "brownian"}, {"axes", "3"}, {"segments", "the limit"}},
-              {{"scene", "brownian"}, {"axes", "2"}, {"segments", "auto"}},
-              {{"scene", "brownian"}, {"axes", "3"}, {"segments", "auto"}}}};
-    const std::vector<condition>& conditions = m.of("c4");
-    const auto for_each_cut = [&](auto take) {
+    draft c4{
+        .claim = {.claim = "The more segments, the faster, up to the limit; and segments need not be tiny",
+                  .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
+                              "with each number of segments over that with the next smaller one, up to the limit; and "
+                              "with the automatic number over that at the limit",
+                  .experiments = {"c4"}},
+        .primary = {{{"scene", "brownian"}, {"axes", "2"}, {"segments", "the limit"}},
+                    {{"scene", "brownian"}, {"axes", "3"}, {"segments", "the limit"}},
+                    {{"scene", "brownian"}, {"axes", "2"}, {"segments", "auto"}},
+                    {{"scene", "brownian"}, {"axes", "3"}, {"segments", "auto"}}}};
+    const std::vector<condition>& conditions = m.conditions_of("c4");
+    const auto for_each_cut = [&](auto add_ratios_of) {
         for (const condition& c : conditions)
-            for (int axes = 1; axes <= 3; ++axes) take(c, axes);
+            for (int axes = 1; axes <= 3; ++axes) add_ratios_of(c, axes);
     };
     /// A number of segments and its name among the factors: the number itself, or "the limit".
     struct segments {
         std::string number;
         std::string name;
     };
-    const segments limit{"256", "the limit"};
+    const segments limit{"256", "the limit"};  // more than the limit allows anywhere
     const auto ratio = [](const condition& c, int axes, const segments& finer, const segments& coarser) {
         return endpoint_of(c, cut_into(axes, finer.number), cut_into(axes, coarser.number), "frame_cpu_ms",
                            {{"axes", std::to_string(axes)}, {"segments", finer.name}, {"over", coarser.name}});
@@ -105,11 +109,10 @@ draft c4_claim(const measurements& m) {
     });
     for_each_cut([&](const condition& c, int axes) {
         for (std::size_t i = 1; i < segments_wanted.size(); ++i) {
-            const int wanted = segments_wanted[i];
-            const int before = segments_wanted[i - 1];
-            const std::string finer = std::to_string(wanted);
-            const std::string coarser = std::to_string(before);
-            if (is_finer(c, axes, wanted, before)) c4.add(ratio(c, axes, {finer, finer}, {coarser, coarser}));
+            const std::string finer = std::to_string(segments_wanted[i]);
+            const std::string coarser = std::to_string(segments_wanted[i - 1]);
+            if (is_finer(c, axes, segments_wanted[i], segments_wanted[i - 1]))
+                c4.add(ratio(c, axes, {finer, finer}, {coarser, coarser}));
         }
     });
     // Segments need not be tiny: the automatic number is as good as the most that the limit allows.
@@ -124,7 +127,7 @@ draft c4_claim(const measurements& m) {
     c4.claim.tables.push_back({"c4_auto", "Segments per axis and time, with the automatic number and at the limit.",
                                automatic_table(conditions)});
     for (const condition& c : conditions)
-        c4.claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.of(), "scene"), c));
+        c4.claim.figures.push_back(figure_of(&c == conditions.data() ? "c4" : "c4_" + value_of(c.scene(), "scene"), c));
     return c4;
 }
 

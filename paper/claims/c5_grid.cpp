@@ -25,23 +25,24 @@ bool is_grid(const condition& c, const std::string& size) {
     return median_of(c, grid(size), measured("subsets")).value_or(2) > 1;
 }
 
-/// Times of all cell sizes over that of the axial cut, by scene.
+/// Times of grids of all cell sizes over that of the axial cut, in scenes with the same number of objects. A cell size
+/// competes in the scenes in which it gives more than one cell: with one cell the space is not divided.
 class scenes_and_cells {
 public:
-    /// @param conditions the scenes with one number of objects
-    explicit scenes_and_cells(const std::vector<const condition*>& conditions) {
+    /// Reads the ratios of the cell sizes that give a grid of more than one cell, by scene.
+    explicit scenes_and_cells(const std::vector<const condition*>& scenes) {
         for (const std::string& size : cell_sizes)
-            if (std::ranges::all_of(conditions, [&](const condition* c) { return is_grid(*c, size); }))
-                everywhere_.push_back(size);
-        for (const condition* c : conditions) {
-            std::map<std::string, cells>& scene = over_cut_.emplace_back();
+            if (std::ranges::all_of(scenes, [&](const condition* c) { return is_grid(*c, size); }))
+                sizes_in_all_scenes_.push_back(size);
+        for (const condition* c : scenes) {
+            std::map<std::string, cells>& scene = ratios_to_cut_.emplace_back();
             for (const std::string& size : cell_sizes)
                 if (is_grid(*c, size)) scene.emplace(size, c->log_ratios(grid(size), cut, measured("frame_cpu_ms")));
         }
     }
 
     /// The sizes that give a grid in all scenes. The safest size is one of these.
-    [[nodiscard]] const std::vector<std::string>& sizes() const { return everywhere_; }
+    [[nodiscard]] const std::vector<std::string>& sizes() const { return sizes_in_all_scenes_; }
 
     /// The regret of a size in a scene is the logarithm of its time over that of the best size there.
     [[nodiscard]] double worst_regret(const std::string& size, const resample& d) const {
@@ -52,11 +53,11 @@ public:
     }
     /// The worst regret of the safest cell size.
     [[nodiscard]] double least_worst_regret(const resample& d) const {
-        return least_of(everywhere_, [&](const std::string& size) { return worst_regret(size, d); });
+        return least_of(sizes_in_all_scenes_, [&](const std::string& size) { return worst_regret(size, d); });
     }
 
 private:
-    /// NaN if any value is NaN, which was not measured: ignoring it would be too optimistic.
+    /// The least value of the elements; NaN if any is NaN, which was not measured: ignoring it would be too optimistic.
     template <class Range, class Value>
     [[nodiscard]] static double least_of(const Range& range, Value value) {
         double least = std::numeric_limits<double>::infinity();
@@ -69,20 +70,20 @@ private:
     }
     /// The best of the cell sizes that give a grid in the scene.
     [[nodiscard]] static double best(const std::map<std::string, cells>& scene, const resample& d) {
-        return least_of(scene, [&](const auto& over_cut) { return d.mean_of(over_cut.second); });
+        return least_of(scene, [&](const auto& ratios) { return d.mean_of(ratios.second); });
     }
     template <class Regret>
     [[nodiscard]] double worst(Regret regret) const {
-        return -least_of(over_cut_, [&](const auto& scene) { return -regret(scene); });
+        return -least_of(ratios_to_cut_, [&](const auto& scene) { return -regret(scene); });
     }
 
-    std::vector<std::string> everywhere_;
-    std::vector<std::map<std::string, cells>> over_cut_;  // by scene, then cell size
+    std::vector<std::string> sizes_in_all_scenes_;
+    std::vector<std::map<std::string, cells>> ratios_to_cut_;  // logarithms, by scene, then cell size
 };
 
-/// Median times of the cut and of every cell size, for each scene.
+/// Median times of the axial cut and of grids of every cell size, for each scene.
 table times_table(const std::vector<condition>& conditions) {
-    table t = place_table(places_of(conditions));
+    table t = factors_table(factors_of(conditions));
     t.columns.push_back({"axial_cut"});
     for (const std::string& size : cell_sizes) t.columns.push_back({"cells of " + size});
     t.columns.push_back({"grid, auto"});
@@ -97,8 +98,10 @@ table times_table(const std::vector<condition>& conditions) {
     return t;
 }
 
-/// The growth of bytes, and of times relative to the cut, with the world. A sparser world has fewer pairs, so that all
-/// times fall: only relative to another method can they grow.
+/// Adds to C5 how bytes, and times relative to the axial cut, grow from the smallest world to the largest, with the
+/// same number of boxes. A sparser world has fewer pairs, so that all times fall: only relative to another method can
+/// they grow. What the claim says to grow is the small world's over the large one's, since a claim favours ratios
+/// below 1.
 void add_growth(const std::vector<condition>& worlds, draft& c5) {
     if (worlds.size() < 2) return;
     const condition& small = worlds.front();
@@ -127,7 +130,7 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
         large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
-/// A figure with one panel per number of objects.
+/// Times of grids over that of the axial cut against the cell size, a line per scene and a panel per number of objects.
 figure cell_figure(const std::map<double, std::vector<const condition*>>& by_objects) {
     figure f = log_log(
         "c5",
@@ -138,7 +141,7 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
         figure_panel& panel = f.panels.emplace_back();
         panel.title = grouped(static_cast<std::uint64_t>(objects)) + " objects";
         for (const condition* c : conditions) {
-            series s{value_of(c->of(), "scene")};
+            series s{value_of(c->scene(), "scene")};
             for (const std::string& size : cell_sizes) {
                 const endpoint ratio = endpoint_of(*c, grid(size), cut, "frame_cpu_ms");
                 if (!ratio.is_known() || !is_grid(*c, size)) continue;
@@ -151,20 +154,21 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
     return f;
 }
 
-/// A quantity of a grid and of the cut against the size of the world.
-figure world_figure(const std::string& name, const std::string& what, const std::string& axis,
+/// A figure of time or memory of a grid and of the axial cut against the size of the world, as C5 says that both grow
+/// with the space for a grid.
+figure world_figure(const std::string& name, const std::string& quantity_name, const std::string& y_label,
                     const std::vector<condition>& worlds, const row_value& value) {
     figure f = log_log(name,
-                       what +
+                       quantity_name +
                            " of the broad phase against the side of the world, for the same 2,000 cubes: a grid with "
                            "a fixed cell size, one with an automatic cell size, and the axial cut; medians and "
                            "quartiles.",
-                       "side of the world (edges)", axis);
+                       "side of the world (edges)", y_label);
     const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
     for (const auto& [label, tested] : methods) {
         series s{label};
         for (const condition& c : worlds) {
-            const double side = std::cbrt(number_of(c.of(), "objects") / number_of(c.of(), "density"));
+            const double side = std::cbrt(number_of(c.scene(), "objects") / number_of(c.scene(), "density"));
             if (const auto point = c.point(side, tested, value)) s.points.push_back(*point);
         }
         f.lines.push_back(s);
@@ -174,20 +178,24 @@ figure world_figure(const std::string& name, const std::string& what, const std:
 
 }  // namespace
 
-/// Claim C5: the worst slowdown of the cut against that of the safest cell size, and growth with the world.
+/// Claim C5: the worst slowdown of the axial cut over that of the safest cell size, which is the cell size with the
+/// least worst slowdown, and growth with the world. A regret is the logarithm of a slowdown.
 draft c5_claim(const measurements& m) {
     const std::string over_safest = "axial_cut over the safest cell size";
-    draft c5{{.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the "
-                       "space",
-              .measured = "the worst slowdown of axial_cut over that of the safest cell size; a slowdown is relative "
-                          "to the best cell size of a scene, the worst is that over four scenes with the same number "
-                          "of objects, and grids with a single cell are left out",
-              .experiments = {"c5", "c5_world"}},
-             {{{"objects", "1000"}, {"comparison", over_safest}}, {{"objects", "10000"}, {"comparison", over_safest}}}};
+    draft c5{
+        .claim = {.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the "
+                           "space",
+                  .measured =
+                      "the worst slowdown of axial_cut over that of the safest cell size; a slowdown is relative "
+                      "to the best cell size of a scene, the worst is that over four scenes with the same number "
+                      "of objects, and grids with a single cell are left out",
+                  .experiments = {"c5", "c5_world"}},
+        .primary = {{{"objects", "1000"}, {"comparison", over_safest}},
+                    {{"objects", "10000"}, {"comparison", over_safest}}}};
     std::map<double, std::vector<const condition*>> by_objects;
-    for (const condition& c : m.of("c5")) by_objects[number_of(c.of(), "objects")].push_back(&c);
+    for (const condition& c : m.conditions_of("c5")) by_objects[number_of(c.scene(), "objects")].push_back(&c);
     for (const auto& [number, conditions] : by_objects) {
-        const std::string objects = value_of(conditions.front()->of(), "objects");
+        const std::string objects = value_of(conditions.front()->scene(), "objects");
         const scenes_and_cells scenes(conditions);
         if (scenes.sizes().empty()) continue;
         const sample_size size =
@@ -214,10 +222,10 @@ draft c5_claim(const measurements& m) {
             "With {} objects the safest cell size takes {:.1f} times the time of the best one in its worst scene.",
             number_text(objects), std::exp(scenes.least_worst_regret(as_measured)));
     }
-    const std::vector<condition>& worlds = m.of("c5_world");
+    const std::vector<condition>& worlds = m.conditions_of("c5_world");
     add_growth(worlds, c5);
     c5.claim.tables.push_back(
-        {"c5_cells", "Time per frame (ms, medians) with every cell size.", times_table(m.of("c5"))});
+        {"c5_cells", "Time per frame (ms, medians) with every cell size.", times_table(m.conditions_of("c5"))});
     c5.claim.figures = {cell_figure(by_objects), world_figure("c5_world", "Memory", "bytes", worlds, all_bytes()),
                         world_figure("c5_world_time", "Time", "time per frame (ms)", worlds, measured("frame_cpu_ms"))};
     return c5;

@@ -31,7 +31,7 @@ void read_process(const std::filesystem::path& file, std::size_t process, test_t
     }
 }
 
-/// FOLDER/c6/process-0.json, …
+/// Reads the times of all processes: FOLDER/c6/process-0.json, process-1.json, … up to the first that is missing.
 test_times read_tests(const std::filesystem::path& folder) {
     test_times times;
     for (std::size_t process = 0;; ++process) {
@@ -41,16 +41,16 @@ test_times read_tests(const std::filesystem::path& folder) {
     }
 }
 
-/// Logarithms of the ratios of two tests, by process and repetition; empty if one was not measured.
-cells ratios_of(const test_times& times, const std::string& arm, const std::string& base) {
-    const auto a = times.find(arm);
-    const auto b = times.find(base);
+/// Logarithms of the time of one test over that of another, by process and repetition; empty if one was not measured.
+cells ratios_of(const test_times& times, const std::string& test, const std::string& other_test) {
+    const auto a = times.find(test);
+    const auto b = times.find(other_test);
     if (a == times.end() || b == times.end()) return {0, 0};
     const std::size_t processes = std::min(a->second.size(), b->second.size());
-    cells log_ratios(processes, 1);
+    cells log_ratios(processes, /*seeds=*/1);
     for (std::size_t process = 0; process < processes; ++process)
         for (std::size_t i = 0; i < std::min(a->second[process].size(), b->second[process].size()); ++i)
-            log_ratios.add(process, 0, std::log(a->second[process][i] / b->second[process][i]));
+            log_ratios.add(process, /*seed=*/0, std::log(a->second[process][i] / b->second[process][i]));
     return log_ratios;
 }
 
@@ -65,7 +65,7 @@ constexpr std::string_view frame_a_suffix = "/frame:a";
 /// The factor's value for leaves of B.
 constexpr const char* b_in_frame_of_a = "B, carried into A's frame";
 
-/// All tests with their ratios to a box test in the same frame.
+/// The times of all elementary tests, with their ratios to a box test in the same frame of reference.
 table table_of(const test_times& times) {
     table t{{{"test", false}, {"ns"}, {"quartiles"}, {"over a box test"}}, {}};
     for (const auto& [name, processes] : times) {
@@ -78,7 +78,8 @@ table table_of(const test_times& times) {
     return t;
 }
 
-/// Medians of all tests, those in B's frame beside those that need no transformation.
+/// Median times of all elementary tests: those of B's leaves, which are carried into A's frame of reference, beside
+/// those of A's own leaves, which need no transformation.
 figure figure_of(const test_times& times) {
     figure f{"c6",
              "Time of one elementary test, on the pairs that a traversal of two trees visits; medians and quartiles.",
@@ -88,13 +89,13 @@ figure figure_of(const test_times& times) {
     series untransformed{"without a transformation", series_style::points};
     for (const auto& [name, processes] : times) {
         if (name.ends_with(frame_a_suffix)) continue;
-        const auto place = static_cast<double>(f.x.names.size());
-        f.x.names.emplace_back(place, name.substr(name.find('/') + 1));
+        const auto x = static_cast<double>(f.x.names.size());
+        f.x.names.emplace_back(x, name.substr(name.find('/') + 1));
         const auto add = [&](series& line, const std::string& test) {
-            const auto position = times.find(test);
-            if (position == times.end()) return;
-            const quartiles q = spread_of(position->second);
-            line.points.push_back({place, q.median, q.low, q.high});
+            const auto found = times.find(test);
+            if (found == times.end()) return;
+            const quartiles q = spread_of(found->second);
+            line.points.push_back({x, q.median, q.low, q.high});
         };
         add(transformed, name);
         add(untransformed, name + std::string(frame_a_suffix));
@@ -107,14 +108,15 @@ figure figure_of(const test_times& times) {
 
 /// Claim C6: a triangle-box test against box tests, alone and, by trees with and without leaves, in whole queries.
 draft c6_claim(const measurements& m) {
-    draft c6{{.claim = "Testing the triangle of a leaf costs what testing its box costs",
-              .measured = "time of a triangle-box test over that of a box test, which encloses the transformed box "
-                          "by an axis-aligned one, or tests it as an oriented box on six or all fifteen axes; in "
-                          "whole queries, of leafless over canonical",
-              .experiments = {"figure2"}},
-             {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", b_in_frame_of_a}},
-              {{"leaf_test", "triangle_box"}, {"over", "rotated_box_6"}},
-              {{"leaf_test", "triangle_box"}, {"over", "rotated_box_15"}}}};
+    draft c6{
+        .claim = {.claim = "Testing the triangle of a leaf costs what testing its box costs",
+                  .measured = "time of a triangle-box test over that of a box test, which encloses the transformed box "
+                              "by an axis-aligned one, or tests it as an oriented box on six or all fifteen axes; in "
+                              "whole queries, of leafless over canonical",
+                  .experiments = {"figure2"}},
+        .primary = {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", b_in_frame_of_a}},
+                    {{"leaf_test", "triangle_box"}, {"over", "rotated_box_6"}},
+                    {{"leaf_test", "triangle_box"}, {"over", "rotated_box_15"}}}};
     const test_times times = read_tests(m.folder());
     const auto add_test = [&](const std::string& test, const std::string& over, const std::string& subject,
                               const std::string& frame = "") {
@@ -140,7 +142,7 @@ draft c6_claim(const measurements& m) {
         {"triangle_box", "in whole queries"},
         {"triangle_aabb", "in whole queries with boxes computed on the fly"},
         {"none", "in whole queries without a test at leaves"}};
-    for (const condition& c : m.of("figure2"))
+    for (const condition& c : m.conditions_of("figure2"))
         for (const auto& [test, subject] : queries) {
             endpoint ratio = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},
                                          "detect_cpu_ms");

@@ -6,7 +6,8 @@ namespace aabblab {
 
 namespace {
 
-/// Decides a family of endpoints with Holm's correction (1979); outcomes on which machines disagree are undecided.
+/// Decides endpoints (ratios of claims) as one family, by Holm's correction (1979) for the number of decisions;
+/// outcomes on which machines disagree are undecided.
 void decide_family(std::span<endpoint* const> endpoints, double band) {
     if (endpoints.empty()) return;
     for (std::size_t machine = 0; machine < endpoints.front()->log_ratios.size(); ++machine) {
@@ -53,18 +54,18 @@ std::string evidence_text(std::span<const endpoint> endpoints) {
                       count_of(others, support::no_difference), count_of(others, support::undecided));
 }
 
-/// Turns a draft and its decided endpoints into a result.
-claim_result result_of(const draft& source, const std::vector<endpoint>& endpoints) {
-    claim_result claim = source.claim;
+/// The verdict on a drafted claim from its decided endpoints, with the sentences and the table that report it.
+claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoints) {
+    claim_result claim = drafted.claim;
     claim.verdict = verdict_of(endpoints);
     claim.sentence = sentence_of(endpoints, claim.lead);
-    std::vector<endpoint> of_primary_lines;
-    std::ranges::copy_if(endpoints, std::back_inserter(of_primary_lines), [&](const endpoint& e) {
-        return std::ranges::any_of(endpoints, [&](const endpoint& p) { return p.is_primary && is_same_line(p, e); });
+    std::vector<endpoint> of_primary_clauses;
+    std::ranges::copy_if(endpoints, std::back_inserter(of_primary_clauses), [&](const endpoint& e) {
+        return std::ranges::any_of(endpoints, [&](const endpoint& p) { return p.is_primary && is_same_clause(p, e); });
     });
-    claim.brief = sentence_of(of_primary_lines, claim.lead);
+    claim.brief = sentence_of(of_primary_clauses, claim.lead);
     std::vector<endpoint> unjudged;
-    for (const endpoint& e : source.unjudged)
+    for (const endpoint& e : drafted.unjudged)
         if (e.is_known()) unjudged.push_back(decided_alone(e));
     if (!unjudged.empty()) claim.sentence += " " + sentence_of(unjudged);
     if (!claim.remark.empty()) claim.sentence += " " + claim.remark;
@@ -87,7 +88,7 @@ claim_result result_of(const draft& source, const std::vector<endpoint>& endpoin
     return claim;
 }
 
-/// The drafts of all claims, from the results of one machine.
+/// The drafts of all claims, which have ratios but no verdicts, from the results of one machine.
 std::vector<draft> drafts_of(const measurements& m) {
     std::vector<draft> drafts;
     for (const claim_source& source : claim_sources()) {
@@ -98,12 +99,13 @@ std::vector<draft> drafts_of(const measurements& m) {
         for (std::vector<endpoint>* endpoints : {&added.endpoints, &added.unjudged})
             for (endpoint& e : *endpoints) e.expected = e.expected.value_or(claim.expected);
         for (const std::string& experiment : claim.experiments)
-            std::ranges::move(places_of(m.of(experiment)), std::back_inserter(claim.scenes));
+            std::ranges::move(factors_of(m.conditions_of(experiment)), std::back_inserter(claim.scenes));
     }
     return drafts;
 }
 
-/// Adds another machine's measurements. Endpoints that it lacks become unknown.
+/// Adds another machine's measurements, drafted alike, to the drafts. Endpoints that it lacks become unknown, since an
+/// outcome must be found on every machine.
 void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
     const auto add = [](std::vector<endpoint>& endpoints, const std::vector<endpoint>& others) {
         for (endpoint& e : endpoints) {
@@ -120,7 +122,7 @@ void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
 
 }  // namespace
 
-/// Decides an endpoint by its own 95 % interval.
+/// Decides an endpoint by its own 95 % interval, without correction for the number of decisions.
 endpoint decided_alone(endpoint e, double band) {
     const estimate log_ratio = e.log_ratio();
     const interval range = log_ratio.range();
@@ -155,7 +157,7 @@ verdict_kind verdict_of(std::span<const endpoint> endpoints) {
     return verdict_of(primary);
 }
 
-factors place_of(const endpoint& e) {
+factors factors_of(const endpoint& e) {
     factors place = e.where;
     place.insert(place.end(), e.observed.begin(), e.observed.end());
     return place;

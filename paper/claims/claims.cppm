@@ -27,9 +27,10 @@ struct endpoint {
     support uncorrected = support::undecided;  ///< without correction, from its own interval
     bool is_primary = false;
     quantity compared = quantity::time;
-    /// The name of its line of endpoints in a sentence: "on drifting boxes". Without one it is not mentioned.
+    /// Names its clause in a sentence, which reports all endpoints of a subject: "on drifting boxes". Without one it is
+    /// not mentioned.
     std::optional<std::string> subject{};
-    std::string along{};   ///< the factor that orders the line; empty if unordered
+    std::string along{};   ///< the factor that orders the endpoints of the clause; empty if unordered
     std::string source{};  ///< the rows: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
 
     /// Whether all machines measured it.
@@ -49,7 +50,7 @@ struct claim_result {
     expectation expected = expectation::less;
     verdict_kind verdict = verdict_kind::undecided;
     std::string sentence{};  ///< the verdict in words: direction, size and conditions
-    std::string brief{};     ///< the same for lines with primary endpoints
+    std::string brief{};     ///< the same for clauses with primary endpoints
     std::string evidence{};  ///< the numbers that decide
     bool has_primary = false;
     endpoint primary{};                      ///< the first primary endpoint
@@ -112,7 +113,7 @@ struct reproduction {
 /// Three decimals, so that 1.048 does not look like the band's edge; fewer from 10 on, four below 0.01.
 [[nodiscard]] std::string ratio_digits_of(double ratio);
 
-/// The verdict in words, from all endpoints of a claim: one clause per line of endpoints.
+/// The verdict in words, from all endpoints of a claim: one clause per subject.
 [[nodiscard]] std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead = {});
 /// For each claim: verdict, primary ratio with its interval, and its condition.
 [[nodiscard]] table verdict_table(const reproduction& results);
@@ -126,7 +127,7 @@ struct reproduction {
 namespace aabblab {
 
 /// Whether all of these factors have these values; a factor with an empty value must be missing.
-[[nodiscard]] bool matches(const factors& place, const factors& wanted);
+[[nodiscard]] bool matches(const factors& where, const factors& wanted);
 
 /// A claim before it is judged.
 struct draft {
@@ -137,7 +138,7 @@ struct draft {
 
     /// Adds an endpoint that no sentence mentions.
     endpoint& add(endpoint e);
-    /// Adds an endpoint to the line of this subject.
+    /// Adds an endpoint to the clause of this subject.
     endpoint& add(endpoint e, const std::string& subject, const std::string& along = "",
                   quantity compared = quantity::time);
 };
@@ -161,24 +162,24 @@ struct claim_source {
 }
 
 /// Whether a sentence reports both in the same clause.
-[[nodiscard]] inline bool is_same_line(const endpoint& a, const endpoint& b) {
+[[nodiscard]] inline bool is_same_clause(const endpoint& a, const endpoint& b) {
     return a.subject == b.subject && a.compared == b.compared;
 }
 /// The factors of its condition and the observed ones.
-[[nodiscard]] factors place_of(const endpoint& e);
+[[nodiscard]] factors factors_of(const endpoint& e);
 [[nodiscard]] std::string clause_of(std::span<const endpoint> endpoints, const endpoint& member);
 [[nodiscard]] std::vector<std::string> headline_of(std::span<const claim_result> claims);
 [[nodiscard]] std::string disturbance_of(std::span<const measurements> machines);
 [[nodiscard]] named_table bands_table(std::span<const draft> drafts);
 [[nodiscard]] table endpoint_table(std::span<const endpoint> endpoints,
                                    const std::function<std::string(const endpoint&)>& outcome);
-[[nodiscard]] table place_table(std::span<const factors> places);
-[[nodiscard]] std::vector<factors> places_of(const std::vector<condition>& conditions);
+[[nodiscard]] table factors_table(std::span<const factors> conditions);
+[[nodiscard]] std::vector<factors> factors_of(const std::vector<condition>& conditions);
 
 /// The conditions with these factors.
 [[nodiscard]] std::vector<const condition*> matching(const std::vector<condition>& conditions, const factors& wanted);
 
-[[nodiscard]] endpoint endpoint_of(const condition& c, const selection& arm, const selection& base,
+[[nodiscard]] endpoint endpoint_of(const condition& c, const selection& tested, const selection& baseline,
                                    const std::string& metric, factors more = {});
 /// The difference of two means over cells of the same processes and seeds, for conditions that share no repeats.
 [[nodiscard]] estimate difference_of_means(const cells& above, const cells& below);
@@ -208,7 +209,7 @@ void add_ratios(table& t, const std::vector<condition>& conditions, std::span<co
 }
 /// A ratio with its 95 % interval as a point of a figure.
 [[nodiscard]] figure_point point_of(double x, const endpoint& e);
-/// The level of the ratios' base.
+/// The level 1 of ratios, which is that of their baseline.
 [[nodiscard]] inline series level_of(const std::string& label, double x = 1) {
     return {label, series_style::level, {{x, 1}}};
 }
@@ -218,14 +219,14 @@ void add_ratios(table& t, const std::vector<condition>& conditions, std::span<co
                                             std::span<const condition* const> conditions, const std::string& x,
                                             const row_value& value);
 [[nodiscard]] std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted,
-                                                const std::string& base);
+                                                const std::string& baseline);
 
 /// The condition's mesh: "noise_sphere:triangles=1000", "elephant.off".
 [[nodiscard]] inline std::string mesh_of(const condition& c) {
-    return value_of(c.of(), "meshes");
+    return value_of(c.scene(), "meshes");
 }
 [[nodiscard]] inline bool is_brownian(const condition& c) {
-    return value_of(c.of(), "scene") == "brownian";
+    return value_of(c.scene(), "scene") == "brownian";
 }
 
 /// The first primary condition of claims on the broad phase: 10,000 cubes that drift by a tenth of their edge.

@@ -4,26 +4,26 @@ import aabblab.numbers;
 
 namespace aabblab {
 
-bool matches(const factors& place, const factors& wanted) {
-    return std::ranges::all_of(wanted, [&](const auto& f) { return value_of(place, f.first) == f.second; });
+bool matches(const factors& where, const factors& wanted) {
+    return std::ranges::all_of(wanted, [&](const auto& f) { return value_of(where, f.first) == f.second; });
 }
 
 std::vector<const condition*> matching(const std::vector<condition>& conditions, const factors& wanted) {
     std::vector<const condition*> selected;
     for (const condition& c : conditions)
-        if (matches(c.of(), wanted)) selected.push_back(&c);
+        if (matches(c.scene(), wanted)) selected.push_back(&c);
     return selected;
 }
 
-/// The ratio of two compositions in one condition, averaged as a logarithm; NaN if it was not measured.
+/// An endpoint: the ratio of two compositions in one condition, averaged as a logarithm; NaN if it was not measured.
 /// @param more factors in addition to the condition's
-endpoint endpoint_of(const condition& c, const selection& arm, const selection& base, const std::string& metric,
+endpoint endpoint_of(const condition& c, const selection& tested, const selection& baseline, const std::string& metric,
                      factors more) {
     endpoint ratio;
-    ratio.where = c.of();
+    ratio.where = c.scene();
     ratio.where.insert(ratio.where.end(), more.begin(), more.end());
-    ratio.source = c.experiment() + ": " + metric + " of " + text_of(arm) + " over " + text_of(base);
-    const cells ratios = c.log_ratios(arm, base, measured(metric));
+    ratio.source = c.experiment() + ": " + metric + " of " + text_of(tested) + " over " + text_of(baseline);
+    const cells ratios = c.log_ratios(tested, baseline, measured(metric));
     ratio.log_ratios = {ratios.empty() ? estimate{std::nan("")} : bootstrap(ratios)};
     return ratio;
 }
@@ -74,13 +74,13 @@ figure_point point_of(double x, const endpoint& e) {
     return {x, std::exp(ratio.value), std::exp(range.low), std::exp(range.high)};
 }
 
-/// A series of medians over the conditions of an experiment, in the order of x.
+/// A line of a figure: a composition's median in each condition against the factor `x`, in the order of x.
 series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
                  const selection& tested, const row_value& value) {
     series s{label};
     for (const condition* c : conditions) {
-        const double place = x == "triangles" ? c->triangles() : number_of(c->of(), x);
-        if (const auto point = c->point(place, tested, value)) s.points.push_back(*point);
+        const double x_value = x == "triangles" ? c->triangles() : number_of(c->scene(), x);
+        if (const auto point = c->point(x_value, tested, value)) s.points.push_back(*point);
     }
     std::ranges::sort(s.points, {}, &figure_point::x);
     return s;
@@ -93,8 +93,10 @@ std::vector<series> series_of(std::span<const method> methods, std::span<const c
     return lines;
 }
 
-/// Ratios with the factors `wanted` against the number of huge boxes, one line per edge length, and the level of 1.
-std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted, const std::string& base) {
+/// Ratios with the factors `wanted` against the number of huge boxes, one line per span (the huge boxes' edge over the
+/// side of the world), and the level 1 of the baseline.
+std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted,
+                                  const std::string& baseline) {
     std::map<std::string, series> by_span;
     for (const endpoint& e : ratios) {
         const std::string span = value_of(e.where, "span");
@@ -105,7 +107,7 @@ std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factor
     }
     std::vector<series> lines;
     for (auto& [span, line] : by_span) lines.push_back(std::move(line));
-    lines.push_back(level_of(base));
+    lines.push_back(level_of(baseline));
     return lines;
 }
 

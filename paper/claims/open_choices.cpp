@@ -22,32 +22,34 @@ struct measured_choices {
 };
 
 /// The two compositions whose ratio is measured under a choice.
-struct arms {
+struct tried_choice {
     std::string label;
-    selection arm;
-    selection base;
+    selection tested;
+    selection baseline;
 };
 
-/// Ratios of time in a single condition; the first is our choice.
+/// A claim's ratio of times in a single condition under each choice of something that the paper leaves open; the first
+/// choice is ours.
 measured_choices ratios_in_condition(const std::vector<const condition*>& conditions, const std::string& metric,
-                                     const std::string& note, const std::vector<arms>& tried) {
-    measured_choices measured{"", tried.front().label};
+                                     const std::string& note, const std::vector<tried_choice>& choices) {
+    measured_choices measured{"", choices.front().label};
     for (const condition* c : conditions) {
-        measured.where = text_of(c->of()) + note;
-        for (const arms& a : tried) measured.add(a.label, endpoint_of(*c, a.arm, a.base, metric));
+        measured.where = text_of(c->scene()) + note;
+        for (const auto& [label, tested, baseline] : choices)
+            measured.add(label, endpoint_of(*c, tested, baseline, metric));
     }
     return measured;
 }
 
 /// Claim C1's ratio in the only condition of the experiment on choices.
-measured_choices search_choices(const measurements& m, const std::vector<arms>& tried) {
-    return ratios_in_condition(matching(m.of("choices"), {}), "frame_cpu_ms", " (a separate run)", tried);
+measured_choices search_choices(const measurements& m, const std::vector<tried_choice>& choices) {
+    return ratios_in_condition(matching(m.conditions_of("choices"), {}), "frame_cpu_ms", " (a separate run)", choices);
 }
 
 /// Query times of a tree over those of the canonical one, on the generated mesh of table 1.
-measured_choices tree_choices(const measurements& m, const std::vector<arms>& tried) {
-    return ratios_in_condition(matching(m.of("table1"), {{"meshes", "noise_sphere:triangles=20000"}}), "detect_cpu_ms",
-                               "", tried);
+measured_choices tree_choices(const measurements& m, const std::vector<tried_choice>& choices) {
+    return ratios_in_condition(matching(m.conditions_of("table1"), {{"meshes", "noise_sphere:triangles=20000"}}),
+                               "detect_cpu_ms", "", choices);
 }
 
 selection search_composition(const std::string& sort, const std::string& partition,
@@ -57,23 +59,24 @@ selection search_composition(const std::string& sort, const std::string& partiti
 
 measured_choices displacement_choices(const measurements& m) {
     measured_choices measured{"brownian, objects 10,000", "0.1"};
-    for (const condition* c : matching(m.of("figure1"), {{"scene", "brownian"}, {"objects", "10000"}}))
-        measured.add_search(value_of(c->of(), "displacement"), *c);
+    for (const condition* c : matching(m.conditions_of("figure1"), {{"scene", "brownian"}, {"objects", "10000"}}))
+        measured.add_search(value_of(c->scene(), "displacement"), *c);
     return measured;
 }
 
-/// Other scenes with this displacement, and the drifting scene of the nearest size.
+/// Claim C1's ratio in other scenes with our displacement, and in our choice, the drifting scene, of the nearest size.
 measured_choices scene_choices(const measurements& m) {
     measured_choices measured{"displacement 0.1 of the extent", ""};
-    std::vector<const condition*> scenes = matching(m.of("figure1"), {{"displacement", "0.1"}, {"unit", "extent"}});
+    std::vector<const condition*> scenes =
+        matching(m.conditions_of("figure1"), {{"displacement", "0.1"}, {"unit", "extent"}});
     if (scenes.empty()) return measured;
-    const double objects = number_of(scenes.front()->of(), "objects");
+    const double objects = number_of(scenes.front()->scene(), "objects");
     const std::vector<const condition*> drifts =
-        matching(m.of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}});
+        matching(m.conditions_of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}});
     const auto nearest = std::ranges::min_element(
-        drifts, {}, [&](const condition* c) { return std::abs(std::log(number_of(c->of(), "objects") / objects)); });
+        drifts, {}, [&](const condition* c) { return std::abs(std::log(number_of(c->scene(), "objects") / objects)); });
     const auto label_of = [](const condition& c) {
-        return value_of(c.of(), "scene") + " of " + value_of(c.of(), "objects");
+        return value_of(c.scene(), "scene") + " of " + value_of(c.scene(), "objects");
     };
     if (nearest != drifts.end()) {
         scenes.insert(scenes.begin(), *nearest);
@@ -84,13 +87,13 @@ measured_choices scene_choices(const measurements& m) {
 }
 
 measured_choices leaf_test_choices(const measurements& m) {
-    std::vector<arms> tests;
+    std::vector<tried_choice> tests;
     for (const std::string test : {"triangle_box", "triangle_aabb", "none"})
         tests.push_back({test, {{kind::tree, "compressed:leaf_test=" + test}}, {{kind::tree, "canonical"}}});
-    return ratios_in_condition(matching(m.of("figure2"), large_spheres), "detect_cpu_ms", "", tests);
+    return ratios_in_condition(matching(m.conditions_of("figure2"), large_spheres), "detect_cpu_ms", "", tests);
 }
 
-/// The growth of work per element, as in claim C2.
+/// The growth of a sort's work per element, as in claim C2, for gap sequences with fixed numbers of gaps and others.
 measured_choices gap_count_choices(const measurements& m) {
     measured_choices measured{"line, displacement 0.1", "enough for N"};
     for (endpoint e : c2_claim(m).endpoints) {
@@ -106,24 +109,24 @@ measured_choices gap_count_choices(const measurements& m) {
     return measured;
 }
 
-/// Claim C11 in each of its scenes.
+/// Claim C11's ratio of both phases in each of its scenes, which are readings of the paper's "different models".
 measured_choices model_choices(const measurements& m) {
     measured_choices measured{"displacement 0.05", ""};
-    for (const condition& c : m.of("c11")) {
+    for (const condition& c : m.conditions_of("c11")) {
         const std::string label =
-            value_of(c.of(), "objects") + " of " + mesh_of(c) + ", density " + value_of(c.of(), "density");
-        if (matches(c.of(), large_crowd)) measured.ours = label;
+            value_of(c.scene(), "objects") + " of " + mesh_of(c) + ", density " + value_of(c.scene(), "density");
+        if (matches(c.scene(), large_crowd)) measured.ours = label;
         measured.add(label, endpoint_of(c, improved.with(kind::tree, compressed),
                                         traditional.with(kind::tree, "canonical"), "frame_cpu_ms"));
     }
     return measured;
 }
 
-/// Claim C1 with the time of all frames and with that of later frames only.
+/// Claim C1's ratio with the time of all frames, and with that of all but the first one, which is our choice.
 measured_choices first_frame_choices(const measurements& m) {
     measured_choices measured{"", "without the first frame"};
-    for (const condition* c : matching(m.of("figure1"), drifting)) {
-        measured.where = text_of(c->of());
+    for (const condition* c : matching(m.conditions_of("figure1"), drifting)) {
+        measured.where = text_of(c->scene());
         measured.add_search("without the first frame", *c);
         measured.add("with the first frame", endpoint_of(*c, improved, traditional, "whole_cpu_ms"));
     }
@@ -152,6 +155,8 @@ open_choice judge(const std::string& question, const std::string& ours, const st
 
 }  // namespace
 
+/// What the paper leaves open: each question, our choice and its reason, and a claim's ratio under the alternatives,
+/// which shows whether the outcome depends on the choice.
 std::vector<open_choice> open_choices(const measurements& m) {
     const auto shell = [](const std::string& gaps, const std::string& cut = "axial_cut:axes=2") {
         return search_composition("shell:gaps=" + gaps, cut);

@@ -84,7 +84,7 @@ std::string quantity_suffix(quantity compared) {
     return compared == quantity::time ? "" : " in the " + std::string(noun_of(compared));
 }
 
-/// The phrase for endpoints with the same outcome: "up to 2.1 times as fast".
+/// The phrase for endpoints (ratios of a claim) with the same outcome: "up to 2.1 times as fast".
 std::string predicate_of(std::span<const endpoint> endpoints, wording form) {
     const quantity compared = endpoints.front().compared;
     const std::string_view noun = noun_of(compared);
@@ -100,73 +100,75 @@ std::string predicate_of(std::span<const endpoint> endpoints, wording form) {
 }
 
 /// "10,000 objects", "a displacement of 0.1".
-std::string place_text(const std::string& factor, const std::string& value) {
+std::string factor_text(const std::string& factor, const std::string& value) {
     if (factor == "objects") return number_text(value) + (value == "1" ? " object" : " objects");
     if (factor == "axes") return value + (value == "1" ? " axis" : " axes");
     if (factor == "inversions") return number_text(value) + " inversions per element";
     return "a " + factor + " of " + number_text(value);
 }
 
-/// Consecutive endpoints of a line with the same outcome.
+/// Consecutive endpoints of a clause with the same outcome.
 struct stretch {
     wording form;
     std::vector<endpoint> endpoints;
 };
 
-/// Divides an ordered line where the outcome changes.
-std::vector<stretch> stretches_of(std::span<const endpoint> line) {
+/// Divides the ordered endpoints of a clause into stretches, where the outcome changes.
+std::vector<stretch> stretches_of(std::span<const endpoint> endpoints) {
     std::vector<stretch> stretches;
-    for (const endpoint& e : line) {
+    for (const endpoint& e : endpoints) {
         if (stretches.empty() || stretches.back().form != kind_of(e)) stretches.push_back({kind_of(e), {}});
         stretches.back().endpoints.push_back(e);
     }
     return stretches;
 }
 
-/// "at 100 objects", "up to 1,000 objects", "from 3,162 objects on", "from 10 to 100 objects".
+/// The part of a clause's range that a stretch with one outcome covers: "at 100 objects", "up to 1,000 objects", "from
+/// 3,162 objects on", "from 10 to 100 objects".
 std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
     const std::string& factor = stretches[i].endpoints.front().along;
-    const std::string first = value_of(place_of(stretches[i].endpoints.front()), factor);
-    const std::string last = value_of(place_of(stretches[i].endpoints.back()), factor);
+    const std::string first = value_of(factors_of(stretches[i].endpoints.front()), factor);
+    const std::string last = value_of(factors_of(stretches[i].endpoints.back()), factor);
     if (stretches.size() == 1) return "";
-    if (i == 0 && stretches[i].endpoints.size() > 1) return " up to " + place_text(factor, last);
+    if (i == 0 && stretches[i].endpoints.size() > 1) return " up to " + factor_text(factor, last);
     if (i + 1 == stretches.size() && stretches[i].endpoints.size() > 1)
-        return " from " + place_text(factor, first) + " on";
-    if (first == last) return " at " + place_text(factor, first);
-    return " from " + number_text(first) + " to " + place_text(factor, last);
+        return " from " + factor_text(factor, first) + " on";
+    if (first == last) return " at " + factor_text(factor, first);
+    return " from " + number_text(first) + " to " + factor_text(factor, last);
 }
 
 std::string subject_text(const endpoint& e) {
     return e.subject->empty() ? "" : " " + *e.subject;
 }
 
-/// Reports each stretch with its range: "30 % more time at 100 objects, 2.0 times as fast from 1,000 objects on".
-std::string ordered_clause(std::span<const endpoint> line) {
-    const std::vector<stretch> stretches = stretches_of(line);
+/// Reports endpoints that a factor orders, by stretches with the same outcome: "30 % more time at 100 objects, 2.0
+/// times as fast from 1,000 objects on".
+std::string ordered_clause(std::span<const endpoint> endpoints) {
+    const std::vector<stretch> stretches = stretches_of(endpoints);
     std::string text;
     for (std::size_t i = 0; i < stretches.size(); ++i) {
         text += (i == 0 ? "" : ", ") + predicate_of(stretches[i].endpoints, stretches[i].form);
-        if (i == 0) text += subject_text(line.front());
+        if (i == 0) text += subject_text(endpoints.front());
         text += range_text(stretches, i);
     }
     return text;
 }
 
-/// Reports the least and the greatest ratio if their outcomes differ, and only the number of open ones.
-std::string unordered_clause(std::vector<endpoint> line) {
-    const std::string subject = subject_text(line.front());
-    const std::size_t count = line.size();
-    const std::string undecided = predicate_of(line, wording::open);
-    std::erase_if(line, [](const endpoint& e) { return kind_of(e) == wording::open; });
-    if (line.empty()) return undecided + subject;
-    std::ranges::sort(line, {}, &endpoint::ratio);
-    const std::vector<stretch> stretches = stretches_of(line);
+/// Reports endpoints that no factor orders: the least and the greatest ratio if their outcomes differ, and of undecided
+/// ones only the number.
+std::string unordered_clause(std::vector<endpoint> endpoints) {
+    const std::string subject = subject_text(endpoints.front());
+    const std::string undecided = predicate_of(endpoints, wording::open);
+    const std::size_t count = endpoints.size();
+    const std::size_t open = std::erase_if(endpoints, [](const endpoint& e) { return kind_of(e) == wording::open; });
+    if (endpoints.empty()) return undecided + subject;
+    std::ranges::sort(endpoints, {}, &endpoint::ratio);
+    const std::vector<stretch> stretches = stretches_of(endpoints);
     const auto text_of = [](const endpoint& e) { return predicate_of({&e, 1}, kind_of(e)); };
     const std::string text = stretches.size() == 1
-                                 ? predicate_of(stretches.front().endpoints, stretches.front().form) + subject
-                                 : "from " + text_of(line.front()) + " to " + text_of(line.back()) + subject;
-    return text +
-           (line.size() == count ? "" : fmt::format(", {} of {} conditions undecided", count - line.size(), count));
+                                 ? predicate_of(stretches.front().endpoints, stretches.front().form)
+                                 : "from " + text_of(endpoints.front()) + " to " + text_of(endpoints.back());
+    return text + subject + (open == 0 ? "" : fmt::format(", {} of {} conditions undecided", open, count));
 }
 
 const claim_result* claim_named(std::span<const claim_result> claims, const std::string& id) {
@@ -183,7 +185,7 @@ std::string classic_sweep_clause(std::span<const claim_result> claims) {
     return "";
 }
 
-/// The clause about the line of a claim's first primary endpoint.
+/// The clause that reports a claim's first primary endpoint, for the headline.
 std::string first_clause(std::span<const claim_result> claims, const std::string& id) {
     const claim_result* claim = claim_named(claims, id);
     if (!claim || !claim->has_primary || !claim->primary.subject) return "not measured";
@@ -219,24 +221,23 @@ std::string number_text(const std::string& value) {
                                                                                                   : value;
 }
 
-/// The clause about the line of `member`: all endpoints with the same subject and quantity.
+/// The clause that reports `member` and all endpoints with the same subject and quantity.
 std::string clause_of(std::span<const endpoint> endpoints, const endpoint& member) {
-    std::vector<endpoint> line;
-    std::ranges::copy_if(endpoints, std::back_inserter(line),
-                         [&](const endpoint& e) { return is_same_line(e, member); });
-    const std::string& along = member.along;
-    if (along.empty()) return unordered_clause(std::move(line));
-    std::ranges::stable_sort(line, {}, [&](const endpoint& e) { return number_of(place_of(e), along); });
-    return ordered_clause(line);
+    std::vector<endpoint> reported;
+    std::ranges::copy_if(endpoints, std::back_inserter(reported),
+                         [&](const endpoint& e) { return is_same_clause(e, member); });
+    if (member.along.empty()) return unordered_clause(std::move(reported));
+    std::ranges::stable_sort(reported, {}, [&](const endpoint& e) { return number_of(factors_of(e), member.along); });
+    return ordered_clause(reported);
 }
 
-/// Joins the clauses of all lines, in the order of their first endpoints.
+/// The sentence on a claim: a clause for each subject and quantity of its endpoints, in the order of their first ones.
 std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead) {
     if (endpoints.empty()) return "There are no measurements that decide it.";
     std::string text;
     for (auto e = endpoints.begin(); e != endpoints.end(); ++e) {
-        const auto is_of_its_line = [&](const endpoint& other) { return is_same_line(*e, other); };
-        if (!e->subject || std::any_of(endpoints.begin(), e, is_of_its_line)) continue;
+        const auto shares_clause = [&](const endpoint& other) { return is_same_clause(*e, other); };
+        if (!e->subject || std::any_of(endpoints.begin(), e, shares_clause)) continue;
         text += (text.empty() ? "" : "; ") + clause_of(endpoints, *e);
     }
     if (!lead.empty()) text = lead + ": " + text;

@@ -29,11 +29,11 @@ selection selection_of(const layout& l, const std::string& build) {
 
 /// The condition with the largest mesh, which is the last one.
 const condition* largest_mesh_condition(const measurements& m) {
-    const std::vector<condition>& conditions = m.of("table1");
+    const std::vector<condition>& conditions = m.conditions_of("table1");
     return conditions.empty() ? nullptr : &conditions.back();
 }
 
-/// Nominal and allocated bytes per triangle of every layout.
+/// Bytes per triangle of every layout of trees: nominal, from the sizes of its nodes, and allocated.
 table bytes_table(const condition& c) {
     table t = empty_table({"tree", "internal node", "leaf"},
                           {"bytes per triangle, nominal", "allocated", "of these, boxes and symbols", "indices"});
@@ -50,7 +50,8 @@ table bytes_table(const condition& c) {
     return t;
 }
 
-/// Bytes, box inflation and times of every layout under every split rule.
+/// Bytes, box inflation and times of every layout under every split rule; times over those of the canonical layout
+/// split at the median.
 table cost_table(const condition& c) {
     table t = empty_table({"tree", "build"}, {"bytes per triangle", "boxes larger by (%)", "build time", "query time"});
     for (const layout& l : layouts)
@@ -70,6 +71,7 @@ table cost_table(const condition& c) {
 
 }  // namespace
 
+/// The paper's table 1, sizes of tree nodes, as measured on the largest mesh; empty if it was not measured.
 std::vector<named_table> table1(const measurements& m) {
     const condition* c = largest_mesh_condition(m);
     if (!c) return {};

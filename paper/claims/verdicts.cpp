@@ -24,11 +24,11 @@ constexpr double most_difference = 5;
 
 }  // namespace
 
-/// One row per endpoint, with the factors in which they differ as columns.
+/// One row per endpoint (a ratio of a claim), with the factors in which their conditions differ as columns.
 table endpoint_table(std::span<const endpoint> endpoints, const std::function<std::string(const endpoint&)>& outcome) {
-    std::vector<factors> places;
-    for (const endpoint& e : endpoints) places.push_back(place_of(e));
-    table t = place_table(places);
+    std::vector<factors> conditions;
+    for (const endpoint& e : endpoints) conditions.push_back(factors_of(e));
+    table t = factors_table(conditions);
     t.columns.insert(t.columns.end(), {{"measured"}, {"95 %"}, {"outcome", false}});
     for (std::size_t i = 0; i < endpoints.size(); ++i)
         t.rows[i].insert(t.rows[i].end(),
@@ -38,40 +38,41 @@ table endpoint_table(std::span<const endpoint> endpoints, const std::function<st
     return t;
 }
 
-/// One row per place, with the factors in which they differ as columns, so that equal ones do not widen the table.
-table place_table(std::span<const factors> places) {
+/// One row per condition, with the factors in which they differ as columns, so that equal ones do not widen the table.
+table factors_table(std::span<const factors> conditions) {
     table t;
-    t.rows.resize(places.size());
+    t.rows.resize(conditions.size());
     std::set<std::string> named;
-    for (const factors& place : places)
-        for (const auto& [name, value] : place) {
+    for (const factors& where : conditions)
+        for (const auto& [name, value] : where) {
             const auto differs = [n = name, v = value](const factors& other) { return value_of(other, n) != v; };
-            if (named.contains(name) || std::ranges::none_of(places, differs)) continue;
+            if (named.contains(name) || std::ranges::none_of(conditions, differs)) continue;
             named.insert(name);
             t.columns.push_back({name, false});
-            for (std::size_t i = 0; i < places.size(); ++i)
-                t.rows[i].push_back(grouped_if_long(value_of(places[i], name)));
+            for (std::size_t i = 0; i < conditions.size(); ++i)
+                t.rows[i].push_back(grouped_if_long(value_of(conditions[i], name)));
         }
     return t;
 }
 
-std::vector<factors> places_of(const std::vector<condition>& conditions) {
-    std::vector<factors> places;
-    for (const condition& c : conditions) places.push_back(c.of());
-    return places;
+std::vector<factors> factors_of(const std::vector<condition>& conditions) {
+    std::vector<factors> scenes;
+    for (const condition& c : conditions) scenes.push_back(c.scene());
+    return scenes;
 }
 
-/// Compares the outcome of each alternative with that of our choice; undecided ones contradict nothing.
+/// Whether a claim's outcome depends on a choice that the paper leaves open: "yes" if an alternative has another
+/// outcome than our choice; undecided outcomes contradict nothing.
 std::string dependence_of(const open_choice& choice) {
-    bool undecided = choice.alternatives.empty();
+    bool is_undecided = choice.alternatives.empty();
     for (const open_choice::alternative& a : choice.alternatives) {
+        const support ours = choice.alternatives.front().measured.corrected;
         if (a.measured.corrected == support::undecided)
-            undecided = true;
-        else if (choice.alternatives.front().measured.corrected != support::undecided &&
-                 a.measured.corrected != choice.alternatives.front().measured.corrected)
+            is_undecided = true;
+        else if (ours != support::undecided && a.measured.corrected != ours)
             return "yes";
     }
-    return undecided ? "undecided" : "no";
+    return is_undecided ? "undecided" : "no";
 }
 
 std::string ratio_digits_of(double ratio) {
@@ -91,6 +92,7 @@ std::string text_of(const factors& where) {
     return text;
 }
 
+/// Each claim's verdict and sentence, its first primary ratio, and the outcomes of its secondary ratios.
 table verdict_table(const reproduction& results) {
     table t =
         empty_table({"", "claim", "verdict", "in words"}, {"ratio", "95 %", "for", "against", "same", "undecided"});
@@ -118,6 +120,7 @@ table brief_table(const reproduction& results) {
     return t;
 }
 
+/// What the paper leaves open: our choice, its reason, and a claim's ratio under each alternative.
 table choice_table(const reproduction& results) {
     table t = empty_table({"left open", "our choice", "why", "claim", "its ratio", "changes it"});
     for (const open_choice& c : results.choices) {
@@ -149,29 +152,29 @@ named_table null_control(const measurements& m) {
     const std::pair<selection, selection> twins[] = {{traditional, traditional.with(kind::sweep, "one_axis:axis=auto")},
                                                      {improved, improved.with(kind::sort, "shell:gaps=ciura")}};
     std::vector<endpoint> ratios;
-    for (const condition& c : m.of("null_control"))
+    for (const condition& c : m.conditions_of("null_control"))
         for (const auto& [plain, written_out] : twins) {
             const endpoint ratio = endpoint_of(c, written_out, plain, "frame_cpu_ms",
                                                {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
             if (ratio.is_known()) ratios.push_back(decided_alone(ratio));
         }
     const auto outcome_of = [](const endpoint& e) {
-        return is_difference(e)                        ? std::string("a difference")
-               : e.corrected == support::no_difference ? text_of(e.corrected)
-                                                       : "undecided";
+        return is_difference(e)                          ? std::string("a difference")
+               : e.uncorrected == support::no_difference ? text_of(e.uncorrected)
+                                                         : "undecided";
     };
     const table t = endpoint_table(ratios, outcome_of);
     if (ratios.empty()) return {"null_control", "There are no measurements of a null control.", t};
     const auto count = [&](const std::string& outcome) { return std::ranges::count(ratios, outcome, outcome_of); };
-    const auto without_one =
+    const auto intervals_without_1 =
         std::ranges::count_if(ratios, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
-    return {
-        "null_control",
-        fmt::format("Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
-                    "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
-                    "and {} are undecided.",
-                    ratios.size(), without_one, count("a difference"), count("no difference"), count("undecided")),
-        t};
+    return {"null_control",
+            fmt::format(
+                "Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
+                "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
+                "and {} are undecided.",
+                ratios.size(), intervals_without_1, count("a difference"), count("no difference"), count("undecided")),
+            t};
 }
 
 /// A warning if a machine was not quiet, by the time without a processor and the scatter of repeats; otherwise empty.
@@ -182,7 +185,7 @@ std::string disturbance_of(std::span<const measurements> machines) {
         double cpu_ms = 0;
         std::vector<double> differences;  // of processor time from one repeat to the next, as shares
         for (const std::string& experiment : m.experiments())
-            for (const condition& c : m.of(experiment)) {
+            for (const condition& c : m.conditions_of(experiment)) {
                 for (const double ms : c.values(measured("frame_ms"))) wall_ms += ms;
                 for (const double ms : c.values(measured("frame_cpu_ms"))) cpu_ms += ms;
                 std::ranges::copy(c.differences(measured("frame_cpu_ms")), std::back_inserter(differences));

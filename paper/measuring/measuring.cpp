@@ -31,7 +31,8 @@ std::vector<error_study> studies_with_curves(bool quick) {
     return studies;
 }
 
-/// Times the elementary tests of claim C6 by Google Benchmark in separate processes; keeps results of the same build.
+/// Times the elementary tests of claim C6 (of a box or a triangle at a leaf) by Google Benchmark, in several processes,
+/// from whose differences intervals are estimated. Results of the same build are kept.
 /// @returns a sentence if a test is wrong
 std::vector<std::string> time_elementary_tests(const std::filesystem::path& folder, bool quick) {
     constexpr std::size_t processes = 5;
@@ -63,28 +64,33 @@ std::vector<std::string> time_elementary_tests(const std::filesystem::path& fold
 /// Errors are stored with the results, one sentence per line, because a later judgement must report them too.
 constexpr const char* failures_name = "failures.txt";
 
-/// @returns the errors
+/// Runs the suites of extreme and stiff scenes, whose results the report includes, and prints nothing.
+/// @returns the errors that they found
 std::vector<std::string> run_suites(const std::filesystem::path& folder, bool quick) {
     // The file of an earlier version would have priority over the rows.
     for (const char* suite : {"extreme", "stiff"}) std::filesystem::remove(folder / suite / "report.json");
     note("the extreme scenes");
-    std::vector<std::string> failures = run_extreme_suite(folder / "extreme", default_cases(), quick, false).failures;
+    std::vector<std::string> failures =
+        run_extreme_suite(folder / "extreme", default_cases(), quick, /*shown=*/false).failures;
     note("the stiff scenes");
-    std::ranges::move(run_stiff_suite(folder / "stiff", {}, quick, false).failures, std::back_inserter(failures));
+    std::ranges::move(run_stiff_suite(folder / "stiff", /*studies=*/{}, quick, /*shown=*/false).failures,
+                      std::back_inserter(failures));
     return failures;
 }
 
-/// Finished tests are not measured again, so that altered ones must be removed. Experiments check their own files.
-void remove_altered_tests(const std::filesystem::path& folder) {
+/// Removes the times of claim C6's elementary tests if the folder does not match its seal: a new run keeps the times
+/// that it finds, and would seal edited ones anew. Experiments check their own results when they are resumed.
+void remove_edited_test_times(const std::filesystem::path& folder) {
     try {
         verify_record(folder);
-    } catch (const aabb::input_error& altered) {
-        note(std::string(altered.what()) + "; the elementary tests of c6 are timed again");
+    } catch (const aabb::input_error& edited) {
+        note(std::string(edited.what()) + "; the elementary tests of c6 are timed again");
         std::filesystem::remove_all(folder / "c6");
     }
 }
 
-/// The section on error against run time, from the available studies.
+/// The report's section on error against run time, from the studies that have results: of sets of triangle pairs
+/// (errors.csv), or of scenes with both phases (results.csv).
 report_section errors_section(const std::filesystem::path& folder, bool quick) {
     report_section section{
         .id = "errors",
@@ -119,7 +125,7 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
     return section;
 }
 
-/// Adds the section of a suite, if it was run.
+/// Adds the report's section on a suite of `validate`, if the suite was run.
 void add_suite(std::vector<report_section>& sections, const std::filesystem::path& folder, const std::string& suite,
                const std::string& title, const std::string& about) {
     const std::optional<suite_report> report = stored_report(folder / suite);
@@ -128,7 +134,7 @@ void add_suite(std::vector<report_section>& sections, const std::filesystem::pat
     std::ranges::copy(report->paragraphs, std::back_inserter(sections.back().paragraphs));
 }
 
-/// The section of the small atlas, if it was measured.
+/// The report's section on the small atlas: the fastest composition or engine of each scene, if they were measured.
 std::optional<report_section> atlas_section(const std::filesystem::path& folder) {
     const std::vector<atlas_scene> atlas = measured_atlas(folder_of_atlas(folder));
     if (atlas.empty()) return std::nullopt;
@@ -157,7 +163,7 @@ std::vector<std::string> read_failures(const std::filesystem::path& folder) {
 /// Runs all experiments of the paper and the studies and suites of the report, and stores errors immediately. Results
 /// of the same build and size are kept. At the end the folder is sealed.
 void measure_reproduction(const std::filesystem::path& folder, bool quick) {
-    remove_altered_tests(folder);
+    remove_edited_test_times(folder);
     std::vector<experiment> experiments;
     for (const std::filesystem::path& config : configs_in(AABBLAB_CONFIGS))
         experiments.push_back(open_experiment(config.string(), quick));
@@ -183,11 +189,11 @@ void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     }
     add(run_suites(folder, quick));
     // Always the small atlas: the whole one takes half an hour.
-    add(measure_atlas(folder_of_atlas(folder), true));
+    add(measure_atlas(folder_of_atlas(folder), /*quick=*/true));
     seal_record(folder);
 }
 
-/// The sections behind the claims: errors against run time, extreme scenes, stiff scenes and the atlas.
+/// The report's sections after the claims: errors against run time, extreme scenes, stiff scenes and the atlas.
 std::vector<report_section> sections_of_reproduction(const std::filesystem::path& folder, bool quick) {
     std::vector<report_section> sections;
     if (report_section errors = errors_section(folder, quick); !errors.figures.empty())
@@ -215,7 +221,7 @@ void require_consistent(const reproduce_request& request) {
         throw aabb::input_error("--archive takes the results of one run, but several are given");
 }
 
-/// Reads and verifies the results of one run.
+/// Reads and verifies the results of one run: all of them at once, so that a damaged one is found before any output.
 /// @param name the user's name for it
 measurements verified_measurements(const std::filesystem::path& folder, const std::string& name) {
     const std::vector<std::string> experiments = recorded_experiments(folder);
@@ -223,11 +229,11 @@ measurements verified_measurements(const std::filesystem::path& folder, const st
     verify_record(folder);
     if (!is_sealed_record(folder)) note(name + ": " + unsealed_note);
     measurements results(folder, name);
-    for (const std::string& experiment : experiments) (void)results.of(experiment);
+    for (const std::string& experiment : experiments) (void)results.conditions_of(experiment);
     return results;
 }
 
-/// The verdicts for the terminal.
+/// The verdicts in words for the terminal: a warning if the machine was not quiet, the headline, each claim's sentence.
 std::string verdict_text(const reproduction& reproduced) {
     std::string text;
     if (!reproduced.disturbance.empty()) text += reproduced.disturbance + "\n\n";
@@ -253,7 +259,8 @@ void require_different(std::span<const measurements> runs) {
     }
 }
 
-/// The agreement of the verdicts with the published run of the same size; empty if that is missing or damaged.
+/// A sentence on how the verdicts agree with those of the published run of the same size, which the repository contains
+/// as an archive; empty if that is missing or damaged.
 std::string agreement_with_published(std::span<const measurements> runs, const reproduction& reproduced) {
     const std::string name = is_quick(runs.front().folder()) ? "quick_run.tar.xz" : "full_run.tar.xz";
     const std::filesystem::path archive = std::filesystem::path(AABBLAB_ARCHIVES) / name;
@@ -261,8 +268,8 @@ std::string agreement_with_published(std::span<const measurements> runs, const r
     const std::string published = "the published run, paper/archive/" + name;
     try {
         const std::string file = archive.string();
-        const source_list sources({&file, 1});
-        const results_source& source = sources.list().front();
+        const results_sources unpacked({&file, 1});
+        const results_source& source = unpacked.list().front();
         const measurements results = verified_measurements(source.folder, source.name);
         const auto is_published = [&](const measurements& run) {
             return is_sealed_record(run.folder()) && seal_of_record(run.folder()) == seal_of_record(source.folder);
@@ -275,8 +282,8 @@ std::string agreement_with_published(std::span<const measurements> runs, const r
     }
 }
 
-/// Judges the results and writes the report.
-/// @returns the exit status
+/// Judges the results of several runs, as one per machine, together, writes the report and prints the verdicts.
+/// @returns the exit status: 1 if validation had found wrong results
 int judge(const std::filesystem::path& out, std::span<const measurements> runs) {
     std::vector<std::string> failures;
     for (const measurements& run : runs) std::ranges::copy(read_failures(run.folder()), std::back_inserter(failures));
@@ -301,7 +308,7 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
 
 /// Archives the files that a judgement reads, and prints the archive's size and checksum.
 void archive_reproduction(const std::filesystem::path& folder, const std::filesystem::path& file) {
-    write_archive(file, record_top, folder, archived_files(folder));
+    write_archive(file, archive_folder, folder, archived_files(folder));
     const std::string bytes = bytes_of_file(file);
     print(fmt::format("The archive is {} ({:.1f} MiB), SHA-256 {}\n", visible(file.string()),
                       static_cast<double>(bytes.size()) / (1 << 20), sha256_of(bytes)));
@@ -309,13 +316,14 @@ void archive_reproduction(const std::filesystem::path& folder, const std::filesy
 
 }  // namespace
 
+/// Measures the paper's experiments, or with `judge` takes existing results, judges the claims and writes the report.
 int reproduce(const reproduce_request& request) {
     outlive_reader();
     require_consistent(request);
     const std::filesystem::path out = output_folder_of(request);
     if (request.judge && request.sources.empty() && recorded_experiments(out).empty())
         throw aabb::input_error("there are no results of a reproduction in " + out.string());
-    source_list sources(request.sources);
+    results_sources sources(request.sources);
     const folder_lock lock(out);
     if (!request.judge) measure_reproduction(out, request.quick);
     if (request.sources.empty()) sources.add(out);

@@ -19,8 +19,7 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
     return names;
 }
 
-/// Checksums by file.
-using sums = std::map<std::string, std::string>;
+using checksums_by_file = std::map<std::string, std::string>;
 
 /// The checksum of a file with normalised line endings, which copying may have changed.
 std::string checksum_of(const std::filesystem::path& file) {
@@ -31,9 +30,9 @@ std::string checksum_of(const std::filesystem::path& file) {
     return sha256_of(text);
 }
 
-/// The checksums of all files except tables, whose checksums are in manifests.
-sums sums_of(const std::filesystem::path& folder) {
-    sums checksums;
+/// The checksums of all files that a judgement reads, except tables of results, whose checksums are in manifests.
+checksums_by_file checksums_in(const std::filesystem::path& folder) {
+    checksums_by_file checksums;
     for (const std::filesystem::path& file : recorded_files(folder))
         if (const std::string name = file.filename().string(); name != "results.csv" && name != "differences.csv")
             checksums.emplace(file.generic_string(), checksum_of(folder / file));
@@ -41,8 +40,8 @@ sums sums_of(const std::filesystem::path& folder) {
 }
 
 /// Reads SHA256SUMS, whose lines are 64 hexadecimal digits, two blanks and a file.
-sums stated_sums(const std::filesystem::path& file) {
-    sums checksums;
+checksums_by_file stated_checksums(const std::filesystem::path& file) {
+    checksums_by_file checksums;
     std::istringstream in(text_of_file(file));
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
@@ -67,11 +66,12 @@ std::vector<std::string> recorded_experiments(const std::filesystem::path& folde
     return experiments;
 }
 
+/// The files of a reproduction's folder from which its report is made: they are sealed and archived.
 std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
-    const auto add = [&](const std::filesystem::path& place, std::initializer_list<const char*> names) {
+    const auto add = [&](const std::filesystem::path& subfolder, std::initializer_list<const char*> names) {
         for (const char* name : names)
-            if (std::filesystem::is_regular_file(folder / place / name)) files.push_back(place / name);
+            if (std::filesystem::is_regular_file(folder / subfolder / name)) files.push_back(subfolder / name);
     };
     for (const std::string& name : recorded_experiments(folder))
         add(name, {"manifest.json", "results.csv", "differences.csv"});
@@ -98,21 +98,23 @@ std::vector<std::filesystem::path> archived_files(const std::filesystem::path& f
     return files;
 }
 
-source_list::source_list(std::span<const std::string> names) {
+/// Takes the named folders of results as they are, and unpacks the named archives of such folders.
+results_sources::results_sources(std::span<const std::string> names) {
     for (const std::string& name : names) {
         if (!std::filesystem::exists(name)) throw aabb::input_error(name + " does not exist");
         sources_.push_back({name, std::filesystem::is_directory(name)
                                       ? std::filesystem::path(name)
-                                      : unpacked_.emplace_back(name, record_top).folder()});
+                                      : unpacked_.emplace_back(name, archive_folder).folder()});
     }
 }
 
-void source_list::add(const std::filesystem::path& folder) {
+void results_sources::add(const std::filesystem::path& folder) {
     sources_.push_back({folder.string(), folder});
 }
 
-/// Archives are unpacked into temporary folders, which the user does not know: messages have the archive's name.
-int source_list::run_with_source_names(const std::function<int()>& work) const {
+/// Runs the work, and puts the archive's name into its message of rejection where that names the temporary folder into
+/// which the archive was unpacked, which the user does not know.
+int results_sources::run_with_source_names(const std::function<int()>& work) const {
     try {
         return work();
     } catch (const aabb::input_error& error) {
@@ -126,7 +128,7 @@ int source_list::run_with_source_names(const std::function<int()>& work) const {
 
 void seal_record(const std::filesystem::path& folder) {
     std::string text;
-    for (const auto& [file, sum] : sums_of(folder)) text += sum + "  " + file + "\n";
+    for (const auto& [file, checksum] : checksums_in(folder)) text += checksum + "  " + file + "\n";
     write_file(folder / sums_name, text);
 }
 
@@ -134,23 +136,25 @@ std::string seal_of_record(const std::filesystem::path& folder) {
     return checksum_of(folder / sums_name);
 }
 
-/// Compares files with stated checksums in both directions, so that added files are found as well as missing ones.
+/// Rejects results that differ from their seal, SHA256SUMS. Files are compared with stated checksums in both
+/// directions, so that added files are found as well as missing ones.
 void verify_record(const std::filesystem::path& folder) {
     if (!is_sealed_record(folder)) return;
-    const sums actual = sums_of(folder);
-    const sums stated = stated_sums(folder / sums_name);
-    for (const auto& [file, sum] : stated) {
-        const auto position = actual.find(file);
-        if (position == actual.end())
+    const checksums_by_file actual = checksums_in(folder);
+    const checksums_by_file stated = stated_checksums(folder / sums_name);
+    for (const auto& [file, checksum] : stated) {
+        const auto found = actual.find(file);
+        if (found == actual.end())
             throw aabb::input_error((folder / file).string() + " is missing, but SHA256SUMS names it");
-        if (position->second != sum)
+        if (found->second != checksum)
             throw aabb::input_error((folder / file).string() +
                                     " was altered after the run: it does not have the checksum that SHA256SUMS states");
     }
-    for (const auto& [file, sum] : actual)
+    for (const auto& [file, checksum] : actual)
         if (!stated.contains(file))
             throw aabb::input_error((folder / file).string() + " was added after the run: SHA256SUMS does not name it");
-    for (const auto& [file, sum] : stated)
+    // The tables of results are not in SHA256SUMS, but each has a manifest that is.
+    for (const auto& [file, checksum] : stated)
         if (const std::filesystem::path manifest(file); manifest.filename() == "manifest.json")
             if (const auto table = folder / manifest.parent_path() / "results.csv"; !std::filesystem::exists(table))
                 throw aabb::input_error(table.string() + " is missing, but its manifest.json exists");

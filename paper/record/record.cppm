@@ -10,7 +10,7 @@ import aabblab.archive;
 export namespace aabblab {
 
 /// The folder of these files in an archive.
-inline constexpr const char* record_top = "reproduction";
+inline constexpr const char* archive_folder = "reproduction";
 /// The name of the file of checksums.
 inline constexpr const char* sums_name = "SHA256SUMS";
 
@@ -51,11 +51,11 @@ struct results_source {
 };
 
 /// The folders of results to judge; archives are unpacked to temporary folders, which the destructor removes.
-class source_list {
+class results_sources {
 public:
     /// @param names folders and archives
     /// @throws aabb::input_error if one is missing, or is no such archive.
-    explicit source_list(std::span<const std::string> names);
+    explicit results_sources(std::span<const std::string> names);
     void add(const std::filesystem::path& folder);
 
     [[nodiscard]] const std::vector<results_source>& list() const { return sources_; }

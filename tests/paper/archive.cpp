@@ -170,7 +170,7 @@ TEST_CASE("What is no archive of a run is refused in one sentence") {
     rejected({"--judge", folder.write("cut.tar.xz", bytes.substr(0, bytes.size() / 2))}, "is damaged or cut off");
     // What is wrong inside is told by the archive's name.
     std::filesystem::remove(folder / "run/c6/process-0.json");
-    aabblab::write_archive(folder / "altered.tar.xz", aabblab::record_top, folder / "run",
+    aabblab::write_archive(folder / "altered.tar.xz", aabblab::archive_folder, folder / "run",
                            aabblab::archived_files(folder / "run"));
     rejected({"--judge", folder / "altered.tar.xz"}, "altered.tar.xz/c6/process-0.json is missing");
     CHECK(std::filesystem::is_empty(folder / "out"));

@@ -51,7 +51,7 @@ public:
     /// The experiment of the condition.
     [[nodiscard]] std::string experiment() const { return rows_.empty() ? "" : rows_.front()->experiment; }
     /// The scene and its parameters, without the seed.
-    [[nodiscard]] const factors& of() const { return factors_; }
+    [[nodiscard]] const factors& scene() const { return factors_; }
     [[nodiscard]] std::size_t processes() const { return std::max<std::size_t>(1, processes_.size()); }
     [[nodiscard]] std::size_t seeds() const { return seeds_.size(); }
     /// The triangles of its meshes, each counted once; 0 in a scene of boxes.
@@ -103,7 +103,7 @@ public:
     /// The experiments with results, sorted by name.
     [[nodiscard]] std::vector<std::string> experiments() const;
     /// The conditions of an experiment in the order of its config; empty if it has no results.
-    [[nodiscard]] const std::vector<condition>& of(const std::string& experiment) const {
+    [[nodiscard]] const std::vector<condition>& conditions_of(const std::string& experiment) const {
         return read(experiment).conditions;
     }
     [[nodiscard]] extent_of_results extent(const std::string& experiment) const;
