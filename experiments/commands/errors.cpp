@@ -24,7 +24,7 @@ int run(const errors_request& request) {
     const auto say = [&](const char* file) { print("Every number is in " + visible((folder / file).string()) + "\n"); };
     if (!study.hits.empty()) say("intersections.csv");
     if (!study.curves.empty()) {
-        say(study.whole ? "results.csv" : "errors.csv");
+        say(study.scene_experiment ? "results.csv" : "errors.csv");
         print("A plot of each set is in " + visible((folder / "figures").string()) + "\n");
     }
     return failures.empty() ? 0 : 1;

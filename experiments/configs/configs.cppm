@@ -106,7 +106,8 @@ struct metric_plot {
 };
 
 /// A config of `errors`. It measures the errors of triangle tests against their time, on generated pairs and on mesh
-/// triangles whose boxes overlap; or, with `whole`, it runs compositions on scenes and compares their metrics.
+/// triangles whose boxes overlap; or, with `scene_experiment`, it runs compositions on scenes and compares their
+/// metrics.
 struct error_study {
     std::string name;
     std::string text;  ///< the contents of the config
@@ -115,8 +116,8 @@ struct error_study {
     std::vector<pair_set> hits;
     std::vector<std::string> notes;
     std::vector<pair_set> pairs;
-    std::vector<scene_choice> scenes;  ///< mesh scenes
-    std::optional<experiment> whole;   ///< runs the compositions of all curves
+    std::vector<scene_choice> scenes;            ///< mesh scenes
+    std::optional<experiment> scene_experiment;  ///< runs the compositions of all curves
     std::vector<metric_plot> plots;
 };
 

@@ -134,7 +134,7 @@ std::vector<metric_plot> plots_of(const document& doc) {
 /// The experiment in which compositions run whole scenes, as `run` does.
 experiment whole_of(const document& doc, const error_study& study, experiment_size size) {
     experiment e;
-    if (study.whole) e.scenes = study.whole->scenes;
+    if (study.scene_experiment) e.scenes = study.scene_experiment->scenes;
     e.name = study.name;
     e.file = doc.file();
     e.text = study.text;
@@ -188,8 +188,8 @@ void read_sized(const document& doc, experiment_size size, error_study& study) {
     } else if (study.curves[0].triangles.empty()) {
         reject_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these run whole scenes");
         study.plots = plots_of(doc);
-        study.whole = whole_of(doc, study, size);
-        study.notes = study.whole->notes;
+        study.scene_experiment = whole_of(doc, study, size);
+        study.notes = study.scene_experiment->notes;
     } else {
         reject_keys(doc, {"plot", "measure"},
                     "is for compositions; triangle tests alone are plotted against their time");

@@ -45,7 +45,8 @@ std::string text_of(const candidate_name& name, aabb::stage stage) {
 /// Enough that buffers have grown and data that is kept between frames exists.
 constexpr std::size_t frames_before_bytes = 2;
 
-/// Runs two frames, and describes each stage by its strategies and bytes, with its plans and omissions.
+/// Runs the first frames, and describes each stage by its strategies and bytes, what strategies planned from earlier
+/// frames, and what they leave out.
 std::string explanation_of(scene_frames& scene, const candidate& tested) {
     stage_runner runner(tested, scene, aabb::instrumentation::none);
     run_frames(scene, runner, [](const searched_frame&) {}, frames_before_bytes);
@@ -62,7 +63,8 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
     return text + indented_list("left out", left_out);
 }
 
-/// Prints the explanation of a candidate, made in a child process, or why that did not finish.
+/// Prints the explanation of a candidate (a composition or an engine), made in a child process, since it may take too
+/// long or crash, or why that did not finish.
 void print_candidate(staged_scene& scene, const candidate& tested, const time_limits& limits) {
     const child_result result =
         scene.in_child([&](scene_frames& frames, const output_sender& send) { send(explanation_of(frames, tested)); },
@@ -74,8 +76,8 @@ void print_candidate(staged_scene& scene, const candidate& tested, const time_li
                                      : hanging("    ", "bytes and plans: " + reason_of(result)) + "\n");
 }
 
-/// Lists parts of the config that do not apply to the scene.
-void print_unused(const experiment& e, const scene_choice& scene) {
+/// Lists engines and strategy kinds of the config that do not apply to the scene.
+void print_idle_parts(const experiment& e, const scene_choice& scene) {
     for (const std::string& sentence : idle_engines(e, scene, "this scene")) print("  " + sentence + "\n");
     if (has_meshes(scene)) return;
     std::string kinds;
@@ -84,7 +86,8 @@ void print_unused(const experiment& e, const scene_choice& scene) {
     print("  " + kinds + " do not apply to this scene: it has no meshes\n");
 }
 
-/// Prints the scene and its measures, unless its input is invalid.
+/// Prints the scene and its measures (sizes, overlaps, motion), taken in a child process; if that does not finish, its
+/// counts of objects and frames.
 void print_measures(staged_scene& scene, const time_limits& limits) {
     const child_result result = scene.in_child(
         [](scene_frames& frames, const output_sender& send) {
@@ -107,7 +110,7 @@ void print_selected(const std::vector<aabb::selected_strategy>& selected) {
     print_wrapped_table(t, 2);
 }
 
-/// Explains the selection and what it saves.
+/// Explains the composition that `auto` selects for the scene, and what each of its choices saves.
 /// @returns whether the results of all runs agree
 bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named, const time_limits& limits) {
     const bool meshes = scene.scene().meshes() != nullptr;
@@ -131,7 +134,7 @@ bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& 
     if (const std::size_t frames = scene.scene().frames(); frames > frames_before_bytes)
         print(fmt::format("  bytes after {} of {} frames; run reports those after the last\n", frames_before_bytes,
                           grouped(frames)));
-    print_unused(e, scene.choice());
+    print_idle_parts(e, scene.choice());
     flush_output();
     bool agree = true;
     for (const aabb::named_strategies& named : e.automatic) {
@@ -150,10 +153,11 @@ bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& 
 
 }  // namespace
 
+/// Explains the compositions of a config, or `auto`, in each scene: what runs, why it was selected, and what it saves.
 int explain(const explain_request& request) {
     experiment e;
     if (request.what.size() == 1 && is_config_name(request.what.front())) {
-        e = open_experiment(request.what.front(), false);
+        e = open_experiment(request.what.front(), /*quick=*/false);
     } else {
         e.automatic.emplace_back();
         e.scenes.push_back(scene_of_arguments(request.what));
@@ -171,6 +175,7 @@ int explain(const explain_request& request) {
     return agree ? 0 : 1;
 }
 
+/// Prints a table with the cells of one column wrapped, so that it fits the width of the output.
 void print_wrapped_table(const table& t, std::size_t column) {
     std::size_t other_widths = 0;
     for (std::size_t other = 0; other < t.columns.size(); ++other) {

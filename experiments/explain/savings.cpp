@@ -47,7 +47,8 @@ std::vector<variant> variants_by_strategy(const aabb::composition& selected, aab
     return variants;
 }
 
-/// Compositions without the omissions of the selected one that stem from the settings of this kind, not its strategy.
+/// Compositions with settings of this kind whose contrast shows what an omission saves: they have a feature that the
+/// selected composition leaves out by its settings, not by its strategy.
 std::vector<variant> variants_by_settings(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
     std::vector<variant> variants;
     for (const aabb::strategy_info& info : aabb::strategies(kind))
@@ -72,11 +73,11 @@ std::vector<aabb::absence> omitted_by(const variant& v) {
     return absences;
 }
 
-/// The fastest variant without this omission; null if every variant has it.
-const variant* fastest_with(aabb::absence what, std::span<const variant> variants) {
+/// The fastest variant that has this feature; null if every variant leaves it out.
+const variant* fastest_with(aabb::absence feature, std::span<const variant> variants) {
     const variant* fastest = nullptr;
     for (const variant& v : variants)
-        if (!v.times.empty() && std::ranges::count(omitted_by(v), what) == 0 &&
+        if (!v.times.empty() && std::ranges::count(omitted_by(v), feature) == 0 &&
             (!fastest || median_ms(v.times) < median_ms(fastest->times)))
             fastest = &v;
     return fastest;
@@ -86,7 +87,8 @@ std::string difference_text(std::uint64_t bytes, std::uint64_t than) {
     return bytes < than ? "-" + grouped(than - bytes) : grouped(bytes - than);
 }
 
-/// Prints what each omission of the first variant, the selected one, saves compared with the fastest one without it.
+/// Prints what the first variant, the selected composition, saves by each feature that it leaves out, compared with the
+/// fastest variant that has the feature.
 void print_omissions(std::span<const variant> variants) {
     const std::vector<observation>& times = variants[0].times;
     table t{{{"left out", false}, {"available with", false}, {"ms/frame"}, {"bytes"}}, {}};
@@ -122,6 +124,7 @@ std::vector<std::string> ratio_cells_of(const variant& v, std::span<const observ
             fmt::format("{:.2f}-{:.2f}", ratio.least, ratio.greatest)};
 }
 
+/// Adds a variant's times and bytes to the table, with the ratio of its times to those of the selected composition.
 void add_row(table& t, const variant& v, const variant& selected) {
     const std::vector<std::string> ratio =
         &v == &selected ? std::vector<std::string>{"1", "-"} : ratio_cells_of(v, selected.times);
@@ -142,6 +145,7 @@ void print_unfinished(const std::vector<variant>& variants) {
     if (!t.rows.empty()) print(to_text(t, output_width()) + "\n");
 }
 
+/// Prints which variants find other pairs than the selected composition, which must not happen as all are exact.
 /// @returns whether the results of all variants agree
 bool print_disagreements(const std::vector<variant>& variants) {
     // Inexact candidates find other pairs by design, and move a reactive scene differently.
@@ -157,6 +161,8 @@ bool print_disagreements(const std::vector<variant>& variants) {
 
 }  // namespace
 
+/// What a composition leaves out: the omissions that its running stages report, and those of kinds that are no part of
+/// a stage's type, by their descriptions.
 std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector<aabb::omission> by_stages) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         // The stages report the omissions of all other kinds.
@@ -170,6 +176,8 @@ std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector
     return by_stages;
 }
 
+/// Prints what each strategy of the selected composition saves: it runs interleaved with variants that differ in one
+/// strategy or its settings, and with itself with counters.
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
     const scene_frames& scene = staged.scene();
     const bool meshes = scene.meshes() != nullptr;

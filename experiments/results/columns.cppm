@@ -116,6 +116,7 @@ template <class Value>
     return text;
 }
 
+/// The names of a table's columns, except those in `without`.
 template <class Row, class Columns>
 [[nodiscard]] std::vector<std::string> names_of(Columns columns, std::span<const std::string> without = {}) {
     std::vector<std::string> names;
@@ -144,6 +145,7 @@ template <class Row, class Columns>
 /// Rejects tables whose header differs from the names of the columns.
 void require_header(const std::string& file, const csv_record& header, const std::vector<std::string>& expected);
 
+/// Reads the rows of a table from its records, by a function that names the columns and the member that each fills.
 /// @param later columns that may be absent, since files of earlier versions lack them
 /// @param on_row is called with each row and the line at which it begins
 /// @throws aabb::input_error with file and line if the records are not valid rows.

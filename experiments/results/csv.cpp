@@ -6,12 +6,12 @@ namespace aabblab {
 
 namespace {
 
-/// Reads a text record by record.
+/// Reads a text of comma-separated values record by record.
 class csv_reader {
 public:
     csv_reader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
-    /// False if the text ends before the record does.
+    /// Reads the next record; false if the text ends before it does, as after a crash while it was written.
     bool read(csv_record& record) {
         record.line = line_;
         do {
@@ -44,6 +44,7 @@ private:
         return is_next;
     }
 
+    /// Reads a field without quotes.
     void read_plain(std::string& field) {
         while (at_ < text_.size() && !next_is(",") && !is_at_line_end()) {
             if (next_is("\"")) fail("a quote is in a field that does not begin with one");
@@ -53,6 +54,7 @@ private:
         }
     }
 
+    /// Reads a quoted field; false if the text ends before the closing quote.
     bool read_quoted(std::string& field) {
         for (++at_; at_ < text_.size(); ++at_) {
             if (skip("\"") && !next_is("\"")) return true;  // a doubled quote stands for one
@@ -74,6 +76,7 @@ private:
 
 }  // namespace
 
+/// One record, with quotes around fields that contain separators or quotes.
 std::string csv_line(std::span<const std::string> fields) {
     std::string line;
     for (const std::string& field : fields) {

@@ -31,6 +31,7 @@ void make_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
+/// Locks the folder of results, so that no two runs write to it at once.
 folder_lock::folder_lock(const std::filesystem::path& folder) {
     make_folder(folder);
     // Child processes inherit the lock (no O_CLOEXEC), so that it lasts until they have finished their work.
@@ -50,6 +51,8 @@ folder_lock::~folder_lock() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
+/// Begins the results of an experiment, or continues existing ones of the same config, build and machine: reads their
+/// rows, so that what was measured is not measured again, and opens the table for appending.
 results_folder::results_folder(std::filesystem::path folder, experiment_record e, existing_results existing)
     : folder_(std::move(folder)), experiment_(std::move(e)), date_(date_now()) {
     make_folder(folder_);
@@ -96,8 +99,8 @@ void results_folder::add(const row& finished) {
     keys_.insert(finished.key());
 }
 
-void results_folder::drop(const std::function<bool(const row&)>& matches) {
-    if (std::erase_if(rows_, matches) == 0) return;
+void results_folder::drop(const std::function<bool(const row&)>& is_dropped) {
+    if (std::erase_if(rows_, is_dropped) == 0) return;
     keys_.clear();
     std::string text = csv_header_of_rows();
     for (const row& r : rows_) {
@@ -121,6 +124,8 @@ void results_folder::set_differences(const scene_choice& scene, std::span<const 
     write_file(folder_ / "differences.csv", csv_of(differences_));
 }
 
+/// Adds the checksums of the tables to the manifest of a finished run, by which missing or altered rows are found
+/// later.
 void results_folder::seal() {
     results_seal checksums{seal_of(folder_ / "results.csv"), std::nullopt, {}};
     if (const std::filesystem::path table = folder_ / "differences.csv"; std::filesystem::exists(table))

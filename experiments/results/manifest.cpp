@@ -24,8 +24,8 @@ const machine& host() {
     return detected;
 }
 
-/// The build and machine that determine times; results that differ in it must not be mixed in one table.
-json build() {
+/// The build and machine, which determine times; results that differ in it must not be mixed in one table.
+json json_of_build() {
     // A hash of the executable also detects changes that were not committed.
     static const std::string digest = aabb::hash_of_text(bytes_of_file("/proc/self/exe"));
     return {{"version", AABBLAB_VERSION}, {"commit", AABBLAB_COMMIT},
@@ -36,7 +36,7 @@ json build() {
 }
 
 /// Further properties of the machine, which may change during an experiment without invalidating its times.
-json surroundings() {
+json json_of_surroundings() {
     json properties{{"processors", host().processors}, {"kernel", host().kernel}, {"libc", host().libc}};
     if (host().governor) properties["governor"] = *host().governor;
     if (host().hypervisor) properties["hypervisor"] = *host().hypervisor;
@@ -44,7 +44,7 @@ json surroundings() {
 }
 
 /// The cost model by which strategies plan. With other costs they do other work, so times are not comparable.
-json costs() {
+json json_of_costs() {
     json ns = json::object();
     for (const aabb::cost_info& cost : aabb::cost_infos) ns[std::string(cost.name)] = aabb::machine_costs().*cost.value;
     return {{"source", aabb::machine_costs() == aabb::cost_model{} ? "shipped" : "calibrated"}, {"ns", std::move(ns)}};
@@ -98,7 +98,8 @@ struct parsed_manifest {
     json raw;  ///< preserves the order of members, for checksums
 };
 
-parsed_manifest read_json(const std::filesystem::path& file) {
+/// Parses a manifest, the file that says how results were made and that seals them.
+parsed_manifest parse_manifest(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file))
         throw aabb::input_error(file.string() + " does not exist; results without it cannot be used");
     const std::string text = text_of_file(file);
@@ -137,6 +138,7 @@ std::string parameters_json(const scene_choice& scene) {
     return text_of(parameters, -1);
 }
 
+/// Sets a scene's settings and meshes from a JSON object; false if the text is none.
 bool set_parameters(scene_choice& scene, const std::string& text) {
     const json parameters = json::parse(text, nullptr, false);
     if (!parameters.is_object()) return false;
@@ -156,6 +158,8 @@ bool set_parameters(scene_choice& scene, const std::string& text) {
     return true;
 }
 
+/// The manifest of a run, which says what was measured and how, so that results can be resumed and checked. With a seal
+/// it has checksums of the tables, and of itself.
 std::string manifest_text(const experiment_record& e, const std::string& date, const scene_digests& digests,
                           const std::optional<results_seal>& seal) {
     json scenes = json::array();
@@ -165,11 +169,14 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
         if (scene.seed) scenes.back()["seed"] = *scene.seed;
         if (digest != digests.end()) scenes.back()["digest"] = digest->second;
     }
-    json manifest{
-        {"experiment", e.name}, {"date", date},
-        {"build", build()},     {"machine", surroundings()},
-        {"costs", costs()},     {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
-        {"scenes", scenes},     {"notes", e.notes}};
+    json manifest{{"experiment", e.name},
+                  {"date", date},
+                  {"build", json_of_build()},
+                  {"machine", json_of_surroundings()},
+                  {"costs", json_of_costs()},
+                  {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
+                  {"scenes", scenes},
+                  {"notes", e.notes}};
     if (seal) {
         json& checksums = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
         if (seal->differences) checksums["differences.csv"] = json_of(*seal->differences);
@@ -180,8 +187,9 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
     return text_of(manifest, 2) + "\n";
 }
 
+/// Reads the parts of a manifest by which results are verified, and rejects it if it was altered after it was sealed.
 sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
-    const parsed_manifest manifest = read_json(file);
+    const parsed_manifest manifest = parse_manifest(file);
     sealed_manifest result{manifest.content.text("experiment").value_or(""), scenes_in(manifest), std::nullopt};
     const std::optional<json_value> seal = manifest.content.member("seal");
     if (!seal) return result;
@@ -192,16 +200,18 @@ sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
     return result;
 }
 
+/// The reason why results cannot be resumed, as times of another build, machine or cost model cannot be compared; empty
+/// if they can.
 std::string rejection_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
-    const parsed_manifest previous = read_json(manifest);
+    const parsed_manifest previous = parse_manifest(manifest);
     const std::string where = "the results in " + manifest.parent_path().string();
     if (previous.content.needed("config").text("hash") != e.hash)
         return where + " are of another config or size, or of other meshes or recordings";
-    if (previous.raw["build"] != build())
+    if (previous.raw["build"] != json_of_build())
         return where + " were made by another build or machine (commit " +
                previous.content.needed("build").text("commit").value_or("unknown") +
                "), whose times cannot be compared";
-    if (previous.raw.value("costs", json()) != costs())
+    if (previous.raw.value("costs", json()) != json_of_costs())
         return where + " were made with other costs (aabblab calibrate), with which strategies plan differently";
     if (!previous.content.has("seal")) return {};
     // Altered results must not be resumed and sealed again.
@@ -213,10 +223,11 @@ std::string rejection_to_resume(const std::filesystem::path& manifest, const exp
     return {};
 }
 
+/// The date of results that are resumed, and the digests of the ground truth of their scenes.
 std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::path& file, const experiment_record& e) {
     if (const std::string rejection = rejection_to_resume(file, e); !rejection.empty())
         throw aabb::input_error(rejection + "; --out DIR puts new ones elsewhere");
-    const parsed_manifest previous = read_json(file);
+    const parsed_manifest previous = parse_manifest(file);
     scene_digests digests;
     for (auto& [scene, digest] : scenes_in(previous))
         if (!digest.empty()) digests[std::move(scene)] = std::move(digest);
@@ -224,11 +235,12 @@ std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::pat
 }
 
 std::string build_description() {
-    return build().dump(2) + "\n";
+    return json_of_build().dump(2) + "\n";
 }
 
+/// The parts of a manifest that reports show; what earlier versions did not store is empty.
 manifest_summary read_manifest(const std::filesystem::path& folder) {
-    const parsed_manifest manifest = read_json(folder / "manifest.json");
+    const parsed_manifest manifest = parse_manifest(folder / "manifest.json");
     const json_value build = manifest.content.needed("build");
     const json_value config = manifest.content.needed("config");
     manifest_summary summary{.date = manifest.content.text("date").value_or(""),

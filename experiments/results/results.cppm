@@ -143,7 +143,7 @@ public:
     /// Appends a row and flushes the file.
     void add(const row& finished);
     /// Deletes the rows that match, and rewrites the file.
-    void drop(const std::function<bool(const row&)>& matches);
+    void drop(const std::function<bool(const row&)>& is_dropped);
     /// Records the digest of the ground truth of a scene in the manifest.
     void set_digest(const scene_choice& scene, const std::string& digest);
     /// Replaces the differences of these candidates in this scene.

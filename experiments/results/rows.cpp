@@ -7,8 +7,9 @@ namespace aabblab {
 
 namespace {
 
-/// The columns of a table in one place: calls `field(name, member)` for each.
-void for_each_name(auto& name, auto field) {
+// The columns of each table in one place, for writing and for reading: `field(name, member)` is called for each.
+
+void for_each_column_of_name(auto& name, auto field) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) field(std::string(name_of(kind)), name[kind]);
     field("engine", name.engine);
 }
@@ -26,15 +27,17 @@ void for_each_column_of_scene(Scene& scene, Field field) {
     field("seed", scene.seed);
 }
 
+/// The columns that identify a measurement.
 constexpr auto key_columns = [](auto& r, auto field) {
     field("experiment", r.experiment);
     for_each_column_of_scene(r.scene, field);
     field("objects", r.objects);
     field("frames", r.frames);
-    for_each_name(r.name, field);
+    for_each_column_of_name(r.name, field);
     field("repeat", r.repeat);
 };
 
+/// The columns of results.csv.
 constexpr auto columns_of_row = [](auto& r, auto field) {
     key_columns(r, field);
     field("process", r.process);
@@ -60,9 +63,10 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
     field("status", r.status);
 };
 
+/// The columns of differences.csv.
 constexpr auto columns_of_difference = [](auto& d, auto field) {
     for_each_column_of_scene(d.scene, field);
-    for_each_name(d.name, field);
+    for_each_column_of_name(d.name, field);
     field("what", d.what);
     field("class", d.kind);
     field("count", d.count);
@@ -85,7 +89,7 @@ constexpr std::size_t longest_quote = 60;
 /// Columns that results of earlier versions lack.
 constexpr std::array<std::string_view, 1> later_columns{"restarts"};
 
-/// "column 3 is 'x'; expected 'seed'"
+/// Says where a header differs from the expected one: "column 3 is 'x'; expected 'seed'".
 std::string first_difference(const std::vector<std::string>& names, const std::vector<std::string>& expected) {
     const auto [name, wanted] = std::ranges::mismatch(names, expected);
     return "column " + std::to_string(name - names.begin() + 1) +
@@ -115,6 +119,7 @@ std::string csv_of(std::span<const difference> differences) {
     return csv_of(differences, columns_of_difference);
 }
 
+/// Reads a results.csv, and rejects rows of other states and measurements that occur twice.
 std::vector<row> read_rows(const std::filesystem::path& file,
                            const std::function<void(const row&, std::size_t)>& on_row) {
     std::map<std::string, std::size_t> lines;  // by key

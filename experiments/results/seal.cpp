@@ -8,6 +8,7 @@ namespace aabblab {
 
 namespace {
 
+/// Rejects a table whose rows are not those that the manifest stated when the run was finished.
 void require_seal(const std::filesystem::path& table, const table_seal& stated) {
     const table_seal actual = std::filesystem::exists(table) ? seal_of(table) : table_seal{};
     if (actual.rows != stated.rows)
@@ -22,6 +23,8 @@ void require_seal(const std::filesystem::path& table, const table_seal& stated) 
 /// The positions of scenes in the manifest, with their digests.
 using known_scenes = std::map<scene_choice, std::pair<std::size_t, std::string>>;
 
+/// Rejects a row whose scene the manifest does not list, or that claims to be exact with another digest than the ground
+/// truth.
 /// @param place "results.csv:17: "
 void require_known(const known_scenes& known, const row& r, const std::string& place) {
     const auto entry = known.find(r.scene);
@@ -32,7 +35,8 @@ void require_known(const known_scenes& known, const row& r, const std::string& p
                                 "'; that of the scene is " + digest + ", as manifest.json says");
 }
 
-/// Restores the order of the run: by scene, repeat and candidate.
+/// Restores the order in which the run measured its rows, by scene, repeat and candidate, as the file may have any
+/// order.
 void sort_as_run(std::vector<row>& rows, const known_scenes& scenes, const std::vector<candidate_name>& candidates) {
     std::map<candidate_name, std::size_t> turns;
     for (const candidate_name& name : candidates) turns.emplace(name, turns.size());
@@ -41,13 +45,13 @@ void sort_as_run(std::vector<row>& rows, const known_scenes& scenes, const std::
         order.emplace_back(scenes.at(rows[i].scene).first, rows[i].repeat, turns[rows[i].name], i);
     std::ranges::sort(order);
     std::vector<row> sorted;
-    sorted.reserve(rows.size());
-    for (const auto& place : order) sorted.push_back(std::move(rows[std::get<3>(place)]));
+    for (const auto& [scene, repeat, turn, index] : order) sorted.push_back(std::move(rows[index]));
     rows = std::move(sorted);
 }
 
 }  // namespace
 
+/// The checksum of a table's sorted lines, by which alterations are found later, whatever the order of the rows.
 table_seal seal_of(const std::filesystem::path& table) {
     std::vector<std::string> lines;
     for (const csv_record& record : read_csv(text_of_file(table), table.string()).records)
@@ -59,6 +63,7 @@ table_seal seal_of(const std::filesystem::path& table) {
     return {lines.empty() ? 0 : lines.size() - 1, sha256_of(text)};
 }
 
+/// Reads the rows of a folder of results, and rejects those that its manifest or its seal contradicts.
 std::vector<row> verified_rows(const std::filesystem::path& folder) {
     const sealed_manifest manifest = read_sealed_manifest(folder / "manifest.json");
     const std::filesystem::path table = folder / "results.csv";

@@ -10,12 +10,13 @@ namespace {
 /// An experiment of the atlas; they run in this order.
 struct part {
     std::string_view name;
-    bool unseen;
+    bool is_unseen;  ///< left out when a model is fitted, to test it
 };
 constexpr std::array<part, 3> parts{{{"atlas", false}, {"atlas_large", false}, {"atlas_unseen", true}}};
 
 }  // namespace
 
+/// Runs the experiments of the atlas, which compares all compositions and engines in many scenes.
 std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool quick) {
     std::vector<experiment> experiments;
     for (const part& p : parts)
@@ -31,6 +32,7 @@ std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool
     return failures;
 }
 
+/// A sentence for each experiment of the atlas whose results are missing or incomplete.
 std::vector<std::string> unfinished_parts(const std::filesystem::path& folder) {
     std::vector<std::string> sentences;
     for (const part& p : parts) {
@@ -46,7 +48,7 @@ std::vector<atlas_scene> measured_atlas(const std::filesystem::path& folder) {
     std::vector<atlas_scene> atlas;
     for (const part& p : parts)
         if (std::filesystem::exists(folder / p.name / "results.csv"))
-            std::ranges::move(read_atlas(folder / p.name, p.unseen), std::back_inserter(atlas));
+            std::ranges::move(read_atlas(folder / p.name, p.is_unseen), std::back_inserter(atlas));
     return atlas;
 }
 

@@ -10,6 +10,7 @@ namespace aabblab {
 
 namespace {
 
+/// Prints the errors of triangle tests, all together and by set of pairs.
 void print_tables(std::span<const error_point> points) {
     for (const pair_group group : groups_in(points)) {
         print(
@@ -22,6 +23,7 @@ void print_tables(std::span<const error_point> points) {
     }
 }
 
+/// Prints how the constructed intersections of triangles differ from CGAL's, and whether their error bounds hold.
 void print_tables(std::span<const hit_point> points) {
     for (const bool in_double : {false, true}) {
         const table shown = hit_summary(points, in_double);
@@ -34,7 +36,8 @@ void print_tables(std::span<const hit_point> points) {
     }
 }
 
-/// @returns a sentence for each test with wrong hits
+/// Constructs the intersections of pairs of triangles, compares them with CGAL's, and writes intersections.csv.
+/// @returns a sentence for each test with wrong intersections
 std::vector<std::string> measure_hits_into(const std::filesystem::path& folder, std::span<const pair_set> sets,
                                            printed shown) {
     // Write after each set, so that a crash does not lose finished ones.
@@ -67,6 +70,7 @@ std::vector<std::filesystem::path> error_configs() {
     return configs_in(AABBLAB_ERROR_CONFIGS);
 }
 
+/// Runs a study of error against time: of compositions in whole scenes, or of triangle tests on pairs of triangles.
 std::vector<std::string> measure_study(const error_study& study, const std::filesystem::path& folder, printed shown) {
     require_fine_clock();
     std::vector<std::string> failures;
@@ -74,8 +78,9 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
     // Remove results of an earlier study, which would not match the config of this one.
     for (const char* file : {"errors.csv", "intersections.csv"}) std::filesystem::remove(folder / file);
     write_file(folder / "config.toml", study.text);
-    if (study.whole) {
-        failures = run_experiment(*study.whole, folder, existing_results::replace, "the same command", shown);
+    if (study.scene_experiment) {
+        failures =
+            run_experiment(*study.scene_experiment, folder, existing_results::replace, "the same command", shown);
         if (shown != printed::nothing) {
             const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
             for (const std::string& text : metric_statements(study, scenes)) print(text + "\n\n");

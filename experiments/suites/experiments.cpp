@@ -67,6 +67,7 @@ scene_choice visible_scene(scene_choice scene) {
     return scene;
 }
 
+/// Prints the results of each scene, and the work of each composition if `shown` includes it.
 void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printed shown) {
     for (scene_summary& scene : scenes) {
         scene.scene = visible_scene(scene.scene);
@@ -78,7 +79,8 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
     flush_output();
 }
 
-/// Prints one table per baseline, because scenes of boxes and of meshes have different ones.
+/// Prints the results over all scenes: one table per baseline, because scenes of boxes and of meshes have different
+/// ones.
 void print_overall(std::span<const scene_summary> scenes) {
     std::map<candidate_name, std::vector<scene_summary>> by_baseline;
     for (const scene_summary& scene : scenes) by_baseline[scene.lines[0].name].push_back(scene);
@@ -91,7 +93,7 @@ void print_overall(std::span<const scene_summary> scenes) {
                 group.size(), text_of(baseline), to_text(overall, output_width())));
 }
 
-/// Multi-threaded compositions must not be pinned to one processor.
+/// Whether any composition uses several threads, so that the process must not be pinned to one processor.
 bool is_multi_threaded(const experiment& e) {
     return std::ranges::any_of(every_composition(e), [](const aabb::composition& c) {
         return std::ranges::any_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
@@ -101,7 +103,7 @@ bool is_multi_threaded(const experiment& e) {
     });
 }
 
-/// Runs one process's share of every scene.
+/// Runs one process's share of every scene. Timed single-threaded runs stay on the idlest processor.
 /// @param report is called with a sentence per failure
 /// @param finished is called with the index of each scene at its end
 void run_scenes(
@@ -129,6 +131,7 @@ void run_shares(const experiment& e, const std::filesystem::path& folder,
 
 }  // namespace
 
+/// Reads a config, and notes which meshes are missing and how they are replaced.
 experiment open_experiment(const std::string& config, bool quick) {
     experiment e = read_experiment(config, quick ? experiment_size::quick : experiment_size::full);
     for (const std::string& sentence : e.notes) note(sentence);
@@ -139,6 +142,7 @@ experiment open_experiment(const std::string& config, bool quick) {
     return e;
 }
 
+/// A sentence for each engine of the config that cannot run in a scene.
 std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& scene_name) {
     std::vector<std::string> sentences;
     for (const aabb::engine_info& engine : aabb::engines())
@@ -150,6 +154,7 @@ std::vector<std::string> idle_engines(const experiment& e, const scene_choice& s
     return sentences;
 }
 
+/// Runs an experiment, in its own process or in several one after the other, seals its results and prints tables.
 std::vector<std::string> run_experiment(const experiment& e, const std::filesystem::path& folder,
                                         existing_results existing, const std::string& resume_with, printed shown) {
     if (e.records(metric_group::time)) require_fine_clock();
@@ -169,7 +174,7 @@ std::vector<std::string> run_experiment(const experiment& e, const std::filesyst
         std::filesystem::remove(folder / "summary.csv", ignored);
         if (e.processes == 1) {
             // Print a scene as soon as its last seed is finished.
-            run_scenes(e, results, 0, report, [&](std::size_t i) {
+            run_scenes(e, results, /*process=*/0, report, [&](std::size_t i) {
                 const scene_choice& scene = e.scenes[i];
                 const bool is_last_seed =
                     i + 1 == e.scenes.size() || without_seed(scene) != without_seed(e.scenes[i + 1]);
@@ -191,6 +196,7 @@ std::vector<std::string> run_experiment(const experiment& e, const std::filesyst
     return failures;
 }
 
+/// Runs one process's share of an experiment, and prints its failures for the process that started it.
 bool run_process(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
     results_folder results(folder, record_of(e), existing_results::resume);
     bool succeeded = true;

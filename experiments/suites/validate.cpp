@@ -15,7 +15,7 @@ namespace aabblab {
 
 namespace {
 
-/// The tables of a report, with their captions.
+/// The tables of the report on the extreme scenes, without empty ones.
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
     std::vector<named_table> tables = {
         {"extreme_boxes", "Boxes, compared with the definition in a double loop", scene_table(rows, row_group::boxes)},
@@ -34,7 +34,7 @@ suite_report report_of(std::span<const extreme_row> rows) {
     return {memory_in(rows), {}, tables_of(rows), failures_in(rows)};
 }
 
-/// Sorts the rows of a study into one table per quantity.
+/// The tables of a study of stiff contacts: its rows, measured and expected, sorted into one table per quantity.
 std::vector<named_table> tables_of(const stiff_study& study, const stiff_result& result) {
     std::vector<named_table> tables;
     for (const stiff_row& r : result.rows) {
@@ -52,6 +52,7 @@ std::vector<named_table> tables_of(const stiff_study& study, const stiff_result&
     return tables;
 }
 
+/// Adds a study of stiff contacts to the report: what it expects, figures, tables, and a failure per row that differs.
 void add_study(suite_report& report, const stiff_study& study, const stiff_result& result) {
     report.paragraphs.push_back(fmt::format("{}: {}. Expected: {}.", study.name, study.about, study.reference));
     std::ranges::move(figures_of(study, result), std::back_inserter(report.figures));
@@ -76,12 +77,13 @@ std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
     return chosen;
 }
 
-// Earlier versions stored reports instead of rows.
+// Readers of reports as JSON, which earlier versions stored instead of rows.
 
 figure_axis axis_of(const json_value& j) {
     return {j.needed("label").text(), j.needed("logarithmic").flag()};
 }
 
+/// A line of a figure in a stored report.
 series series_of(const json_value& j) {
     const json_value style = j.needed("style");
     if (style.index() > static_cast<std::size_t>(series_style::level)) style.fail("is not a style of lines");
@@ -103,6 +105,7 @@ figure figure_of(const json_value& j) {
     return f;
 }
 
+/// A table in a stored report.
 named_table table_of(const json_value& j) {
     named_table t{j.needed("name").text(), j.needed("caption").text(), {}};
     for (const json_value& c : j.needed("columns").list())
@@ -128,6 +131,7 @@ std::string default_cases() {
     return AABBLAB_CASES;
 }
 
+/// Runs the extreme scenes and the hard pairs of triangles, stores their rows, and prints the report if `shown`.
 suite_report run_extreme_suite(const std::filesystem::path& folder, const std::string& cases, bool quick, bool shown) {
     const auto size = quick ? aabb::extreme_size::quick : aabb::extreme_size::full;
     const std::vector<aabb::triangle_case> hard = read_triangle_cases(cases);
@@ -151,6 +155,7 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     return report;
 }
 
+/// Runs simulations of stiff contacts, whose forces depend on detected contacts, and compares them with known results.
 suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vector<std::string>& studies, bool quick,
                              bool shown) {
     const std::vector<stiff_study> chosen = chosen_studies(studies);
@@ -180,6 +185,7 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     return report;
 }
 
+/// The report of a suite from what its run stored: a report, as earlier versions did, or rows; empty if there is none.
 std::optional<suite_report> stored_report(const std::filesystem::path& folder) {
     if (std::filesystem::exists(folder / "report.json")) return read_report(folder / "report.json");
     if (std::filesystem::exists(folder / "extreme.csv")) {

@@ -90,7 +90,7 @@ void remove_edited_test_times(const std::filesystem::path& folder) {
 }
 
 /// The report's section on error against run time, from the studies that have results: of sets of triangle pairs
-/// (errors.csv), or of scenes with both phases (results.csv).
+/// (errors.csv), or of whole scenes (results.csv).
 report_section errors_section(const std::filesystem::path& folder, bool quick) {
     report_section section{
         .id = "errors",
@@ -101,7 +101,7 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
         .tables = {}};
     for (const error_study& study : studies_with_curves(quick)) {
         const std::filesystem::path results = folder / "errors" / study.name;
-        if (!study.whole && std::filesystem::exists(results / "errors.csv")) {
+        if (!study.scene_experiment && std::filesystem::exists(results / "errors.csv")) {
             const std::vector<error_point> points = read_error_rows(results / "errors.csv");
             for (const pair_group group : groups_in(points)) {
                 section.paragraphs.push_back(group_statement(points, group));
@@ -113,13 +113,13 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
                                  title_of(group)),
                      error_summary(points, group)});
             }
-        } else if (study.whole && std::filesystem::exists(results / "results.csv")) {
+        } else if (study.scene_experiment && std::filesystem::exists(results / "results.csv")) {
             const std::vector<scene_summary> scenes = summarise(verified_rows(results));
             std::ranges::copy(metric_statements(study, scenes), std::back_inserter(section.paragraphs));
             std::ranges::copy(metric_figures(study, scenes), std::back_inserter(section.figures));
             for (const scene_summary& scene : scenes)
                 section.tables.push_back({fmt::format("{}_{}", study.name, &scene - scenes.data() + 1),
-                                          heading_of(scene), table_of(scene, study.whole->shown)});
+                                          heading_of(scene), table_of(scene, study.scene_experiment->shown)});
         }
     }
     return section;

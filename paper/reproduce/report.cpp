@@ -14,7 +14,7 @@ namespace aabblab {
 
 namespace {
 
-// The scale of all claims, logarithmic with 1 in the middle.
+// The scale of the plots of all claims' ratios, logarithmic with 1 in the middle.
 const scale claims_scale{0.2, 5, true};
 constexpr double margin = 4;  // at both ends, in percent, for arrows
 
@@ -31,7 +31,7 @@ void add_band(svg_picture& picture, double low, double centre, double high, doub
 constexpr double first_row = 16;
 constexpr double row_height = 12;
 
-/// @param y the vertical position
+/// Draws the axis of ratios, with its numbers, at the vertical position y.
 void add_axis(svg_picture& picture, double y) {
     picture.line("axis", {margin, y}, {100 - margin, y});
     for (const double ratio : {0.25, 0.5, 1., 2., 4.}) {
@@ -53,29 +53,30 @@ void add_arrow(svg_picture& picture, bool to_left, double y, double number) {
 /// Draws a ratio as a disc on its interval; what lies beyond the scale is drawn as an arrow.
 void add_interval(svg_picture& picture, const endpoint& e, double y) {
     const auto& [low, high] = e.range;
-    const bool below = low < claims_scale.from;
-    const bool above = high > claims_scale.to;
-    picture.line("range", {below ? 2 : x_percent(low), y}, {above ? 98 : x_percent(high), y});
+    const bool is_below = low < claims_scale.from;
+    const bool is_above = high > claims_scale.to;
+    picture.line("range", {is_below ? 2 : x_percent(low), y}, {is_above ? 98 : x_percent(high), y});
     if (claims_scale.from <= e.ratio && e.ratio <= claims_scale.to) picture.disc({x_percent(e.ratio), y}, 4);
-    if (below) add_arrow(picture, true, y, e.ratio < claims_scale.from ? e.ratio : low);
-    if (above) add_arrow(picture, false, y, e.ratio > claims_scale.to ? e.ratio : high);
+    if (is_below) add_arrow(picture, /*to_left=*/true, y, e.ratio < claims_scale.from ? e.ratio : low);
+    if (is_above) add_arrow(picture, /*to_left=*/false, y, e.ratio > claims_scale.to ? e.ratio : high);
 }
 
-/// Ratios with their intervals, one per row, against the band of no difference, as SVG. All claims share a scale.
+/// A claim's ratios with their intervals, one per row, against the band of no difference, as SVG for the page. All
+/// claims share a scale, so that they can be compared by eye.
 std::string interval_picture(std::span<const endpoint> endpoints) {
-    const double axis = first_row + row_height * static_cast<double>(endpoints.size());
+    const double axis_y = first_row + row_height * static_cast<double>(endpoints.size());
     std::string label;
     svg_picture picture("%");
-    add_band(picture, x_percent(1 / (1 + equivalence_band)), 50, x_percent(1 + equivalence_band), 4, axis);
-    add_axis(picture, axis);
+    add_band(picture, x_percent(1 / (1 + equivalence_band)), 50, x_percent(1 + equivalence_band), 4, axis_y);
+    add_axis(picture, axis_y);
     for (const endpoint& e : endpoints) {
         label += (label.empty() ? "ratio " : "; ") + ratio_text(e);
         add_interval(picture, e, first_row + row_height * static_cast<double>(&e - endpoints.data()));
     }
-    return picture.in_page("interval", label, axis + 16);
+    return picture.in_page("interval", label, axis_y + 16);
 }
 
-/// The rule as SVG for the page: example intervals and their outcomes.
+/// The rule by which ratios are judged as SVG for the page: example intervals and their outcomes.
 std::string rule_picture() {
     struct example {
         double low;
@@ -128,7 +129,7 @@ const verdict_word& word_of(verdict_kind verdict) {
     return verdict_words[static_cast<std::size_t>(verdict)];
 }
 
-/// The paragraphs of rule.md, without line breaks.
+/// The paragraphs of rule.md, which explains how a verdict is reached, without line breaks.
 std::vector<std::string> rule_paragraphs() {
     std::vector<std::string> paragraphs;
     std::istringstream text{std::string(embedded::rule_md)};
@@ -154,7 +155,7 @@ std::string verdict_markup(const claim_result& c, const std::string& sentence) {
            markup_text(sentence);
 }
 
-/// Adds a row per claim, which links to its section; in Markdown a table, sentences and figures.
+/// Adds an overview with a row per claim, which links to its section; in Markdown a table, sentences and figures.
 void add_claim_rows(page& out, const reproduction& reproduced) {
     std::string rows = "\n";
     for (const claim_result& c : reproduced.claims) {
@@ -179,7 +180,8 @@ void add_claim_rows(page& out, const reproduction& reproduced) {
         out.add_markdown("![" + f.caption + "](figures/" + f.name + ".svg)\n\n" + f.caption + "\n\n");
 }
 
-/// Adds the section on the rule: a picture, the meaning of each verdict, rule.md and the null control.
+/// Adds the section on the rule of verdicts: a picture, the meaning of each verdict, the rule in words, and the null
+/// control, which shows how far intervals can be trusted.
 void add_rule(page& out, const reproduction& reproduced) {
     out.heading("How a verdict is reached", "rule");
     out.add_html(rule_picture() + "\n");
@@ -229,7 +231,7 @@ table rule_table() {
     return t;
 }
 
-/// Composes the page: warnings and headline first, then claims, the rule, details per claim, and provenance.
+/// Composes the report's page: warnings and headline first, then claims, the rule, details per claim, and provenance.
 page report_of(const reproduction& reproduced, std::span<const report_section> sections, const provenance& origin,
                const std::vector<std::string>& failures) {
     page out("AABB Lab: the paper, reproduced", embedded::report_css);

@@ -8,6 +8,7 @@ namespace aabblab {
 
 namespace {
 
+/// The macros of the LaTeX report, from which it takes every number and sentence by a key.
 class macros {
 public:
     /// Sets text that is already TeX.
@@ -20,7 +21,8 @@ private:
     std::string text_ = "% Written by ./aabblab reproduce: every number of the report.\n";
 };
 
-/// The values of all factors over all scenes: "scene brownian, still; objects 100, 1000."
+/// The set-up of a claim's experiments: the values of each factor over all scenes, as in "scene brownian, still;
+/// objects 100, 1000."
 std::string setup_of(const claim_result& c) {
     std::vector<std::pair<std::string, std::vector<std::string>>> values;
     for (const factors& scene : c.scenes)
@@ -30,10 +32,10 @@ std::string setup_of(const claim_result& c) {
             if (std::ranges::find(known->second, value) == known->second.end()) known->second.push_back(value);
         }
     std::string text;
+    const auto number = [](const std::string& value) { return number_of({{"", value}}, ""); };  // NaN for words
     for (auto& [name, seen] : values) {
-        const auto is_number = [&](const std::string& value) { return !std::isnan(number_of({{"", value}}, "")); };
-        if (std::ranges::all_of(seen, is_number))
-            std::ranges::sort(seen, {}, [](const std::string& value) { return number_of({{"", value}}, ""); });
+        if (std::ranges::none_of(seen, [&](const std::string& value) { return std::isnan(number(value)); }))
+            std::ranges::sort(seen, {}, number);
         text += (text.empty() ? "" : "; ") + name + " ";
         for (const std::string& value : seen) text += (&value == seen.data() ? "" : ", ") + value;
     }
@@ -48,7 +50,7 @@ std::string list_of(const std::vector<Named>& entries, std::size_t from = 0) {
     return text;
 }
 
-/// Sets the macros of a claim, whose keys begin with its id.
+/// Sets the macros of a claim for the LaTeX report, whose keys begin with its id.
 void add_claim(macros& tex, const claim_result& c) {
     const auto set = [&](const char* key, std::string_view text) { tex.set(c.id + "." + key, text); };
     set("claim", c.claim);
@@ -74,7 +76,7 @@ void add_claim(macros& tex, const claim_result& c) {
         tex.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(others, what, &endpoint::corrected)));
 }
 
-/// Every endpoint of every claim, for programs.
+/// Every endpoint (ratio) of every claim with its outcome, for programs that check or continue the analysis.
 table endpoints_of(const reproduction& reproduced) {
     table t = empty_table({"claim", "endpoint", "where", "source", "expected"}, {"ratio", "low", "high"},
                           {"direction", "outcome"});
@@ -95,7 +97,7 @@ table endpoints_of(const reproduction& reproduced) {
     return t;
 }
 
-/// The primary ratio of every claim against the band of no difference.
+/// The first primary ratio of every claim against the band of no difference.
 figure verdict_figure(const reproduction& reproduced) {
     figure f{
         "verdicts",
@@ -213,6 +215,9 @@ provenance provenance_of(const measurements& results, const reproduction& reprod
 
 }  // namespace
 
+/// Writes the judged claims in all forms: tables, figures, verdicts.csv, endpoints.csv, the LaTeX report's macros, and
+/// the page. Of several runs, which are judged together, the first gives figures and provenance, and the others are
+/// noted.
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
                         const std::vector<std::string>& failures, const std::string& agreement) {
@@ -253,20 +258,21 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     write_file(folder / "report.html", report.html());
 }
 
+/// A sentence on how two judgements agree: "13 of 14 verdicts agree with …: C3: here holds, there undecided."
 std::string agreement_of(std::span<const claim_result> claims, std::span<const claim_result> other_claims,
                          const std::string& other) {
     std::string differing;
-    std::size_t same = 0;
+    std::size_t agreeing = 0;
     for (const claim_result& c : claims) {
         const auto counterpart = std::ranges::find(other_claims, c.id, &claim_result::id);
         const std::string verdict = counterpart == other_claims.end() ? "none" : text_of(counterpart->verdict);
         if (verdict == text_of(c.verdict))
-            ++same;
+            ++agreeing;
         else
             differing += fmt::format("{} {}: here {}, there {}", differing.empty() ? ":" : ";", c.id,
                                      text_of(c.verdict), verdict);
     }
-    return fmt::format("{} of {} verdicts agree with {}{}.", same, claims.size(), other, differing);
+    return fmt::format("{} of {} verdicts agree with {}{}.", agreeing, claims.size(), other, differing);
 }
 
 }  // namespace aabblab
