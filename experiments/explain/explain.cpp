@@ -45,8 +45,7 @@ std::string text_of(const candidate_name& name, aabb::stage stage) {
 /// Enough that buffers have grown and data that is kept between frames exists.
 constexpr std::size_t frames_before_bytes = 2;
 
-/// Runs the first frames, and describes each stage by its strategies and bytes, what strategies planned from earlier
-/// frames, and what they leave out.
+/// Runs the first frames, and describes each stage by its strategies and bytes, with its plans and omissions.
 std::string explanation_of(scene_frames& scene, const candidate& tested) {
     stage_runner runner(tested, scene, aabb::instrumentation::none);
     run_frames(scene, runner, [](const searched_frame&) {}, frames_before_bytes);
@@ -63,8 +62,7 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
     return text + indented_list("left out", left_out);
 }
 
-/// Prints the explanation of a candidate (a composition or an engine), made in a child process, since it may take too
-/// long or crash, or why that did not finish.
+/// Prints the explanation of a candidate, made in a child process with a time limit, or why that did not finish.
 void print_candidate(staged_scene& scene, const candidate& tested, const time_limits& limits) {
     const child_result result =
         scene.in_child([&](scene_frames& frames, const output_sender& send) { send(explanation_of(frames, tested)); },
@@ -86,8 +84,7 @@ void print_idle_parts(const experiment& e, const scene_choice& scene) {
     print("  " + kinds + " do not apply to this scene: it has no meshes\n");
 }
 
-/// Prints the scene and its measures (sizes, overlaps, motion), taken in a child process; if that does not finish, its
-/// counts of objects and frames.
+/// Prints the scene and its measures, or, if measuring does not finish, only its numbers of objects and frames.
 void print_measures(staged_scene& scene, const time_limits& limits) {
     const child_result result = scene.in_child(
         [](scene_frames& frames, const output_sender& send) {

@@ -20,20 +20,12 @@ struct explain_request {
 
 }  // namespace aabblab
 
-// Internals of the module.
+// Internals of the module; comments are at the definitions.
 namespace aabblab {
 
-/// All omissions of a configuration.
-/// @param by_stages the omissions that its stages report
 [[nodiscard]] std::vector<aabb::omission> omissions_of(const candidate_name& name,
                                                        std::vector<aabb::omission> by_stages);
-
-/// Prints what each strategy of a composition saves in the scene, and its omissions. The composition runs interleaved
-/// with variants in which one strategy or its settings differ, and with itself with counters. Lists unfinished runs.
-/// @returns whether the results of all agree
 [[nodiscard]] bool print_savings(staged_scene& scene, const aabb::composition& selected, const time_limits& limits);
-
-/// Prints a table with the cells of one column wrapped, so that it fits the width of the output.
 void print_wrapped_table(const table& t, std::size_t column);
 
 }  // namespace aabblab

@@ -47,8 +47,7 @@ std::vector<variant> variants_by_strategy(const aabb::composition& selected, aab
     return variants;
 }
 
-/// Compositions with settings of this kind whose contrast shows what an omission saves: they have a feature that the
-/// selected composition leaves out by its settings, not by its strategy.
+/// Compositions that have, by other settings of this kind, what the selected composition leaves out.
 std::vector<variant> variants_by_settings(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
     std::vector<variant> variants;
     for (const aabb::strategy_info& info : aabb::strategies(kind))
@@ -87,8 +86,7 @@ std::string difference_text(std::uint64_t bytes, std::uint64_t than) {
     return bytes < than ? "-" + grouped(than - bytes) : grouped(bytes - than);
 }
 
-/// Prints what the first variant, the selected composition, saves by each feature that it leaves out, compared with the
-/// fastest variant that has the feature.
+/// Prints what each omission of the selected composition, the first variant, saves over the fastest variant without it.
 void print_omissions(std::span<const variant> variants) {
     const std::vector<observation>& times = variants[0].times;
     table t{{{"left out", false}, {"available with", false}, {"ms/frame"}, {"bytes"}}, {}};
@@ -161,8 +159,7 @@ bool print_disagreements(const std::vector<variant>& variants) {
 
 }  // namespace
 
-/// What a composition leaves out: the omissions that its running stages report, and those of kinds that are no part of
-/// a stage's type, by their descriptions.
+/// All omissions of a composition: those that its stages report, and those of strategies that are no part of a stage.
 std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector<aabb::omission> by_stages) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         // The stages report the omissions of all other kinds.
@@ -176,8 +173,7 @@ std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector
     return by_stages;
 }
 
-/// Prints what each strategy of the selected composition saves: it runs interleaved with variants that differ in one
-/// strategy or its settings, and with itself with counters.
+/// Prints what each choice of the selected composition saves, by runs interleaved with variants that differ in one.
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
     const scene_frames& scene = staged.scene();
     const bool meshes = scene.meshes() != nullptr;

@@ -44,7 +44,6 @@ private:
         return is_next;
     }
 
-    /// Reads a field without quotes.
     void read_plain(std::string& field) {
         while (at_ < text_.size() && !next_is(",") && !is_at_line_end()) {
             if (next_is("\"")) fail("a quote is in a field that does not begin with one");
@@ -76,7 +75,6 @@ private:
 
 }  // namespace
 
-/// One record, with quotes around fields that contain separators or quotes.
 std::string csv_line(std::span<const std::string> fields) {
     std::string line;
     for (const std::string& field : fields) {

@@ -31,7 +31,6 @@ void make_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-/// Locks the folder of results, so that no two runs write to it at once.
 folder_lock::folder_lock(const std::filesystem::path& folder) {
     make_folder(folder);
     // Child processes inherit the lock (no O_CLOEXEC), so that it lasts until they have finished their work.
@@ -51,8 +50,7 @@ folder_lock::~folder_lock() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
-/// Begins the results of an experiment, or continues existing ones of the same config, build and machine: reads their
-/// rows, so that what was measured is not measured again, and opens the table for appending.
+/// Continues results of the same config and build, whose rows are not measured again, or begins new ones.
 results_folder::results_folder(std::filesystem::path folder, experiment_record e, existing_results existing)
     : folder_(std::move(folder)), experiment_(std::move(e)), date_(date_now()) {
     make_folder(folder_);
@@ -124,8 +122,6 @@ void results_folder::set_differences(const scene_choice& scene, std::span<const 
     write_file(folder_ / "differences.csv", csv_of(differences_));
 }
 
-/// Adds the checksums of the tables to the manifest of a finished run, by which missing or altered rows are found
-/// later.
 void results_folder::seal() {
     results_seal checksums{seal_of(folder_ / "results.csv"), std::nullopt, {}};
     if (const std::filesystem::path table = folder_ / "differences.csv"; std::filesystem::exists(table))

@@ -25,7 +25,7 @@ const machine& host() {
 }
 
 /// The build and machine, which determine times; results that differ in it must not be mixed in one table.
-json json_of_build() {
+json build_json() {
     // A hash of the executable also detects changes that were not committed.
     static const std::string digest = aabb::hash_of_text(bytes_of_file("/proc/self/exe"));
     return {{"version", AABBLAB_VERSION}, {"commit", AABBLAB_COMMIT},
@@ -36,7 +36,7 @@ json json_of_build() {
 }
 
 /// Further properties of the machine, which may change during an experiment without invalidating its times.
-json json_of_surroundings() {
+json machine_json() {
     json properties{{"processors", host().processors}, {"kernel", host().kernel}, {"libc", host().libc}};
     if (host().governor) properties["governor"] = *host().governor;
     if (host().hypervisor) properties["hypervisor"] = *host().hypervisor;
@@ -44,7 +44,7 @@ json json_of_surroundings() {
 }
 
 /// The cost model by which strategies plan. With other costs they do other work, so times are not comparable.
-json json_of_costs() {
+json costs_json() {
     json ns = json::object();
     for (const aabb::cost_info& cost : aabb::cost_infos) ns[std::string(cost.name)] = aabb::machine_costs().*cost.value;
     return {{"source", aabb::machine_costs() == aabb::cost_model{} ? "shipped" : "calibrated"}, {"ns", std::move(ns)}};
@@ -158,8 +158,7 @@ bool set_parameters(scene_choice& scene, const std::string& text) {
     return true;
 }
 
-/// The manifest of a run, which says what was measured and how, so that results can be resumed and checked. With a seal
-/// it has checksums of the tables, and of itself.
+/// The manifest of a run: what was measured and how. With a seal it has checksums of the tables, and of itself.
 std::string manifest_text(const experiment_record& e, const std::string& date, const scene_digests& digests,
                           const std::optional<results_seal>& seal) {
     json scenes = json::array();
@@ -169,14 +168,11 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
         if (scene.seed) scenes.back()["seed"] = *scene.seed;
         if (digest != digests.end()) scenes.back()["digest"] = digest->second;
     }
-    json manifest{{"experiment", e.name},
-                  {"date", date},
-                  {"build", json_of_build()},
-                  {"machine", json_of_surroundings()},
-                  {"costs", json_of_costs()},
-                  {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
-                  {"scenes", scenes},
-                  {"notes", e.notes}};
+    json manifest{
+        {"experiment", e.name},  {"date", date},
+        {"build", build_json()}, {"machine", machine_json()},
+        {"costs", costs_json()}, {"config", {{"file", e.file}, {"hash", e.hash}, {"quick", e.quick}, {"text", e.text}}},
+        {"scenes", scenes},      {"notes", e.notes}};
     if (seal) {
         json& checksums = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
         if (seal->differences) checksums["differences.csv"] = json_of(*seal->differences);
@@ -200,18 +196,17 @@ sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
     return result;
 }
 
-/// The reason why results cannot be resumed, as times of another build, machine or cost model cannot be compared; empty
-/// if they can.
+/// Why results cannot be resumed: times of another build, machine or cost model are not comparable; empty if they can.
 std::string rejection_to_resume(const std::filesystem::path& manifest, const experiment_record& e) {
     const parsed_manifest previous = parse_manifest(manifest);
     const std::string where = "the results in " + manifest.parent_path().string();
     if (previous.content.needed("config").text("hash") != e.hash)
         return where + " are of another config or size, or of other meshes or recordings";
-    if (previous.raw["build"] != json_of_build())
+    if (previous.raw["build"] != build_json())
         return where + " were made by another build or machine (commit " +
                previous.content.needed("build").text("commit").value_or("unknown") +
                "), whose times cannot be compared";
-    if (previous.raw.value("costs", json()) != json_of_costs())
+    if (previous.raw.value("costs", json()) != costs_json())
         return where + " were made with other costs (aabblab calibrate), with which strategies plan differently";
     if (!previous.content.has("seal")) return {};
     // Altered results must not be resumed and sealed again.
@@ -235,10 +230,9 @@ std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::pat
 }
 
 std::string build_description() {
-    return json_of_build().dump(2) + "\n";
+    return build_json().dump(2) + "\n";
 }
 
-/// The parts of a manifest that reports show; what earlier versions did not store is empty.
 manifest_summary read_manifest(const std::filesystem::path& folder) {
     const parsed_manifest manifest = parse_manifest(folder / "manifest.json");
     const json_value build = manifest.content.needed("build");

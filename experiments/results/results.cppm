@@ -190,13 +190,10 @@ struct manifest_summary {
 
 }  // namespace aabblab
 
-// Shared by the units of the module.
+// Shared by the units of the module; comments are at the definitions.
 namespace aabblab {
 
-/// The inverse of `parameters_json`.
-/// @returns false if the text is not such an object
-[[nodiscard]] bool set_parameters(scene_choice& scene, const std::string& json);
-
+[[nodiscard]] bool set_parameters(scene_choice& scene, const std::string& text);
 [[nodiscard]] std::string csv_header_of_rows();
 [[nodiscard]] std::string csv_of(const row& r);
 [[nodiscard]] std::string csv_of(std::span<const difference> differences);
@@ -223,13 +220,9 @@ struct sealed_manifest {
     std::vector<std::pair<scene_choice, std::string>> scenes;  ///< with their digests, which may be empty
     std::optional<results_seal> seal;
 };
-/// @throws aabb::input_error if it is not a manifest, or was altered after it was sealed.
 [[nodiscard]] sealed_manifest read_sealed_manifest(const std::filesystem::path& file);
 
-/// The reason why results cannot be resumed, such as another config, build or machine; empty if they can.
 [[nodiscard]] std::string rejection_to_resume(const std::filesystem::path& manifest, const experiment_record& e);
-/// The date and the digests of results that are resumed.
-/// @throws aabb::input_error if they cannot be resumed.
 [[nodiscard]] std::pair<std::string, scene_digests> resume_manifest(const std::filesystem::path& file,
                                                                     const experiment_record& e);
 

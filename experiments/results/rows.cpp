@@ -7,8 +7,7 @@ namespace aabblab {
 
 namespace {
 
-// The columns of each table in one place, for writing and for reading: `field(name, member)` is called for each.
-
+/// Calls `field(name, member)` for each column of a name, as other functions do for other columns of tables.
 void for_each_column_of_name(auto& name, auto field) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) field(std::string(name_of(kind)), name[kind]);
     field("engine", name.engine);
@@ -27,7 +26,6 @@ void for_each_column_of_scene(Scene& scene, Field field) {
     field("seed", scene.seed);
 }
 
-/// The columns that identify a measurement.
 constexpr auto key_columns = [](auto& r, auto field) {
     field("experiment", r.experiment);
     for_each_column_of_scene(r.scene, field);
@@ -37,7 +35,6 @@ constexpr auto key_columns = [](auto& r, auto field) {
     field("repeat", r.repeat);
 };
 
-/// The columns of results.csv.
 constexpr auto columns_of_row = [](auto& r, auto field) {
     key_columns(r, field);
     field("process", r.process);
@@ -63,7 +60,6 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
     field("status", r.status);
 };
 
-/// The columns of differences.csv.
 constexpr auto columns_of_difference = [](auto& d, auto field) {
     for_each_column_of_scene(d.scene, field);
     for_each_column_of_name(d.name, field);

@@ -23,8 +23,7 @@ void require_seal(const std::filesystem::path& table, const table_seal& stated) 
 /// The positions of scenes in the manifest, with their digests.
 using known_scenes = std::map<scene_choice, std::pair<std::size_t, std::string>>;
 
-/// Rejects a row whose scene the manifest does not list, or that claims to be exact with another digest than the ground
-/// truth.
+/// Rejects a row whose scene, or whose digest of an exact result, is not that of the manifest.
 /// @param place "results.csv:17: "
 void require_known(const known_scenes& known, const row& r, const std::string& place) {
     const auto entry = known.find(r.scene);
@@ -35,8 +34,7 @@ void require_known(const known_scenes& known, const row& r, const std::string& p
                                 "'; that of the scene is " + digest + ", as manifest.json says");
 }
 
-/// Restores the order in which the run measured its rows, by scene, repeat and candidate, as the file may have any
-/// order.
+/// Restores the order of the run, since a file may have any: by scene, repeat and candidate.
 void sort_as_run(std::vector<row>& rows, const known_scenes& scenes, const std::vector<candidate_name>& candidates) {
     std::map<candidate_name, std::size_t> turns;
     for (const candidate_name& name : candidates) turns.emplace(name, turns.size());

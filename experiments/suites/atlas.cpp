@@ -32,7 +32,6 @@ std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool
     return failures;
 }
 
-/// A sentence for each experiment of the atlas whose results are missing or incomplete.
 std::vector<std::string> unfinished_parts(const std::filesystem::path& folder) {
     std::vector<std::string> sentences;
     for (const part& p : parts) {

@@ -26,10 +26,10 @@ namespace {
 class interruption {
 public:
     explicit interruption(const std::string& resume_with) {
-        message() = "\naabblab: interrupted; what is finished is kept, and " + resume_with + " continues\n";
+        message_ = "\naabblab: interrupted; what is finished is kept, and " + resume_with + " continues\n";
         std::signal(SIGINT, [](int signal) {
             // Async-signal-safe functions only.
-            if (write(STDERR_FILENO, message().data(), message().size()) < 0) _exit(1);
+            if (write(STDERR_FILENO, message_.data(), message_.size()) < 0) _exit(1);
             std::signal(signal, SIG_DFL);
             std::raise(signal);
         });
@@ -39,10 +39,7 @@ public:
     ~interruption() { std::signal(SIGINT, SIG_DFL); }
 
 private:
-    static std::string& message() {
-        static std::string text;
-        return text;
-    }
+    static inline std::string message_;
 };
 
 /// Notes each engine that cannot run, once per kind of scene.
@@ -67,7 +64,6 @@ scene_choice visible_scene(scene_choice scene) {
     return scene;
 }
 
-/// Prints the results of each scene, and the work of each composition if `shown` includes it.
 void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printed shown) {
     for (scene_summary& scene : scenes) {
         scene.scene = visible_scene(scene.scene);
@@ -79,8 +75,7 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
     flush_output();
 }
 
-/// Prints the results over all scenes: one table per baseline, because scenes of boxes and of meshes have different
-/// ones.
+/// Prints one table over scenes per baseline, because scenes of boxes and of meshes have different ones.
 void print_overall(std::span<const scene_summary> scenes) {
     std::map<candidate_name, std::vector<scene_summary>> by_baseline;
     for (const scene_summary& scene : scenes) by_baseline[scene.lines[0].name].push_back(scene);
@@ -88,8 +83,8 @@ void print_overall(std::span<const scene_summary> scenes) {
         if (const table overall = overall_table_of(group); group.size() > 1 && !overall.rows.empty())
             print(fmt::format(
                 "{} scenes with the baseline {},\nratio: the geometric mean of the ratios to it, fastest first; "
-                "regret: the "
-                "ratio\nover the least one of an exact result in each scene, the median and the worst\n\n{}\n",
+                "regret: "
+                "the ratio\nover the least one of an exact result in each scene, the median and the worst\n\n{}\n",
                 group.size(), text_of(baseline), to_text(overall, output_width())));
 }
 
@@ -131,7 +126,6 @@ void run_shares(const experiment& e, const std::filesystem::path& folder,
 
 }  // namespace
 
-/// Reads a config, and notes which meshes are missing and how they are replaced.
 experiment open_experiment(const std::string& config, bool quick) {
     experiment e = read_experiment(config, quick ? experiment_size::quick : experiment_size::full);
     for (const std::string& sentence : e.notes) note(sentence);
@@ -142,7 +136,6 @@ experiment open_experiment(const std::string& config, bool quick) {
     return e;
 }
 
-/// A sentence for each engine of the config that cannot run in a scene.
 std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& scene_name) {
     std::vector<std::string> sentences;
     for (const aabb::engine_info& engine : aabb::engines())

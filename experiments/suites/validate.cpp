@@ -52,7 +52,6 @@ std::vector<named_table> tables_of(const stiff_study& study, const stiff_result&
     return tables;
 }
 
-/// Adds a study of stiff contacts to the report: what it expects, figures, tables, and a failure per row that differs.
 void add_study(suite_report& report, const stiff_study& study, const stiff_result& result) {
     report.paragraphs.push_back(fmt::format("{}: {}. Expected: {}.", study.name, study.about, study.reference));
     std::ranges::move(figures_of(study, result), std::back_inserter(report.figures));
@@ -77,14 +76,13 @@ std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
     return chosen;
 }
 
-// Readers of reports as JSON, which earlier versions stored instead of rows.
+// Earlier versions stored reports instead of rows.
 
-figure_axis axis_of(const json_value& j) {
+figure_axis stored_axis(const json_value& j) {
     return {j.needed("label").text(), j.needed("logarithmic").flag()};
 }
 
-/// A line of a figure in a stored report.
-series series_of(const json_value& j) {
+series stored_series(const json_value& j) {
     const json_value style = j.needed("style");
     if (style.index() > static_cast<std::size_t>(series_style::level)) style.fail("is not a style of lines");
     series line{j.needed("label").text(), static_cast<series_style>(style.index())};
@@ -97,16 +95,16 @@ series series_of(const json_value& j) {
     return line;
 }
 
-figure figure_of(const json_value& j) {
-    figure f{j.needed("name").text(), j.needed("caption").text(), axis_of(j.needed("x")), axis_of(j.needed("y"))};
-    for (const json_value& line : j.needed("lines").list()) f.lines.push_back(series_of(line));
+figure stored_figure(const json_value& j) {
+    figure f{j.needed("name").text(), j.needed("caption").text(), stored_axis(j.needed("x")),
+             stored_axis(j.needed("y"))};
+    for (const json_value& line : j.needed("lines").list()) f.lines.push_back(stored_series(line));
     for (const json_value& m : j.needed("marks").list())
         f.marks.push_back({m.needed("x").number(), m.needed("label").text()});
     return f;
 }
 
-/// A table in a stored report.
-named_table table_of(const json_value& j) {
+named_table stored_table(const json_value& j) {
     named_table t{j.needed("name").text(), j.needed("caption").text(), {}};
     for (const json_value& c : j.needed("columns").list())
         t.content.columns.push_back({c.needed("name").text(), c.needed("is_number").flag()});
@@ -120,8 +118,8 @@ named_table table_of(const json_value& j) {
 suite_report read_report(const std::filesystem::path& file) {
     const json_value document(file.string(), text_of_file(file), "is not the report of a suite of validate");
     suite_report report{document.needed("paragraphs").texts(), {}, {}, document.needed("failures").texts()};
-    for (const json_value& f : document.needed("figures").list()) report.figures.push_back(figure_of(f));
-    for (const json_value& t : document.needed("tables").list()) report.tables.push_back(table_of(t));
+    for (const json_value& f : document.needed("figures").list()) report.figures.push_back(stored_figure(f));
+    for (const json_value& t : document.needed("tables").list()) report.tables.push_back(stored_table(t));
     return report;
 }
 

@@ -17,8 +17,7 @@ bool limit_changes_cut(const condition& c, const std::string& segments) {
 
 }  // namespace
 
-/// Claim C10: times of the axial cut with its limit of one cut per box and axis over those without the limit, for each
-/// number and size of huge boxes, since only boxes longer than a segment can be cut twice.
+/// Claim C10: times with at most one cut per box and axis over those without this limit, for huge boxes, which feel it.
 draft c10_claim(const measurements& m) {
     draft c10{
         .claim = {.claim = "Cutting a box more than once on an axis is not worth its cost",
@@ -29,8 +28,7 @@ draft c10_claim(const measurements& m) {
     for (const condition& c : m.conditions_of("c10"))
         for (const std::string segments : {"auto", "32"}) {
             if (!limit_changes_cut(c, segments)) continue;
-            // Only scenes with huge boxes have their edge, `span`, as a factor.
-            const std::string subject = value_of(c.scene(), "span").empty()
+            const std::string subject = value_of(c.scene(), "scene") == "mixed_sizes"
                                             ? "with at most one cut per box on mixed sizes"
                                             : "with at most one cut of huge boxes";
             c10.add(endpoint_of(c, with_limit("on", segments), with_limit("off", segments), "frame_cpu_ms",

@@ -37,7 +37,6 @@ const factors far_apart{{"density", "0.001"}, {"objects", "100000"}};
 }  // namespace
 
 /// Claim C11: both phases improved against both traditional, in three kinds of scenes whose phases weigh differently.
-/// The remark says how much the broad phase weighs, which limits what its improvement can save.
 draft c11_claim(const measurements& m) {
     draft c11{
         .claim = {.claim = "The whole improved algorithm takes less time than the traditional one on the same models",

@@ -39,13 +39,9 @@ draft c13_claim(const measurements& m) {
         .primary = {{{"quantity", "time"}, {"objects", "100000"}, {"over", "objects 1000"}},
                     {{"quantity", "time"}, {"density", "0.1"}, {"over", "density 0.01"}},
                     {{"quantity", "time"}, {"ratio", "10"}, {"over", "ratio 1.01"}}}};
-    const struct {
-        const char* experiment;
-        const char* factor;
-        const char* subject;
-    } varied[] = {{"smb_objects", "objects", "with more boxes"},
-                  {"smb_density", "density", "in a denser world"},
-                  {"smb_sizes", "ratio", "with a wider range of sizes"}};
+    const std::array<std::string, 3> varied[] = {{"smb_objects", "objects", "with more boxes"},
+                                                 {"smb_density", "density", "in a denser world"},
+                                                 {"smb_sizes", "ratio", "with a wider range of sizes"}};
     for (const auto& [experiment, factor, subject] : varied) {
         const std::vector<condition>& conditions = m.conditions_of(experiment);
         const auto least =

@@ -26,11 +26,6 @@ row_value work() {
     return sum_of({"comparisons", "moves"});
 }
 
-/// "100 to 100000"
-std::string sizes_text(const std::vector<const condition*>& conditions) {
-    return value_of(conditions.front()->scene(), "objects") + " to " + value_of(conditions.back()->scene(), "objects");
-}
-
 /// Inversions per element at all sizes, to check that "almost ordered" means the same for each.
 table inversions_table(const std::map<std::string, std::vector<const condition*>>& by_displacement) {
     table t{{{"displacement"}}, {}};
@@ -43,16 +38,13 @@ table inversions_table(const std::map<std::string, std::vector<const condition*>
     return t;
 }
 
-struct reported_sort {
-    const char* sort;
-    const char* subject;
-};
-constexpr reported_sort sorts[] = {{"insertion", "with insertion sort"},
-                                   {"shell:gaps=four_one", "with two gaps"},
-                                   {"shell:gaps=ciura_eight", "with Ciura's eight gaps"},
-                                   {"shell:gaps=ciura", "with Ciura's gaps extended as N grows"},
-                                   {"shell:gaps=tokuda", "with Tokuda's gaps"},
-                                   {"shell:gaps=shell", "with Shell's own gaps"}};
+/// The compared sorts, with their subjects in the sentence.
+constexpr std::pair<const char*, const char*> sorts[] = {{"insertion", "with insertion sort"},
+                                                         {"shell:gaps=four_one", "with two gaps"},
+                                                         {"shell:gaps=ciura_eight", "with Ciura's eight gaps"},
+                                                         {"shell:gaps=ciura", "with Ciura's gaps extended as N grows"},
+                                                         {"shell:gaps=tokuda", "with Tokuda's gaps"},
+                                                         {"shell:gaps=shell", "with Shell's own gaps"}};
 
 /// The median over all sizes.
 std::optional<double> inversions_of(const std::vector<const condition*>& conditions) {
@@ -62,9 +54,8 @@ std::optional<double> inversions_of(const std::vector<const condition*>& conditi
     return values.empty() ? std::nullopt : std::optional(quartiles_of(values).median);
 }
 
-/// The conditions from which growth with N is computed, without the sizes that disturb it: with few elements the
-/// passes of the largest gaps are incomplete, and with many, far from the origin, floats cannot represent a move of a
-/// hundredth of an edge, so that the input has fewer inversions.
+/// The sizes from which growth is computed: with few elements the passes of the largest gaps are incomplete, and far
+/// from the origin, where floats cannot represent a move of a hundredth of an edge, the input has fewer inversions.
 std::vector<const condition*> comparable_sizes(std::vector<const condition*> conditions) {
     constexpr double fewest_elements = 10'000;
     constexpr double most_deviation = 0.1;
@@ -93,26 +84,27 @@ draft c2_claim(const measurements& m) {
                          {{"sort", "shell:gaps=ciura"}, {"displacement", "0.1"}}}};
     std::map<std::string, std::vector<const condition*>> by_displacement;
     for (const condition& c : m.conditions_of("c2")) by_displacement[value_of(c.scene(), "displacement")].push_back(&c);
-    for (const reported_sort& s : sorts)
+    for (const auto& [sort, subject] : sorts)
         for (const auto& [displacement, of_all_sizes] : by_displacement) {
             work_by_size measured_work;
             const std::vector<const condition*> conditions = comparable_sizes(of_all_sizes);
             if (conditions.size() < 2) continue;
             for (const condition* c : conditions) {
                 measured_work.log_n.push_back(std::log10(number_of(c->scene(), "objects")));
-                measured_work.per_element.push_back(c->logs({{kind::sort, s.sort}}, per_object(work())));
+                measured_work.per_element.push_back(c->logs({{kind::sort, sort}}, per_object(work())));
             }
             endpoint growth;
             growth.where = {{"scene", "line"},
-                            {"sort", s.sort},
+                            {"sort", sort},
                             {"displacement", displacement},
-                            {"elements", sizes_text(conditions)}};
+                            {"elements", value_of(conditions.front()->scene(), "objects") + " to " +
+                                             value_of(conditions.back()->scene(), "objects")}};
             if (const auto inversions = inversions_of(conditions))
                 growth.observed = {{"inversions", three_digits(*inversions)}};
             growth.log_ratios = {bootstrap(measured_work.per_element.front().size(),
                                            [&](const resample& d) { return measured_work.growth(d); })};
-            growth.source = "c2: growth of comparisons and moves of sort=" + std::string(s.sort);
-            c2.add(std::move(growth), s.subject, "inversions", quantity::work);
+            growth.source = "c2: growth of comparisons and moves of sort=" + std::string(sort);
+            c2.add(std::move(growth), subject, "inversions", quantity::work);
         }
     if (by_displacement.empty()) return c2;
     c2.claim.tables.push_back({"c2_inversions", "Inversions per element, which should be equal at all sizes.",
@@ -123,7 +115,7 @@ draft c2_claim(const measurements& m) {
                 "edge. A horizontal line is O(N).",
                 "elements", "comparisons and moves per element"));
     std::vector<method> methods;
-    for (const reported_sort& s : sorts) methods.push_back({s.sort, {{kind::sort, s.sort}}});
+    for (const auto& [sort, subject] : sorts) methods.push_back({sort, {{kind::sort, sort}}});
     f.lines = series_of(methods, by_displacement["0.1"], "objects", per_object(work()));
     f.lines.push_back(series_of("inversions", by_displacement["0.1"], "objects", {{kind::sort, "insertion"}},
                                 per_object(measured("inversions"))));

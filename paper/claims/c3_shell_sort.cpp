@@ -35,8 +35,7 @@ table gaps_table(const std::vector<condition>& conditions) {
     return t;
 }
 
-/// The time of Shell sort over that of insertion sort against inversions per element, which decide between the two, in
-/// one panel for boxes in space and one for boxes on a line.
+/// The time of Shell sort over that of insertion sort against inversions per element, for boxes in space and on a line.
 figure figure_of(const std::vector<condition>& conditions) {
     figure f = log_log("c3",
                        "Time of Shell sort over that of insertion sort (the level 1) against inversions per element, "
@@ -61,7 +60,7 @@ figure figure_of(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Claim C3: times of Shell sort over those of insertion sort, ordered by inversions per element.
+/// Claim C3: times of Shell sort over those of insertion sort, by inversions per element, which decide between the two.
 draft c3_claim(const measurements& m) {
     // The primary conditions have few inversions and many. Boxes on a line that move by 300 edges have the inversions
     // of 100,000 boxes in space that move by one edge (186 per element in full runs), and take a hundredth of the time.

@@ -27,8 +27,7 @@ bool is_finer(const condition& c, int axes, int wanted, int before) {
     return segments && coarser && *segments > 1.1 * *coarser;
 }
 
-/// Times against the requested number of segments in one scene, a line for each number of cut axes. Marks show how many
-/// segments the limit of one cut per box allows: from there on, more of them are requested but not made.
+/// Times against the requested number of segments, a line per number of cut axes; marks show the most that are made.
 figure figure_of(const std::string& name, const condition& c) {
     figure f = log_log(
         name,
@@ -50,8 +49,7 @@ figure figure_of(const std::string& name, const condition& c) {
     return f;
 }
 
-/// The automatic number of segments, and its time over that of as many as the limit of one cut per box allows; it shows
-/// that segments need not be tiny. One row per condition and number of cut axes.
+/// The automatic number of segments, and its time over that of the most that the limit of one cut per box allows.
 table automatic_table(const std::vector<condition>& conditions) {
     table t = factors_table(factors_of(conditions));
     const std::vector<std::vector<std::string>> places = std::exchange(t.rows, {});
@@ -72,8 +70,7 @@ table automatic_table(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Claim C4: times of finer cuts over those of coarser ones, and of the automatic number of segments over the most that
-/// the limit of one cut per box allows.
+/// Claim C4: times of finer cuts over coarser ones, and of the automatic number of segments over the most allowed.
 draft c4_claim(const measurements& m) {
     draft c4{
         .claim = {.claim = "The more segments, the faster, up to the limit; and segments need not be tiny",

@@ -25,11 +25,10 @@ bool is_grid(const condition& c, const std::string& size) {
     return median_of(c, grid(size), measured("subsets")).value_or(2) > 1;
 }
 
-/// Times of grids of all cell sizes over that of the axial cut, in scenes with the same number of objects. A cell size
-/// competes in the scenes in which it gives more than one cell: with one cell the space is not divided.
+/// Times of grids of all cell sizes over that of the axial cut, in scenes with the same number of objects.
 class scenes_and_cells {
 public:
-    /// Reads the ratios of the cell sizes that give a grid of more than one cell, by scene.
+    /// Reads the ratios by scene, without cells so large that a single one is made, which divides nothing.
     explicit scenes_and_cells(const std::vector<const condition*>& scenes) {
         for (const std::string& size : cell_sizes)
             if (std::ranges::all_of(scenes, [&](const condition* c) { return is_grid(*c, size); }))
@@ -44,16 +43,15 @@ public:
     /// The sizes that give a grid in all scenes. The safest size is one of these.
     [[nodiscard]] const std::vector<std::string>& sizes() const { return sizes_in_all_scenes_; }
 
-    /// The regret of a size in a scene is the logarithm of its time over that of the best size there.
-    [[nodiscard]] double worst_regret(const std::string& size, const resample& d) const {
-        return worst([&](const auto& scene) { return d.mean_of(scene.at(size)) - best(scene, d); });
-    }
+    /// The regret in a scene is the logarithm of a time over that of the best cell size there.
     [[nodiscard]] double worst_regret_of_cut(const resample& d) const {
         return worst([&](const auto& scene) { return -best(scene, d); });
     }
     /// The worst regret of the safest cell size.
     [[nodiscard]] double least_worst_regret(const resample& d) const {
-        return least_of(sizes_in_all_scenes_, [&](const std::string& size) { return worst_regret(size, d); });
+        return least_of(sizes_in_all_scenes_, [&](const std::string& size) {
+            return worst([&](const auto& scene) { return d.mean_of(scene.at(size)) - best(scene, d); });
+        });
     }
 
 private:
@@ -98,10 +96,9 @@ table times_table(const std::vector<condition>& conditions) {
     return t;
 }
 
-/// Adds to C5 how bytes, and times relative to the axial cut, grow from the smallest world to the largest, with the
-/// same number of boxes. A sparser world has fewer pairs, so that all times fall: only relative to another method can
-/// they grow. What the claim says to grow is the small world's over the large one's, since a claim favours ratios
-/// below 1.
+/// Adds how bytes, and times relative to the axial cut, grow from the smallest world to the largest. A sparser world
+/// has fewer pairs, so that all times fall: only relative to another method can they grow. Where growth is claimed, the
+/// ratios are of small over large, since claims favour ratios below 1.
 void add_growth(const std::vector<condition>& worlds, draft& c5) {
     if (worlds.size() < 2) return;
     const condition& small = worlds.front();
@@ -154,8 +151,7 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
     return f;
 }
 
-/// A figure of time or memory of a grid and of the axial cut against the size of the world, as C5 says that both grow
-/// with the space for a grid.
+/// A figure of the time or memory of two grids and of the axial cut against the side of the world.
 figure world_figure(const std::string& name, const std::string& quantity_name, const std::string& y_label,
                     const std::vector<condition>& worlds, const row_value& value) {
     figure f = log_log(name,

@@ -78,8 +78,7 @@ table table_of(const test_times& times) {
     return t;
 }
 
-/// Median times of all elementary tests: those of B's leaves, which are carried into A's frame of reference, beside
-/// those of A's own leaves, which need no transformation.
+/// Median times of all tests: of B's leaves, carried into A's frame of reference, and of A's, without a transformation.
 figure figure_of(const test_times& times) {
     figure f{"c6",
              "Time of one elementary test, on the pairs that a traversal of two trees visits; medians and quartiles.",

@@ -16,8 +16,7 @@ std::vector<const condition*> conditions_by_size(const measurements& m) {
     return conditions;
 }
 
-/// A figure of bytes or times of four trees, from the canonical to the compressed one, against the number of triangles.
-/// Of the meshes only noise spheres are shown, which have one shape in all sizes.
+/// A figure of bytes or times of four trees against the number of triangles of noise spheres, which have one shape.
 figure size_figure(const measurements& m, const std::string& name, const std::string& caption, const std::string& y,
                    const row_value& value) {
     const method layouts[] = {{"canonical", tree("canonical")},
@@ -53,8 +52,7 @@ draft c7a_claim(const measurements& m) {
     return c7a;
 }
 
-/// Claim C7b: the query times of the same trees. The compressed one has no boxes of leaves, so that its time depends on
-/// what replaces their test: the triangle against the box, the triangle's box computed on the fly, or nothing.
+/// Claim C7b: the query times of the same trees, for each test that replaces that of a leaf's box, which is not stored.
 draft c7b_claim(const measurements& m) {
     draft c7b{.claim = {.claim = "Compressed storage takes less time",
                         .measured = "time per query of the compressed tree over that of the canonical one",

@@ -17,8 +17,7 @@ bool has_pieces(const condition& c, const selection& split) {
 
 }  // namespace
 
-/// Claim C9: times with large objects split over those without, for boxes and for meshes. Scenes in which nothing is
-/// large enough to be split are left out.
+/// Claim C9: times with large objects split over those without, for boxes and for meshes, where any object is split.
 draft c9_claim(const measurements& m) {
     draft c9{
         .claim = {.claim = "Splitting large objects before the search is worth its cost",

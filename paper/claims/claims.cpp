@@ -6,8 +6,7 @@ namespace aabblab {
 
 namespace {
 
-/// Decides endpoints (ratios of claims) as one family, by Holm's correction (1979) for the number of decisions;
-/// outcomes on which machines disagree are undecided.
+/// Decides a family of endpoints by Holm's correction (1979); outcomes on which machines disagree are undecided.
 void decide_family(std::span<endpoint* const> endpoints, double band) {
     if (endpoints.empty()) return;
     for (std::size_t machine = 0; machine < endpoints.front()->log_ratios.size(); ++machine) {
@@ -37,13 +36,11 @@ std::string word_of(const endpoint& e) {
 std::string evidence_text(std::span<const endpoint> endpoints) {
     std::string text;
     std::vector<endpoint> others;
-    for (const endpoint& e : endpoints) {
-        if (!e.is_primary) {
+    for (const endpoint& e : endpoints)
+        if (e.is_primary)
+            text += fmt::format("{}{}: {}, {}", text.empty() ? "" : "; ", text_of(e.where), ratio_text(e), word_of(e));
+        else
             others.push_back(e);
-            continue;
-        }
-        text += fmt::format("{}{}: {}, {}", text.empty() ? "" : "; ", text_of(e.where), ratio_text(e), word_of(e));
-    }
     if (text.empty()) return "There are no measurements that decide it.";
     text = "Primary ratios, each with its 95 % interval: " + text + ".";
     if (others.empty()) return text;
@@ -104,8 +101,7 @@ std::vector<draft> drafts_of(const measurements& m) {
     return drafts;
 }
 
-/// Adds another machine's measurements, drafted alike, to the drafts. Endpoints that it lacks become unknown, since an
-/// outcome must be found on every machine.
+/// Adds another machine's measurements to the drafts. Endpoints that it lacks become unknown, and are then left out.
 void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
     const auto add = [](std::vector<endpoint>& endpoints, const std::vector<endpoint>& others) {
         for (endpoint& e : endpoints) {

@@ -27,8 +27,7 @@ struct endpoint {
     support uncorrected = support::undecided;  ///< without correction, from its own interval
     bool is_primary = false;
     quantity compared = quantity::time;
-    /// Names its clause in a sentence, which reports all endpoints of a subject: "on drifting boxes". Without one it is
-    /// not mentioned.
+    /// Names the clause that reports it in a sentence: "on drifting boxes". Without one it is not mentioned.
     std::optional<std::string> subject{};
     std::string along{};   ///< the factor that orders the endpoints of the clause; empty if unordered
     std::string source{};  ///< the rows: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
@@ -153,15 +152,12 @@ struct claim_source {
 
 [[nodiscard]] endpoint decided_alone(endpoint e, double band = equivalence_band);
 [[nodiscard]] std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band);
-/// By the rule of aabblab.statistics.
 [[nodiscard]] verdict_kind verdict_of(std::span<const endpoint> endpoints);
 
-/// The number of endpoints with this outcome.
 [[nodiscard]] inline std::size_t count_of(std::span<const endpoint> endpoints, support what) {
     return static_cast<std::size_t>(std::ranges::count(endpoints, what, &endpoint::corrected));
 }
 
-/// Whether a sentence reports both in the same clause.
 [[nodiscard]] inline bool is_same_clause(const endpoint& a, const endpoint& b) {
     return a.subject == b.subject && a.compared == b.compared;
 }
@@ -219,7 +215,7 @@ void add_ratios(table& t, const std::vector<condition>& conditions, std::span<co
                                             std::span<const condition* const> conditions, const std::string& x,
                                             const row_value& value);
 [[nodiscard]] std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted,
-                                                const std::string& baseline);
+                                                const std::string& level);
 
 /// The condition's mesh: "noise_sphere:triangles=1000", "elephant.off".
 [[nodiscard]] inline std::string mesh_of(const condition& c) {

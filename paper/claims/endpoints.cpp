@@ -93,10 +93,8 @@ std::vector<series> series_of(std::span<const method> methods, std::span<const c
     return lines;
 }
 
-/// Ratios with the factors `wanted` against the number of huge boxes, one line per span (the huge boxes' edge over the
-/// side of the world), and the level 1 of the baseline.
-std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted,
-                                  const std::string& baseline) {
+/// Ratios with the factors `wanted` against the number of huge boxes, a line per edge length, and the baseline's level.
+std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted, const std::string& level) {
     std::map<std::string, series> by_span;
     for (const endpoint& e : ratios) {
         const std::string span = value_of(e.where, "span");
@@ -107,7 +105,7 @@ std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factor
     }
     std::vector<series> lines;
     for (auto& [span, line] : by_span) lines.push_back(std::move(line));
-    lines.push_back(level_of(baseline));
+    lines.push_back(level_of(level));
     return lines;
 }
 

@@ -27,9 +27,9 @@ std::string percent_text(double share) {
     return percent < 1.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
 }
 
-/// "1.2 to 3.4", or a single number if both are equal or nearly equal.
-std::string span_text(const std::string& low, const std::string& high, bool nearly_one) {
-    return low == high || nearly_one ? high : low + " to " + high;
+/// "1.2 to 3.4", or a single number if both are equal.
+std::string span_text(const std::string& low, const std::string& high) {
+    return low == high ? high : low + " to " + high;
 }
 
 /// The least and the greatest of several ratios on one side of 1, as factors above 1.
@@ -40,7 +40,7 @@ struct extent {
     [[nodiscard]] bool is_narrow() const { return strong / mild <= equality_threshold; }
     [[nodiscard]] double geometric_mean() const { return std::sqrt(mild * strong); }
     [[nodiscard]] std::string times() const {
-        return is_narrow() ? times_text(geometric_mean()) : span_text(times_text(mild), times_text(strong), false);
+        return is_narrow() ? times_text(geometric_mean()) : span_text(times_text(mild), times_text(strong));
     }
 };
 
@@ -48,18 +48,18 @@ struct extent {
 std::string less_time_text(const extent& e) {
     if (e.mild >= factor_threshold) return e.times() + " times as fast";
     if (e.strong >= factor_threshold) return "up to " + times_text(e.strong) + " times as fast";
-    return span_text(percent_text(1 - 1 / e.mild), percent_text(1 - 1 / e.strong), false) + " % less time";
+    return span_text(percent_text(1 - 1 / e.mild), percent_text(1 - 1 / e.strong)) + " % less time";
 }
 
 /// The strongest reduction comes first.
 std::string less_text(const extent& e, std::string_view noun) {
-    return span_text(percent_text(1 / e.strong), percent_text(1 / e.mild), false) + " % of the " + std::string(noun);
+    return span_text(percent_text(1 / e.strong), percent_text(1 / e.mild)) + " % of the " + std::string(noun);
 }
 
 std::string more_text(const extent& e, std::string_view noun) {
     if (e.mild >= factor_threshold) return fmt::format("{} times the {}", e.times(), noun);
     if (e.strong >= factor_threshold) return fmt::format("up to {} times the {}", times_text(e.strong), noun);
-    return fmt::format("{} % more {}", span_text(percent_text(e.mild - 1), percent_text(e.strong - 1), false), noun);
+    return fmt::format("{} % more {}", span_text(percent_text(e.mild - 1), percent_text(e.strong - 1)), noun);
 }
 
 /// The extent of ratios that all lie on one side of 1; those below 1 are inverted.
@@ -123,8 +123,7 @@ std::vector<stretch> stretches_of(std::span<const endpoint> endpoints) {
     return stretches;
 }
 
-/// The part of a clause's range that a stretch with one outcome covers: "at 100 objects", "up to 1,000 objects", "from
-/// 3,162 objects on", "from 10 to 100 objects".
+/// The range of a stretch: "at 100 objects", "up to 1,000 objects", "from 3,162 objects on", "from 10 to 100 objects".
 std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
     const std::string& factor = stretches[i].endpoints.front().along;
     const std::string first = value_of(factors_of(stretches[i].endpoints.front()), factor);
@@ -141,8 +140,7 @@ std::string subject_text(const endpoint& e) {
     return e.subject->empty() ? "" : " " + *e.subject;
 }
 
-/// Reports endpoints that a factor orders, by stretches with the same outcome: "30 % more time at 100 objects, 2.0
-/// times as fast from 1,000 objects on".
+/// Reports ordered endpoints by stretches: "30 % more time at 100 objects, 2.0 times as fast from 1,000 objects on".
 std::string ordered_clause(std::span<const endpoint> endpoints) {
     const std::vector<stretch> stretches = stretches_of(endpoints);
     std::string text;
@@ -154,8 +152,7 @@ std::string ordered_clause(std::span<const endpoint> endpoints) {
     return text;
 }
 
-/// Reports endpoints that no factor orders: the least and the greatest ratio if their outcomes differ, and of undecided
-/// ones only the number.
+/// Reports the least and the greatest ratio if their outcomes differ, and of undecided ones only the number.
 std::string unordered_clause(std::vector<endpoint> endpoints) {
     const std::string subject = subject_text(endpoints.front());
     const std::string undecided = predicate_of(endpoints, wording::open);

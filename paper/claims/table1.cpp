@@ -27,12 +27,6 @@ selection selection_of(const layout& l, const std::string& build) {
     return {{kind::tree, l.tree}, {kind::build, build}};
 }
 
-/// The condition with the largest mesh, which is the last one.
-const condition* largest_mesh_condition(const measurements& m) {
-    const std::vector<condition>& conditions = m.conditions_of("table1");
-    return conditions.empty() ? nullptr : &conditions.back();
-}
-
 /// Bytes per triangle of every layout of trees: nominal, from the sizes of its nodes, and allocated.
 table bytes_table(const condition& c) {
     table t = empty_table({"tree", "internal node", "leaf"},
@@ -50,8 +44,7 @@ table bytes_table(const condition& c) {
     return t;
 }
 
-/// Bytes, box inflation and times of every layout under every split rule; times over those of the canonical layout
-/// split at the median.
+/// Bytes, box inflation and times, relative to canonical and median, of every layout under every split rule.
 table cost_table(const condition& c) {
     table t = empty_table({"tree", "build"}, {"bytes per triangle", "boxes larger by (%)", "build time", "query time"});
     for (const layout& l : layouts)
@@ -73,16 +66,17 @@ table cost_table(const condition& c) {
 
 /// The paper's table 1, sizes of tree nodes, as measured on the largest mesh; empty if it was not measured.
 std::vector<named_table> table1(const measurements& m) {
-    const condition* c = largest_mesh_condition(m);
-    if (!c) return {};
+    const std::vector<condition>& conditions = m.conditions_of("table1");
+    if (conditions.empty()) return {};
+    const condition& c = conditions.back();  // with the largest mesh
     return {
-        {"table1", "Node sizes of every layout in bytes: nominal, and as allocated for trees of " + mesh_of(*c) + ".",
-         bytes_table(*c)},
+        {"table1", "Node sizes of every layout in bytes: nominal, and as allocated for trees of " + mesh_of(c) + ".",
+         bytes_table(c)},
         {"table1_builds",
          "Costs of the layouts, split at the median, at the mean, in the middle of the box and by the surface area "
          "heuristic. Times are relative to canonical, median, on " +
-             mesh_of(*c) + ".",
-         cost_table(*c)}};
+             mesh_of(c) + ".",
+         cost_table(c)}};
 }
 
 }  // namespace aabblab

@@ -12,11 +12,6 @@ std::string grouped_if_long(const std::string& text) {
     return text.size() < 5 ? text : number_text(text);
 }
 
-/// Whether the interval lies outside the band. A mere direction is found by chance in one of twenty.
-bool is_difference(const endpoint& e) {
-    return e.range.low > 1 + equivalence_band || e.range.high < 1 / (1 + equivalence_band);
-}
-
 /// The waiting time in percent of all frames. A quiet machine takes a thousandth for itself.
 constexpr double most_waiting = 2;
 /// The median difference between successive repeats, in percent.
@@ -61,8 +56,7 @@ std::vector<factors> factors_of(const std::vector<condition>& conditions) {
     return scenes;
 }
 
-/// Whether a claim's outcome depends on a choice that the paper leaves open: "yes" if an alternative has another
-/// outcome than our choice; undecided outcomes contradict nothing.
+/// Whether any alternative has another outcome than our choice; undecided ones contradict nothing.
 std::string dependence_of(const open_choice& choice) {
     bool is_undecided = choice.alternatives.empty();
     for (const open_choice::alternative& a : choice.alternatives) {
@@ -92,7 +86,6 @@ std::string text_of(const factors& where) {
     return text;
 }
 
-/// Each claim's verdict and sentence, its first primary ratio, and the outcomes of its secondary ratios.
 table verdict_table(const reproduction& results) {
     table t =
         empty_table({"", "claim", "verdict", "in words"}, {"ratio", "95 %", "for", "against", "same", "undecided"});
@@ -120,7 +113,6 @@ table brief_table(const reproduction& results) {
     return t;
 }
 
-/// What the paper leaves open: our choice, its reason, and a claim's ratio under each alternative.
 table choice_table(const reproduction& results) {
     table t = empty_table({"left open", "our choice", "why", "claim", "its ratio", "changes it"});
     for (const open_choice& c : results.choices) {
@@ -158,23 +150,24 @@ named_table null_control(const measurements& m) {
                                                {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
             if (ratio.is_known()) ratios.push_back(decided_alone(ratio));
         }
+    // A difference lies outside the band. A mere direction is found by chance in one of twenty.
     const auto outcome_of = [](const endpoint& e) {
-        return is_difference(e)                          ? std::string("a difference")
-               : e.uncorrected == support::no_difference ? text_of(e.uncorrected)
-                                                         : "undecided";
+        if (e.range.low > 1 + equivalence_band || e.range.high < 1 / (1 + equivalence_band))
+            return std::string("a difference");
+        return e.uncorrected == support::no_difference ? text_of(e.uncorrected) : "undecided";
     };
     const table t = endpoint_table(ratios, outcome_of);
     if (ratios.empty()) return {"null_control", "There are no measurements of a null control.", t};
     const auto count = [&](const std::string& outcome) { return std::ranges::count(ratios, outcome, outcome_of); };
-    const auto intervals_without_1 =
+    const auto excluding_1 =
         std::ranges::count_if(ratios, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
-    return {"null_control",
-            fmt::format(
-                "Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
-                "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
-                "and {} are undecided.",
-                ratios.size(), intervals_without_1, count("a difference"), count("no difference"), count("undecided")),
-            t};
+    return {
+        "null_control",
+        fmt::format("Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
+                    "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
+                    "and {} are undecided.",
+                    ratios.size(), excluding_1, count("a difference"), count("no difference"), count("undecided")),
+        t};
 }
 
 /// A warning if a machine was not quiet, by the time without a processor and the scatter of repeats; otherwise empty.

@@ -31,8 +31,7 @@ std::vector<error_study> studies_with_curves(bool quick) {
     return studies;
 }
 
-/// Times the elementary tests of claim C6 (of a box or a triangle at a leaf) by Google Benchmark, in several processes,
-/// from whose differences intervals are estimated. Results of the same build are kept.
+/// Times claim C6's tests of single boxes and triangles by Google Benchmark; keeps results of the same build.
 /// @returns a sentence if a test is wrong
 std::vector<std::string> time_elementary_tests(const std::filesystem::path& folder, bool quick) {
     constexpr std::size_t processes = 5;
@@ -64,17 +63,16 @@ std::vector<std::string> time_elementary_tests(const std::filesystem::path& fold
 /// Errors are stored with the results, one sentence per line, because a later judgement must report them too.
 constexpr const char* failures_name = "failures.txt";
 
-/// Runs the suites of extreme and stiff scenes, whose results the report includes, and prints nothing.
+/// Runs the suites of extreme and stiff scenes, which the report includes.
 /// @returns the errors that they found
 std::vector<std::string> run_suites(const std::filesystem::path& folder, bool quick) {
     // The file of an earlier version would have priority over the rows.
     for (const char* suite : {"extreme", "stiff"}) std::filesystem::remove(folder / suite / "report.json");
+    constexpr bool shown = false;
     note("the extreme scenes");
-    std::vector<std::string> failures =
-        run_extreme_suite(folder / "extreme", default_cases(), quick, /*shown=*/false).failures;
+    std::vector<std::string> failures = run_extreme_suite(folder / "extreme", default_cases(), quick, shown).failures;
     note("the stiff scenes");
-    std::ranges::move(run_stiff_suite(folder / "stiff", /*studies=*/{}, quick, /*shown=*/false).failures,
-                      std::back_inserter(failures));
+    std::ranges::move(run_stiff_suite(folder / "stiff", {}, quick, shown).failures, std::back_inserter(failures));
     return failures;
 }
 
@@ -89,8 +87,7 @@ void remove_edited_test_times(const std::filesystem::path& folder) {
     }
 }
 
-/// The report's section on error against run time, from the studies that have results: of sets of triangle pairs
-/// (errors.csv), or of whole scenes (results.csv).
+/// The report's section on error against run time, from those studies of triangle pairs or whole scenes that were run.
 report_section errors_section(const std::filesystem::path& folder, bool quick) {
     report_section section{
         .id = "errors",
@@ -259,8 +256,7 @@ void require_different(std::span<const measurements> runs) {
     }
 }
 
-/// A sentence on how the verdicts agree with those of the published run of the same size, which the repository contains
-/// as an archive; empty if that is missing or damaged.
+/// A sentence on how the verdicts agree with the published run of this size, an archive in the repository; or empty.
 std::string agreement_with_published(std::span<const measurements> runs, const reproduction& reproduced) {
     const std::string name = is_quick(runs.front().folder()) ? "quick_run.tar.xz" : "full_run.tar.xz";
     const std::filesystem::path archive = std::filesystem::path(AABBLAB_ARCHIVES) / name;

@@ -112,8 +112,7 @@ void results_sources::add(const std::filesystem::path& folder) {
     sources_.push_back({folder.string(), folder});
 }
 
-/// Runs the work, and puts the archive's name into its message of rejection where that names the temporary folder into
-/// which the archive was unpacked, which the user does not know.
+/// Archives are unpacked into temporary folders, which the user does not know: messages get the archive's name.
 int results_sources::run_with_source_names(const std::function<int()>& work) const {
     try {
         return work();
@@ -136,8 +135,7 @@ std::string seal_of_record(const std::filesystem::path& folder) {
     return checksum_of(folder / sums_name);
 }
 
-/// Rejects results that differ from their seal, SHA256SUMS. Files are compared with stated checksums in both
-/// directions, so that added files are found as well as missing ones.
+/// Compares files with SHA256SUMS in both directions, so that added files are found as well as missing or altered ones.
 void verify_record(const std::filesystem::path& folder) {
     if (!is_sealed_record(folder)) return;
     const checksums_by_file actual = checksums_in(folder);

@@ -70,7 +70,6 @@ private:
 /// The report's note about unsealed results.
 inline constexpr const char* unsealed_note =
     "the results are not sealed: the run was not finished, is of an earlier version, or lost its SHA256SUMS. Missing "
-    "or "
-    "altered rows would not be noticed";
+    "or altered rows would not be noticed";
 
 }  // namespace aabblab

@@ -61,8 +61,7 @@ void add_interval(svg_picture& picture, const endpoint& e, double y) {
     if (is_above) add_arrow(picture, /*to_left=*/false, y, e.ratio > claims_scale.to ? e.ratio : high);
 }
 
-/// A claim's ratios with their intervals, one per row, against the band of no difference, as SVG for the page. All
-/// claims share a scale, so that they can be compared by eye.
+/// A claim's ratios with their intervals, one per row, against the band of no difference. All claims share a scale.
 std::string interval_picture(std::span<const endpoint> endpoints) {
     const double axis_y = first_row + row_height * static_cast<double>(endpoints.size());
     std::string label;
@@ -180,8 +179,7 @@ void add_claim_rows(page& out, const reproduction& reproduced) {
         out.add_markdown("![" + f.caption + "](figures/" + f.name + ".svg)\n\n" + f.caption + "\n\n");
 }
 
-/// Adds the section on the rule of verdicts: a picture, the meaning of each verdict, the rule in words, and the null
-/// control, which shows how far intervals can be trusted.
+/// Adds the section on the rule of verdicts: a picture, the meaning of each verdict, rule.md and the null control.
 void add_rule(page& out, const reproduction& reproduced) {
     out.heading("How a verdict is reached", "rule");
     out.add_html(rule_picture() + "\n");

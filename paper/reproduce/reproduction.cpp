@@ -8,7 +8,6 @@ namespace aabblab {
 
 namespace {
 
-/// The macros of the LaTeX report, from which it takes every number and sentence by a key.
 class macros {
 public:
     /// Sets text that is already TeX.
@@ -21,8 +20,7 @@ private:
     std::string text_ = "% Written by ./aabblab reproduce: every number of the report.\n";
 };
 
-/// The set-up of a claim's experiments: the values of each factor over all scenes, as in "scene brownian, still;
-/// objects 100, 1000."
+/// The values of all factors over the scenes of a claim: "scene brownian, still; objects 100, 1000."
 std::string setup_of(const claim_result& c) {
     std::vector<std::pair<std::string, std::vector<std::string>>> values;
     for (const factors& scene : c.scenes)
@@ -215,9 +213,7 @@ provenance provenance_of(const measurements& results, const reproduction& reprod
 
 }  // namespace
 
-/// Writes the judged claims in all forms: tables, figures, verdicts.csv, endpoints.csv, the LaTeX report's macros, and
-/// the page. Of several runs, which are judged together, the first gives figures and provenance, and the others are
-/// noted.
+/// Writes all files of the report; with several runs, its figures and provenance are those of the first.
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
                         const std::vector<std::string>& failures, const std::string& agreement) {
@@ -258,7 +254,6 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     write_file(folder / "report.html", report.html());
 }
 
-/// A sentence on how two judgements agree: "13 of 14 verdicts agree with …: C3: here holds, there undecided."
 std::string agreement_of(std::span<const claim_result> claims, std::span<const claim_result> other_claims,
                          const std::string& other) {
     std::string differing;
