@@ -83,8 +83,8 @@ void print_overall(std::span<const scene_summary> scenes) {
         if (const table overall = overall_table_of(group); group.size() > 1 && !overall.rows.empty())
             print(fmt::format(
                 "{} scenes with the baseline {},\nratio: the geometric mean of the ratios to it, fastest first; "
-                "regret: "
-                "the ratio\nover the least one of an exact result in each scene, the median and the worst\n\n{}\n",
+                "regret: the ratio\nover the least one of an exact result in each scene, the median and the "
+                "worst\n\n{}\n",
                 group.size(), text_of(baseline), to_text(overall, output_width())));
 }
 

@@ -38,9 +38,8 @@ struct extent {
     double strong;
 
     [[nodiscard]] bool is_narrow() const { return strong / mild <= equality_threshold; }
-    [[nodiscard]] double geometric_mean() const { return std::sqrt(mild * strong); }
     [[nodiscard]] std::string times() const {
-        return is_narrow() ? times_text(geometric_mean()) : span_text(times_text(mild), times_text(strong));
+        return is_narrow() ? times_text(std::sqrt(mild * strong)) : span_text(times_text(mild), times_text(strong));
     }
 };
 
