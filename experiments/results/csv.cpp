@@ -79,17 +79,15 @@ std::string csv_line(std::span<const std::string> fields) {
     std::string line;
     for (const std::string& field : fields) {
         if (&field != fields.data()) line += ',';
-        if (field.find_first_of(",\"\r\n") == std::string::npos) {
-            line += field;
-            continue;
-        }
-        line += '"';
-        for (const char c : field) line += c == '"' ? "\"\"" : std::string(1, c);
-        line += '"';
+        const bool needs_quotes = field.find_first_of(",\"\r\n") != std::string::npos;
+        if (needs_quotes) line += '"';
+        for (const char c : field) line.append(c == '"' ? 2U : 1U, c);
+        if (needs_quotes) line += '"';
     }
     return line + '\n';
 }
 
+/// Parses records, without a last one that was only partly written, and says how much of the text they are.
 csv_text read_csv(std::string_view text, const std::string& file) {
     csv_text table;
     csv_reader reader(text, file);

@@ -31,6 +31,7 @@ void make_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
+/// Locks the folder of results, so that no two runs write to it at once.
 folder_lock::folder_lock(const std::filesystem::path& folder) {
     make_folder(folder);
     // Child processes inherit the lock (no O_CLOEXEC), so that it lasts until they have finished their work.
@@ -122,6 +123,7 @@ void results_folder::set_differences(const scene_choice& scene, std::span<const 
     write_file(folder_ / "differences.csv", csv_of(differences_));
 }
 
+/// Adds checksums of the tables to the manifest of a finished run, by which missing or altered rows are found later.
 void results_folder::seal() {
     results_seal checksums{seal_of(folder_ / "results.csv"), std::nullopt, {}};
     if (const std::filesystem::path table = folder_ / "differences.csv"; std::filesystem::exists(table))

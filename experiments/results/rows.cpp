@@ -7,7 +7,6 @@ namespace aabblab {
 
 namespace {
 
-/// Calls `field(name, member)` for each column of a name, as other functions do for other columns of tables.
 void for_each_column_of_name(auto& name, auto field) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) field(std::string(name_of(kind)), name[kind]);
     field("engine", name.engine);

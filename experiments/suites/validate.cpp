@@ -62,7 +62,7 @@ void add_study(suite_report& report, const stiff_study& study, const stiff_resul
                 fmt::format("{}: {}: {} is {:.4g}, not {}", study.name, r.subject, r.quantity, r.measured, r.rule));
 }
 
-/// The studies with these names, or all if there are no names.
+/// The studies of stiff contacts with these names, or all if there are no names.
 std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
     std::vector<stiff_study> chosen;
     std::vector<std::string> known;
@@ -76,12 +76,11 @@ std::vector<stiff_study> chosen_studies(const std::vector<std::string>& names) {
     return chosen;
 }
 
-// Earlier versions stored reports instead of rows.
-
 figure_axis stored_axis(const json_value& j) {
     return {j.needed("label").text(), j.needed("logarithmic").flag()};
 }
 
+/// Reads a line of a figure from a report as JSON, which earlier versions stored instead of rows.
 series stored_series(const json_value& j) {
     const json_value style = j.needed("style");
     if (style.index() > static_cast<std::size_t>(series_style::level)) style.fail("is not a style of lines");
@@ -104,6 +103,7 @@ figure stored_figure(const json_value& j) {
     return f;
 }
 
+/// Reads a table from a report as JSON, which earlier versions stored instead of rows.
 named_table stored_table(const json_value& j) {
     named_table t{j.needed("name").text(), j.needed("caption").text(), {}};
     for (const json_value& c : j.needed("columns").list())

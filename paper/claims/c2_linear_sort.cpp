@@ -38,7 +38,6 @@ table inversions_table(const std::map<std::string, std::vector<const condition*>
     return t;
 }
 
-/// The compared sorts, with their subjects in the sentence.
 constexpr std::pair<const char*, const char*> sorts[] = {{"insertion", "with insertion sort"},
                                                          {"shell:gaps=four_one", "with two gaps"},
                                                          {"shell:gaps=ciura_eight", "with Ciura's eight gaps"},

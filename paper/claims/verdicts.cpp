@@ -86,6 +86,7 @@ std::string text_of(const factors& where) {
     return text;
 }
 
+/// Each claim's verdict, first primary ratio, and numbers of secondary ratios by outcome.
 table verdict_table(const reproduction& results) {
     table t =
         empty_table({"", "claim", "verdict", "in words"}, {"ratio", "95 %", "for", "against", "same", "undecided"});
@@ -113,6 +114,7 @@ table brief_table(const reproduction& results) {
     return t;
 }
 
+/// What the paper leaves open: our choice, its reason, and a claim's ratio under each alternative.
 table choice_table(const reproduction& results) {
     table t = empty_table({"left open", "our choice", "why", "claim", "its ratio", "changes it"});
     for (const open_choice& c : results.choices) {

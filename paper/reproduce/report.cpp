@@ -44,7 +44,7 @@ void add_axis(svg_picture& picture, double y) {
 void add_arrow(svg_picture& picture, bool to_left, double y, double number) {
     const double back = to_left ? 8 : -8;
     svg_picture head;
-    head.path("", {{{back, -5}, {0, 0}, {back, 5}}}, true);
+    head.path("", {{{back, -5}, {0, 0}, {back, 5}}}, /*closed=*/true);
     picture.put({to_left ? 1. : 99., y}, head);
     picture.text("", {to_left ? margin : 100 - margin, y - 4}, ratio_digits_of(number),
                  {{"text-anchor", to_left ? "start" : "end"}});
