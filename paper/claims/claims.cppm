@@ -161,7 +161,7 @@ struct claim_source {
 [[nodiscard]] inline bool is_same_clause(const endpoint& a, const endpoint& b) {
     return a.subject == b.subject && a.compared == b.compared;
 }
-
+/// The factors of its condition and the observed ones.
 [[nodiscard]] factors factors_of(const endpoint& e);
 [[nodiscard]] std::string clause_of(std::span<const endpoint> endpoints, const endpoint& member);
 [[nodiscard]] std::vector<std::string> headline_of(std::span<const claim_result> claims);
