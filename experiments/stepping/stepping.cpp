@@ -29,8 +29,8 @@ struct depth_of_vertex {
     Vector3d normal;  // of length 1
 };
 
-/// Vertices of the second body's reported triangles that lie below the plane of the intersected triangle of the first
-/// body, or at most `rest` above it. A vertex that several pairs report is repeated.
+/// The vertices that springs push: those of the second body's reported triangles below the plane of the intersected
+/// triangle of the first body, or at most `rest` above it. A vertex that several pairs report is repeated.
 std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, const placed_mesh& first,
                                        const placed_mesh& second, double rest) {
     std::vector<depth_of_vertex> depths;
@@ -38,7 +38,7 @@ std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, 
         const corners plane = corners_of(first, c.triangle_a);
         const Vector3d normal = normal_of(plane);
         const double length = length_of(normal);
-        if (length == 0) continue;
+        if (length == 0) continue;  // a triangle of zero area spans no plane
         const corners t = corners_of(second, c.triangle_b);
         for (std::size_t i = 0; i < 3; ++i)
             if (const double depth = -dot(normal, t[i] - plane[0]) / length; depth >= -rest)
@@ -49,9 +49,7 @@ std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, 
 
 /// Keeps the greatest depth of each vertex.
 void keep_deepest_of_each(std::vector<depth_of_vertex>& depths) {
-    std::ranges::sort(depths, [](const depth_of_vertex& a, const depth_of_vertex& b) {
-        return a.vertex != b.vertex ? a.vertex < b.vertex : a.depth > b.depth;
-    });
+    std::ranges::sort(depths, {}, [](const depth_of_vertex& d) { return std::pair(d.vertex, -d.depth); });
     const auto repeated = std::ranges::unique(depths, {}, &depth_of_vertex::vertex);
     depths.erase(repeated.begin(), repeated.end());
 }
@@ -73,8 +71,8 @@ contact_force spring_force(const contact_law& law, std::span<const depth_of_vert
     return {from_eigen(force), energy};
 }
 
-/// The force -(k + c A·v/|A|) A of `contact_geometry::shared_volume`, where the area A = ½ Σ p × q sums the segments pq
-/// in which pairs of triangles intersect.
+/// The force -(k + c A·v/|A|) A of a pressure on the second body's surface inside the first. By Stokes' theorem, the
+/// integral A of that surface's normal is ½ Σ p × q over the segments pq in which pairs of triangles intersect.
 contact_force pressure_force(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
                              const placed_mesh& second, const Vector3d& approach) {
     Vector3d area = Vector3d::Zero();  // of the second body's surface inside the first, along its outward normal
@@ -104,10 +102,10 @@ struct half_space {
 
 using polygon = std::vector<Vector3d>;
 
-/// The half-spaces below the first triangles of a mesh; those of all triangles bound a convex mesh.
-std::vector<half_space> half_spaces_of(const placed_mesh& m, std::uint32_t most) {
+/// The half-spaces below the first triangles of a mesh. Those of all triangles intersect in the mesh if it is convex.
+std::vector<half_space> half_spaces_of(const placed_mesh& m, std::uint32_t most_triangles) {
     std::vector<half_space> half_spaces;
-    for (std::uint32_t i = 0; i < std::min(most, m.mesh->triangle_count()); ++i) {
+    for (std::uint32_t i = 0; i < std::min(most_triangles, m.mesh->triangle_count()); ++i) {
         const corners t = corners_of(m, i);
         const Vector3d normal = normal_of(t);
         half_spaces.push_back({normal, dot(normal, t[0])});
@@ -131,14 +129,15 @@ polygon clipped(const polygon& p, const half_space& h) {
     return kept;
 }
 
-/// Clips all triangles, and returns six times the signed volume of the cones from the origin over them.
-double cones_over(const placed_mesh& m, std::span<const half_space> inside, const Vector3d& origin) {
+/// Clips all triangles by the half-spaces, and returns six times the signed volume of the cones from the apex over
+/// them. Over a closed surface these volumes add up to the enclosed one (the divergence theorem).
+double cones_over(const placed_mesh& m, std::span<const half_space> half_spaces, const Vector3d& apex) {
     double sum = 0;
     for (std::uint32_t t = 0; t < m.mesh->triangle_count(); ++t) {
         polygon part;
-        for (const Vector3d& corner : corners_of(m, t)) part.emplace_back(corner - origin);
-        for (const half_space& h : inside) {
-            part = clipped(part, {h.normal, h.offset - dot(h.normal, origin)});
+        for (const Vector3d& corner : corners_of(m, t)) part.emplace_back(corner - apex);
+        for (const half_space& h : half_spaces) {
+            part = clipped(part, {h.normal, h.offset - dot(h.normal, apex)});
             if (part.size() < 3) break;
         }
         for (std::size_t i = 2; i < part.size(); ++i) sum += dot(part[0], part[i - 1].cross(part[i]));
@@ -156,6 +155,7 @@ auto vector_at(std::span<double> values, std::size_t body) {
 
 }  // namespace
 
+/// Transforms the corners to world coordinates, in double.
 aabb::triangle3d placed_mesh::triangle(std::uint32_t index) const {
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(pose.rotation.data());
     const aabb::triangle3f local = mesh->triangle(index);
@@ -165,6 +165,7 @@ aabb::triangle3d placed_mesh::triangle(std::uint32_t index) const {
     return {{corner(0), corner(1), corner(2)}};
 }
 
+/// The force on the second body: one pressure, or springs at the deepest vertex or at each vertex, as the law says.
 contact_force force_of(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
                        const placed_mesh& second, const aabb::vec3d& approach) {
     if (law.geometry == contact_geometry::shared_volume)
@@ -178,13 +179,14 @@ contact_force force_of(const contact_law& law, std::span<const aabb::contact> co
 }
 
 double overlap_volume(const placed_mesh& first, bool is_floor, const placed_mesh& second) {
-    // With the origin on the floor, cones over its plane have no volume.
-    const Vector3d origin = corners_of(first, 0)[0];
-    double sum = cones_over(second, half_spaces_of(first, is_floor ? 1 : first.mesh->triangle_count()), origin);
-    if (!is_floor) sum += cones_over(first, half_spaces_of(second, second.mesh->triangle_count()), origin);
+    // With the apex on the floor, cones over its plane have no volume.
+    const Vector3d apex = corners_of(first, 0)[0];
+    double sum = cones_over(second, half_spaces_of(first, is_floor ? 1 : first.mesh->triangle_count()), apex);
+    if (!is_floor) sum += cones_over(first, half_spaces_of(second, second.mesh->triangle_count()), apex);
     return sum / 6;
 }
 
+/// The initial positions and velocities of the bodies, at time 0.
 motion_state stepped_world::start() const {
     motion_state state;
     for (const body& b : bodies) {
@@ -205,6 +207,8 @@ void stepped_world::place(std::span<const double> position, std::vector<aabb::po
     for (std::size_t i = 0; i < bodies.size(); ++i) poses[i] = {bodies[i].rotation, from_eigen(vector_at(position, i))};
 }
 
+/// Sets the accelerations: gravity for bodies that are not fixed, then force over mass for each two bodies in contact,
+/// whose contacts follow each other because they are sorted. Division by a fixed body's infinite mass gives none.
 void dynamics::accelerate(std::span<const double> position, std::span<const double> velocity,
                           std::span<const aabb::contact> contacts, std::span<double> acceleration) {
     const std::vector<body>& bodies = world_.bodies;
@@ -227,6 +231,7 @@ void dynamics::accelerate(std::span<const double> position, std::span<const doub
     }
 }
 
+/// Sums m (v²/2 + g z) over the bodies that are not fixed.
 double dynamics::mechanical_energy(const motion_state& state) const {
     double sum = 0;
     for (std::size_t i = 0; i < world_.bodies.size(); ++i) {

@@ -37,14 +37,14 @@ private:
     [[nodiscard]] double damped() const { return frequency * std::sqrt(1 - damping * damping); }
 };
 
-/// The world of a ball of 1 kg that touches the floor at time 0.
+/// The world of a ball of 1 kg that touches the floor at time 0, with the stiffness ω² and the dashpot 2ζω.
 [[nodiscard]] inline stepped_world ball_on_floor(const oscillator& contact, double speed_down, double gravity = 0) {
     stepped_world world;
     world.meshes = {floor_of(4), octahedron(0.5)};
-    // The ball must not hit the diagonal between two triangles of the floor.
+    // Body 0 is the fixed floor. The ball must not hit the diagonal between two of its triangles.
     world.bodies = {{}, {.mesh = 1, .position = {0.3, -0.2, 0}, .velocity = {0, 0, -speed_down}, .mass = 1}};
-    world.law = {contact_geometry::deepest_vertex, contact.frequency * contact.frequency,
-                 2 * contact.damping * contact.frequency, 0};
+    world.law = {.stiffness = contact.frequency * contact.frequency,
+                 .damping = 2 * contact.damping * contact.frequency};
     world.gravity = gravity;
     return world;
 }

@@ -14,14 +14,14 @@ struct method {
     candidate tested;
 };
 
-/// The default composition with one strategy replaced, as on the command line: "triangle moller:epsilon=none".
-[[nodiscard]] method composed(std::string_view changes) {
+/// The default composition with one strategy replaced, by its kind and name: "triangle moller:epsilon=none".
+[[nodiscard]] method composed_with(std::string_view replacement) {
     aabb::composition c;
-    const std::size_t space = changes.find(' ');
-    const std::string_view name = changes.substr(0, space);
-    const auto kind = std::ranges::find(aabb::strategy_kinds, name, &aabb::name_of);
-    c[*kind] = aabb::parse_strategy(changes.substr(space + 1));
-    return {std::string(changes.substr(space + 1)), candidate_of(c, true)};
+    const std::size_t space = replacement.find(' ');
+    const auto kind = std::ranges::find(aabb::strategy_kinds, replacement.substr(0, space), &aabb::name_of);
+    const std::string_view strategy = replacement.substr(space + 1);
+    c[*kind] = aabb::parse_strategy(strategy);
+    return {std::string(strategy), candidate_of(c, /*meshes=*/true)};
 }
 
 /// Every triangle test of the registry with each of its settings, and each engine that collides meshes.
@@ -32,24 +32,24 @@ struct method {
           "triangle devillers_guigue", "triangle devillers_guigue:precision=float", "triangle separating_axes",
           "triangle separating_axes:precision=double", "triangle moller", "triangle moller:epsilon=none",
           "triangle moller:epsilon=scaled", "triangle moller_double"})
-        methods.push_back(composed(test));
+        methods.push_back(composed_with(test));
     for (const aabb::engine_info& engine : aabb::engines())
         // brute_force uses the same triangle predicate as cgal, but is slower.
         if (engine.collides_meshes && engine.name != "brute_force")
-            if (std::optional<candidate> tested = candidate_of(engine, true))
+            if (std::optional<candidate> tested = candidate_of(engine, /*meshes=*/true))
                 methods.push_back({engine.name, *std::move(tested)});
     return methods;
 }
 
-/// Every compressed tree layout, Verlet lists that are rebuilt in time, and others that are rebuilt too rarely.
+/// Every compressed tree layout, Verlet lists that are rebuilt in time, and others so rarely that they miss contacts.
 [[nodiscard]] std::vector<method> tree_and_list_methods() {
     std::vector<method> methods;
-    for (const char* const changes :
+    for (const char* const replacement :
          {"tree compressed", "tree quantized:bits=16", "tree quantized:bits=8", "tree quantized:bits=4",
           "prepare neighbour_list:margin=0.1", "prepare neighbour_list:margin=0.05,every=4",
           "prepare neighbour_list:margin=0,every=4", "prepare neighbour_list:margin=0,every=16",
           "prepare neighbour_list:margin=0,every=32", "prepare neighbour_list:margin=0,every=64"})
-        methods.push_back(composed(changes));
+        methods.push_back(composed_with(replacement));
     return methods;
 }
 

@@ -43,6 +43,7 @@ std::filesystem::path file_of(const std::filesystem::path& folder, const stiff_s
 
 }  // namespace
 
+/// Appends the result's points to the lines of the study's figures, and new lines where there is none of that label.
 std::vector<figure> figures_of(const stiff_study& study, const stiff_result& result) {
     std::vector<figure> figures = study.figures;
     if (study.mark) study.mark(figures, result.rows);

@@ -30,12 +30,12 @@ void run_or_record_failure(stiff_result& result, std::string_view integrator, co
     return holds ? stiff_verdict::holds : stiff_verdict::fails;
 }
 
-/// Expects a relative error of at most `share`.
+/// A row that holds if the relative error is within the tolerance.
 [[nodiscard]] stiff_row within(std::string subject, std::string quantity, double measured, double expected,
-                               double share) {
+                               double relative_tolerance) {
     return {std::move(subject), std::move(quantity), measured,
-            fmt::format("{} ± {:.3g} %", short_number(expected), 100 * share),
-            verdict_if(std::abs(measured - expected) <= share * std::abs(expected))};
+            fmt::format("{} ± {:.3g} %", short_number(expected), 100 * relative_tolerance),
+            verdict_if(std::abs(measured - expected) <= relative_tolerance * std::abs(expected))};
 }
 
 [[nodiscard]] stiff_row at_most(std::string subject, std::string quantity, double measured, double limit) {

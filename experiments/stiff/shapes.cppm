@@ -14,13 +14,16 @@ namespace aabblab {
             {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}}};
 }
 
+[[nodiscard]] aabb::mesh scaled(aabb::mesh m, double factor) {
+    for (aabb::vec3f& v : m.vertices)
+        for (float& coordinate : v.at) coordinate = static_cast<float>(coordinate * factor);
+    return m;
+}
+
 /// An upward facing square in z = 0 around the origin, divided into n × n squares of two triangles.
 [[nodiscard]] aabb::mesh floor_of(double side, std::uint32_t n = 1) {
-    aabb::mesh m = make_mesh("square:triangles=" + std::to_string(2 * n * n)).mesh;
-    const double scale = side / (double{m.vertices.back()[0]} - double{m.vertices.front()[0]});
-    for (aabb::vec3f& v : m.vertices)
-        for (float& coordinate : v.at) coordinate = static_cast<float>(coordinate * scale);
-    return m;
+    const aabb::mesh m = make_mesh("square:triangles=" + std::to_string(2 * n * n)).mesh;
+    return scaled(m, side / (double{m.vertices.back()[0]} - double{m.vertices.front()[0]}));
 }
 
 /// An inverted pyramid with its apex at the origin and a square top.
@@ -30,7 +33,7 @@ namespace aabblab {
             {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}}};
 }
 
-/// A box centred at the origin.
+/// A square plate centred at the origin: eight vertices, and two triangles per face with outward normals.
 [[nodiscard]] aabb::mesh slab(float side, float thickness) {
     aabb::mesh m;
     for (const float z : {-thickness / 2, thickness / 2})

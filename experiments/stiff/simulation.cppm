@@ -37,8 +37,8 @@ public:
     /// @param tolerance of an adaptive integrator
     simulation(const stepped_world& world, const candidate& tested, const integrator_info& stepping,
                double tolerance = 0)
-        : poses_(new posed_bodies(world)),
-          frames_(std::unique_ptr<aabb::mesh_scene>(poses_)),
+        : bodies_(new posed_bodies(world)),
+          frames_(std::unique_ptr<aabb::mesh_scene>(bodies_)),
           runner_(tested, frames_, aabb::instrumentation::none),
           dynamics_(world),
           integrator_(stepping.make(tolerance)),
@@ -68,9 +68,9 @@ public:
     }
 
 private:
-    /// Detects the contacts of the bodies at these positions, and times it.
+    /// Moves the scene's bodies to these positions, and detects their sorted contacts by both phases, which it times.
     std::span<const aabb::contact> detect_at(std::span<const double> position) {
-        poses_->move_to(position);
+        bodies_->move_to(position);
         detected_position_.assign(position.begin(), position.end());
         frames_.next();
         detection_ms_ += milliseconds_of([&] {
@@ -82,7 +82,7 @@ private:
         return runner_.sorted_contacts();
     }
 
-    posed_bodies* poses_;  // owned by frames_
+    posed_bodies* bodies_;  // owned by frames_
     scene_frames frames_;
     stage_runner runner_;
     dynamics dynamics_;

@@ -18,6 +18,7 @@ class adaptive_dormand_prince final : public integrator {
 public:
     explicit adaptive_dormand_prince(double tolerance) : tolerance_(tolerance) {}
 
+    /// Takes as many steps within `step` as keep the estimated error of each within the tolerance.
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         namespace odeint = boost::numeric::odeint;
         using stepper = odeint::runge_kutta_dopri5<std::vector<double>>;
@@ -40,12 +41,12 @@ private:
 }  // namespace
 
 integrator_info adaptive_dormand_prince_integrator() {
-    return {"adaptive_dormand_prince",
-            "the same with adaptive steps, controlled by a tolerance (Boost.odeint)",
-            true,
-            5,
-            std::numeric_limits<double>::infinity(),
-            [](double tolerance) -> std::unique_ptr<integrator> {
+    return {.name = "adaptive_dormand_prince",
+            .summary = "the same with adaptive steps, controlled by a tolerance (Boost.odeint)",
+            .adaptive = true,
+            .order = 5,
+            .stable_below = std::numeric_limits<double>::infinity(),
+            .make = [](double tolerance) -> std::unique_ptr<integrator> {
                 return std::make_unique<adaptive_dormand_prince>(tolerance);
             }};
 }

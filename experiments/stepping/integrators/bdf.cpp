@@ -23,18 +23,19 @@ public:
         context_.reset(context);
     }
 
+    /// Continues CVODE's solution, whose order and step depend on the earlier calls, to the end of this step.
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         if (!system_) {
             system_.emplace(acceleration, state);
             start(system_->values(), state.time);
         }
-        failure_ = nullptr;
+        callback_exception_ = nullptr;
         double reached = state.time;
         // CVODE must not overstep the end, since contacts may differ there.
         const double end = state.time + step;
         CVodeSetStopTime(memory_.get(), end);
         const int status = CVode(memory_.get(), end, values_.get(), &reached, CV_NORMAL);
-        if (failure_) std::rethrow_exception(failure_);
+        if (callback_exception_) std::rethrow_exception(callback_exception_);
         if (status < 0)
             throw aabb::input_error("bdf gives up after " + std::to_string(reached) + " s: CVODE says " +
                                     std::to_string(status));
@@ -58,6 +59,7 @@ private:
     template <class Handle, auto Free>
     using owned = std::unique_ptr<std::remove_pointer_t<Handle>, freed_by<Free>>;
 
+    /// Creates CVODE's solver: Newton's method with a dense matrix, for the error tolerance, without printed messages.
     void start(const std::vector<double>& initial, double time) {
         const auto size = static_cast<sunindextype>(initial.size());
         values_.reset(N_VNew_Serial(size, context_.get()));
@@ -73,18 +75,19 @@ private:
         CVodeSetErrHandlerFn(memory_.get(), [](int, const char*, const char*, char*, void*) {}, nullptr);
     }
 
+    /// CVODE's callback, which computes the derivative of `values`. @return 0, or -1 after an exception.
     static int derivative(double time, N_Vector values, N_Vector change, void* self) {
         bdf& solver = *static_cast<bdf*>(self);
         try {
             const auto size = static_cast<std::size_t>(N_VGetLength(values));
-            solver.from_.assign(N_VGetArrayPointer(values), N_VGetArrayPointer(values) + size);
-            solver.to_.resize(size);
-            (*solver.system_)(solver.from_, solver.to_, time);
-            std::ranges::copy(solver.to_, N_VGetArrayPointer(change));
+            solver.input_.assign(N_VGetArrayPointer(values), N_VGetArrayPointer(values) + size);
+            solver.output_.resize(size);
+            (*solver.system_)(solver.input_, solver.output_, time);
+            std::ranges::copy(solver.output_, N_VGetArrayPointer(change));
             return 0;
         } catch (...) {
             // Exceptions must not pass through C code.
-            solver.failure_ = std::current_exception();
+            solver.callback_exception_ = std::current_exception();
             return -1;
         }
     }
@@ -96,20 +99,20 @@ private:
     owned<SUNLinearSolver, &SUNLinSolFree> solver_;
     owned<void*, &CVodeFree> memory_;
     std::optional<first_order_system> system_;
-    std::vector<double> from_;
-    std::vector<double> to_;
-    std::exception_ptr failure_;
+    std::vector<double> input_, output_;  // of the callback
+    std::exception_ptr callback_exception_;
 };
 
 }  // namespace
 
 integrator_info bdf_integrator() {
-    return {"bdf",
-            "backward differences of orders 1 to 5 with Newton's method, for stiff systems (SUNDIALS' CVODE)",
-            true,
-            5,
-            std::numeric_limits<double>::infinity(),
-            [](double tolerance) -> std::unique_ptr<integrator> { return std::make_unique<bdf>(tolerance); }};
+    return {
+        .name = "bdf",
+        .summary = "backward differences of orders 1 to 5 with Newton's method, for stiff systems (SUNDIALS' CVODE)",
+        .adaptive = true,
+        .order = 5,
+        .stable_below = std::numeric_limits<double>::infinity(),
+        .make = [](double tolerance) -> std::unique_ptr<integrator> { return std::make_unique<bdf>(tolerance); }};
 }
 
 }  // namespace aabblab

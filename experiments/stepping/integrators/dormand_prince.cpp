@@ -28,14 +28,14 @@ private:
 }  // namespace
 
 integrator_info dormand_prince_integrator() {
-    // On the imaginary axis 1 + z + … + z^5/120 + z^6/600 leaves the unit circle where y² is the root of
-    // w³ - 25 w² + 225 w - 200.
-    return {"dormand_prince",
-            "the Runge-Kutta pair of orders 5 and 4, with steps of one size (Boost.odeint)",
-            false,
-            5,
-            0.99720,
-            [](double) -> std::unique_ptr<integrator> { return std::make_unique<dormand_prince>(); }};
+    // On the imaginary axis the stability polynomial 1 + z + … + z^5/120 + z^6/600 leaves the unit circle at z = iy
+    // where w = y² is the root of w³ - 25 w² + 225 w - 200.
+    return {.name = "dormand_prince",
+            .summary = "the Runge-Kutta pair of orders 5 and 4, with steps of one size (Boost.odeint)",
+            .adaptive = false,
+            .order = 5,
+            .stable_below = 0.99720,
+            .make = [](double) -> std::unique_ptr<integrator> { return std::make_unique<dormand_prince>(); }};
 }
 
 }  // namespace aabblab

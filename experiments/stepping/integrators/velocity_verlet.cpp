@@ -24,12 +24,14 @@ private:
 }  // namespace
 
 integrator_info velocity_verlet_integrator() {
-    return {"velocity_verlet",
+    return {
+        .name = "velocity_verlet",
+        .summary =
             "central differences; of first order if forces depend on velocity, which lags a step behind (Boost.odeint)",
-            false,
-            2,
-            2,
-            [](double) -> std::unique_ptr<integrator> { return std::make_unique<velocity_verlet>(); }};
+        .adaptive = false,
+        .order = 2,
+        .stable_below = 2,
+        .make = [](double) -> std::unique_ptr<integrator> { return std::make_unique<velocity_verlet>(); }};
 }
 
 }  // namespace aabblab

@@ -2,6 +2,7 @@ module aabblab.stiff;
 
 import :method;
 import :rules;
+import :shapes;
 import :simulation;
 import aabb.geometry;
 import aabblab.scenes;
@@ -25,16 +26,18 @@ public:
     dropped_balls(std::size_t side, double diameter) : diameter_(diameter) {
         // Only the last half diameter is simulated, since the fall before it has a closed form.
         const double fallen = 4.5 * diameter;
-        world_ = dropped_world({.balls = static_cast<std::uint32_t>(side * side * side),
-                                .height = 0.5,
-                                .speed = std::sqrt(2 * 9.81 * fallen)},
-                               {make_mesh("square").mesh, ball_of(diameter)}, 1);
+        world_ =
+            dropped_world({.balls = static_cast<std::uint32_t>(side * side * side),
+                           .height = 0.5,
+                           .speed = std::sqrt(2 * 9.81 * fallen)},
+                          {make_mesh("square").mesh, scaled(make_mesh("icosphere:triangles=80").mesh, diameter / 2)},
+                          /*seed=*/1);
     }
 
     /// Scales a time for balls of 1 m to these balls, s.
     [[nodiscard]] double seconds(double for_1_m) const { return for_1_m * std::sqrt(diameter_); }
 
-    /// Ends early if bodies leave the range of valid poses.
+    /// Simulates the fall with the candidate's contacts. Ends early if bodies leave the range of valid poses.
     /// @param stored_every the interval of the stored positions, in steps
     /// @throws aabb::input_error if it ends before the first of its twenty samples.
     [[nodiscard]] trajectory run(const candidate& tested, const integrator_info& stepping, double step,
@@ -81,13 +84,6 @@ public:
 private:
     static constexpr double end = 0.48;  // s, for balls of 1 m
 
-    [[nodiscard]] static aabb::mesh ball_of(double diameter) {
-        aabb::mesh ball = make_mesh("icosphere:triangles=80").mesh;
-        for (aabb::vec3f& v : ball.vertices)
-            for (float& coordinate : v.at) coordinate = static_cast<float>(coordinate * diameter / 2);
-        return ball;
-    }
-
     /// Kinetic, potential and contact energy, J; that of a contact is proportional to the overlap volume of two bodies.
     [[nodiscard]] double energy_of(simulation& balls) const {
         double sum = dynamics(world_).mechanical_energy(balls.state());
@@ -100,19 +96,19 @@ private:
         for (std::size_t i = 0; i < contacts.size(); ++i) {
             const auto& [a, b, s, t] = contacts[i];
             if (i > 0 && contacts[i - 1].a == a && contacts[i - 1].b == b) continue;
-            sum += world_.law.stiffness * overlap_volume(placed(a), a == 0, placed(b));
+            sum += world_.law.stiffness * overlap_volume(placed(a), /*is_floor=*/a == 0, placed(b));
         }
         return sum;
     }
 
     /// The greatest overlap of two balls, treated as spheres, in diameters.
     [[nodiscard]] double greatest_depth(const std::vector<double>& p) const {
-        double least = diameter_;
+        double least_distance = diameter_;
         for (std::size_t i = 1; 3 * i < p.size(); ++i)
             for (std::size_t j = i + 1; 3 * j < p.size(); ++j)
-                least = std::min(
-                    least, std::hypot(p[3 * i] - p[3 * j], p[3 * i + 1] - p[3 * j + 1], p[3 * i + 2] - p[3 * j + 2]));
-        return 1 - least / diameter_;
+                least_distance = std::min(least_distance, std::hypot(p[3 * i] - p[3 * j], p[3 * i + 1] - p[3 * j + 1],
+                                                                     p[3 * i + 2] - p[3 * j + 2]));
+        return 1 - least_distance / diameter_;
     }
 
     double diameter_;
@@ -144,11 +140,12 @@ void plot_depths(const std::string& size, const std::string& label, const trajec
 std::vector<trajectory> trajectories_of(const std::vector<method>& methods, const dropped_balls& balls, double step,
                                         const stiff_setting& setting) {
     std::vector<trajectory> trajectories(methods.size());
-    std::atomic<std::size_t> begun = 0;
+    std::atomic<std::size_t> next_method = 0;
     const auto run = [&](const std::function<void(double)>& progress) {
-        for (std::size_t m = begun++; m < methods.size(); m = begun++) {
+        for (std::size_t m = next_method++; m < methods.size(); m = next_method++) {
             progress(static_cast<double>(m) / static_cast<double>(methods.size()));
-            trajectories[m] = balls.run(methods[m].tested, *integrator_named("velocity_verlet"), step, 1, true);
+            trajectories[m] = balls.run(methods[m].tested, *integrator_named("velocity_verlet"), step,
+                                        /*stored_every=*/1, /*with_energy=*/true);
         }
     };
     std::vector<std::future<void>> workers;
@@ -159,11 +156,13 @@ std::vector<trajectory> trajectories_of(const std::vector<method>& methods, cons
     return trajectories;
 }
 
-/// Compares the trajectory of each method with that of exact contacts, for one step size.
+/// Compares the trajectory of each method with that of exact contacts, for one step size. Exact methods must not depart
+/// from it at all; how far others do is reported, and drawn for the first nine of them.
 void compare_methods(const dropped_balls& balls, const std::string& size, const stiff_setting& setting,
                      stiff_result& result) {
     const double step = balls.seconds(1e-3);
-    const trajectory reference = balls.run(setting.tested, *integrator_named("velocity_verlet"), step, 1, true);
+    const trajectory reference = balls.run(setting.tested, *integrator_named("velocity_verlet"), step,
+                                           /*stored_every=*/1, /*with_energy=*/true);
     const std::vector<method> methods = compared_methods();
     const std::vector<trajectory> trajectories = trajectories_of(methods, balls, step, setting);
     constexpr std::size_t most_drawn = 9;
@@ -172,7 +171,7 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
     for (std::size_t m = 0; m < methods.size(); ++m) {
         const trajectory& t = trajectories[m];
         const std::vector<double> errors = balls.departures(t, reference);
-        const auto first = std::ranges::find_if(errors, [](double d) { return !(d <= 0); });
+        const auto first = std::ranges::find_if(errors, [](double d) { return !(d <= 0); });  // or NaN
         const std::string subject = methods[m].label + ", " + size;
         const double greatest = std::ranges::max(errors);
         if (methods[m].tested.exact && methods[m].tested.exact_boxes) {
@@ -195,20 +194,21 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
     result.add(reported("exact, " + size, "energy error, RMS", reference.energy_error));
 }
 
-/// Error over detection time, of each integrator by step size, and of stale Verlet lists by their age.
+/// Plots error over detection time, of each symplectic integrator by step size, and of stale Verlet lists by the frames
+/// between rebuilds. The reference has a 16th of the smallest step. The error of energy must fall with the step size.
 void compare_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
     const std::vector<double> steps =
         setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};
     const auto stored_every = [&](double dt) { return static_cast<std::size_t>(std::llround(steps.front() / dt)); };
     const integrator_info& verlet = *integrator_named("velocity_verlet");
     const double finest = steps.back() / 16;
-    const trajectory reference = balls.run(setting.tested, verlet, finest, stored_every(finest), false);
+    const trajectory reference = balls.run(setting.tested, verlet, finest, stored_every(finest), /*with_energy=*/false);
     const auto error_of = [&](const trajectory& t) { return balls.departures(t, reference).back(); };
     for (const integrator_info& i : integrators()) {
         if (i.adaptive || i.order == 5) continue;
         std::vector<double> energy_errors;
         for (const double dt : steps) {
-            const trajectory t = balls.run(setting.tested, i, dt, stored_every(dt), true);
+            const trajectory t = balls.run(setting.tested, i, dt, stored_every(dt), /*with_energy=*/true);
             const double error = error_of(t);
             result.plot("error_over_time", i.name, t.detection_ms, error);
             const std::string subject = std::string(i.name) + ", " + short_number(dt) + " s";
@@ -222,8 +222,8 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
         result.add(at_least(std::string(i.name), "order of the energy error", order, i.order - 0.3));
     }
     for (const char* const every : {"8", "16", "32", "64"}) {
-        const method m = composed(std::string("prepare neighbour_list:margin=0,every=") + every);
-        const trajectory t = balls.run(m.tested, verlet, 1e-3, stored_every(1e-3), false);
+        const method m = composed_with(std::string("prepare neighbour_list:margin=0,every=") + every);
+        const trajectory t = balls.run(m.tested, verlet, 1e-3, stored_every(1e-3), /*with_energy=*/false);
         result.plot("error_over_time", "velocity_verlet, neighbour_list:margin=0", t.detection_ms, error_of(t));
     }
 }
@@ -255,17 +255,18 @@ std::vector<figure> figures() {
 
 }  // namespace
 
+/// Compares step sizes with balls of 1 m, and methods with balls of 1 m and of 10 mm.
 stiff_result run_dropped(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t side = setting.quick ? 3 : 6;
-    const dropped_balls balls(side, 1);
+    const dropped_balls balls(side, /*diameter=*/1);
     compare_steps(balls, setting, result);
     // The published value is the mean squared error over the run, J², of an energy of 34,454 J.
     result.add(reported("published: ODE, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(112.326) / 34454));
     result.add(
         reported("published: Bullet without ERP, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
     compare_methods(balls, sizes[0], setting, result);
-    compare_methods(dropped_balls(side, 0.01), sizes[1], setting, result);
+    compare_methods(dropped_balls(side, /*diameter=*/0.01), sizes[1], setting, result);
     return result;
 }
 

@@ -22,6 +22,8 @@ double share_of_rest(double frequency, double time) {
 
 }  // namespace
 
+/// Releases the ball on floors of several stiffnesses, with each adaptive integrator, and compares its depth with the
+/// closed form twice: while it sinks and after a second. The implicit integrator must get by with few detections.
 stiff_result run_overdamped(const stiff_setting& setting) {
     stiff_result result;
     for (const double k : {1e4, 1e6, 1e8, 1e10}) {
@@ -35,7 +37,7 @@ stiff_result run_overdamped(const stiff_setting& setting) {
             if (i.name != "bdf" && explicit_steps > (setting.quick ? 1e4 : 1e6)) continue;
             run_or_record_failure(result, i.name, [&] {
                 const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";
-                simulation ball(world, setting.tested, i, 1e-6 * gravity / k);
+                simulation ball(world, setting.tested, i, /*tolerance=*/1e-6 * gravity / k);
                 const double sinking = 1 / (frequency * (damping - std::sqrt(damping * damping - 1)));
                 ball.advance(sinking);
                 result.add(within(subject, "depth while it sinks over depth at rest",
@@ -44,10 +46,8 @@ stiff_result run_overdamped(const stiff_setting& setting) {
                 result.add(within(subject, "depth after 1 s over depth at rest",
                                   depth_of_ball(ball.state()) * k / gravity, share_of_rest(frequency, end), 1e-3));
                 const auto detections = static_cast<double>(ball.detections());
-                if (i.name == "bdf")
-                    result.add(at_most(subject, "detections", detections, 2000));
-                else
-                    result.add(reported(subject, "detections", detections));
+                result.add(i.name == "bdf" ? at_most(subject, "detections", detections, 2000)
+                                           : reported(subject, "detections", detections));
             });
         }
     }

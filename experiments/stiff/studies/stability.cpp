@@ -63,8 +63,8 @@ double energy_factor_of_dormand_prince(double scaled_step) {
     return std::norm(growth);
 }
 
-/// True if the energy does not grow. Symplectic integrators conserve a modified energy, so that the real one
-/// oscillates, more so near their limit.
+/// Whether the energy does not grow, apart from 1 %. Symplectic integrators conserve a modified energy, so that the
+/// real one oscillates, more so near their limit.
 bool is_stable(const candidate& tested, const integrator_info& stepping, double scaled_step) {
     // The amplitude is so small that the ball stays in contact even if it grows.
     oscillating_ball ball(tested, stepping, at_rest * 1e-6, 0);
@@ -75,8 +75,8 @@ bool is_stable(const candidate& tested, const integrator_info& stepping, double 
         const double energy = ball.energy();
         // The ball left contact, or its energy is NaN.
         if (!(energy < frequency * frequency * at_rest * at_rest / 2)) return false;
-        double& half = i < steps / 2 ? before : after;
-        half = std::max(half, energy);
+        double& greatest = i < steps / 2 ? before : after;
+        greatest = std::max(greatest, energy);
     }
     return after <= 1.01 * before;
 }
@@ -100,6 +100,8 @@ void mark_limits(std::span<figure> figures, std::span<const stiff_row> rows) {
 
 }  // namespace
 
+/// Measures the energy drift of each integrator at several step sizes, and the greatest stable step of those with a
+/// fixed step. Symplectic ones must not drift; that of order 5 must lose energy as its stability polynomial says.
 stiff_result run_stability(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t periods = setting.quick ? 100 : 1000;
@@ -108,7 +110,8 @@ stiff_result run_stability(const stiff_setting& setting) {
         if (!i.adaptive && i.stable_below > 1.5) steps.insert(steps.end(), {1.6, 1.9});
         run_or_record_failure(result, i.name, [&] {
             for (const double scaled_step : steps) {
-                const double drift = drift_of(setting.tested, i, scaled_step, periods, 1e-6 * at_rest / 100);
+                const double drift =
+                    drift_of(setting.tested, i, scaled_step, periods, /*tolerance=*/1e-6 * at_rest / 100);
                 result.plot("energy_drift", i.name, scaled_step, std::abs(drift));
                 const std::string subject = std::string(i.name) + ", dt·ω " + short_number(scaled_step);
                 if (i.adaptive) {
@@ -117,6 +120,7 @@ stiff_result run_stability(const stiff_setting& setting) {
                     result.add(
                         at_most(subject, "energy drift, without sign", std::abs(drift), setting.quick ? 0.05 : 1e-3));
                 } else {
+                    // From the first step to the first one of the last tenth.
                     const double lost =
                         std::pow(energy_factor_of_dormand_prince(scaled_step),
                                  0.9 * static_cast<double>(periods) * 2 * std::numbers::pi / scaled_step) -
