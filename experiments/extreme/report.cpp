@@ -101,13 +101,15 @@ std::vector<extreme_row> filtered(std::span<const extreme_row> rows, Wanted want
 }
 
 /// The errors of triangle tests; scenes or classes without errors are omitted.
+/// @param text the scene or the class of a row, by which they are grouped
 table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* text) {
+    const auto tests = filtered(rows, [](const extreme_row& row) { return row.role == candidate_role::triangle_test; });
     std::set<std::string> wrong;
-    for (const extreme_row& row : rows)
+    for (const extreme_row& row : tests)
         if (row.result.outcome == aabb::verdict::wrong) wrong.insert(row.*text);
-    const auto shown = filtered(rows, [&](const extreme_row& row) { return wrong.contains(row.*text); });
-    return candidate_table({{title, false}}, shown, text, candidates_in(rows, candidate_role::triangle_test),
-                           [](const row_list&) { return std::vector<std::string>(); });
+    const auto shown = filtered(tests, [&](const extreme_row& row) { return wrong.contains(row.*text); });
+    return candidate_table({{title, false}}, shown, text, candidates_in(tests, candidate_role::triangle_test),
+                           /*summary_cells=*/[](const row_list&) { return std::vector<std::string>(); });
 }
 
 constexpr std::array<std::string_view, 3> group_names = {"boxes", "meshes", "cases"};
@@ -138,6 +140,7 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
 
 }  // namespace
 
+/// One row per class of cases, with the results of exact tests and compositions summed up, then one column per engine.
 table case_table(std::span<const extreme_row> rows) {
     const auto shown = filtered(rows, [](const extreme_row& row) { return row.group == row_group::cases; });
     const auto sums_of = [](const row_list& group) {
@@ -160,6 +163,7 @@ table inexact_case_table(std::span<const extreme_row> rows) {
     return wrong_table("class", shown, &extreme_row::kind);
 }
 
+/// One row per scene of boxes or of meshes, with the results of compositions summed up, then one column per engine.
 table scene_table(std::span<const extreme_row> rows, row_group group) {
     const auto shown = filtered(
         rows, [&](const extreme_row& row) { return row.group == group && row.role != candidate_role::triangle_test; });
@@ -171,12 +175,11 @@ table scene_table(std::span<const extreme_row> rows, row_group group) {
 }
 
 table inexact_scene_table(std::span<const extreme_row> rows) {
-    const auto shown = filtered(rows, [](const extreme_row& row) {
-        return row.group == row_group::meshes && row.role == candidate_role::triangle_test;
-    });
-    return wrong_table("scene", shown, &extreme_row::scene);
+    return wrong_table("scene", filtered(rows, [](const extreme_row& row) { return row.group == row_group::meshes; }),
+                       &extreme_row::scene);
 }
 
+/// The errors of candidates that may be inexact, by class of difference, summed over the scenes of meshes.
 table class_table(std::span<const extreme_row> rows) {
     table t{{{"candidate", false}}, {}};
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
@@ -193,6 +196,7 @@ table class_table(std::span<const extreme_row> rows) {
     return t;
 }
 
+/// A sentence per scene that limits memory: the most that any composition holds in it, and the limit.
 std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto limited = filtered(
@@ -215,6 +219,7 @@ std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file) {
                                      std::array<std::string_view, 2>{"precision", "stated_bytes"});
 }
 
+/// A sentence per distinct reason of rejections, with the scenes in which it occurs.
 std::vector<std::string> rejections_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto rejected =

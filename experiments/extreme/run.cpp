@@ -39,7 +39,8 @@ std::vector<aabb::composition> with_named_values(const aabb::composition& c, aab
     return compositions;
 }
 
-/// The valid, exact compositions of a stage, on request with every combination of named parameter values.
+/// The valid, exact compositions of a stage.
+/// @param named_values with every combination of named values of their parameters
 std::vector<aabb::composition> exact_compositions(aabb::stage stage, bool named_values) {
     std::vector<aabb::composition> compositions;
     for (const aabb::composition& c : aabb::every_composition(stage))
@@ -106,14 +107,6 @@ extreme_row row_of_test(const aabb::triangle_case& c, const named_test& test, bo
     return row;
 }
 
-void run_tests(std::span<const aabb::triangle_case> cases, std::vector<extreme_row>& rows) {
-    for (const named_test& test : named_triangle_tests())
-        for (const aabb::triangle_case& c : cases) {
-            rows.push_back(row_of_test<float>(c, test, c.intersect, "float"));
-            if (test.test->takes_double()) rows.push_back(row_of_test<double>(c, test, c.intersect_double, "double"));
-        }
-}
-
 /// Two meshes per case, one for each triangle.
 std::vector<aabb::mesh> meshes_of(std::span<const aabb::triangle_case> cases) {
     std::vector<aabb::mesh> meshes;
@@ -125,8 +118,6 @@ std::vector<aabb::mesh> meshes_of(std::span<const aabb::triangle_case> cases) {
     return meshes;
 }
 
-constexpr auto uncounted = aabb::instrumentation::none;
-
 /// A composition, an engine or a triangle test, with its name in reports.
 struct named_candidate {
     std::string name;
@@ -134,7 +125,7 @@ struct named_candidate {
     candidate implementation;
 };
 
-/// The candidates for scenes of boxes, or of meshes.
+/// The candidates for scenes of boxes, or of meshes, of which only the latter test triangles.
 std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
     const bool meshes = stage == aabb::stage::local_detection;
     std::vector<named_candidate> list;
@@ -145,15 +136,15 @@ std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
             list.push_back({engine.name, candidate_role::engine, candidate_of(engine, meshes).value()});
     if (!meshes) return list;
     for (const aabb::composition& c : inexact_compositions())
-        list.push_back(
-            {to_text(c[aabb::strategy_kind::triangle]), candidate_role::triangle_test, candidate_of(c, true)});
+        list.push_back({to_text(c[aabb::strategy_kind::triangle]), candidate_role::triangle_test,
+                        candidate_of(c, /*meshes=*/true)});
     return list;
 }
 
-/// Tests the two triangles in both orders, with every query.
-void run_stage(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes,
-               const named_candidate& tested, std::vector<extreme_row>& rows) {
-    const std::unique_ptr<aabb::local_stage> stage = tested.implementation.make_local(uncounted);
+/// Tests the two triangles of each case in both orders, as meshes 2i and 2i + 1, with every query.
+void run_on_cases(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes,
+                  const named_candidate& tested, std::vector<extreme_row>& rows) {
+    const std::unique_ptr<aabb::local_stage> stage = tested.implementation.make_local(aabb::instrumentation::none);
     for (const aabb::mesh& m : meshes) stage->add_model(m);
     for (std::size_t i = 0; i < cases.size(); ++i) {
         extreme_row row = row_of(cases[i], tested.name, tested.role, tested.implementation.exact);
@@ -182,8 +173,8 @@ void run_candidates(const aabb::extreme_judge& judge, std::span<const named_cand
         // Box tests only compare coordinates, without rounding, so every engine must be exact.
         row.must_be_exact = boxes ? c.implementation.exact_boxes : c.implementation.exact;
         row.stated_bytes = scene.most_bytes;
-        row.result = boxes ? judge.judge([&] { return c.implementation.make_global(uncounted); })
-                           : judge.judge([&] { return c.implementation.make_local(uncounted); });
+        row.result = boxes ? judge.judge([&] { return c.implementation.make_global(aabb::instrumentation::none); })
+                           : judge.judge([&] { return c.implementation.make_local(aabb::instrumentation::none); });
         if (c.role == candidate_role::composition) require_stated_memory(scene, row.result);
         row.as_expected = is_as_expected(scene, row.result, row.must_be_exact);
         rows.push_back(std::move(row));
@@ -192,21 +183,27 @@ void run_candidates(const aabb::extreme_judge& judge, std::span<const named_cand
 
 }  // namespace
 
+/// Runs triangle tests themselves, in float and in double, then compositions and engines on meshes of one triangle.
 std::vector<extreme_row> run_triangle_cases(std::span<const aabb::triangle_case> cases) {
     std::vector<extreme_row> rows;
-    run_tests(cases, rows);
+    for (const named_test& test : named_triangle_tests())
+        for (const aabb::triangle_case& c : cases) {
+            rows.push_back(row_of_test<float>(c, test, c.intersect, "float"));
+            if (test.test->takes_double()) rows.push_back(row_of_test<double>(c, test, c.intersect_double, "double"));
+        }
     const std::vector<aabb::mesh> meshes = meshes_of(cases);
-    for (const named_candidate& c : candidates(aabb::stage::local_detection, true))
-        if (c.role != candidate_role::triangle_test) run_stage(cases, meshes, c, rows);
+    for (const named_candidate& c : candidates(aabb::stage::local_detection, /*named_values=*/true))
+        if (c.role != candidate_role::triangle_test) run_on_cases(cases, meshes, c, rows);
     return rows;
 }
 
+/// Runs every candidate on every scene; at full size, compositions with each named value of their parameters.
 std::vector<extreme_row> run_extreme_scenes(std::span<const aabb::extreme_scene> scenes, aabb::extreme_size size) {
     const bool named_values = size == aabb::extreme_size::full;
     const auto for_boxes = candidates(aabb::stage::global_search, named_values);
     const auto for_meshes = candidates(aabb::stage::local_detection, named_values);
     // Parameters would add minutes but no insight in scenes with large meshes.
-    const auto for_large_meshes = candidates(aabb::stage::local_detection, false);
+    const auto for_large_meshes = candidates(aabb::stage::local_detection, /*named_values=*/false);
     std::vector<extreme_row> rows;
     progress shown("extreme scenes", scenes.size());
     for (std::size_t i = 0; i < scenes.size(); ++i) {

@@ -16,7 +16,7 @@ aabb::extreme_scene scene_of(const pair_class_info& info) {
     aabb::extreme_scene scene{.name = "pairs_" + std::string(info.name), .summary = std::string(info.summary)};
     scene.make_meshes = [name = info.name]() -> std::unique_ptr<aabb::mesh_scene> {
         std::vector<aabb::triangle_pair<float>> pairs(count);
-        pair_source<float>(name, 1).next(pairs);
+        pair_source<float>(name, /*seed=*/1).next(pairs);
         std::vector<aabb::mesh> meshes(2);
         const auto add = [](aabb::mesh& m, const aabb::triangle3f& t) {
             const auto first = static_cast<std::uint32_t>(m.vertices.size());
@@ -50,12 +50,13 @@ aabb::extreme_scene scene_of(const std::string& file) {
 
 }  // namespace
 
+/// The validation's scenes, then generated pairs by class, then real meshes that are present, with notes on omissions.
 extreme_list all_extreme_scenes(aabb::extreme_size size) {
     extreme_list list{aabb::extreme_scenes(size), {}};
     for (const pair_class_info& info : pair_classes()) list.scenes.push_back(scene_of(info));
     std::string absent;
     for (const std::string file : degenerate_meshes)
-        if (is_mesh(file, {}))
+        if (is_mesh(file, /*folder=*/{}))
             list.scenes.push_back(scene_of(file));
         else
             absent += (absent.empty() ? "" : " and ") + file;

@@ -48,4 +48,9 @@ void run_or_record_failure(stiff_result& result, std::string_view integrator, co
             verdict_if(measured >= limit)};
 }
 
+/// The row if its expectation applies to its subject; otherwise the value is only reported.
+[[nodiscard]] stiff_row expected_if(bool applies, stiff_row row) {
+    return applies ? std::move(row) : reported(std::move(row.subject), std::move(row.quantity), row.measured);
+}
+
 }  // namespace aabblab

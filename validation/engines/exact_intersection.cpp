@@ -55,6 +55,7 @@ struct common_corners {
     corners operator()(const point_3& s, const point_3& t) const { return s == t ? corners{s} : corners{}; }
     corners operator()(const point_3& s, const auto& t) const { return t.has_on(s) ? corners{s} : corners{}; }
     corners operator()(const auto& s, const point_3& t) const { return (*this)(t, s); }
+    /// Asks CGAL unless one of the hulls is a point, and keeps each corner once.
     corners operator()(const auto& s, const auto& t) const {
         const auto shape = CGAL::intersection(s, t);
         if (!shape) return {};
@@ -74,7 +75,8 @@ bool is_interior(const exact_hull& h, const point_3& p) {
     return true;
 }
 
-/// A segment is transversal if its middle, and thus the segment, lies inside both triangles.
+/// The kind of an intersection with these corners; with more than two, the triangles overlap in their common plane. A
+/// segment is transversal if its middle, and thus the segment, lies inside both triangles.
 intersection_kind kind_of(const std::vector<point_3>& corners, const exact_hull& g, const exact_hull& h) {
     if (corners.empty()) return intersection_kind::none;
     if (corners.size() == 1) return intersection_kind::point;
@@ -84,19 +86,19 @@ intersection_kind kind_of(const std::vector<point_3>& corners, const exact_hull&
                                                             : intersection_kind::segment;
 }
 
-/// Adds the errors of a computed corner.
-void add_errors(corner_errors& errors, const vec3d& computed, const exact_point& corner, const vec3d& stated) {
+/// Raises the greatest errors so far to those of a computed corner, which are subtracted and compared in exact numbers.
+/// @param bounds the stated errors of its coordinates
+void add_errors(corner_errors& errors, const vec3d& computed, const exact_point& corner, const vec3d& bounds) {
     for (int k = 0; k < 3; ++k) {
-        const exact_number off = CGAL::abs(exact_number(computed[k]) - corner[static_cast<std::size_t>(k)]);
-        if (CGAL::is_zero(off)) continue;
-        const exact_number bound(stated[k]);
-        errors.within &= off <= bound;
-        const double of_bound = stated[k] == 0 ? std::numeric_limits<double>::infinity() : CGAL::to_double(off / bound);
-        errors.of_bound = std::max(errors.of_bound, of_bound);
-        const double error = CGAL::to_double(off);
-        if (error <= errors.greatest) continue;
-        errors.greatest = error;
-        errors.bound = stated[k];
+        const exact_number error = CGAL::abs(exact_number(computed[k]) - corner[static_cast<std::size_t>(k)]);
+        if (CGAL::is_zero(error)) continue;
+        const exact_number bound(bounds[k]);
+        errors.within &= error <= bound;
+        errors.of_bound = std::max(
+            errors.of_bound, bounds[k] == 0 ? std::numeric_limits<double>::infinity() : CGAL::to_double(error / bound));
+        if (CGAL::to_double(error) <= errors.greatest) continue;
+        errors.greatest = CGAL::to_double(error);
+        errors.bound = bounds[k];
     }
 }
 
@@ -107,6 +109,7 @@ struct exact_intersection::construction {
     std::vector<exact_point> corners;
 };
 
+/// Computes the corners and, since CGAL evaluates coordinates only on demand, their exact coordinates.
 exact_intersection::exact_intersection(const triangle3d& s, const triangle3d& t)
     : construction_(std::make_unique<construction>()) {
     const exact_hull g = exact_hull_of(s);
@@ -142,6 +145,8 @@ triangle_intersection exact_intersection::rounded() const {
     return common;
 }
 
+/// Matches computed with exact corners, and returns the errors of the best match. Tries all first corners and both
+/// orientations, the nearest in double first, which is the right one unless corners are as close as the error.
 corner_errors exact_intersection::errors_of(const triangle_intersection& computed) const {
     corner_errors best;
     const std::size_t size = construction_->corners.size();
@@ -153,30 +158,26 @@ corner_errors exact_intersection::errors_of(const triangle_intersection& compute
     for (std::size_t i = 0; i < size; ++i)
         for (std::size_t k = 0; k < 3; ++k)
             approximate[i][static_cast<int>(k)] = CGAL::to_double(construction_->corners[i][k]);
-    // Tries all first corners and both orientations, the nearest in double first. That is the right one unless corners
-    // are as close to each other as the error.
     struct alignment {
-        double distance;
-        std::size_t first, step;
-        [[nodiscard]] std::size_t operator()(std::size_t i, std::size_t count) const {
-            return (first + i * step) % count;
-        }
+        double distance = 0;
+        std::array<std::size_t, 6> order{};  // indices of exact corners by computed corner
     };
     std::vector<alignment> alignments;
     for (std::size_t first = 0; first < size; ++first)
         for (const std::size_t step : {std::size_t{1}, size - 1}) {
-            alignment a{0, first, step};
-            for (std::size_t i = 0; i < size; ++i)
+            alignment& a = alignments.emplace_back();
+            for (std::size_t i = 0; i < size; ++i) {
+                a.order[i] = (first + i * step) % size;
                 for (int k = 0; k < 3; ++k)
                     a.distance =
-                        std::max(a.distance, std::abs(computed.corners[i][k] / 2 - approximate[a(i, size)][k] / 2));
-            alignments.push_back(a);
+                        std::max(a.distance, std::abs(computed.corners[i][k] / 2 - approximate[a.order[i]][k] / 2));
+            }
         }
     std::ranges::sort(alignments, {}, &alignment::distance);
     for (const alignment& a : alignments) {
         corner_errors errors{.same = true, .within = true};
         for (std::size_t i = 0; i < size; ++i)
-            add_errors(errors, computed.corners[i], construction_->corners[a(i, size)], computed.error);
+            add_errors(errors, computed.corners[i], construction_->corners[a.order[i]], computed.error);
         if (errors.within || errors.of_bound < best.of_bound) best = errors;
         if (best.within) break;
     }

@@ -7,12 +7,8 @@ module aabb.engines;
 
 namespace aabb {
 
-namespace {
-
 // Its predicates are exact for all finite doubles, and the test needs no constructions.
 using kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-}  // namespace
 
 bool exactly_intersect(const triangle3f& s, const triangle3f& t) {
     return triangles_intersect<kernel>(s, t);

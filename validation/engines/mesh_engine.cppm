@@ -75,6 +75,7 @@ struct engine_model {
 template <class Model>
 class model_engine : public mesh_engine {
 public:
+    /// Makes the model of a mesh, which must outlive it and is rejected if it is invalid. @return the model's index
     std::uint32_t add_model(const mesh& m) final {
         require_ieee_arithmetic();
         require_valid(m);
@@ -84,8 +85,9 @@ public:
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
-    void refit(std::uint32_t number) final {
-        Model& changed = models_[number];
+    /// Updates a model whose mesh deformed. After a failure, queries are rejected until a refit succeeds.
+    void refit(std::uint32_t model) final {
+        Model& changed = models_[model];
         changed.fit.renew([&] {
             require_ieee_arithmetic();
             require_still_valid(*changed.source, changed.count);

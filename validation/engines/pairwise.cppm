@@ -53,6 +53,7 @@ private:
         });
     }
 
+    /// Decides pairs only until one intersects.
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         std::optional<index_pair> first;
         decide(q, [&](index_pair pair) {
@@ -62,7 +63,7 @@ private:
         return first;
     }
 
-    /// Calls `emit` for intersecting pairs until it returns true.
+    /// Calls `emit` for each pair of triangles that intersect, of those whose boxes overlap, until it returns true.
     template <class Emit>
     void decide(const model_query& q, Emit emit) const {
         const mesh& b = *q.b.source;

@@ -31,7 +31,7 @@ bool can_flush_denormals() noexcept {
 #endif
 }
 
-/// Uses a thread of its own, because the floating-point mode belongs to a thread and must not leak.
+/// Runs the work in this floating-point mode; in a thread of its own, because the mode belongs to it and must not leak.
 void in_arithmetic(arithmetic kind, const std::function<void()>& work) {
     assert(kind != arithmetic::denormals_flushed || can_flush_denormals());
     std::exception_ptr thrown;

@@ -6,17 +6,15 @@ namespace aabb {
 
 namespace {
 
-// Shapes and arrangements.
-
-/// The boxes, and `times` frames in which all move by a step along each axis.
-box_frames moving(std::vector<box> boxes, float step, int times) {
+/// A frame of these boxes, and a further one for each step, in which all have moved by `shift` along each axis.
+box_frames moving(std::vector<box> boxes, float shift, int steps) {
     box_frames frames{std::move(boxes)};
-    for (int frame = 0; frame < times; ++frame) {
+    for (int step = 0; step < steps; ++step) {
         frames.push_back(frames.back());
         for (box& b : frames.back())
             for (int k = 0; k < 3; ++k) {
-                b.min[k] += step;
-                b.max[k] += step;
+                b.min[k] += shift;
+                b.max[k] += shift;
             }
     }
     return frames;
@@ -29,6 +27,7 @@ std::vector<box> boxes_of(std::uint32_t count, Make make) {
     return boxes;
 }
 
+/// Five by five by five unit cubes that touch, then all moved by a quarter.
 box_frames lattice() {
     const auto cell = [](std::uint32_t i) {
         const std::uint32_t layer = i / 25;
@@ -45,7 +44,7 @@ box_frames points() {
     return moving(boxes_of(80, point), 1, 1);
 }
 
-/// Boxes with zero extent on this number of axes.
+/// Boxes with zero extent on this number of axes, the first of which alternates.
 box_frames without_extent(int flat_axes, std::uint32_t seed) {
     draws random(seed);
     const auto make_box = [&](std::uint32_t i) {
@@ -59,6 +58,7 @@ box_frames without_extent(int flat_axes, std::uint32_t seed) {
     return moving(boxes_of(80, make_box), 0.5F, 1);
 }
 
+/// Boxes whose edges are of 13 magnitudes, from a millionth to a million.
 box_frames mixed_sizes() {
     draws random(13);
     const auto make_box = [&](std::uint32_t i) {
@@ -68,6 +68,7 @@ box_frames mixed_sizes() {
     return moving(boxes_of(39, make_box), 100, 1);
 }
 
+/// One box of edge 2e9, and within it 59 of at most a thousandth.
 box_frames one_huge() {
     draws random(14);
     const auto make_box = [&](std::uint32_t i) {
@@ -77,7 +78,7 @@ box_frames one_huge() {
     return moving(boxes_of(60, make_box), 1e-3F, 1);
 }
 
-/// Integer coordinates, so that the centres are exact.
+/// Boxes with their centres in one point or on a line; exactly, since coordinates are integers.
 box_frames concentric(bool on_a_line) {
     const auto make_box = [&](std::uint32_t i) {
         const float x = on_a_line ? static_cast<float>(3 * i) : 0;
@@ -98,8 +99,6 @@ box_frames row_of(std::uint32_t objects) {
     const auto make_box = [](std::uint32_t i) { return box_at({static_cast<float>(i), 0, 0}, {1, 1, 1}); };
     return moving(boxes_of(objects, make_box), 1, 2);
 }
-
-// Coordinates: few distinct values, or far from the origin.
 
 constexpr float least = std::numeric_limits<float>::denorm_min();
 constexpr float least_normal = std::numeric_limits<float>::min();
@@ -142,10 +141,9 @@ box_frames far_out(float offset) {
     });
 }
 
-// Motion and population.
-
 constexpr std::uint32_t population_size = 72;
 
+/// Six frames, in each of which all boxes have random new positions and sizes.
 box_frames jumping_boxes() {
     draws random(31);
     box_frames frames(6);
@@ -155,6 +153,7 @@ box_frames jumping_boxes() {
     return frames;
 }
 
+/// The jumping boxes, enlarged 10^9 times in even frames and reduced as much in odd ones: all distances change greatly.
 box_frames huge_and_tiny() {
     box_frames frames = jumping_boxes();
     for (std::size_t frame = 0; frame < frames.size(); ++frame)
@@ -187,6 +186,7 @@ extreme_scene population(std::string name, std::string summary, IsPresent is_pre
 
 }  // namespace
 
+/// Boxes of extreme shapes and arrangements, then of extreme coordinates, then with extreme motion and changes.
 std::vector<extreme_scene> box_scenes() {
     return {
         scene_of_boxes("identical", "60 copies of one box",

@@ -8,23 +8,20 @@ namespace {
 
 /// Two closed boxes overlap if on each axis some number lies in both intervals.
 bool share_a_point(const box& a, const box& b) {
-    for (int k = 0; k < 3; ++k) {
-        const bool intersect =
-            (a.min[k] <= b.min[k] && b.min[k] <= a.max[k]) || (b.min[k] <= a.min[k] && a.min[k] <= b.max[k]);
-        if (!intersect) return false;
-    }
+    for (int k = 0; k < 3; ++k)
+        if (!((a.min[k] <= b.min[k] && b.min[k] <= a.max[k]) || (b.min[k] <= a.min[k] && a.min[k] <= b.max[k])))
+            return false;
     return true;
 }
 
-/// Records the objects that arrive and depart between the frame before and this one.
-void add_changes(exact_box_frame& frame, std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& present) {
-    before.resize(present.size(), 0);
-    for (std::uint32_t object = 0; object < present.size(); ++object)
-        if (present[object] && !before[object])
-            frame.arrivals.push_back(object);
-        else if (!present[object] && before[object])
-            frame.departures.push_back(object);
-    before = present;
+/// Records the objects that arrive and depart between the previous frame and this one.
+void add_changes(exact_box_frame& frame, const std::vector<std::uint8_t>& previously_present,
+                 const std::vector<std::uint8_t>& present) {
+    for (std::uint32_t object = 0; object < present.size(); ++object) {
+        const bool was_present = object < previously_present.size() && previously_present[object];
+        if (present[object] && !was_present) frame.arrivals.push_back(object);
+        if (!present[object] && was_present) frame.departures.push_back(object);
+    }
 }
 
 /// Calls `visit` for all intersecting pairs, with b transformed by `to_a`, until it returns true.
@@ -54,13 +51,14 @@ exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>&
 
 }  // namespace
 
+/// Plays the scene, and finds the pairs of each frame by a double loop over the present objects.
 exact_boxes exact_boxes_of(box_scene& scene) {
     exact_boxes frames;
-    std::vector<std::uint8_t> before;
+    std::vector<std::uint8_t> previously_present;
     for (exact_box_frame frame; scene.next(frame.boxes); frame = {}) {
         std::vector<std::uint8_t> present(scene.present().begin(), scene.present().end());
         if (present.empty()) present.assign(frame.boxes.size(), 1);
-        add_changes(frame, before, present);
+        add_changes(frame, std::exchange(previously_present, present), present);
         for (std::uint32_t a = 0; a < frame.boxes.size(); ++a)
             for (std::uint32_t b = a + 1; b < frame.boxes.size(); ++b)
                 if (present[a] && present[b] && share_a_point(frame.boxes[a], frame.boxes[b]))
@@ -70,6 +68,7 @@ exact_boxes exact_boxes_of(box_scene& scene) {
     return frames;
 }
 
+/// Plays the scene, and finds the pairs of each two objects, then for `all_pairs` those within a single mesh.
 exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query query) {
     exact_meshes truth;
     for (exact_mesh_frame frame; scene.next(frame.poses); frame = {}) {

@@ -96,8 +96,6 @@ private:
     std::size_t frames_run_ = 0;
 };
 
-// The ground truth of a scene, by definition.
-
 /// A frame of a scene of boxes, with arriving and departing objects and the overlapping pairs.
 struct exact_box_frame {
     std::vector<box> boxes;
@@ -204,8 +202,7 @@ template <class Real>
     std::vector<triangle_pair<Real>> pairs;
     for (const auto& order_a : orders)
         for (const auto& order_b : orders) {
-            const triangle3<Real> a = rounded(original.first, order_a);
-            const triangle3<Real> b = rounded(original.second, order_b);
+            const triangle3<Real> a = rounded(original.first, order_a), b = rounded(original.second, order_b);
             pairs.push_back({a, b});
             pairs.push_back({b, a});
         }

@@ -15,6 +15,13 @@ void make_wrong(extreme_result& result, const std::string& reason) {
     result.reason = reason;
 }
 
+/// Records a rejection, unless there was an error or a rejection before.
+void make_rejected(extreme_result& result, const input_error& rejection) {
+    if (result.outcome != verdict::exact) return;
+    result.outcome = verdict::rejected;
+    result.reason = rejection.what();
+}
+
 /// Counts the differences of a result from the ground truth; the first one makes the result wrong.
 /// @param where "frame 2"
 void record_difference(extreme_result& result, const pair_comparison& difference, const std::string& where) {
@@ -98,6 +105,7 @@ void judge_queries(const judged_frame& current, extreme_query query, const exact
                                std::to_string(first->b) + ", which do not intersect");
 }
 
+/// Compares the pairs of triangles that intersect within the scene's only mesh with the ground truth.
 void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_stage& stage, extreme_result& result) {
     std::vector<index_pair> pairs;
     stage.self_pairs(0, pairs);
@@ -136,26 +144,22 @@ void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& sta
         judge_self_pairs(*meshes, exact, stage, result);
 }
 
-/// Runs a query in the scene's arithmetic and compares the message with the expected one.
+/// Runs a query in the scene's arithmetic, which must be rejected with the expected message.
 void require_rejection(const extreme_scene& scene, const std::string& query, const std::function<void()>& work,
                        extreme_result& result) {
     try {
         in_arithmetic(scene.computed_in, work);
         make_wrong(result, query + " returns a result, but must reject the scene");
     } catch (const input_error& error) {
-        const std::string outcome = error.what();
-        if (outcome.find(scene.rejection) == std::string::npos)
-            make_wrong(result, query + " rejects the scene for another reason: " + outcome);
-        if (result.outcome == verdict::exact) {
-            result.outcome = verdict::rejected;
-            result.reason = outcome;
-        }
+        if (std::string_view(error.what()).find(scene.rejection) == std::string_view::npos)
+            make_wrong(result, query + " rejects the scene for another reason: " + error.what());
+        make_rejected(result, error);
     }
 }
 
-/// Checks that each query of an initialised stage is rejected.
-void reject_each_query(const extreme_scene& scene, const std::function<std::unique_ptr<global_stage>()>& make,
-                       extreme_result& result) {
+/// Checks that a stage that was made in IEEE arithmetic rejects each call in the scene's arithmetic.
+void require_rejections(const extreme_scene& scene, const std::function<std::unique_ptr<global_stage>()>& make,
+                        extreme_result& result) {
     std::vector<box> boxes;
     scene.make_boxes()->next(boxes);
     const std::unique_ptr<global_stage> stage = make();
@@ -166,8 +170,9 @@ void reject_each_query(const extreme_scene& scene, const std::function<std::uniq
     require_rejection(scene, "update", [&] { stage->update(boxes); }, result);
 }
 
-void reject_each_query(const extreme_scene& scene, const std::function<std::unique_ptr<local_stage>()>& make,
-                       extreme_result& result) {
+/// Likewise for a narrow phase.
+void require_rejections(const extreme_scene& scene, const std::function<std::unique_ptr<local_stage>()>& make,
+                        extreme_result& result) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();
     std::vector<pose> poses;
     meshes->next(poses);
@@ -194,7 +199,7 @@ extreme_result result_of(const extreme_scene& scene, const std::function<std::un
     extreme_result result;
     try {
         if (scene.computed_in != arithmetic::ieee) {
-            reject_each_query(scene, make, result);
+            require_rejections(scene, make, result);
         } else {
             const std::unique_ptr<Stage> stage = make();
             run_frames(*stage, result);
@@ -203,10 +208,7 @@ extreme_result result_of(const extreme_scene& scene, const std::function<std::un
         if (!scene.rejection.empty() && !scene.accepted_in_double && result.outcome == verdict::exact)
             make_wrong(result, "returns a result, but must reject the scene");
     } catch (const input_error& error) {
-        if (result.outcome == verdict::exact) {
-            result.outcome = verdict::rejected;
-            result.reason = error.what();
-        }
+        make_rejected(result, error);
     } catch (const std::exception& error) {
         make_wrong(result, std::string("fails: ") + error.what());
     }

@@ -82,8 +82,6 @@ private:
     std::mt19937 engine_;
 };
 
-// Small meshes.
-
 /// A mesh in which no two triangles share vertices.
 [[nodiscard]] inline mesh soup_of(const std::vector<triangle3f>& triangles) {
     mesh m;
@@ -141,8 +139,7 @@ private:
 
 /// A rotation about z, computed in double, then a translation.
 [[nodiscard]] inline pose turned(double angle, const vec3d& shift) {
-    const double c = std::cos(angle);
-    const double s = std::sin(angle);
+    const double c = std::cos(angle), s = std::sin(angle);
     return {{c, -s, 0, s, c, 0, 0, 0, 1}, shift};
 }
 

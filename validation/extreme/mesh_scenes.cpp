@@ -6,8 +6,6 @@ namespace aabb {
 
 namespace {
 
-// Meshes that touch.
-
 /// A quarter turn about z, which is exact.
 constexpr pose quarter_turn{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {0, 0, 0}};
 
@@ -29,19 +27,16 @@ std::unique_ptr<mesh_scene> corner_on_face() {
                  {{{}, shifted(0.5, 0.75, 2)}, {{}, shifted(0.5, 2, 2)}, {{}, shifted(1, 1, 2)}});
 }
 
-// Coincident triangles.
-
 constexpr triangle3f flat_triangle{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}};
 constexpr triangle3f crossing_triangle{{{0.5F, 0.5F, -1}, {0.5F, 0.5F, 1}, {0.25F, 3, 0}}};
 
-/// No build can separate these triangles by their centroids.
+/// Triangles around the origin, which no build can separate by their centroids.
 std::unique_ptr<mesh_scene> same_centroid() {
     draws random(41);
     std::vector<triangle3f> triangles;
-    const auto whole = [&] { return static_cast<float>(random.below(17)) - 8; };
+    const auto integer = [&] { return static_cast<float>(random.below(17)) - 8; };
     for (int i = 0; i < 40; ++i) {
-        const vec3f p{whole(), whole(), whole()};
-        const vec3f q{whole(), whole(), whole()};
+        const vec3f p{integer(), integer(), integer()}, q{integer(), integer(), integer()};
         triangles.push_back({{p, q, {-p[0] - q[0], -p[1] - q[1], -p[2] - q[2]}}});
     }
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1, 0, 0)}, {{}, turned(1, {0, 0, 5})}});
@@ -69,15 +64,12 @@ mesh coincident(std::uint32_t count) {
     return m;
 }
 
-// Degenerate and nearly degenerate triangles.
-
-/// @param height the height of a triangle relative to its length
+/// Thin triangles in random directions. @param height the greatest height of a triangle, relative to lengths of about 1
 std::unique_ptr<mesh_scene> needles(float height) {
     draws random(51);
     std::vector<triangle3f> triangles;
     for (int i = 0; i < 60; ++i) {
-        const vec3f from = random.point(-1, 1);
-        const vec3f to = random.point(-1, 1);
+        const vec3f from = random.point(-1, 1), to = random.point(-1, 1);
         vec3f beside = to;
         for (int k = 0; k < 3; ++k) beside[k] = (from[k] + to[k]) / 2 + height * random.between(-1, 1);
         triangles.push_back({{from, to, beside}});
@@ -89,9 +81,10 @@ std::unique_ptr<mesh_scene> needles(float height) {
 std::unique_ptr<mesh_scene> zero_areas() {
     draws random(52);
     std::vector<triangle3f> triangles;
-    const auto whole = [&] { return static_cast<float>(random.below(5)); };
+    const auto integer = [&] { return static_cast<float>(random.below(5)); };
     for (std::uint32_t i = 0; i < 60; ++i) {
-        triangle3f t{{{whole(), whole(), whole()}, {whole(), whole(), whole()}, {whole(), whole(), whole()}}};
+        triangle3f t{
+            {{integer(), integer(), integer()}, {integer(), integer(), integer()}, {integer(), integer(), integer()}}};
         if (i % 3 > 0) t[2] = t[1];
         if (i % 3 > 1) t[1] = t[0];
         if (i % 6 > 3) t[2] = t[0];
@@ -99,8 +92,6 @@ std::unique_ptr<mesh_scene> zero_areas() {
     }
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1, 0, 0)}});
 }
-
-// Spheres of all sizes, and far from the origin.
 
 /// Two intersecting spheres of this radius.
 std::unique_ptr<mesh_scene> balls_of(double radius) {

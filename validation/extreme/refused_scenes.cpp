@@ -20,7 +20,7 @@ extreme_scene with_box(const char* name, const char* summary, const box& bad, co
     return rejected(scene_of_boxes(name, summary, make), rejection);
 }
 
-/// A valid mesh, and an invalid one.
+/// A cube, and a copy that `spoil` makes invalid.
 template <class Spoil>
 extreme_scene with_mesh(const char* name, const char* summary, Spoil spoil, const char* rejection) {
     const auto make = [spoil] {
@@ -117,6 +117,7 @@ std::vector<extreme_scene> invalid_mesh_scenes() {
     };
 }
 
+/// Scenes in a thread that rounds upward and, if the processor can, in one that flushes denormals, those first.
 std::vector<extreme_scene> other_arithmetic_scenes() {
     std::vector<extreme_scene> scenes = computed_in(arithmetic::rounded_upward, "upward", "a thread that rounds upward",
                                                     "this thread does not round to nearest");

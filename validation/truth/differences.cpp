@@ -33,11 +33,6 @@ exact_triangle exactly_transformed(const triangle3f& t, const pose& p) {
     return world;
 }
 
-bool intersect_exactly(const exact_triangle& s, const exact_triangle& t) {
-    const auto point = [](const vec3<rational>& p) { return kernel::Point_3(p[0], p[1], p[2]); };
-    return hulls_intersect<kernel>({point(s[0]), point(s[1]), point(s[2])}, {point(t[0]), point(t[1]), point(t[2])});
-}
-
 template <class Real>
 vec3<Real> normal_of(const triangle3<Real>& t) {
     return cross(t[1] - t[0], t[2] - t[0]);
@@ -121,11 +116,11 @@ bool are_near(const triangle3f& s, const triangle3f& t) {
     return std::abs(signed_distance(local_s, local_t)) <= 1e-6 * extent;
 }
 
-/// @param engine_result the engine's result for the two triangles, which differs from the ground truth.
+/// The class of a wrong result: the first that applies. @param engine_result whether the engine reports the pair.
 difference_class class_of_difference(const triangle3f& s, const pose& pose_s, const triangle3f& t, const pose& pose_t,
                                      const triangle3f& t_seen_from_s, bool engine_result) {
     if (has_no_area(s) || has_no_area(t) || has_no_area(t_seen_from_s)) return difference_class::degenerate;
-    if (intersect_exactly(exactly_transformed(s, pose_s), exactly_transformed(t, pose_t)) == engine_result)
+    if (triangles_intersect<kernel>(exactly_transformed(s, pose_s), exactly_transformed(t, pose_t)) == engine_result)
         return difference_class::pose_rounding;
     const exact_triangle exact_s = converted_to<rational>(s);
     const exact_triangle exact_t = converted_to<rational>(t_seen_from_s);
@@ -145,7 +140,7 @@ differences& differences::operator+=(const differences& other) {
     return *this;
 }
 
-/// Merges the two sorted lists, and classifies each pair that is in one of them only.
+/// Classifies each pair that is in only one of the two lists.
 differences compare_triangle_pairs(std::span<const index_pair> exact, std::span<const index_pair> reported,
                                    const mesh& a, const pose& pose_a, const mesh& b, const pose& pose_b) {
     const relative_pose to_a(pose_a, pose_b, bounds_of(b));
@@ -156,18 +151,11 @@ differences compare_triangle_pairs(std::span<const index_pair> exact, std::span<
         auto& classes = engine_result ? counts.false_positives : counts.false_negatives;
         ++classes[static_cast<std::size_t>(class_of_difference(s, pose_a, t, pose_b, to_a(t), engine_result))];
     };
-    auto next_exact = exact.begin();
-    auto next_reported = reported.begin();
-    while (next_exact != exact.end() || next_reported != reported.end()) {
-        if (next_reported == reported.end() || (next_exact != exact.end() && *next_exact < *next_reported))
-            count(*next_exact++, false);
-        else if (next_exact == exact.end() || *next_reported < *next_exact)
-            count(*next_reported++, true);
-        else {
-            ++next_exact;
-            ++next_reported;
-        }
-    }
+    std::vector<index_pair> false_negatives, false_positives;
+    std::ranges::set_difference(exact, reported, std::back_inserter(false_negatives));
+    std::ranges::set_difference(reported, exact, std::back_inserter(false_positives));
+    for (const index_pair pair : false_negatives) count(pair, /*engine_result=*/false);
+    for (const index_pair pair : false_positives) count(pair, /*engine_result=*/true);
     return counts;
 }
 

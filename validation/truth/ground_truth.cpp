@@ -30,6 +30,7 @@ std::string ground_truth::name() const {
     return triangles_ ? box_engine_ + " for boxes, cgal on all pairs of objects for triangles" : box_engine_;
 }
 
+/// Finds the pairs of boxes and, in a scene of meshes, the contacts of all objects whose bounding spheres overlap.
 void ground_truth::compute(const scene_frame& frame) {
     pairs_.clear();
     contacts_.clear();
@@ -50,6 +51,7 @@ void ground_truth::compute(const scene_frame& frame) {
     std::ranges::sort(contacts_);
 }
 
+/// Refits the models, and computes the spheres, of meshes that changed since the last frame.
 void ground_truth::update_deformed_meshes() {
     const std::vector<mesh>& meshes = meshes_->meshes;
     for (std::uint32_t m = 0; m < meshes.size(); ++m) {
@@ -59,6 +61,7 @@ void ground_truth::update_deformed_meshes() {
     }
 }
 
+/// A sphere that contains the mesh, in the mesh's frame, around the centre of its box.
 ground_truth::sphere ground_truth::sphere_around(const mesh& m) {
     const box bounds = bounds_of(m);
     sphere bounding{};

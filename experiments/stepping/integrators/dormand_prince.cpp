@@ -9,8 +9,6 @@ namespace aabblab {
 
 namespace {
 
-using stepper = boost::numeric::odeint::runge_kutta_dopri5<std::vector<double>>;
-
 class dormand_prince final : public integrator {
 public:
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
@@ -22,7 +20,7 @@ public:
     }
 
 private:
-    stepper stepper_;
+    boost::numeric::odeint::runge_kutta_dopri5<std::vector<double>> stepper_;
 };
 
 }  // namespace

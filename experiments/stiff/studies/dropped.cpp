@@ -46,7 +46,7 @@ public:
         simulation balls(world_, tested, stepping);
         const double initial_energy = dynamics(world_).mechanical_energy(balls.state());
         const auto steps = static_cast<std::size_t>(std::llround(seconds(end) / step));
-        std::vector<double> squares;
+        double squares = 0;
         const std::size_t sample_interval = std::max<std::size_t>(steps / 20, 1);
         for (std::size_t s = 1; s <= steps; ++s) {
             try {
@@ -59,11 +59,9 @@ public:
             if (s % sample_interval != 0) continue;
             t.times.push_back(balls.state().time);
             t.depths.push_back(greatest_depth(balls.state().position));
-            if (with_energy) squares.push_back(std::pow(energy_of(balls) / initial_energy - 1, 2));
+            if (with_energy) squares += std::pow(energy_of(balls) / initial_energy - 1, 2);
         }
-        if (with_energy)
-            t.energy_error =
-                std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size()));
+        t.energy_error = std::sqrt(squares / static_cast<double>(t.times.size()));
         t.detection_ms = balls.detection_ms();
         return t;
     }
@@ -115,13 +113,6 @@ private:
     stepped_world world_;
 };
 
-std::vector<method> compared_methods() {
-    std::vector<method> methods = triangle_methods();
-    std::erase_if(methods, [](const method& m) { return m.label == "exact"; });  // the reference of the others
-    std::ranges::move(tree_and_list_methods(), std::back_inserter(methods));
-    return methods;
-}
-
 /// Diameters of balls.
 constexpr std::array<const char*, 2> sizes{"1 m", "10 mm"};
 
@@ -163,7 +154,9 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
     const double step = balls.seconds(1e-3);
     const trajectory reference = balls.run(setting.tested, *integrator_named("velocity_verlet"), step,
                                            /*stored_every=*/1, /*with_energy=*/true);
-    const std::vector<method> methods = compared_methods();
+    std::vector<method> methods = triangle_methods();
+    std::erase_if(methods, [](const method& m) { return m.label == "exact"; });  // the reference
+    std::ranges::move(tree_and_list_methods(), std::back_inserter(methods));
     const std::vector<trajectory> trajectories = trajectories_of(methods, balls, step, setting);
     constexpr std::size_t most_drawn = 9;
     std::size_t drawn = 0;

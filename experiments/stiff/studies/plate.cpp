@@ -17,9 +17,7 @@ constexpr auto tunnelled_share = "1 - extent / displacement";      // of shots, 
 class shot {
 public:
     shot(const candidate& tested, double step)
-        : plate_(slab(2, thickness)),
-          body_(octahedron(radius)),
-          step_(step),
+        : step_(step),
           global_(tested.make_global(aabb::instrumentation::none)),
           local_(tested.make_local(aabb::instrumentation::none)) {
         for (const std::uint32_t id : {0U, 1U}) global_->insert(id);
@@ -67,8 +65,8 @@ private:
         return local_->first_pair(0, {}, 1, pose).has_value();
     }
 
-    aabb::mesh plate_;
-    aabb::mesh body_;
+    aabb::mesh plate_ = slab(/*side=*/2, thickness);
+    aabb::mesh body_ = octahedron(radius);
     double step_;
     std::unique_ptr<aabb::global_stage> global_;
     std::unique_ptr<aabb::local_stage> local_;

@@ -41,11 +41,8 @@ struct placement {
 
 /// A rotation about (1, 1, 1) by an angle of cosine 0.8, so that no axis is favoured.
 aabb::pose oblique() {
-    const double third = 0.2 / 3;
-    const double sine = 0.6 / std::sqrt(3.0);
-    const double a = 0.8 + third;
-    const double b = third - sine;
-    const double c = third + sine;
+    const double third = 0.2 / 3, sine = 0.6 / std::sqrt(3.0);
+    const double a = 0.8 + third, b = third - sine, c = third + sine;
     return {{a, b, c, c, a, b, b, c, a}, {0, 0, 0}};
 }
 
@@ -114,19 +111,15 @@ stiff_result run_sliding(const stiff_setting& setting) {
         for (const method& m : methods) {
             setting.progress(static_cast<double>(done++) / static_cast<double>(placements.size() * methods.size()));
             const std::vector<double> forces = forces_of(m.tested, p);
-            const double jump = greatest_jump(forces);
             const std::string subject = m.label + ", " + p.name;
             const double least = std::ranges::min(forces);
-            const double greatest = std::ranges::max(forces);
+            const auto add = [&](stiff_row row) { result.add(expected_if(m.tested.exact, std::move(row))); };
             if (p.pressed < 0) {
-                const std::string early = "greatest force before they touch";
-                result.add(m.tested.exact ? at_most(subject, early, greatest, 0) : reported(subject, early, greatest));
+                add(at_most(subject, "greatest force before they touch", std::ranges::max(forces), 0));
                 continue;
             }
-            const std::string jumps = "greatest jump of the force";
-            const std::string lost = "least force";
-            result.add(m.tested.exact ? at_most(subject, jumps, jump, 1e-3) : reported(subject, jumps, jump));
-            result.add(m.tested.exact ? within(subject, lost, least, 1, 1e-3) : reported(subject, lost, least));
+            add(at_most(subject, "greatest jump of the force", greatest_jump(forces), 1e-3));
+            add(within(subject, "least force", least, 1, 1e-3));
             if (p.size == 0.01 && least < 0.999 && drawn++ < most_drawn)
                 for (int i = 0; i < positions; ++i)
                     result.plot("sliding_force", m.label, displacement * i, forces[static_cast<std::size_t>(i)]);

@@ -83,8 +83,7 @@ bool is_stable(const candidate& tested, const integrator_info& stepping, double 
 
 /// The greatest stable dt·ω, by bisection.
 double limit_of(const candidate& tested, const integrator_info& stepping) {
-    double stable = 0.1;
-    double unstable = 4;
+    double stable = 0.1, unstable = 4;
     while (unstable - stable > 1e-3) {
         const double middle = (stable + unstable) / 2;
         (is_stable(tested, stepping, middle) ? stable : unstable) = middle;

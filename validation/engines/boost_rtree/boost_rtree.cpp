@@ -56,6 +56,7 @@ public:
     }
 
 private:
+    /// Packs a new tree of the present boxes.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         tree_.reset();
         entries_.clear();

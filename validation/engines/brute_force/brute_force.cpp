@@ -14,6 +14,7 @@ public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"engine", bytes_of(ids_, min_, max_)}}; }
 
 private:
+    /// Copies the bounds into an array for each axis and end, as loops that vectorise need them.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         ids_.assign(ids.begin(), ids.end());
         for (std::size_t k = 0; k < 3; ++k) {
@@ -54,8 +55,7 @@ private:
 
     // The bounds of the present objects by axis, in ascending order of ids.
     std::vector<std::uint32_t> ids_;
-    std::array<std::vector<float>, 3> min_;
-    std::array<std::vector<float>, 3> max_;
+    std::array<std::vector<float>, 3> min_, max_;
 };
 
 std::vector<index_pair> candidates_by_double_loop(std::span<const box> a, std::span<const box> b) {

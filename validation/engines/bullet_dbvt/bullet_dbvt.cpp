@@ -10,10 +10,6 @@ namespace aabb {
 
 namespace {
 
-btDbvtVolume volume_of(const box& b) {
-    return btDbvtVolume::FromMM({b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]});
-}
-
 /// Used as in Bullet's own broad phase: a leaf is slightly larger than its box and stays while it contains it.
 class bullet_dbvt final : public box_engine {
 public:
@@ -25,13 +21,16 @@ public:
     }
 
 private:
+    /// Inserts, moves and removes leaves. Bullet moves a leaf only if its box has left it, enlarged by the margin
+    /// unless the box has jumped. It also reinserts one leaf per frame, which keeps the tree balanced.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         drop_absent(leaves_, [&](btDbvtNode* leaf) { tree_.remove(leaf); });
         boxes_.assign(boxes.begin(), boxes.end());
         if (leaves_.size() < boxes.size()) leaves_.resize(boxes.size());
         const btScalar margin = margin_for(ids);
         for (const std::uint32_t id : ids) {
-            btDbvtVolume volume = volume_of(boxes[id]);
+            const box& b = boxes[id];
+            btDbvtVolume volume = btDbvtVolume::FromMM({b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]});
             btDbvtNode*& leaf = leaves_[id];
             if (!leaf) {
                 leaf = tree_.insert(volume, nullptr);
@@ -42,7 +41,7 @@ private:
                 tree_.update(leaf, volume);
             }
         }
-        tree_.optimizeIncremental(1);
+        tree_.optimizeIncremental(/*passes=*/1);
     }
 
     /// Bullet's margin of 0.05, which is meant for objects of about size 1, scaled to the mean extent.
@@ -54,6 +53,7 @@ private:
         return static_cast<btScalar>(std::min(margin, double{std::numeric_limits<float>::max()}));
     }
 
+    /// Collides the tree with itself, and tests the exact boxes, since those of leaves are enlarged.
     void find_pairs(std::vector<index_pair>& pairs) override {
         struct collector final : btDbvt::ICollide {
             collector(const std::vector<box>& tested, std::vector<index_pair>& to) : boxes(tested), pairs(to) {}

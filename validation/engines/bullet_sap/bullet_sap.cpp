@@ -20,7 +20,7 @@ box clamped(box b) {
     return b;
 }
 
-/// Inflates the box by half on each side, and by more than zero for coplanar boxes.
+/// Inflates the box by half of its extent on each side, and by more than zero if it is flat.
 box world_around(const box& bounds) {
     box world = bounds;
     for (int k = 0; k < 3; ++k) {
@@ -40,6 +40,7 @@ btVector3 corner_of(const vec3f& v) {
 /// is preserved, and lower ends precede upper ends in the same step: false positives, but no false negatives.
 class bullet_sap final : public box_engine {
 public:
+    /// Counts a handle and six ends per object, and the cache of overlapping pairs.
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::size_t total = bytes_of(boxes_, proxies_, objects_);
         if (sweep_) {
@@ -53,35 +54,38 @@ public:
     }
 
 private:
+    /// Updates the sweep, or starts a new one if there are more objects or some leave the world.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         boxes_.assign(boxes.begin(), boxes.end());
         box bounds = empty_box();
         for (const std::uint32_t id : ids) bounds = merged(bounds, clamped(boxes[id]));
-        if (proxies_.size() < boxes.size() || (!ids.empty() && !contains(world_, bounds))) begin(bounds, boxes.size());
+        if (proxies_.size() < boxes.size() || (!ids.empty() && !contains(world_, bounds))) renew(bounds, boxes.size());
         drop_absent(proxies_, [&](btBroadphaseProxy* proxy) { sweep_->destroyProxy(proxy, nullptr); });
-        for (const std::uint32_t id : ids) place(id, clamped(boxes[id]));
+        for (const std::uint32_t id : ids) move_or_add(id, clamped(boxes[id]));
     }
 
     /// Makes an empty sweep with a larger world: Bullet's world cannot grow.
-    void begin(const box& bounds, std::size_t objects) {
+    void renew(const box& bounds, std::size_t objects) {
         world_ = world_around(bounds);
         proxies_.assign(objects, nullptr);
         objects_.assign(objects + 1, 0);
-        // Without the tree that Bullet would keep for ray casts.
+        // The last argument leaves out the tree that Bullet would keep for ray casts.
         sweep_ = std::make_unique<bt32BitAxisSweep3>(corner_of(world_.min), corner_of(world_.max),
                                                      static_cast<unsigned>(objects), nullptr, true);
     }
 
-    void place(std::uint32_t id, const box& b) {
+    void move_or_add(std::uint32_t id, const box& b) {
         btBroadphaseProxy*& proxy = proxies_[id];
         if (proxy) {
             sweep_->setAabb(proxy, corner_of(b.min), corner_of(b.max), nullptr);
         } else {
-            proxy = sweep_->createProxy(corner_of(b.min), corner_of(b.max), 0, nullptr, 1, 1, nullptr);
+            proxy = sweep_->createProxy(corner_of(b.min), corner_of(b.max), /*shapeType=*/0, nullptr, /*group=*/1,
+                                        /*mask=*/1, nullptr);
             objects_[number_of(proxy)] = id;
         }
     }
 
+    /// Takes those of the pairs in Bullet's cache whose boxes overlap before they are quantised.
     void find_pairs(std::vector<index_pair>& pairs) override {
         if (!sweep_) return;
         btOverlappingPairCache& cache = *sweep_->getOverlappingPairCache();

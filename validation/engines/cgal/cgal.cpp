@@ -40,11 +40,11 @@ private:
 
 }  // namespace
 
-/// The numbers of all boxes differ, since CGAL never reports pairs of boxes with the same number.
+/// All pairs of a box of `a` and one of `b` that overlap. CGAL never reports boxes with the same number, so that b's
+/// get numbers from 2^32 on.
 std::vector<index_pair> candidates_by_cgal(std::span<const box> a, std::span<const box> b) {
     constexpr std::uint64_t first_of_b = std::uint64_t{1} << 32;
-    std::vector<numbered_box> boxes_a;
-    std::vector<numbered_box> boxes_b;
+    std::vector<numbered_box> boxes_a, boxes_b;
     for (std::size_t i = 0; i < a.size(); ++i) boxes_a.push_back({a[i], i});
     for (std::size_t i = 0; i < b.size(); ++i) boxes_b.push_back({b[i], first_of_b | i});
     std::vector<index_pair> pairs;

@@ -72,6 +72,7 @@ class cgal_tree final : public model_engine<tree_model> {
         changed.tree.rebuild(changed.triangles.cbegin(), changed.triangles.cend());
     }
 
+    /// Queries A's tree with each triangle of B, in A's frame, until one is hit.
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         const mesh& b = *q.b.source;
         const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);

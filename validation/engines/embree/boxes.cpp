@@ -25,6 +25,7 @@ private:
     /// A brute-force threshold; Embree also fails an assertion if so few boxes are all the same point.
     static constexpr std::size_t brute_force_threshold = 4;
 
+    /// Clamps the boxes to Embree's range, and builds or refits its tree of them if they are too many for brute force.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         ids_.assign(ids.begin(), ids.end());
         boxes_.clear();
@@ -38,7 +39,7 @@ private:
         const auto bounds_of_one = [](const RTCBoundsFunctionArguments* request) {
             *request->bounds_o = static_cast<const RTCBounds*>(request->geometryUserPtr)[request->primID];
         };
-        if (!scene_.scene) scene_.begin(quality_, true, bounds_of_one);
+        if (!scene_.scene) scene_.begin(quality_, /*is_dynamic=*/true, bounds_of_one);
         scene_.commit(bounds_.data(), bounds_.size());
     }
 

@@ -19,10 +19,7 @@ using namespace embree;
 class triangle_scene {
 public:
     triangle_scene() = default;
-    triangle_scene(triangle_scene&&) = default;
-    triangle_scene& operator=(triangle_scene&&) = delete;
-    triangle_scene(const triangle_scene&) = delete;
-    triangle_scene& operator=(const triangle_scene&) = delete;
+    triangle_scene(triangle_scene&&) = default;  // movable only
     ~triangle_scene() {
         if (!embree_bytes_) return;  // moved away, or never built
         const charge_to charging(*embree_bytes_);
@@ -31,7 +28,8 @@ public:
 
     /// Builds the scene, or refits it if this quality and the previous one say so.
     /// @param m always the same mesh
-    /// @param held the account of Embree's allocations; always the same
+    /// @param vertices of the mesh, perhaps transformed
+    /// @param embree_bytes the account of Embree's allocations; always the same
     void build(RTCBuildQuality quality, const mesh& m, std::span<const vec3f> vertices,
                const std::shared_ptr<std::ptrdiff_t>& embree_bytes) {
         embree_bytes_ = embree_bytes;
@@ -99,6 +97,7 @@ private:
         return pairs.front();
     }
 
+    /// Collides A's scene with that of B in A's frame, and tests the triangles whose boxes overlap.
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
             q.b.transformed.build(quality_, *q.b.source,

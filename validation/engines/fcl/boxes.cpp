@@ -39,6 +39,7 @@ public:
     }
 
 private:
+    /// Unregisters objects that left, registers new ones, and updates the tree to the boxes.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         drop_absent(objects_, [&](const auto& object) { manager_.unregisterObject(object.get()); });
         if (!ids.empty() && objects_.size() <= ids.back()) objects_.resize(std::size_t{ids.back()} + 1);

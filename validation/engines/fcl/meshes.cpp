@@ -112,9 +112,9 @@ private:
     }
 
     /// Contact points are disabled, so that each pair of triangles is reported once.
-    [[nodiscard]] fcl::CollisionResultd collide_up_to(const model_query& q, std::size_t most) {
+    [[nodiscard]] fcl::CollisionResultd collide_up_to(const model_query& q, std::size_t most_contacts) {
         fcl::CollisionRequestd request;
-        request.num_max_contacts = most;
+        request.num_max_contacts = most_contacts;
         request.enable_contact = false;
         fcl::CollisionResultd result;
         collide(q, request, result);
@@ -138,9 +138,10 @@ class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
     }
 };
 
-/// Axis-aligned boxes, which need both trees in one frame. FCL's own call would copy and rebuild them in each query, so
-/// that this engine calls its parts: B's tree is refitted for each new pose and cached until the pose changes.
+/// Axis-aligned boxes, which need both trees in one frame.
 class fcl_axis_aligned final : public fcl_meshes<fcl::AABBd> {
+    /// Calls the parts of FCL's own call, which would copy and rebuild both trees in each query: B's tree is refitted
+    /// for each new pose and cached until the pose changes.
     void collide(const model_query& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
             q.b.transformed.build(*q.b.source, transformed_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds));

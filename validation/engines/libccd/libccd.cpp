@@ -37,9 +37,8 @@ struct ccd_triangle {
             --left;
             return;
         }
-        constexpr double far = -1e150;
         ccdVec3Copy(furthest, direction);
-        ccdVec3Scale(furthest, far);
+        ccdVec3Scale(furthest, -1e150);
     }
 
     static void centre(const void* triangle, ccd_vec3_t* middle) {
@@ -54,6 +53,7 @@ struct ccd_triangle {
 /// Without a limit both algorithms may cycle on flat Minkowski differences; a test takes about ten iterations.
 constexpr std::uint32_t default_iterations = 1000;
 
+/// The settings of a test of two `ccd_triangle`s.
 [[nodiscard]] ccd_t settings_for(std::uint32_t iterations) {
     ccd_t ccd;
     CCD_INIT(&ccd);

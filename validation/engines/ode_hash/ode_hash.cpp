@@ -60,6 +60,7 @@ protected:
     virtual void prepare(dSpaceID, std::span<const ode_box>) const {}
 
 private:
+    /// Copies the present boxes into ODE's layout, scaled to the unit, and updates the space.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) final {
         boxes_.clear();
         for (const std::uint32_t id : ids) {
@@ -93,6 +94,7 @@ private:
         prepare(space_.get(), boxes_);
     }
 
+    /// Collides the space with itself, after the last search may have leaked it.
     void find_pairs(std::vector<index_pair>& pairs) final {
         if (!space_) fill();
         if (boxes_.size() < 2) return;
@@ -172,17 +174,15 @@ private:
     /// Sweeps along the axis with the largest extent of the scene.
     [[nodiscard]] space_handle make_space(std::span<const ode_box> boxes) const override {
         std::array<dReal, 3> extents{};
-        std::array<int, 3> axes{};
-        for (int k = 0; k < 3; ++k) {
-            const std::size_t low = 2 * static_cast<std::size_t>(k);
-            const auto lower_end = [&](const ode_box& entry) { return entry.ends[low]; };
+        std::array<std::size_t, 3> axes = {0, 1, 2};
+        for (const std::size_t axis : axes) {
+            const auto lower_end = [&](const ode_box& entry) { return entry.ends[2 * axis]; };
             const auto [first, last] = std::ranges::minmax_element(boxes, {}, lower_end);
-            extents[static_cast<std::size_t>(k)] = lower_end(*last) - lower_end(*first);
-            axes[static_cast<std::size_t>(k)] = k;
+            extents[axis] = lower_end(*last) - lower_end(*first);
         }
-        const auto extent_of = [&](int axis) { return extents[static_cast<std::size_t>(axis)]; };
-        std::ranges::stable_sort(axes, std::greater(), extent_of);
-        return space_handle(dSweepAndPruneSpaceCreate(nullptr, axes[0] | axes[1] << 2 | axes[2] << 4));
+        std::ranges::stable_sort(axes, std::greater(), [&](std::size_t axis) { return extents[axis]; });
+        const auto order = static_cast<int>(axes[0] | axes[1] << 2 | axes[2] << 4);  // ODE's code for an order of axes
+        return space_handle(dSweepAndPruneSpaceCreate(nullptr, order));
     }
 };
 
