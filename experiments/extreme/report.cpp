@@ -108,7 +108,8 @@ table wrong_table(const std::string& title, std::span<const extreme_row> rows, s
     for (const extreme_row& row : tests)
         if (row.result.outcome == aabb::verdict::wrong) wrong.insert(row.*text);
     const auto shown = filtered(tests, [&](const extreme_row& row) { return wrong.contains(row.*text); });
-    return candidate_table({{title, false}}, shown, text, candidates_in(tests, candidate_role::triangle_test),
+    return candidate_table({{title, /*is_number=*/false}}, shown, text,
+                           candidates_in(tests, candidate_role::triangle_test),
                            /*summary_cells=*/[](const row_list&) { return std::vector<std::string>(); });
 }
 
@@ -150,10 +151,11 @@ table case_table(std::span<const extreme_row> rows) {
         return std::vector{std::to_string(cases.size()), sum_cell(rows_with(tests, &extreme_row::must_be_exact, true)),
                            sum_cell(rows_with(group, &extreme_row::role, candidate_role::composition))};
     };
-    return candidate_table({{"class", false}, {"cases"}, {"exact tests"}, {"compositions"}}, shown, &extreme_row::kind,
-                           candidates_in(shown, candidate_role::engine), sums_of);
+    return candidate_table({{"class", /*is_number=*/false}, {"cases"}, {"exact tests"}, {"compositions"}}, shown,
+                           &extreme_row::kind, candidates_in(shown, candidate_role::engine), sums_of);
 }
 
+/// The errors of inexact triangle tests, by class of cases.
 table inexact_case_table(std::span<const extreme_row> rows) {
     // Tests with non-default parameters are in the CSV file only.
     const auto shown = filtered(rows, [](const extreme_row& row) {
@@ -168,8 +170,8 @@ table scene_table(std::span<const extreme_row> rows, row_group group) {
     const auto shown = filtered(
         rows, [&](const extreme_row& row) { return row.group == group && row.role != candidate_role::triangle_test; });
     return candidate_table(
-        {{"scene", false}, {"compositions"}}, shown, &extreme_row::scene, candidates_in(shown, candidate_role::engine),
-        [](const row_list& group) {
+        {{"scene", /*is_number=*/false}, {"compositions"}}, shown, &extreme_row::scene,
+        candidates_in(shown, candidate_role::engine), [](const row_list& group) {
             return std::vector{sum_cell(rows_with(group, &extreme_row::role, candidate_role::composition))};
         });
 }
@@ -181,7 +183,7 @@ table inexact_scene_table(std::span<const extreme_row> rows) {
 
 /// The errors of candidates that may be inexact, by class of difference, summed over the scenes of meshes.
 table class_table(std::span<const extreme_row> rows) {
-    table t{{{"candidate", false}}, {}};
+    table t{{{"candidate", /*is_number=*/false}}, {}};
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
     const auto shown =
         filtered(rows, [](const extreme_row& row) { return row.group == row_group::meshes && !row.must_be_exact; });

@@ -30,11 +30,11 @@ std::vector<aabb::composition> with_named_values(const aabb::composition& c, aab
     std::vector<aabb::composition> compositions{c};
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (info_of(kind).stage != stage) continue;
-        std::vector<aabb::composition> longer;
-        for (const aabb::composition& shorter : compositions)
+        std::vector<aabb::composition> expanded;
+        for (const aabb::composition& previous : compositions)
             for (const aabb::strategy_choice& choice : with_named_values(kind, c[kind].name))
-                longer.emplace_back(shorter)[kind] = choice;
-        compositions = std::move(longer);
+                expanded.emplace_back(previous)[kind] = choice;
+        compositions = std::move(expanded);
     }
     return compositions;
 }
@@ -125,7 +125,7 @@ struct named_candidate {
     candidate implementation;
 };
 
-/// The candidates for scenes of boxes, or of meshes, of which only the latter test triangles.
+/// Exact compositions and engines for the stage; of the narrow phase, also one with each inexact triangle test.
 std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
     const bool meshes = stage == aabb::stage::local_detection;
     std::vector<named_candidate> list;

@@ -218,8 +218,7 @@ void dynamics::accelerate(std::span<const double> position, std::span<const doub
         if (std::isfinite(bodies[i].mass)) acceleration[3 * i + 2] = -world_.gravity;
     spring_energy_ = 0;
     for (auto from = contacts.begin(); from != contacts.end();) {
-        const std::uint32_t a = from->a;
-        const std::uint32_t b = from->b;
+        const std::uint32_t a = from->a, b = from->b;
         const auto to = std::find_if(from, contacts.end(), [&](const auto& c) { return c.a != a || c.b != b; });
         const contact_force contact = force_of(world_.law, {from, to}, {&world_.meshes[bodies[a].mesh], poses_[a]},
                                                {&world_.meshes[bodies[b].mesh], poses_[b]},

@@ -51,6 +51,7 @@ std::unique_ptr<triangle_test> make_library_test(const strategy_choice& choice) 
     throw input_error(unknown_name("triangle test", choice.name, names));
 }
 
+/// Empty if the engine is built; otherwise says that it was left out, or that its name is unknown.
 std::string rejection_of_engine(std::string_view name, std::span<const engine_info> built,
                                 std::span<const left_out_engine> left_out) {
     std::vector<std::string> names;

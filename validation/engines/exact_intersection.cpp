@@ -112,8 +112,7 @@ struct exact_intersection::construction {
 /// Computes the corners and, since CGAL evaluates coordinates only on demand, their exact coordinates.
 exact_intersection::exact_intersection(const triangle3d& s, const triangle3d& t)
     : construction_(std::make_unique<construction>()) {
-    const exact_hull g = exact_hull_of(s);
-    const exact_hull h = exact_hull_of(t);
+    const exact_hull g = exact_hull_of(s), h = exact_hull_of(t);
     const std::vector<point_3> corners = std::visit(common_corners{}, g, h);
     construction_->kind = kind_of(corners, g, h);
     for (const point_3& p : corners) {

@@ -15,8 +15,7 @@ namespace {
 void flush_denormals() {
 #ifdef __SSE2__
     // Bits of SSE's control register: denormal results become zero, denormal operands count as zero.
-    constexpr unsigned flush_to_zero = 1U << 15;
-    constexpr unsigned denormals_are_zero = 1U << 6;
+    constexpr unsigned flush_to_zero = 1U << 15, denormals_are_zero = 1U << 6;
     _mm_setcsr(_mm_getcsr() | flush_to_zero | denormals_are_zero);
 #endif
 }

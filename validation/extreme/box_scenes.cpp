@@ -7,7 +7,7 @@ namespace aabb {
 namespace {
 
 /// A frame of these boxes, and a further one for each step, in which all have moved by `shift` along each axis.
-box_frames moving(std::vector<box> boxes, float shift, int steps) {
+box_frames moving(std::vector<box> boxes, float shift, int steps = 1) {
     box_frames frames{std::move(boxes)};
     for (int step = 0; step < steps; ++step) {
         frames.push_back(frames.back());
@@ -34,14 +34,14 @@ box_frames lattice() {
         const vec3f low{static_cast<float>(i % 5), static_cast<float>(i / 5 % 5), static_cast<float>(layer)};
         return box_at(low, {1, 1, 1});
     };
-    return moving(boxes_of(125, cell), 0.25F, 1);
+    return moving(boxes_of(125, cell), /*shift=*/0.25F);
 }
 
 box_frames points() {
     draws random(11);
     const auto coordinate = [&] { return static_cast<float>(random.below(4)); };
     const auto point = [&](std::uint32_t) { return bounds_of(vec3f{coordinate(), coordinate(), coordinate()}); };
-    return moving(boxes_of(80, point), 1, 1);
+    return moving(boxes_of(80, point), /*shift=*/1);
 }
 
 /// Boxes with zero extent on this number of axes, the first of which alternates.
@@ -55,7 +55,7 @@ box_frames without_extent(int flat_axes, std::uint32_t seed) {
         for (int k = 0; k < 3; ++k) low[k] = std::floor(low[k]);
         return box_at(low, extents);
     };
-    return moving(boxes_of(80, make_box), 0.5F, 1);
+    return moving(boxes_of(80, make_box), /*shift=*/0.5F);
 }
 
 /// Boxes whose edges are of 13 magnitudes, from a millionth to a million.
@@ -65,7 +65,7 @@ box_frames mixed_sizes() {
         const float size = std::pow(10.0F, static_cast<float>(i % 13) - 6);
         return box_at(random.point(-1000, 1000), random.point(0.5F * size, size));
     };
-    return moving(boxes_of(39, make_box), 100, 1);
+    return moving(boxes_of(39, make_box), /*shift=*/100);
 }
 
 /// One box of edge 2e9, and within it 59 of at most a thousandth.
@@ -75,7 +75,7 @@ box_frames one_huge() {
         return i == 40 ? box{{-1e9F, -1e9F, -1e9F}, {1e9F, 1e9F, 1e9F}}
                        : box_at(random.point(0, 1), random.point(0, 1e-3F));
     };
-    return moving(boxes_of(60, make_box), 1e-3F, 1);
+    return moving(boxes_of(60, make_box), /*shift=*/1e-3F);
 }
 
 /// Boxes with their centres in one point or on a line; exactly, since coordinates are integers.
@@ -85,19 +85,19 @@ box_frames concentric(bool on_a_line) {
         const auto half = static_cast<float>(1 + i % 7);
         return box{{x - half, -half, -half}, {x + half, half, half}};
     };
-    return moving(boxes_of(70, make_box), 1, 1);
+    return moving(boxes_of(70, make_box), /*shift=*/1);
 }
 
 box_frames pile() {
     draws random(15);
     // 110 boxes with a mean edge of 2 in a cube of edge 3.8: each overlaps some 50 others.
     const auto make_box = [&](std::uint32_t) { return box_at(random.point(0, 3.8F), random.point(1.5F, 2.5F)); };
-    return moving(boxes_of(110, make_box), 0.01F, 1);
+    return moving(boxes_of(110, make_box), /*shift=*/0.01F);
 }
 
 box_frames row_of(std::uint32_t objects) {
     const auto make_box = [](std::uint32_t i) { return box_at({static_cast<float>(i), 0, 0}, {1, 1, 1}); };
-    return moving(boxes_of(objects, make_box), 1, 2);
+    return moving(boxes_of(objects, make_box), /*shift=*/1, /*steps=*/2);
 }
 
 constexpr float least = std::numeric_limits<float>::denorm_min();
@@ -190,15 +190,15 @@ extreme_scene population(std::string name, std::string summary, IsPresent is_pre
 std::vector<extreme_scene> box_scenes() {
     return {
         scene_of_boxes("identical", "60 copies of one box",
-                       [] { return moving(std::vector<box>(60, {{1, 2, 3}, {2, 3, 4}}), 0.5F, 2); }),
+                       [] { return moving(std::vector<box>(60, {{1, 2, 3}, {2, 3, 4}}), 0.5F, /*steps=*/2); }),
         scene_of_boxes("lattice", "cubes that touch on a lattice: all comparisons are ties", lattice),
         scene_of_boxes("points", "boxes without extent, many in the same place", points),
         scene_of_boxes("plates", "boxes without extent on one axis", [] { return without_extent(1, 16); }),
         scene_of_boxes("needles", "boxes without extent on two axes", [] { return without_extent(2, 17); }),
         scene_of_boxes("mixed_sizes", "edges from a millionth to a million", mixed_sizes),
         scene_of_boxes("one_huge", "one box of 2e9, 59 of at most a thousandth", one_huge),
-        scene_of_boxes("concentric", "all centres in one point", [] { return concentric(false); }),
-        scene_of_boxes("on_a_line", "all centres on a line", [] { return concentric(true); }),
+        scene_of_boxes("concentric", "all centres in one point", [] { return concentric(/*on_a_line=*/false); }),
+        scene_of_boxes("on_a_line", "all centres on a line", [] { return concentric(/*on_a_line=*/true); }),
         scene_of_boxes("pile", "every box has about 50 neighbours", pile),
         scene_of_boxes("no_objects", "no boxes", [] { return row_of(0); }),
         scene_of_boxes("one_object", "one box", [] { return row_of(1); }),

@@ -73,9 +73,8 @@ private:
 class known_poses final : public mesh_scene {
 public:
     /// Object i is mesh i.
-    known_poses(std::vector<mesh> meshes_of_objects, std::vector<std::vector<pose>> frames)
-        : frames_(std::move(frames)) {
-        meshes = std::move(meshes_of_objects);
+    known_poses(std::vector<mesh> object_meshes, std::vector<std::vector<pose>> frames) : frames_(std::move(frames)) {
+        meshes = std::move(object_meshes);
         for (std::uint32_t m = 0; m < meshes.size(); ++m) mesh_of.push_back(m);
     }
     /// All objects, one per pose, share one mesh.

@@ -86,8 +86,7 @@ void judge_all_pairs(const judged_frame& current, pipeline& stages, extreme_resu
 /// Checks the queries that do not list all pairs: the count must be exact, and any true pair may come first.
 void judge_queries(const judged_frame& current, extreme_query query, const exact_objects& objects, local_stage& stage,
                    extreme_result& result) {
-    const std::uint32_t a = current.scene.mesh_of[objects.a];
-    const std::uint32_t b = current.scene.mesh_of[objects.b];
+    const std::uint32_t a = current.scene.mesh_of[objects.a], b = current.scene.mesh_of[objects.b];
     const pose& pose_a = current.exact.poses[objects.a];
     const pose& pose_b = current.exact.poses[objects.b];
     if (query != extreme_query::first_pair) {

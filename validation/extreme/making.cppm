@@ -129,8 +129,7 @@ private:
         }
     for (std::uint32_t i = 0; i < rings; ++i)
         for (std::uint32_t j = 0; j < segments; ++j) {
-            const std::uint32_t p = i * segments + j;
-            const std::uint32_t q = i * segments + (j + 1) % segments;
+            const std::uint32_t p = i * segments + j, q = i * segments + (j + 1) % segments;
             m.triangles.push_back({p, p + segments, q});
             m.triangles.push_back({q, p + segments, q + segments});
         }

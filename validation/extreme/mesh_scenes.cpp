@@ -113,7 +113,8 @@ std::unique_ptr<mesh_scene> balls_moved(double far) {
 
 }  // namespace
 
-/// Coincident triangles cannot be separated by any split, so their scenes also limit the memory of trees.
+/// Meshes that touch, that consist of degenerate triangles, or that are small, large or far away. Coincident triangles
+/// cannot be separated by any split, so their scenes also limit the memory of trees.
 std::vector<extreme_scene> mesh_scenes(extreme_size size) {
     const std::uint32_t many = size == extreme_size::small ? 300U : size == extreme_size::quick ? 20'000U : 1'000'000U;
     extreme_scene against_one = scene_of_meshes(

@@ -106,8 +106,7 @@ bool are_near(const triangle3f& s, const triangle3f& t) {
     const int axis = longest_axis(bounds);
     const double extent = double{bounds.max[axis]} - double{bounds.min[axis]};
     // Relative to a corner, which avoids cancellation far from the origin.
-    triangle3d local_s = converted_to<double>(s);
-    triangle3d local_t = converted_to<double>(t);
+    triangle3d local_s = converted_to<double>(s), local_t = converted_to<double>(t);
     const vec3d origin = local_s[0];
     for (int i = 0; i < 3; ++i) {
         local_s[i] = local_s[i] - origin;
@@ -122,8 +121,7 @@ difference_class class_of_difference(const triangle3f& s, const pose& pose_s, co
     if (has_no_area(s) || has_no_area(t) || has_no_area(t_seen_from_s)) return difference_class::degenerate;
     if (triangles_intersect<kernel>(exactly_transformed(s, pose_s), exactly_transformed(t, pose_t)) == engine_result)
         return difference_class::pose_rounding;
-    const exact_triangle exact_s = converted_to<rational>(s);
-    const exact_triangle exact_t = converted_to<rational>(t_seen_from_s);
+    const exact_triangle exact_s = converted_to<rational>(s), exact_t = converted_to<rational>(t_seen_from_s);
     if (are_coplanar(exact_s, exact_t)) return difference_class::coplanar;
     if (!engine_result && only_touch(exact_s, exact_t)) return difference_class::touching;
     if (are_near(s, t_seen_from_s)) return difference_class::near;

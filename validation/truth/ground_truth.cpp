@@ -51,7 +51,7 @@ void ground_truth::compute(const scene_frame& frame) {
     std::ranges::sort(contacts_);
 }
 
-/// Refits the models, and computes the spheres, of meshes that changed since the last frame.
+/// Refits the models of the meshes that deform, and computes their spheres anew.
 void ground_truth::update_deformed_meshes() {
     const std::vector<mesh>& meshes = meshes_->meshes;
     for (std::uint32_t m = 0; m < meshes.size(); ++m) {
@@ -77,7 +77,7 @@ ground_truth::sphere ground_truth::sphere_around(const mesh& m) {
     return bounding;
 }
 
-/// Sweeps over the spheres, sorted by their least x, and tests those that overlap on x.
+/// The pairs of objects whose spheres overlap, by a sweep over their intervals on x.
 std::vector<index_pair> ground_truth::overlapping_spheres(std::span<const pose> poses) const {
     std::vector<sphere> spheres;
     for (std::size_t object = 0; object < poses.size(); ++object) {

@@ -40,12 +40,13 @@ private:
 
 }  // namespace
 
+/// Its summary follows that of dormand_prince in lists.
 integrator_info adaptive_dormand_prince_integrator() {
     return {.name = "adaptive_dormand_prince",
             .summary = "the same with adaptive steps, controlled by a tolerance (Boost.odeint)",
             .adaptive = true,
             .order = 5,
-            .stable_below = std::numeric_limits<double>::infinity(),
+            .stable_below = std::numeric_limits<double>::infinity(),  // dt·ω
             .make = [](double tolerance) -> std::unique_ptr<integrator> {
                 return std::make_unique<adaptive_dormand_prince>(tolerance);
             }};

@@ -27,7 +27,7 @@ public:
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         if (!system_) {
             system_.emplace(acceleration, state);
-            start(system_->values(), state.time);
+            create_solver(system_->values(), state.time);
         }
         callback_exception_ = nullptr;
         double reached = state.time;
@@ -59,8 +59,8 @@ private:
     template <class Handle, auto Free>
     using owned = std::unique_ptr<std::remove_pointer_t<Handle>, freed_by<Free>>;
 
-    /// Creates CVODE's solver: Newton's method with a dense matrix, for the error tolerance, without printed messages.
-    void start(const std::vector<double>& initial, double time) {
+    /// Sets CVODE up: Newton's method with a dense matrix, for the error tolerance, without printed messages.
+    void create_solver(const std::vector<double>& initial, double time) {
         const auto size = static_cast<sunindextype>(initial.size());
         values_.reset(N_VNew_Serial(size, context_.get()));
         std::ranges::copy(initial, N_VGetArrayPointer(values_.get()));
@@ -111,7 +111,7 @@ integrator_info bdf_integrator() {
         .summary = "backward differences of orders 1 to 5 with Newton's method, for stiff systems (SUNDIALS' CVODE)",
         .adaptive = true,
         .order = 5,
-        .stable_below = std::numeric_limits<double>::infinity(),
+        .stable_below = std::numeric_limits<double>::infinity(),  // dt·ω
         .make = [](double tolerance) -> std::unique_ptr<integrator> { return std::make_unique<bdf>(tolerance); }};
 }
 

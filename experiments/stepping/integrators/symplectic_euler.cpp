@@ -30,7 +30,7 @@ integrator_info symplectic_euler_integrator() {
             .summary = "semi-implicit Euler: a step with the old velocity, then the force there (Boost.odeint)",
             .adaptive = false,
             .order = 1,
-            .stable_below = 2,
+            .stable_below = 2,  // dt·ω
             .make = [](double) -> std::unique_ptr<integrator> { return std::make_unique<symplectic_euler>(); }};
 }
 

@@ -88,8 +88,8 @@ stiff_study bouncing_study() {
         &run_bouncing,
         {figure{.name = "bouncing_energy",
                 .caption = "Energy error of 49 balls that bounce without loss, relative to the initial energy.",
-                .x = {"time (s)", false},
-                .y = {"relative energy error", false}}}};
+                .x = {"time (s)"},
+                .y = {"relative energy error"}}}};
 }
 
 }  // namespace aabblab

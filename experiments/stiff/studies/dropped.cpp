@@ -99,7 +99,7 @@ private:
         return sum;
     }
 
-    /// The greatest overlap of two balls, treated as spheres, in diameters.
+    /// The greatest overlap of two balls, bodies 1 and up, treated as spheres, in diameters.
     [[nodiscard]] double greatest_depth(const std::vector<double>& p) const {
         double least_distance = diameter_;
         for (std::size_t i = 1; 3 * i < p.size(); ++i)
@@ -221,14 +221,15 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
     }
 }
 
+/// The figures of the study, two of them for each size of the balls, still without points.
 std::vector<figure> figures() {
     std::vector<figure> list{figure{
         .name = "error_over_time",
         .caption = "Error of a trajectory over the time of its collision detection: each integrator over its "
                    "step size, and a stale Verlet list over the frames between its rebuilds, with steps of 1 ms.",
-        .x = {"detection (ms)", true},
-        .y = {"greatest error of a position (diameters)", true}}};
-    const figure_axis time{"time (s)", false};
+        .x = {"detection (ms)", /*logarithmic=*/true},
+        .y = {"greatest error of a position (diameters)", /*logarithmic=*/true}}};
+    const figure_axis time{"time (s)"};
     for (const std::string size : sizes) {
         list.push_back(
             {figure_name("departure " + size),
@@ -236,12 +237,12 @@ std::vector<figure> figures() {
                  " depart from their trajectory with exact contacts, because of a triangle test, an engine or a stale "
                  "Verlet list. At most nine of the methods that depart are drawn.",
              time,
-             {"greatest departure (diameters)", true}});
+             {"greatest departure (diameters)", /*logarithmic=*/true}});
         list.push_back({figure_name("depth " + size),
                         "The greatest penetration of two balls of " + size +
                             ", with exact contacts and with those of the methods that depart.",
                         time,
-                        {"greatest depth (diameters)", false}});
+                        {"greatest depth (diameters)"}});
     }
     return list;
 }

@@ -30,7 +30,7 @@ stiff_result run_overdamped(const stiff_setting& setting) {
         const double frequency = std::sqrt(k);
         // With central differences, the rate of the dashpot limits steps to 1/(2ζω).
         const double explicit_steps = end * 2 * damping * frequency;
-        const stepped_world world = ball_on_floor({frequency, damping}, 0, gravity);
+        const stepped_world world = ball_on_floor({frequency, damping}, /*speed_down=*/0, gravity);
         for (const integrator_info& i : integrators()) {
             if (!i.adaptive) continue;
             // Other adaptive integrators need as many steps as an explicit one, too many for stiff contacts.
@@ -38,6 +38,7 @@ stiff_result run_overdamped(const stiff_setting& setting) {
             run_or_record_failure(result, i.name, [&] {
                 const std::string subject = std::string(i.name) + ", k " + short_number(k) + " N/m";
                 simulation ball(world, setting.tested, i, /*tolerance=*/1e-6 * gravity / k);
+                // The time constant of the slow decay.
                 const double sinking = 1 / (frequency * (damping - std::sqrt(damping * damping - 1)));
                 ball.advance(sinking);
                 result.add(within(subject, "depth while it sinks over depth at rest",

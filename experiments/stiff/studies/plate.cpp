@@ -16,10 +16,9 @@ constexpr auto tunnelled_share = "1 - extent / displacement";      // of shots, 
 /// A body that flies down through a plate with a constant displacement per frame.
 class shot {
 public:
-    shot(const candidate& tested, double step)
-        : step_(step),
-          global_(tested.make_global(aabb::instrumentation::none)),
-          local_(tested.make_local(aabb::instrumentation::none)) {
+    shot(const candidate& tested, double step) : step_(step) {
+        global_ = tested.make_global(aabb::instrumentation::none);
+        local_ = tested.make_local(aabb::instrumentation::none);
         for (const std::uint32_t id : {0U, 1U}) global_->insert(id);
         local_->add_model(plate_);
         local_->add_model(body_);
@@ -111,8 +110,8 @@ stiff_study plate_study() {
         &run_plate,
         {figure{.name = "tunnelled",
                 .caption = "Share of shots that tunnel through a plate undetected, over the displacement per step.",
-                .x = {"displacement per step (extents of body and plate)", true},
-                .y = {"share tunnelled", false},
+                .x = {"displacement per step (extents of body and plate)", /*logarithmic=*/true},
+                .y = {"share tunnelled"},
                 .lines = {
                     {"plain boxes", series_style::points}, {"swept boxes", series_style::points}, {tunnelled_share}}}}};
 }

@@ -63,7 +63,7 @@ aabb::mesh placed(aabb::mesh m, const placement& p) {
 
 /// The normal force at each position, relative to the force if all tips are detected at their depth.
 std::vector<double> forces_of(const candidate& tested, const placement& p) {
-    const aabb::mesh lower = placed(floor_of(8, 16), p);
+    const aabb::mesh lower = placed(floor_of(/*side=*/8, /*n=*/16), p);
     const aabb::mesh upper = placed(comb_mesh(), p);
     const auto stage = tested.make_local(aabb::instrumentation::none);
     stage->add_model(lower);
@@ -79,7 +79,7 @@ std::vector<double> forces_of(const candidate& tested, const placement& p) {
         std::ranges::sort(pairs);
         std::vector<aabb::contact> contacts;
         for (const auto& [s, t] : pairs) contacts.push_back({0, 1, s, t});
-        const contact_force contact = force_of(law, contacts, {&lower, {}}, {&upper, pose}, {0, 0, 0});
+        const contact_force contact = force_of(law, contacts, {&lower, {}}, {&upper, pose}, /*approach=*/{0, 0, 0});
         forces.push_back(dot(contact.force, normal) / (tips * tips * (rest + p.pressed) * p.size));
     }
     return forces;
@@ -137,8 +137,8 @@ stiff_study sliding_study() {
             {figure{.name = "sliding_force",
                     .caption = "The force between two meshes of 10 mm that slide along each other, oblique and pressed "
                                "together by a 100,000th, relative to the load. Methods that keep it are not drawn.",
-                    .x = {"displacement (sizes)", false},
-                    .y = {"force (relative to the load)", false},
+                    .x = {"displacement (sizes)"},
+                    .y = {"force (relative to the load)"},
                     .lines = {{"exact", series_style::level, {{0, 1}}}}}}};
 }
 

@@ -31,7 +31,7 @@ public:
 
 private:
     static stepped_world world_with(double amplitude) {
-        stepped_world world = ball_on_floor({frequency, 0}, 0, gravity);
+        stepped_world world = ball_on_floor({frequency, /*damping=*/0}, /*speed_down=*/0, gravity);
         world.bodies[1].position[2] -= at_rest + amplitude;
         return world;
     }
@@ -44,7 +44,7 @@ private:
 /// oscillations of the energy.
 double drift_of(const candidate& tested, const integrator_info& stepping, double scaled_step, std::size_t periods,
                 double tolerance) {
-    oscillating_ball ball(tested, stepping, at_rest / 100, tolerance);
+    oscillating_ball ball(tested, stepping, /*amplitude=*/at_rest / 100, tolerance);
     const auto steps = static_cast<std::size_t>(static_cast<double>(periods) * 2 * std::numbers::pi / scaled_step);
     double first = 0, last = 0;
     for (std::size_t i = 0; i < steps; ++i) {
@@ -67,7 +67,7 @@ double energy_factor_of_dormand_prince(double scaled_step) {
 /// real one oscillates, more so near their limit.
 bool is_stable(const candidate& tested, const integrator_info& stepping, double scaled_step) {
     // The amplitude is so small that the ball stays in contact even if it grows.
-    oscillating_ball ball(tested, stepping, at_rest * 1e-6, 0);
+    oscillating_ball ball(tested, stepping, /*amplitude=*/at_rest * 1e-6, /*tolerance=*/0);
     double before = 0, after = 0;
     constexpr int steps = 20000;
     for (int i = 0; i < steps; ++i) {
@@ -81,7 +81,7 @@ bool is_stable(const candidate& tested, const integrator_info& stepping, double 
     return after <= 1.01 * before;
 }
 
-/// The greatest stable dt·ω, by bisection.
+/// The greatest stable dt·ω, by bisection between 0.1 and 4.
 double limit_of(const candidate& tested, const integrator_info& stepping) {
     double stable = 0.1, unstable = 4;
     while (unstable - stable > 1e-3) {
@@ -149,8 +149,8 @@ stiff_study stability_study() {
         {figure{.name = "energy_drift",
                 .caption = "Relative drift of a ball's energy over 1000 periods (100 with --quick) in contact, without "
                            "sign, over the step size. Marks show the usual advice and the greatest stable steps.",
-                .x = {"step times angular frequency", true},
-                .y = {"relative energy drift", true},
+                .x = {"step times angular frequency", /*logarithmic=*/true},
+                .y = {"relative energy drift", /*logarithmic=*/true},
                 .marks = {{0.157, "5 %"}, {0.314, "10 % of the contact time"}}}},
         &mark_limits};
 }

@@ -25,6 +25,7 @@ private:
         for (const std::uint32_t id : ids) boxes_.push_back({boxes[id], id});
     }
 
+    /// Intersects the sequence of boxes with itself.
     void find_pairs(std::vector<index_pair>& pairs) override {
         const auto collect = [&](const numbered_box& a, const numbered_box& b) {
             pairs.push_back(ordered_pair(static_cast<std::uint32_t>(a.number), static_cast<std::uint32_t>(b.number)));

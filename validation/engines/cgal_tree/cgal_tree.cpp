@@ -82,6 +82,7 @@ class cgal_tree final : public model_engine<tree_model> {
         return std::nullopt;
     }
 
+    /// Queries A's tree with each triangle of B, in A's frame.
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         const mesh& b = *q.b.source;
         // Transforms each vertex once, since triangles share vertices.

@@ -35,7 +35,7 @@ private:
             bounds_.push_back(clamped_to_embree(boxes[id]));
         }
         if (ids_.size() <= brute_force_threshold) return;
-        const charge_to charging(embree_bytes_);
+        const charge_to charging(embree_bytes_);  // counts Embree's allocations
         const auto bounds_of_one = [](const RTCBoundsFunctionArguments* request) {
             *request->bounds_o = static_cast<const RTCBounds*>(request->geometryUserPtr)[request->primID];
         };
@@ -43,6 +43,7 @@ private:
         scene_.commit(bounds_.data(), bounds_.size());
     }
 
+    /// Collides Embree's scene with itself, then tests the boxes before they were clamped.
     void find_pairs(std::vector<index_pair>& pairs) override {
         if (ids_.size() <= brute_force_threshold) return find_by_brute_force(pairs);
         const std::size_t known = pairs.size();

@@ -26,7 +26,7 @@ public:
         scene_ = user_scene();
     }
 
-    /// Builds the scene, or refits it if this quality and the previous one say so.
+    /// Builds the scene, or refits it if both this quality and the previous one are for refitting.
     /// @param m always the same mesh
     /// @param vertices of the mesh, perhaps transformed
     /// @param embree_bytes the account of Embree's allocations; always the same
@@ -38,7 +38,7 @@ public:
         for (const auto& t : m.triangles) triangles_.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]]});
         // With low quality, Embree fails an assertion if so few boxes are all the same point.
         if (triangles_.size() <= 4) quality = RTC_BUILD_QUALITY_MEDIUM;
-        const charge_to charging(*embree_bytes_);
+        const charge_to charging(*embree_bytes_);  // counts Embree's allocations
         const bool refits = quality == RTC_BUILD_QUALITY_REFIT;
         const auto bounds_of_one = [](const RTCBoundsFunctionArguments* request) {
             const auto* triangles = static_cast<const triangle3f*>(request->geometryUserPtr);

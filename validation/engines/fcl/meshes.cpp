@@ -24,7 +24,7 @@ public:
         if (built && has_same_triangles(*built, m)) {
             require_done(built->beginReplaceModel());
             for (const vec3f& v : vertices) require_done(built->replaceVertex(in_double(v)));
-            require_done(built->endReplaceModel(true, true));
+            require_done(built->endReplaceModel(/*refit=*/true, /*bottomup=*/true));
         } else {
             std::vector<fcl::Vector3d> points;
             for (const vec3f& v : vertices) points.push_back(in_double(v));

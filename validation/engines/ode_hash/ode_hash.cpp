@@ -70,11 +70,11 @@ private:
                               id});
         }
         drop_absent(geoms_, [](const auto&) {});
-        fill();
+        update_space();
     }
 
     /// Updates the space to the boxes.
-    void fill() {
+    void update_space() {
         if (boxes_.empty()) return;
         if (!space_) {
             space_ = make_space(boxes_);
@@ -96,7 +96,7 @@ private:
 
     /// Collides the space with itself, after the last search may have leaked it.
     void find_pairs(std::vector<index_pair>& pairs) final {
-        if (!space_) fill();
+        if (!space_) update_space();
         if (boxes_.size() < 2) return;
         pair_collector collected{pairs};
         try {
@@ -143,23 +143,23 @@ private:
 
     /// Cell sizes from the smallest to the largest object, limited so that cell indices fit into an int.
     void prepare(dSpaceID space, std::span<const ode_box> boxes) const override {
-        constexpr std::size_t most = (std::size_t{1} << 17) - 1;
-        if (boxes.size() > most)
-            throw input_error("ode_hash takes at most " + std::to_string(most) + " objects, but there are " +
+        constexpr std::size_t most_boxes = (std::size_t{1} << 17) - 1;
+        if (boxes.size() > most_boxes)
+            throw input_error("ode_hash takes at most " + std::to_string(most_boxes) + " objects, but there are " +
                               std::to_string(boxes.size()) + ": ODE counts the bytes for their pairs in an int");
-        int least = 0;
-        int greatest = std::numeric_limits<int>::min();
+        int least_level = 0;
+        int greatest_level = std::numeric_limits<int>::min();
         dReal farthest = std::numeric_limits<dReal>::min();
         for (const auto& [ends, id] : boxes) {
             for (const dReal end : ends) farthest = std::max(farthest, std::abs(end));
             const dReal extent = std::max({ends[1] - ends[0], ends[3] - ends[2], ends[5] - ends[4]});
             // Points have no size; ODE compares each with all boxes.
             if (extent == 0) continue;
-            least = std::min(least, level_of(extent));
-            greatest = std::max(greatest, level_of(extent));
+            least_level = std::min(least_level, level_of(extent));
+            greatest_level = std::max(greatest_level, level_of(extent));
         }
-        least = std::max(least, level_of(farthest) - 30);
-        dHashSpaceSetLevels(space, least, std::max(least, greatest));
+        least_level = std::max(least_level, level_of(farthest) - 30);
+        dHashSpaceSetLevels(space, least_level, std::max(least_level, greatest_level));
     }
 
     /// The level of the smallest cells, of edge 2^level, that are larger than the extent.
