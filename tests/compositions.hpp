@@ -16,7 +16,7 @@ inline std::vector<std::string> values_of(const aabb::parameter_info& parameter)
     if (const auto* names = std::get_if<aabb::name_values>(&parameter.values)) return names->names;
     if (const auto* number = std::get_if<aabb::number_values>(&parameter.values))
         if (!number->or_equal && !number->or_auto) return {"1.5"};
-    const auto* const whole = std::get_if<aabb::whole_values>(&parameter.values);
+    const auto* const whole = std::get_if<aabb::integer_values>(&parameter.values);
     if (whole && whole->most - whole->least < 3) {
         std::vector<std::string> values;
         for (std::uint64_t value = whole->least; value <= whole->most; ++value) values.push_back(std::to_string(value));

@@ -40,8 +40,9 @@ inline const volatile double not_a_number = std::numeric_limits<double>::quiet_N
 
 export namespace aabb {
 
-/// Every query calls this first, at the cost of a few additions. Always inline, so that it checks the options of the
-/// importer: `-ffp-contract=fast` overrides the pragmas, and no macro reveals it.
+/// Rejects arithmetic other than that of IEEE 754, on which exact results depend. Every query calls this first, at the
+/// cost of a few additions. Always inline, so that it checks the options of the importer: `-ffp-contract=fast`
+/// overrides the pragmas, and no macro reveals it.
 /// @throws input_error if the thread flushes denormals to zero, as a library linked with -ffast-math makes it do, or
 /// does not round to nearest; if products are fused into sums, or comparisons ignore NaN
 [[gnu::always_inline]] inline void require_ieee_arithmetic() {

@@ -33,8 +33,8 @@ struct statement {
     bool operator==(const statement&) const = default;
 };
 
+/// The sentence with its numbers in place of their names: counts in full, others with the precision of a float.
 [[nodiscard]] inline std::string to_text(const statement& s) {
-    // Counts are written in full, other numbers with the precision of a float.
     constexpr double greatest_count = 0x1p63;
     std::string text(s.text);
     for (const auto& [name, value] : s.numbers) {

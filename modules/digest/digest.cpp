@@ -31,9 +31,9 @@ digest::~digest() = default;
 digest::digest(digest&&) noexcept = default;
 digest& digest::operator=(digest&&) noexcept = default;
 
+/// Hashes (frame, a, b) for each pair, in blocks, since short updates are copied into the buffer of the hash first.
 void digest::add(std::uint32_t frame, std::span<const index_pair> sorted) {
     assert(std::ranges::is_sorted(sorted));
-    // Hashed in blocks, since short updates are copied into the buffer of the hash first.
     constexpr std::size_t at_once = 256;
     std::array<std::uint32_t, 3 * at_once> records{};
     while (!sorted.empty()) {
@@ -49,11 +49,9 @@ void digest::add(std::uint32_t frame, std::span<const index_pair> sorted) {
 void digest::add(std::span<const std::uint32_t> record) {
     XXH3_64bits_update(&state_->hash, record.data(), record.size_bytes());
 }
-
 std::uint64_t digest::value() const {
     return XXH3_64bits_digest(&state_->hash);
 }
-
 std::string digest::text() const {
     return in_hexadecimal(value());
 }

@@ -16,12 +16,10 @@ public:
 
     /// @param sorted the pairs of one frame, ascending and unique; frames must be added in order
     void add(std::uint32_t frame, std::span<const index_pair> sorted);
-
     /// Adds a record of any length.
     void add(std::span<const std::uint32_t> record);
 
     [[nodiscard]] std::uint64_t value() const;
-
     /// 16 hexadecimal digits.
     [[nodiscard]] std::string text() const;
 

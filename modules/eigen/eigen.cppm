@@ -20,6 +20,7 @@ concept EigenTransform = requires(const T& from, T& to) {
     to.translation()(0) = from.translation()(0);
 };
 
+/// Converts an Eigen transform to a pose.
 /// @throws input_error if the transform is not rigid (`require_rigid`), as an affine one may be
 template <EigenTransform T>
 [[nodiscard]] inline pose to_pose(const T& transform) {
@@ -32,7 +33,7 @@ template <EigenTransform T>
     return p;
 }
 
-/// `to_transform<Eigen::Isometry3d>(p)`
+/// Converts a pose to an Eigen transform: `to_transform<Eigen::Isometry3d>(p)`.
 template <EigenTransform T>
 [[nodiscard]] inline T to_transform(const pose& p) {
     using scalar = typename T::Scalar;
@@ -59,21 +60,24 @@ concept EigenColumns = requires(const Matrix& m) {
 
 namespace aabb::detail {
 
+// The scalar type of a point, triangle or box: overloads without a definition, which `scalar_of` asks for their type.
 template <class Element>
-typename Element::value_type scalar_in(const Element& of);
+typename Element::value_type scalar_of_element(const Element& of);
 template <class Real>
-Real scalar_in(const vec3<Real>& of);
-float scalar_in(const box& of);
+Real scalar_of_element(const vec3<Real>& of);
+float scalar_of_element(const box& of);
 template <class Element>
-using scalar_of = decltype(scalar_in(std::declval<const Element&>()));
+using scalar_of = decltype(scalar_of_element(std::declval<const Element&>()));
 
-/// Views the columns of a matrix as elements of the same memory layout.
+/// Views each column of a matrix (each row, if it is row-major) as a point or box, without a copy: both are stored as
+/// the same consecutive scalars.
+/// @throws input_error if there is other memory between the columns
 template <class Element, class Matrix>
-[[nodiscard]] inline std::span<const Element> elements_in(const Matrix& m) {
+[[nodiscard]] inline std::span<const Element> columns_as(const Matrix& m) {
     static_assert(std::same_as<typename Matrix::Scalar, scalar_of<Element>>);
-    constexpr std::ptrdiff_t rows = sizeof(Element) / sizeof(typename Matrix::Scalar);
+    constexpr std::ptrdiff_t scalars = sizeof(Element) / sizeof(typename Matrix::Scalar);
     const auto count = static_cast<std::size_t>(Matrix::IsRowMajor ? m.rows() : m.cols());
-    if (count > 1 && (m.innerStride() != 1 || m.outerStride() != rows))
+    if (count > 1 && (m.innerStride() != 1 || m.outerStride() != scalars))
         throw input_error("the matrix is not contiguous in memory");
     return {reinterpret_cast<const Element*>(m.data()), count};
 }
@@ -105,25 +109,26 @@ template <class Map, class Elements>
 /// @throws input_error if they are not contiguous
 template <EigenColumns<3> Matrix>
 [[nodiscard]] inline std::span<const vec3<typename Matrix::Scalar>> points_in(const Matrix& m) {
-    return detail::elements_in<vec3<typename Matrix::Scalar>>(m);
+    return detail::columns_as<vec3<typename Matrix::Scalar>>(m);
 }
 
 /// Views the boxes in a user's matrix of floats, lower ends above upper ones, without a copy.
 /// @throws input_error if they are not contiguous
 template <EigenColumns<6> Matrix>
 [[nodiscard]] inline std::span<const box> boxes_in(const Matrix& m) {
-    return detail::elements_in<box>(m);
+    return detail::columns_as<box>(m);
 }
 
 /// Copies a mesh from matrices of points and triangles, one per column, or one per row if there are three columns and
 /// not three rows. Coordinates are rounded to float; vertex indices start at 0.
 /// @throws input_error as `require_valid`
 template <class Vertices, class Triangles>
-    requires requires(const Vertices& v, const Triangles& t) {
-        { v(0, 0) } -> std::convertible_to<float>;
-        { t(0, 0) } -> std::convertible_to<std::int64_t>;
+[[nodiscard]] inline mesh to_mesh(const Vertices& vertices, const Triangles& triangles)
+    requires requires {
+        { vertices(0, 0) } -> std::convertible_to<float>;
+        { triangles(0, 0) } -> std::convertible_to<std::int64_t>;
     }
-[[nodiscard]] inline mesh to_mesh(const Vertices& vertices, const Triangles& triangles) {
+{
     const auto for_each = [](const auto& m, auto take) {
         using matrix = std::remove_cvref_t<decltype(m)>;
         constexpr bool in_columns = int{matrix::RowsAtCompileTime} == 3;

@@ -84,6 +84,7 @@ struct box_motion {
 /// meshes moved together keep their images bit for bit, as long as tᴮ - tᴬ does not change.
 class relative_pose {
 public:
+    /// The motion from the frame of mesh B at pose b to that of mesh A at pose a.
     /// @param bounds box of the vertices of B in B's frame; only boxes and vertices inside it may be transformed
     /// @throws input_error if their images may exceed the range of float
     relative_pose(const pose& a, const pose& b, const box& bounds) {
@@ -134,7 +135,8 @@ public:
         return {(*this)(t[0]), (*this)(t[1]), (*this)(t[2])};
     }
 
-    /// The images of several vertices at once, by coordinate, equal to those of the single vertices.
+    /// The images of several vertices at once, by coordinate, equal to those of the single vertices: leaving out an
+    /// identity rotation changes no result.
     template <class Doubles>
     [[nodiscard]] inline std::array<Doubles, 3> images(const std::array<Doubles, 3>& x) const noexcept {
         std::array<Doubles, 3> world = x;

@@ -36,7 +36,7 @@ public:
         const parts b = parts_of(y);
         const parts c = parts_of(z);
         if (a.mantissa == 0 || b.mantissa == 0 || c.mantissa == 0) return;
-        const bool negative = (std::signbit(x) != std::signbit(y)) != std::signbit(z);
+        const bool is_negative = (std::signbit(x) != std::signbit(y)) != std::signbit(z);
         const int place = a.place + b.place + c.place;
         const int first = place / 32;
         const int shift = place % 32;
@@ -52,14 +52,14 @@ public:
             static_cast<std::uint32_t>(high >> 64), static_cast<std::uint32_t>(high >> 96)};
         for (std::size_t k = 0; k < digits.size(); ++k) {
             std::int64_t& word = words_[static_cast<std::size_t>(first) + k];
-            word += negative ? -std::int64_t{digits[k]} : std::int64_t{digits[k]};
+            word += is_negative ? -std::int64_t{digits[k]} : std::int64_t{digits[k]};
         }
         first_ = std::min(first_, first);
         last_ = std::max(last_, first + 6);
     }
-
     void subtract(double x, double y, double z) noexcept { add(-x, y, z); }
 
+    /// Adds the determinant of the matrix with columns p, q and r.
     void add_determinant(const vec3d& p, const vec3d& q, const vec3d& r) noexcept {
         for (int i = 0; i < 3; ++i) {
             const int j = (i + 1) % 3;
@@ -75,28 +75,29 @@ public:
         subtract(p[y], q[x], 1);
     }
 
+    /// The sign of the sum: that of the last carry, or else 1 if any digit is not zero.
     [[nodiscard]] int sign() const noexcept {
         std::int64_t carry = 0;
-        bool zero = true;
+        bool is_zero = true;
         for (int i = first_; i < last_; ++i) {
             const std::int64_t sum = words_[static_cast<std::size_t>(i)] + carry;
-            zero &= (sum & 0xffff'ffff) == 0;
+            is_zero &= (sum & 0xffff'ffff) == 0;
             carry = sum >> 32;
         }
         if (carry < 0) return -1;
-        return zero && carry == 0 ? 0 : 1;
+        return is_zero && carry == 0 ? 0 : 1;
     }
 
     /// The sum, rounded to the precision of double.
     [[nodiscard]] scaled_double rounded() const noexcept {
         // The digits of the magnitude, lowest first.
         std::array<std::uint32_t, words + 2> digits{};
-        const bool negative = sign() < 0;
+        const bool is_negative = sign() < 0;
         std::int64_t carry = 0;
         int count = first_;
         for (; count < last_ || carry > 0; ++count) {
             const std::int64_t word = count < last_ ? words_[static_cast<std::size_t>(count)] : 0;
-            const std::int64_t sum = (negative ? -word : word) + carry;
+            const std::int64_t sum = (is_negative ? -word : word) + carry;
             digits[static_cast<std::size_t>(count)] = static_cast<std::uint32_t>(sum);
             carry = sum >> 32;
         }
@@ -108,7 +109,7 @@ public:
             leading = leading << 32 | (count - k >= 0 ? digits[static_cast<std::size_t>(count - k)] : 0);
         int exponent = 0;
         const double mantissa = std::frexp(static_cast<double>(leading), &exponent);
-        return {negative ? -mantissa : mantissa, exponent + 32 * (count - 4) - 3 * 1074};
+        return {is_negative ? -mantissa : mantissa, exponent + 32 * (count - 4) - 3 * 1074};
     }
 
 private:
@@ -141,6 +142,7 @@ using vec3i = vec3<std::int64_t>;
 /// difference, which is below 2^61, less than two.
 class grid {
 public:
+    /// @param points all points to be quantized, of which the largest coordinate on an axis sets the step
     explicit grid(std::initializer_list<const vec3d*> points) noexcept {
         for (int k = 0; k < 3; ++k) {
             double largest = 0;
@@ -148,21 +150,22 @@ public:
             const int exponent = std::max(static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52), 1) - 1023;
             // Two factors, since their product may exceed the range of double.
             const int up = 59 - exponent;
-            first_[k] = power_of_two(up / 2);
-            second_[k] = power_of_two(up - up / 2);
+            factor_[k] = power_of_two(up / 2);
+            second_factor_[k] = power_of_two(up - up / 2);
         }
     }
 
+    /// The coordinates of a point in steps, truncated.
     [[nodiscard]] vec3i operator()(const vec3d& p) noexcept {
-        vec3i steps_at;
+        vec3i truncated;
         for (int k = 0; k < 3; ++k) {
-            const double steps = p[k] * first_[k] * second_[k];
-            steps_at[k] = static_cast<std::int64_t>(steps);
-            is_exact_ &= static_cast<double>(steps_at[k]) == steps;
+            const double steps = p[k] * factor_[k] * second_factor_[k];
+            truncated[k] = static_cast<std::int64_t>(steps);
+            is_exact_ &= static_cast<double>(truncated[k]) == steps;
             // A coordinate that underflows to zero steps is inexact.
             is_exact_ &= steps != 0 || p[k] == 0;
         }
-        return steps_at;
+        return truncated;
     }
 
     /// Whether no coordinate has been truncated so far.
@@ -173,8 +176,8 @@ private:
         return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + exponent) << 52);
     }
 
-    vec3d first_{};
-    vec3d second_{};
+    vec3d factor_{};
+    vec3d second_factor_{};
     bool is_exact_ = true;
 };
 
@@ -215,9 +218,7 @@ bool area_sign(const vec3i& p, const vec3i& q, int x, int y, bool is_exact, int&
 /// The determinant of `exact_side`, as a sum of products of differences, or of coordinates if one is inexact.
 product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
     product_sum sum;
-    vec3d p{};
-    vec3d q{};
-    vec3d r{};
+    vec3d p{}, q{}, r{};
     if (exact_difference(b, a, p) && exact_difference(c, a, q) && exact_difference(d, a, r)) {
         sum.add_determinant(p, q, r);
         return sum;
@@ -229,11 +230,10 @@ product_sum volume_of(const vec3d& a, const vec3d& b, const vec3d& c, const vec3
     return sum;
 }
 
-/// The component of `exact_turn`, likewise.
+/// Twice the area of abc in the plane of the axes x and y, positive if counter-clockwise, as a sum of products.
 product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int x, int y) noexcept {
     product_sum sum;
-    vec3d p{};
-    vec3d q{};
+    vec3d p{}, q{};
     if (exact_difference(b, a, p) && exact_difference(c, a, q)) {
         sum.add_cross(p, q, x, y);
         return sum;
@@ -246,6 +246,7 @@ product_sum area_of(const vec3d& a, const vec3d& b, const vec3d& c, int x, int y
 
 }  // namespace
 
+/// Computes in integers on a grid; if truncation leaves the sign uncertain, by an exact sum of products.
 int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
     grid steps{&a, &b, &c, &d};
     const vec3i origin = steps(a);
@@ -255,6 +256,7 @@ int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) n
     return volume_sign(normal, p, steps.is_exact(), sign) ? sign : volume_of(a, b, c, d).sign();
 }
 
+/// The `exact_side` of each corner of `s`, with the grid and the normal of `t` computed only once.
 corner_sides exact_sides(const triangle3d& s, const triangle3d& t) noexcept {
     grid steps{&s[0], &s[1], &s[2], &t[0], &t[1], &t[2]};
     const vec3i origin = steps(t[0]);
@@ -267,6 +269,7 @@ corner_sides exact_sides(const triangle3d& s, const triangle3d& t) noexcept {
     return corner_sides(signs);
 }
 
+/// The orientation of abc projected along an axis, computed like `exact_side`.
 int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
     const int x = (axis + 1) % 3;
     const int y = (axis + 2) % 3;
@@ -278,12 +281,14 @@ int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcep
     return area_sign(p, q, x, y, steps.is_exact(), sign) ? sign : area_of(a, b, c, x, y).sign();
 }
 
+/// Whether coordinates are such small multiples of a unit on their axis that orientations in double are exact. Adding a
+/// large number and subtracting it again rounds a coordinate to a multiple.
 bool are_on_lattice(const triangle3d& s, const triangle3d& t, const vec3d& extent) noexcept {
     vec3d rounder{};
     for (int k = 0; k < 3; ++k) {
         if (extent[k] != 0 && !(extent[k] >= 0x1p-200 && extent[k] <= 0x1p200)) return false;
         // The extent is at least 2^15 units and less than 2^16. From 2^52 to 2^53 units the last digit of a double is
-        // one unit, so adding 1.5 · 2^52 units rounds a coordinate below 2^50 units to whole units.
+        // one unit, so adding 1.5 · 2^52 units rounds a coordinate below 2^50 units to an integer.
         const std::uint64_t exponent = extent[k] == 0 ? 1023 : std::bit_cast<std::uint64_t>(extent[k]) >> 52;
         rounder[k] = 1.5 * std::bit_cast<double>((exponent + 52 - 15) << 52);
     }

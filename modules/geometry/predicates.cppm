@@ -128,7 +128,7 @@ public:
         return side(s0, s1, t0, t1) <= 0 && side(s0, s2, t0, t2) >= 0;
     }
 
-    /// The result of `exact_turn`, filtered.
+    /// The result of `exact_turn`, which is called only if double leaves the sign uncertain and there is no lattice.
     [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
         const int x = (axis + 1) % 3;
         const int y = (axis + 2) % 3;
@@ -139,7 +139,8 @@ public:
         return on_lattice() ? certain_sign(computed, 0) : exact_turn(a, b, c, axis);
     }
 
-    /// Whether a, b and each corner of `t` have the same orientation along that axis, and one that differs from `own`.
+    /// Whether, projected along an axis, the line ab has all corners of `t` strictly on one side, and on the other
+    /// side, or on the line itself, the triangle of which ab is an edge. `own` is the orientation of that triangle.
     [[nodiscard]] inline bool beyond(const vec3d& a, const vec3d& b, int own, const triangle3d& t, int axis) noexcept {
         const int x = (axis + 1) % 3;
         const int y = (axis + 2) % 3;

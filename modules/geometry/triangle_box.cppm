@@ -14,18 +14,18 @@ struct centred_triangle {
     vec3f half;
 };
 
-/// Whether one of the nine cross products of an edge and an axis separates the triangle from the box.
+/// Whether one of the nine cross products of an edge and an axis separates the triangle from the box by over `slack`.
 [[nodiscard]] inline bool edge_separates(const centred_triangle& t, float slack) noexcept {
     bool separated = false;
     for (int i = 0; i < 3; ++i) {
         const vec3f& e = t.edge[static_cast<std::size_t>(i)];
-        const vec3f& on = t.corner[i];
-        const vec3f& off = t.corner[(i + 2) % 3];
+        const vec3f& start = t.corner[i];
+        const vec3f& opposite = t.corner[(i + 2) % 3];
         for (int k = 0; k < 3; ++k) {
             const int x = (k + 1) % 3;
             const int y = (k + 2) % 3;
-            const float p = e[y] * on[x] - e[x] * on[y];
-            const float q = e[y] * off[x] - e[x] * off[y];
+            const float p = e[y] * start[x] - e[x] * start[y];
+            const float q = e[y] * opposite[x] - e[x] * opposite[y];
             const float radius = t.half[x] * std::abs(e[y]) + t.half[y] * std::abs(e[x]) + slack;
             separated |= std::min(p, q) > radius || std::max(p, q) < -radius;
         }
@@ -57,7 +57,7 @@ export namespace aabb {
 [[nodiscard]] inline bool triangle_meets_box(const triangle3f& t, const box& b, float growth = 0x1p-20F,
                                              float least = 0x1p-149F) noexcept {
     if (!overlaps(bounds_of(t), b)) return false;
-    constexpr float tiny = 0x1p-126F;
+    constexpr float tiny = 0x1p-126F;  // more than products that underflow add
     detail::centred_triangle local{};
     vec3f slack{};
     float size = 0;
@@ -90,7 +90,7 @@ export namespace aabb {
 }
 
 /// The same axes as published, in float without a margin, as a baseline: it has false negatives for touching triangles
-/// and boxes. (Of the two ends of an edge, whose projections differ only by rounding, it may take the other one.)
+/// and boxes. (Both ends of an edge project to the same point but for rounding; the published code may use either end.)
 [[nodiscard]] inline bool moller_triangle_meets_box(const triangle3f& t, const box& b) noexcept {
     detail::centred_triangle local{};
     for (int k = 0; k < 3; ++k) {
@@ -99,14 +99,13 @@ export namespace aabb {
         for (int i = 0; i < 3; ++i) local.corner[i][k] = t[i][k] - centre;
     }
     for (int i = 0; i < 3; ++i) local.edge[static_cast<std::size_t>(i)] = local.corner[(i + 1) % 3] - local.corner[i];
-    if (detail::edge_separates(local, 0)) return false;
-    const box around = bounds_of(local.corner);
+    if (detail::edge_separates(local, /*slack=*/0)) return false;
+    const box bounds = bounds_of(local.corner);
     for (int k = 0; k < 3; ++k)
-        if (around.min[k] > local.half[k] || around.max[k] < -local.half[k]) return false;
+        if (bounds.min[k] > local.half[k] || bounds.max[k] < -local.half[k]) return false;
     // The corners of the box that are extreme along the normal.
     const vec3f normal = cross(local.edge[0], local.edge[1]);
-    vec3f lowest{};
-    vec3f highest{};
+    vec3f lowest{}, highest{};
     for (int k = 0; k < 3; ++k) {
         const float half = normal[k] > 0 ? local.half[k] : -local.half[k];
         lowest[k] = -half - local.corner[0][k];

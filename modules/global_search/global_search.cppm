@@ -134,6 +134,7 @@ public:
     void insert(std::uint32_t id) { objects_.insert(id); }
     void remove(std::uint32_t id) { objects_.remove(id); }
 
+    /// Updates the sweep's lists and pairs to the boxes of a frame, indexed by id.
     void update(std::span<const box> boxes) {
         frame_.begin();
         require_ieee_arithmetic();
@@ -181,6 +182,7 @@ public:
     void insert(std::uint32_t id) { objects_.insert(id); }
     void remove(std::uint32_t id) { objects_.remove(id); }
 
+    /// Passes the boxes of a frame to the partition's search, which also validates them.
     void update(std::span<const box> boxes) {
         frame_.begin();
         require_ieee_arithmetic();

@@ -89,16 +89,17 @@ protected:
 /// Sweeps a list of ends for all pairs with at least one new object.
 class interval_sweep {
 public:
+    /// Inserts the overlapping pairs of a sorted list of ends, except those of two known objects.
     /// @returns the number of tested pairs
     std::uint64_t find(std::span<const interval_end> list, std::span<const box> boxes, pair_set& pairs, auto is_new) {
         std::uint64_t tests = 0;
-        place_.resize(boxes.size());
+        active_index_.resize(boxes.size());
         for (const interval_end& e : list) {
-            std::vector<std::uint32_t>& own = active_[is_new(e.id)];
+            std::vector<std::uint32_t>& active = active_[is_new(e.id)];
             if (e.is_upper) {
-                place_[own.back()] = place_[e.id];
-                own[place_[e.id]] = own.back();
-                own.pop_back();
+                active_index_[active.back()] = active_index_[e.id];
+                active[active_index_[e.id]] = active.back();
+                active.pop_back();
                 continue;
             }
             for (std::size_t of_new = is_new(e.id) ? 0 : 1; of_new < 2; ++of_new) {
@@ -106,19 +107,19 @@ public:
                 for (const std::uint32_t other : active_[of_new])
                     if (overlaps(boxes[e.id], boxes[other])) pairs.insert(ordered_pair(e.id, other));
             }
-            place_[e.id] = static_cast<std::uint32_t>(own.size());
-            own.push_back(e.id);
+            active_index_[e.id] = static_cast<std::uint32_t>(active.size());
+            active.push_back(e.id);
         }
         // Every interval that begins ends.
         assert(active_[0].empty() && active_[1].empty());
         return tests;
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(place_, active_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(active_index_, active_); }
 
 private:
     std::array<std::vector<std::uint32_t>, 2> active_;  // active objects: known ones, then new ones
-    std::vector<std::uint32_t> place_;                  // by id: index of an active object in its vector
+    std::vector<std::uint32_t> active_index_;           // by id: index of an active object in its vector
 };
 
 }  // namespace aabb

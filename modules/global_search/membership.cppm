@@ -8,6 +8,7 @@ export namespace aabb {
 /// The set of present objects, with the arrivals and departures since the previous frame. Ids are stable.
 class membership {
 public:
+    /// Makes an object present from the next frame on.
     /// @throws input_error if the object is already present
     void insert(std::uint32_t id) {
         if (id == state_.size())
@@ -16,39 +17,40 @@ public:
             state_.resize(std::size_t{id} + 1, state::absent);
         if (contains(id)) reject(id, " is inserted twice");
         // An object that is removed and inserted again between two frames counts as known.
-        const bool comes = state_[id] == state::absent;
-        arrivals_ += comes;
-        state_[id] = comes ? state::coming : state::known;
+        const bool arrives = state_[id] == state::absent;
+        arrivals_ += arrives;
+        state_[id] = arrives ? state::arriving : state::known;
         ++size_;
     }
 
+    /// Makes an object absent from the next frame on.
     /// @throws input_error if the object is not present
     void remove(std::uint32_t id) {
         if (!contains(id)) reject(id, " is removed but was never inserted");
         --size_;
-        if (state_[id] == state::coming) {
+        if (state_[id] == state::arriving) {
             --arrivals_;
             state_[id] = state::absent;
         } else {
             state_[id] = state::leaving;
-            departures_ = true;
+            any_departures_ = true;
         }
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] inline bool contains(std::uint32_t id) const noexcept {
-        return id < state_.size() && (state_[id] == state::coming || state_[id] == state::known);
+        return id < state_.size() && (state_[id] == state::arriving || state_[id] == state::known);
     }
     [[nodiscard]] std::size_t arrivals() const noexcept { return arrivals_; }
-    [[nodiscard]] inline bool is_arrival(std::uint32_t id) const noexcept { return state_[id] == state::coming; }
-    [[nodiscard]] bool any_departures() const noexcept { return departures_; }
+    [[nodiscard]] inline bool is_arrival(std::uint32_t id) const noexcept { return state_[id] == state::arriving; }
+    [[nodiscard]] bool any_departures() const noexcept { return any_departures_; }
     [[nodiscard]] inline bool is_leaving(std::uint32_t id) const noexcept { return state_[id] == state::leaving; }
 
     /// Calls `take` with the id of each arrival, ascending.
     void for_each_arrival(auto take) const {
         if (arrivals_ == 0) return;
         for (std::size_t id = 0; id < state_.size(); ++id)
-            if (state_[id] == state::coming) take(static_cast<std::uint32_t>(id));
+            if (state_[id] == state::arriving) take(static_cast<std::uint32_t>(id));
     }
 
     /// @throws input_error if a present object has no box, or if there are boxes but `insert` was never called, since
@@ -64,16 +66,16 @@ public:
 
     /// Marks arrivals and departures as processed.
     void settle() {
-        if (departures_) std::ranges::replace(state_, state::leaving, state::absent);
-        if (arrivals_ > 0) std::ranges::replace(state_, state::coming, state::known);
-        departures_ = false;
+        if (any_departures_) std::ranges::replace(state_, state::leaving, state::absent);
+        if (arrivals_ > 0) std::ranges::replace(state_, state::arriving, state::known);
+        any_departures_ = false;
         arrivals_ = 0;
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(state_); }
 
 private:
-    enum class state : std::uint8_t { absent, coming, known, leaving };
+    enum class state : std::uint8_t { absent, arriving, known, leaving };
 
     // Out of line, so that the functions called per object stay small enough to inline.
     [[noreturn]] static void reject(std::uint32_t id, const char* why) {
@@ -83,7 +85,7 @@ private:
     std::vector<state> state_;  // by id
     std::size_t size_ = 0;
     std::size_t arrivals_ = 0;
-    bool departures_ = false;
+    bool any_departures_ = false;
 };
 
 }  // namespace aabb

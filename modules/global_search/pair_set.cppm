@@ -29,11 +29,11 @@ public:
     inline void erase(index_pair pair) {
         if (pairs_.empty()) return;
         const std::size_t slot = slot_of(pair);
-        const std::uint32_t place = table_[slot];
-        if (place == none) return;
+        const std::uint32_t index = table_[slot];
+        if (index == none) return;
         // The last pair replaces the erased one.
-        table_[slot_of(pairs_.back())] = place;
-        pairs_[place] = pairs_.back();
+        table_[slot_of(pairs_.back())] = index;
+        pairs_[index] = pairs_.back();
         pairs_.pop_back();
         close_gap(slot);
     }

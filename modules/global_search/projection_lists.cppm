@@ -11,6 +11,7 @@ export namespace aabb {
 /// Counts the inversions of a list, the measure of "almost sorted", by merge sort in O(n log n).
 class inversion_counter {
 public:
+    /// The number of pairs of entries that are in the wrong order.
     [[nodiscard]] std::uint64_t count(std::span<const projection> list) {
         keys_.clear();
         for (const projection& p : list) keys_.push_back(p.key);
@@ -29,11 +30,10 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(keys_, merged_); }
 
 private:
-    /// Each key of the second run that moves passes the rest of the first run.
+    /// Merges two sorted runs of keys and counts inversions: a key of the second run passes the rest of the first run.
     [[nodiscard]] std::uint64_t merge(std::size_t begin, std::size_t middle, std::size_t end) {
         std::uint64_t inversions = 0;
-        std::size_t left = begin;
-        std::size_t right = middle;
+        std::size_t left = begin, right = middle;
         for (std::size_t out = begin; out < end; ++out) {
             const bool passes = left == middle || (right < end && keys_[right] < keys_[left]);
             if (passes) inversions += middle - left;
@@ -123,28 +123,30 @@ private:
         std::ranges::sort(list, [](const projection& p, const projection& q) { return precedes(p, q); });
     }
 
+    /// Sorts the entries whose key has changed, and merges them with the others, which are still in order.
     template <class Sort>
     void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         const std::span known = std::span(lists_[axis]).first(lists_[axis].size() - arrivals_);
         moved_.clear();
         make_room(moved_, known.size());
-        std::size_t still = 0;
+        std::size_t unmoved = 0;
         for (const projection& p : known) {
             const float key = boxes[p.id].min[static_cast<int>(axis)];
             if (key == p.key)
-                known[still++] = p;
+                known[unmoved++] = p;
             else
                 moved_.push_back({key, p.id});
         }
         if (moved_.empty()) return;
         if constexpr (Counters::enabled) counters.add(work::inversions, inversions_.count(moved_));
         sort.sort(std::span(moved_), counters);
-        if (still == 0 && arrivals_ == 0)
+        if (unmoved == 0 && arrivals_ == 0)
             lists_[axis].swap(moved_);
         else
-            merge_moved_into(known, still, counters);
+            merge_moved_into(known, unmoved, counters);
     }
 
+    /// Sorts the arrivals at the end of a list from scratch, and merges them with the known entries before them.
     void sort_arrivals(std::span<const box> boxes, std::size_t axis) {
         if (arrivals_ == 0) return;
         const std::span list(lists_[axis]);
@@ -156,26 +158,26 @@ private:
         merge_moved_into(list, known, uncounted);
     }
 
-    /// Merges from the back, in place.
-    void merge_moved_into(std::span<projection> list, std::size_t still, CounterPolicy auto& counters) {
-        assert(list.size() == still + moved_.size());
+    /// Merges `moved_` with the sorted entries at the front of a list, from the back and in place.
+    void merge_moved_into(std::span<projection> list, std::size_t sorted, CounterPolicy auto& counters) {
+        assert(list.size() == sorted + moved_.size());
         std::size_t out = list.size();
         for (std::size_t i = moved_.size(); i-- > 0;) {
-            const std::size_t place = place_of(moved_[i], list.first(still), counters);
-            std::copy_backward(list.begin() + static_cast<std::ptrdiff_t>(place),
-                               list.begin() + static_cast<std::ptrdiff_t>(still),
+            const std::size_t index = insertion_index(moved_[i], list.first(sorted), counters);
+            std::copy_backward(list.begin() + static_cast<std::ptrdiff_t>(index),
+                               list.begin() + static_cast<std::ptrdiff_t>(sorted),
                                list.begin() + static_cast<std::ptrdiff_t>(out));
-            counters.add(work::moves, still - place + 1);
-            out -= still - place + 1;
-            still = place;
+            counters.add(work::moves, sorted - index + 1);
+            out -= sorted - index + 1;
+            sorted = index;
             list[out] = moved_[i];
         }
-        assert(out == still);
+        assert(out == sorted);
     }
 
-    /// The upper bound of an entry in a sorted list, by galloping search from the back.
-    static std::size_t place_of(const projection& entry, std::span<const projection> list,
-                                CounterPolicy auto& counters) {
+    /// The upper bound of an entry in a sorted list, by galloping search from the back: few steps for a near one.
+    static std::size_t insertion_index(const projection& entry, std::span<const projection> list,
+                                       CounterPolicy auto& counters) {
         std::size_t step = 1;
         const auto follows = [&](std::size_t i) {
             counters.add(work::comparisons);

@@ -21,9 +21,7 @@ struct spread {
 /// sort orders ties, and relative to the first centre, so that no digits cancel far from the origin.
 [[nodiscard]] inline spread spread_of(std::span<const box> boxes, const membership& objects) {
     spread result{};
-    vec3d first{};
-    vec3d sum{};
-    vec3d squares{};
+    vec3d first{}, sum{}, squares{};
     for (std::uint32_t id = 0; id < boxes.size(); ++id) {
         if (!objects.contains(id)) continue;
         const box& b = boxes[id];
@@ -77,14 +75,14 @@ public:
         return choose(spread_of(boxes, objects), every_axis);
     }
 
-    /// @param among the candidate axes; at least one
+    /// Chooses among some axes, at least one: the last choice, unless the variance on another is 50% greater.
     int choose(const spread& along, axis_set among) {
         const auto is_among = [among](int k) { return has_axis(among, static_cast<std::size_t>(k)); };
-        const double margin = chosen_ && is_among(axis_) ? 1.5 : 1.0;
+        const double margin = has_chosen_ && is_among(axis_) ? 1.5 : 1.0;
         if (!is_among(axis_)) axis_ = std::countr_zero(among);
         for (int k = 0; k < 3; ++k)
             if (is_among(k) && along.variance[k] > margin * along.variance[axis_]) axis_ = k;
-        chosen_ |= along.objects > 0;
+        has_chosen_ |= along.objects > 0;
         return axis_;
     }
 
@@ -92,7 +90,7 @@ public:
 
 private:
     int axis_ = 0;
-    bool chosen_ = false;
+    bool has_chosen_ = false;
 };
 
 }  // namespace aabb

@@ -15,19 +15,20 @@ public:
     /// Removes all subsets: the frame is not partitioned.
     void clear() noexcept { starts_.resize(1); }
 
+    /// Copies the entries of sorted lists to all subsets that their boxes overlap, by a counting sort.
     /// @param axes axes whose lists are distributed; at least one
     /// @throws input_error if the partition makes more than 2^24 + 64 n copies of n objects
     template <CuttingPartition Partition, CounterPolicy Counters>
     void distribute(const Partition& partition, const whole_subset& scene, axis_set axes, Counters& counters) {
         assert((axes & every_axis) != 0);
-        bool counted = false;
+        bool are_counted = false;
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_axis(axes, k)) {
                 entries_[k].clear();
                 continue;
             }
-            if (!counted) count(partition, scene.boxes, scene.lists[k]);
-            counted = true;
+            if (!are_counted) count(partition, scene.boxes, scene.lists[k]);
+            are_counted = true;
             entries_[k].resize(starts_.back());
             next_.assign(starts_.begin(), starts_.end() - 1);
             for (const projection& p : scene.lists[k])
@@ -61,31 +62,31 @@ private:
         return (std::uint64_t{1} << 24) + 64 * std::uint64_t{objects};
     }
 
-    /// Sets `starts_`, the number of entries before each subset.
+    /// Counts the copies in each subset, and sets `starts_`, the number of entries before each subset.
     template <class Partition>
-    void count(const Partition& partition, std::span<const box> boxes, std::span<const projection> any) {
+    void count(const Partition& partition, std::span<const box> boxes, std::span<const projection> list) {
         const std::uint32_t subsets = partition.subset_count();
         starts_.assign(std::size_t{subsets} + 1, 0);
         std::size_t copies = 0;
-        for (const projection& p : any) {
+        for (const projection& p : list) {
             partition.for_each_subset(p.id, boxes[p.id], [&](std::uint32_t s, axis_set) {
                 ++starts_[s + 1];
                 ++copies;
             });
             // Checked while counting, since visiting all copies could take hours.
-            if (copies > most_copies(any.size())) reject(partition, boxes, any);
+            if (copies > most_copies(list.size())) reject_copies(partition, boxes, list);
         }
         for (std::size_t s = 0; s < subsets; ++s) starts_[s + 1] += starts_[s];
     }
 
     template <class Partition>
-    [[noreturn]] static void reject(const Partition& partition, std::span<const box> boxes,
-                                    std::span<const projection> any) {
+    [[noreturn]] static void reject_copies(const Partition& partition, std::span<const box> boxes,
+                                           std::span<const projection> list) {
         std::uint64_t copies = 0;
-        for (const projection& p : any) copies += partition.copies(p.id, boxes[p.id]);
+        for (const projection& p : list) copies += partition.copies(p.id, boxes[p.id]);
         throw input_error(std::string(Partition::name) + " makes " + std::to_string(copies) + " copies of " +
-                          std::to_string(any.size()) + " objects, but at most " +
-                          std::to_string(most_copies(any.size())) +
+                          std::to_string(list.size()) + " objects, but at most " +
+                          std::to_string(most_copies(list.size())) +
                           " (2^24 + 64 per object) are allowed; fewer cuts make fewer copies");
     }
 

@@ -18,11 +18,12 @@ public:
     void find_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                     walk_goal /*goal*/, Emit emit) {
         begin();
-        push_if_overlapping(a, b, to_a, {a.root(), b.root(), to_a(b.bounds())}, side::both);
+        push_if_overlapping(a, b, to_a, {a.root(), b.root(), to_a(b.bounds())}, new_node::both);
         test_pending(test, a, b, to_a, emit);
     }
 
-    /// The same for the pairs of one mesh, in either order: tests the two children of each node against each other.
+    /// Passes each pair of intersecting triangles of one mesh to `emit`, in either order, by testing the two children
+    /// of each node against each other.
     template <class Emit>
     void find_self_pairs(const Triangle& test, const model<Tree>& m, Emit emit) {
         constexpr same_frame identity;
@@ -35,7 +36,7 @@ public:
             const auto [left, right] = m.tree().children(node, m.triangles());
             nodes_.push_back(left);
             nodes_.push_back(right);
-            push_if_overlapping(m, m, identity, {left, right, m.tree().bounds(right)}, side::both);
+            push_if_overlapping(m, m, identity, {left, right, m.tree().bounds(right)}, new_node::both);
             test_pending(test, m, m, identity, emit);
         }
         assert(stack_.empty());
@@ -60,8 +61,8 @@ private:
         [[nodiscard]] triangle3f operator()(const triangle3f& t) const noexcept { return t; }
     };
 
-    /// The node of a pair that has not been tested against the other yet.
-    enum class side : std::uint8_t { a, b, both };
+    /// The nodes of a pair that are new. If only one is, its parent has been tested against the other node.
+    enum class new_node : std::uint8_t { a, b, both };
 
     /// Discards the state of an earlier query, which may have stopped early.
     void begin() {
@@ -88,12 +89,12 @@ private:
                 if (emit(std::span<const index_pair>(&triangles, 1))) return;
             } else if (b_is_leaf || (!a_is_leaf && longest_extent(tree_a.bounds(p.a)) >= longest_extent(p.b_bounds))) {
                 const auto [left, right] = tree_a.children(p.a, a.triangles());
-                push_if_overlapping(a, b, to_a, {right, p.b, p.b_bounds}, side::a);
-                push_if_overlapping(a, b, to_a, {left, p.b, p.b_bounds}, side::a);
+                push_if_overlapping(a, b, to_a, {right, p.b, p.b_bounds}, new_node::a);
+                push_if_overlapping(a, b, to_a, {left, p.b, p.b_bounds}, new_node::a);
             } else {
                 const auto [left, right] = tree_b.children(p.b, b.triangles());
-                push_if_overlapping(a, b, to_a, {p.a, right, bounds_in_a(b, to_a, right, p.b_bounds)}, side::b);
-                push_if_overlapping(a, b, to_a, {p.a, left, bounds_in_a(b, to_a, left, p.b_bounds)}, side::b);
+                push_if_overlapping(a, b, to_a, {p.a, right, bounds_in_a(b, to_a, right, p.b_bounds)}, new_node::b);
+                push_if_overlapping(a, b, to_a, {p.a, left, bounds_in_a(b, to_a, left, p.b_bounds)}, new_node::b);
             }
         }
     }
@@ -114,8 +115,8 @@ private:
         return image_;
     }
 
-    /// The box of a child of B's node in A's frame. A leaf without a box uses its parent's, or that of its transformed
-    /// triangle.
+    /// The box of a child of B's node in A's frame. For a leaf without a box it is its parent's, or with
+    /// `triangle_aabb` that of its transformed triangle.
     template <class Frame>
     [[nodiscard]] box bounds_in_a(const model<Tree>& b, const Frame& to_a, const cursor& child, const box& parent) {
         if constexpr (!Tree::has_leaf_boxes)
@@ -128,26 +129,28 @@ private:
 
     template <class Frame>
     void push_if_overlapping(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
-                             side untested) {
-        if (may_overlap(a, b, to_a, next, untested)) stack_.push_back(next);
+                             new_node which_is_new) {
+        if (may_overlap(a, b, to_a, next, which_is_new)) stack_.push_back(next);
     }
 
-    /// Tests the boxes of two nodes, or what replaces the box of a leaf in a layout without leaf boxes.
+    /// Whether the boxes of two nodes overlap. In a layout without leaf boxes, `leaf_test` says what replaces a leaf's:
+    /// triangle_box its triangle, tested against the other box; triangle_aabb the box of its triangle, and none its
+    /// parent's, both of which `bounds` returns. The parent's has been tested already if the leaf is the new node.
     template <class Frame>
     [[nodiscard]] bool may_overlap(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
-                                   side untested) {
+                                   new_node which_is_new) {
         if constexpr (!Tree::has_leaf_boxes) {
             const leaf_test_choice test = a.tree().leaf_test();
             const bool a_is_leaf = a.tree().is_leaf(next.a);
             const bool b_is_leaf = b.tree().is_leaf(next.b);
-            const bool tests_triangles =
+            const bool tests_triangle_in_box =
                 test == leaf_test_choice::triangle_box || test == leaf_test_choice::moller_triangle_box;
-            // Two leaves without boxes can only be tested by their triangles.
+            // Without a box on either side, only the test of the two triangles remains.
             if (a_is_leaf && b_is_leaf && test != leaf_test_choice::triangle_aabb) return true;
-            if (test == leaf_test_choice::none && (untested == side::a ? a_is_leaf : b_is_leaf)) return true;
-            if (tests_triangles && a_is_leaf)
+            if (test == leaf_test_choice::none && (which_is_new == new_node::a ? a_is_leaf : b_is_leaf)) return true;
+            if (tests_triangle_in_box && a_is_leaf)
                 return intersects_box(a.triangles().triangle(a.tree().triangle(next.a)), next.b_bounds, test);
-            if (tests_triangles && b_is_leaf)
+            if (tests_triangle_in_box && b_is_leaf)
                 return intersects_box(triangle_in_a(b, to_a, next.b), a.tree().bounds(next.a), test);
         }
         counters_.add(work::box_tests);

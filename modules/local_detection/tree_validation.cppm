@@ -39,7 +39,7 @@ public:
         if (result_.fault.empty())
             if (const auto absent = std::ranges::find(seen_, 0); absent != seen_.end())
                 result_.fault = "triangle " + std::to_string(absent - seen_.begin()) + " is in no leaf";
-        result_.area_inflation = smallest_ > 0 ? area_ / smallest_ - 1 : 0;
+        result_.area_inflation = tight_area_ > 0 ? box_area_ / tight_area_ - 1 : 0;
         return result_;
     }
 
@@ -68,7 +68,7 @@ private:
             return Tree::has_leaf_boxes || !tree_.is_leaf(at);
     }
 
-    /// Compares the node's box with that of its triangles, and adds these to its parent's.
+    /// Compares a visited node's box with that of the triangles below it, and merges the latter with its parent's.
     void close(const node& closed) {
         result_.depth = std::max(result_.depth, open_.size() - 1);
         if (!result_.fault.empty()) return;
@@ -77,8 +77,8 @@ private:
         if (!contains(bounds, below)) result_.fault = "a box does not contain the triangles below it";
         if (has_box(closed.cursor)) {
             result_.tight &= bounds == below;
-            area_ += surface_area(bounds);
-            smallest_ += surface_area(below);
+            box_area_ += surface_area(bounds);
+            tight_area_ += surface_area(below);
         }
         open_.pop_back();
         if (!open_.empty()) open_.back().below = merged(open_.back().below, below);
@@ -89,8 +89,8 @@ private:
     std::vector<std::uint8_t> seen_;  // by triangle
     std::vector<node> open_;
     tree_validation result_;
-    double area_ = 0;
-    double smallest_ = 0;
+    double box_area_ = 0;
+    double tight_area_ = 0;
 };
 
 }  // namespace detail

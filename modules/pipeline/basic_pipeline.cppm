@@ -42,8 +42,8 @@ public:
 
     /// Inserts a removed object again, or removes one, from the next frame on. Requires a broad phase.
     /// @throws input_error if the object does not exist, is already present, or is not present
-    void insert(std::uint32_t object) { change_pieces_of(object, true); }
-    void remove(std::uint32_t object) { change_pieces_of(object, false); }
+    void insert(std::uint32_t object) { change_pieces_of(object, /*inserts=*/true); }
+    void remove(std::uint32_t object) { change_pieces_of(object, /*inserts=*/false); }
 
     /// A frame has three steps that can be timed separately. The first takes one pose per object and refits the trees
     /// of deformed meshes.
@@ -93,7 +93,7 @@ public:
         });
     }
 
-    /// Alternatives to `detect`, which throw likewise: some contact, and the number of contacts.
+    /// Alternatives to `detect`, which throw likewise. Some contact, if there is one.
     [[nodiscard]] std::optional<contact> first_contact() {
         require_searched();
         for (std::size_t i = 0; i < candidates_.size(); ++i) {
@@ -105,6 +105,7 @@ public:
         }
         return std::nullopt;
     }
+    /// The number of contacts, without storing them.
     [[nodiscard]] std::uint64_t count_contacts() {
         require_searched();
         std::uint64_t count = 0;
@@ -155,19 +156,19 @@ private:
     }
 
     /// Inserts or removes all pieces of an object, or none if one of these operations fails.
-    void change_pieces_of(std::uint32_t object, bool come) {
-        const auto change = [&](std::uint32_t id, bool comes) { comes ? global_->insert(id) : global_->remove(id); };
+    void change_pieces_of(std::uint32_t object, bool inserts) {
+        const auto change = [&](std::uint32_t id, bool insert) { insert ? global_->insert(id) : global_->remove(id); };
         assert(searches());
         if (object >= scene_.mesh_of.size())
             throw input_error("there is no object " + std::to_string(object) + ": the scene has " +
                               std::to_string(scene_.mesh_of.size()));
-        if (!parts_) return change(object, come);
+        if (!parts_) return change(object, inserts);
         const auto [first, last] = parts_->pieces_of(object);
         for (std::uint32_t id = first; id < last; ++id) {
             try {
-                change(id, come);
+                change(id, inserts);
             } catch (...) {
-                while (id-- > first) change(id, !come);
+                while (id-- > first) change(id, !inserts);
                 throw;
             }
         }

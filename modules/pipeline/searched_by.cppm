@@ -44,6 +44,7 @@ public:
             return 0;
     }
 
+    /// What this composition does without, and why, for `explain`.
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent;
         if constexpr (!really_cuts<Partition>) absent.push_back({absence::partition, "no cells, no copies of objects"});

@@ -9,7 +9,7 @@ import aabb.std;
 export namespace aabb {
 
 /// Integers in [least, most].
-struct whole_values {
+struct integer_values {
     std::uint64_t least = 0;
     std::uint64_t most = 0;
     bool or_auto = false;
@@ -29,13 +29,13 @@ struct name_values {
 struct text_values {
     std::string what;  ///< completes "must be …"
 };
-using parameter_values = std::variant<whole_values, number_values, name_values, text_values>;
+using parameter_values = std::variant<integer_values, number_values, name_values, text_values>;
 
 /// Completes "must be …": "a whole number from 1 to 8 or auto", "one of x, y".
 [[nodiscard]] inline std::string to_text(const parameter_values& values) {
-    if (const auto* whole = std::get_if<whole_values>(&values))
-        return "a whole number from " + std::to_string(whole->least) + " to " + std::to_string(whole->most) +
-               (whole->or_auto ? " or auto" : "");
+    if (const auto* integers = std::get_if<integer_values>(&values))
+        return "a whole number from " + std::to_string(integers->least) + " to " + std::to_string(integers->most) +
+               (integers->or_auto ? " or auto" : "");
     if (const auto* number = std::get_if<number_values>(&values)) {
         std::string text = (number->or_equal ? "a number of at least " : "a number above ") + shortest(number->above);
         if (number->at_most < std::numeric_limits<double>::max()) text += " and at most " + shortest(number->at_most);
@@ -58,7 +58,6 @@ struct choice_parameter {
     std::string_view help;
 
     [[nodiscard]] parameter_values values() const { return name_values{{names.begin(), names.end()}}; }
-
     [[nodiscard]] std::string show(const Config& config) const {
         const auto chosen = static_cast<std::size_t>(config.*field);
         assert(chosen < N);
@@ -74,19 +73,19 @@ struct choice_parameter {
 };
 
 /// An integer parameter in [least, most]; with `or_auto` also "auto", which leaves the optional empty.
-template <class Config, class Value, std::integral Whole>
+template <class Config, class Value, std::integral Integer>
 struct integer_parameter {
     std::string_view name;
     Value Config::* field;
-    Whole least;
-    Whole most;
+    Integer least;
+    Integer most;
     std::string_view help;
 
-    static constexpr bool or_auto = std::same_as<Value, std::optional<Whole>>;
-    static_assert(std::unsigned_integral<Whole> && (or_auto || std::same_as<Value, Whole>));
+    static constexpr bool or_auto = std::same_as<Value, std::optional<Integer>>;
+    static_assert(std::unsigned_integral<Integer> && (or_auto || std::same_as<Value, Integer>));
 
     [[nodiscard]] parameter_values values() const {
-        return whole_values{static_cast<std::uint64_t>(least), static_cast<std::uint64_t>(most), or_auto};
+        return integer_values{static_cast<std::uint64_t>(least), static_cast<std::uint64_t>(most), or_auto};
     }
 
     [[nodiscard]] std::string show(const Config& config) const {
@@ -96,13 +95,14 @@ struct integer_parameter {
             return std::to_string(config.*field);
     }
 
+    /// Sets the field to the value of a text; returns false if it is none of `values()`.
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
         if constexpr (or_auto)
             if (text == "auto") {
                 config.*field = std::nullopt;
                 return true;
             }
-        Whole value = 0;
+        Integer value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         if (error != std::errc{} || end != text.data() + text.size() || value < least || value > most) return false;
         config.*field = value;
@@ -124,7 +124,6 @@ struct number_parameter {
     static constexpr bool or_auto = std::same_as<Value, std::optional<double>>;
 
     [[nodiscard]] parameter_values values() const { return number_values{above, at_most, or_equal, or_auto}; }
-
     [[nodiscard]] std::string show(const Config& config) const {
         if constexpr (or_auto)
             return config.*field ? shortest(*(config.*field)) : "auto";
@@ -132,6 +131,7 @@ struct number_parameter {
             return shortest(static_cast<double>(config.*field));
     }
 
+    /// Sets the field to the value of a text; returns false if it is none of `values()`.
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
         if constexpr (or_auto)
             if (text == "auto") {
@@ -140,8 +140,8 @@ struct number_parameter {
             }
         double value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool is_in = (value > above || (or_equal && value == above)) && value <= at_most;
-        if (error != std::errc{} || end != text.data() + text.size() || !is_in) return false;
+        const bool is_in_range = (value > above || (or_equal && value == above)) && value <= at_most;
+        if (error != std::errc{} || end != text.data() + text.size() || !is_in_range) return false;
         config.*field = value;
         return true;
     }
@@ -157,9 +157,7 @@ struct text_parameter {
     std::string_view help;
 
     [[nodiscard]] parameter_values values() const { return text_values{std::string(what)}; }
-
     [[nodiscard]] std::string show(const Config& config) const { return config.*field; }
-
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
         config.*field = text;
         return !text.empty();

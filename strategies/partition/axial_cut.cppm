@@ -55,7 +55,7 @@ public:
         const spread along = spread_of(boxes, objects);
         const std::array<int, 3> order = axes_by_variance(along, swept);
         const bool may_leave_out = !config_.axes && !config_.segments;
-        candidate_cut best{0, 1, may_leave_out ? cost_without_cuts(along, swept) : never};
+        candidate_cut best{.cut = 0, .segments = 1, .cost = may_leave_out ? cost_without_cuts(along, swept) : never};
         if (cut_ == 0) best.cost *= preference;
         axis_set cut = 0;
         for (std::uint32_t n = 1; n <= config_.axes.value_or(3); ++n) {
@@ -71,15 +71,16 @@ public:
         return cut_;
     }
 
+    /// Chooses the cuts of each axis, and finds the segments that each box overlaps.
     /// @throws input_error if there would be more than 2^26 subsets.
     void fit(const whole_subset& scene) {
-        if (cut_) places_.resize(scene.boxes.size());
+        if (cut_) ranges_.resize(scene.boxes.size());
         std::uint64_t subsets = 1;
         for (std::size_t k = 0; k < 3; ++k) {
             cuts_[k].clear();
             if (has_axis(cut_, k)) {
                 choose_cuts(scene.boxes, scene.lists[k], k);
-                classify(scene.boxes, scene.lists[k], k);
+                find_ranges(scene.boxes, scene.lists[k], k);
             }
             subsets *= cuts_[k].size() + 1;
         }
@@ -109,6 +110,7 @@ public:
         return count;
     }
 
+    /// Visits the subsets that a box overlaps, with the axes on which the box begins in them.
     template <class Visit>
     void for_each_subset(std::uint32_t id, const box&, Visit visit) const {
         const std::array<range, 3> ranges = ranges_of(id);
@@ -122,7 +124,7 @@ public:
                                                                axis_set{z == ranges[2].first} << 2);
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(places_, cuts_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(ranges_, cuts_); }
 
 private:
     static constexpr std::uint64_t most_subsets = std::uint64_t{1} << 26;
@@ -141,33 +143,34 @@ private:
     [[nodiscard]] inline std::array<range, 3> ranges_of(std::uint32_t id) const noexcept {
         std::array<range, 3> ranges{};
         for (std::size_t k = 0; k < 3; ++k)
-            if (has_axis(cut_, k)) ranges[k] = places_[id][k];
+            if (has_axis(cut_, k)) ranges[k] = ranges_[id][k];
         return ranges;
     }
 
-    /// Places the cuts of an axis at quantiles of its lower ends, and moves or drops those that the limit forbids.
+    /// Places the cuts of an axis at quantiles of its lower ends. With the limit, it moves or drops those by which a
+    /// box would be cut twice.
     void choose_cuts(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         std::vector<float>& cuts = cuts_[k];
         // The greatest upper end of the boxes that begin before the last cut.
         float reached = -std::numeric_limits<float>::infinity();
         std::size_t begun = 0;
         for (std::uint64_t i = 1; i < wanted_ && !list.empty(); ++i) {
-            std::size_t place = i * list.size() / wanted_;
-            if (!(list[place].key > (cuts.empty() ? list[0].key : cuts.back()))) continue;
+            std::size_t at = i * list.size() / wanted_;
+            if (!(list[at].key > (cuts.empty() ? list[0].key : cuts.back()))) continue;
             if (config_.limit == limit_choice::on && !cuts.empty()) {
                 for (; list[begun].key < cuts.back(); ++begun)
                     reached = std::max(reached, boxes[list[begun].id].max[static_cast<int>(k)]);
                 const auto beyond = std::ranges::upper_bound(list, reached, {}, &projection::key);
-                place = std::max(place, static_cast<std::size_t>(beyond - list.begin()));
-                if (place == list.size()) return;
+                at = std::max(at, static_cast<std::size_t>(beyond - list.begin()));
+                if (at == list.size()) return;
             }
-            cuts.push_back(list[place].key);
+            cuts.push_back(list[at].key);
         }
         assert(std::ranges::adjacent_find(cuts, std::ranges::greater_equal{}) == cuts.end());
     }
 
-    /// The list is sorted, so the segments of all lower ends are found in one pass.
-    void classify(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
+    /// Finds the first and last segment of each box; the list is sorted, so one pass finds those of all lower ends.
+    void find_ranges(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         const std::vector<float>& cuts = cuts_[k];
         std::size_t first = 0;
         for (const projection& p : list) {
@@ -178,7 +181,7 @@ private:
                 last += first < cuts.size() && cuts[first] <= upper;
             else
                 last = static_cast<std::size_t>(std::ranges::upper_bound(cuts, upper) - cuts.begin());
-            places_[p.id][k] = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
+            ranges_[p.id][k] = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
         }
     }
 
@@ -267,7 +270,7 @@ private:
     axis_set cut_ = 0;
     std::uint32_t wanted_ = 1;                  // segments per axis
     std::array<std::vector<float>, 3> cuts_;    // ascending
-    std::vector<std::array<range, 3>> places_;  // by id
+    std::vector<std::array<range, 3>> ranges_;  // by id
 };
 
 static_assert(SegmentingPartition<axial_cut_partition>);

@@ -55,7 +55,7 @@ public:
     columns_partition() = default;
     explicit columns_partition(const config& c) : config_(c) {}
 
-    /// The cheapest plan for these boxes, clipped to the bounds.
+    /// The axis and the numbers of columns that are cheapest in the model, for boxes clipped to the bounds.
     [[nodiscard]] column_plan plan(std::span<const box> boxes, const box& within) const {
         if (boxes.empty()) return {};
         const sample seen = sample_of(boxes, within);
@@ -69,9 +69,9 @@ public:
             if (!seen.varies(axis) && (seen.varies(u) || seen.varies(v))) continue;
             const double most_u = most_columns_on(seen, u, config_.axes > 0);
             const double most_v = most_columns_on(seen, v, config_.axes > 1);
-            for (const std::uint32_t nu : numbers) {
+            for (const std::uint32_t nu : column_counts) {
                 if (nu > most_u) break;
-                for (const std::uint32_t nv : numbers) {
+                for (const std::uint32_t nv : column_counts) {
                     if (nv > most_v || nu * nv > most_columns) break;
                     if (nu * nv > 1 && std::size_t{nu} * nv * simd::width > boxes.size()) break;
                     candidate.across = {nu, nv};
@@ -84,7 +84,7 @@ public:
         }
         best.fit(seen.bounds);
         best.most_along = static_cast<std::uint32_t>(
-            std::min(most_columns_on(seen, best.axis, true) / columns_per_extent, double{most_columns}));
+            std::min(most_columns_on(seen, best.axis, /*is_cut=*/true) / columns_per_extent, double{most_columns}));
         // A group of fewer boxes than a plan samples is not worth its own plan.
         if (!config_.group && are_clustered(seen, best, boxes.size(), least))
             best.groups = std::clamp(static_cast<double>(boxes.size()) / samples, 4.0, double{most_groups});
@@ -102,15 +102,15 @@ public:
 private:
     static constexpr std::size_t samples = 256;
     static constexpr std::size_t kept_samples = samples / 2;
-    /// Candidate shares of outliers to exclude on either side: none, 1/64 and 1/8.
-    static constexpr std::array<std::size_t, 3> shares{0, 64, 8};
+    /// The shares of outliers that may be excluded on either side: none, 1/64 or 1/8.
+    static constexpr std::array<std::size_t, 3> outlier_divisors{0, 64, 8};
     /// One in this many boxes is tested against the kept sample.
     static constexpr std::size_t boxes_per_tested = 32;
     static constexpr std::uint32_t most_columns = 16'384;
     static constexpr std::uint32_t most_groups = 300;
     static constexpr double columns_per_extent = 4;
-    static constexpr std::array<std::uint32_t, 24> numbers{1,  2,  3,  4,  5,  6,  7,  8,  10, 12, 14,  16,
-                                                           20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128};
+    static constexpr std::array<std::uint32_t, 24> column_counts{1,  2,  3,  4,  5,  6,  7,  8,  10, 12, 14,  16,
+                                                                 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128};
 
     /// A sample of boxes, and the means of their extents, face areas and volumes.
     struct sample {
@@ -157,7 +157,7 @@ private:
         std::size_t count = 0;
         std::uint64_t random = 1;
         for (std::size_t begin = 0; begin < boxes.size(); begin += step) {
-            random = random * 6364136223846793005U + 1442695040888963407U;
+            random = random * 6364136223846793005U + 1442695040888963407U;  // Knuth's generator for MMIX
             const std::size_t i = begin + (random >> 33U) % step;
             if (i >= boxes.size()) break;
             const box b = clipped(boxes[i], within);
@@ -171,8 +171,8 @@ private:
         }
         bool has_outliers = false;
         for (int k = 0; k < 3; ++k) {
-            has_outliers |= bound(seen.bounds, k, std::span(ends[static_cast<std::size_t>(k)]).first(count),
-                                  std::span(ends[static_cast<std::size_t>(3 + k)]).first(count));
+            has_outliers |= set_bounds(seen.bounds, k, std::span(ends[static_cast<std::size_t>(k)]).first(count),
+                                       std::span(ends[static_cast<std::size_t>(3 + k)]).first(count));
             seen.per_width[k] = seen.width(k) > 0 ? 1 / seen.width(k) : 0;
         }
         if (has_outliers) {
@@ -194,29 +194,29 @@ private:
     /// Bounds the lower and upper ends without outliers, which belong to the columns at the border. The outermost 64th
     /// or 8th on either side is excluded if that makes the bounds at least four times as short.
     /// @returns whether outliers were excluded
-    static bool bound(box& bounds, int k, std::span<float> lower, std::span<float> upper) {
-        const std::array<float, shares.size()> first = bounds_without_outliers(lower, std::ranges::less());
-        const std::array<float, shares.size()> last = bounds_without_outliers(upper, std::ranges::greater());
+    static bool set_bounds(box& bounds, int k, std::span<float> lower, std::span<float> upper) {
+        const std::array<float, outlier_divisors.size()> first = bounds_without_outliers(lower, std::ranges::less());
+        const std::array<float, outlier_divisors.size()> last = bounds_without_outliers(upper, std::ranges::greater());
         const auto length = [&](std::size_t i) { return double{last[i]} - double{first[i]}; };
         std::size_t chosen = 0;
-        for (std::size_t i = 1; i < shares.size(); ++i)
+        for (std::size_t i = 1; i < outlier_divisors.size(); ++i)
             if (4 * length(i) < length(chosen)) chosen = i;
         bounds.min[k] = first[chosen];
         bounds.max[k] = std::max(first[chosen], last[chosen]);
         return chosen > 0;
     }
 
-    /// The outermost value after each share of outliers is excluded.
+    /// The outermost values if no outliers, one value in 64, or one in 8 is excluded.
     template <class Before>
-    [[nodiscard]] static std::array<float, shares.size()> bounds_without_outliers(std::span<float> values,
-                                                                                  Before before) {
-        std::array<float, shares.size()> bounds{};
+    [[nodiscard]] static std::array<float, outlier_divisors.size()> bounds_without_outliers(std::span<float> values,
+                                                                                            Before before) {
+        std::array<float, outlier_divisors.size()> bounds{};
         const std::size_t count = values.size();
-        for (std::size_t i = shares.size(); i-- > 0;) {
-            const std::size_t excluded = shares[i] == 0 ? 0 : count / shares[i];
-            const auto place = values.begin() + static_cast<std::ptrdiff_t>(excluded);
-            std::ranges::nth_element(values, place, before);
-            bounds[i] = *place;
+        for (std::size_t i = outlier_divisors.size(); i-- > 0;) {
+            const std::size_t excluded = outlier_divisors[i] == 0 ? 0 : count / outlier_divisors[i];
+            const auto outermost = values.begin() + static_cast<std::ptrdiff_t>(excluded);
+            std::ranges::nth_element(values, outermost, before);
+            bounds[i] = *outermost;
             values = values.first(excluded + 1);
         }
         return bounds;
@@ -233,9 +233,10 @@ private:
     }
 
     /// The greatest useful number of columns on an axis; narrower ones gain nothing.
-    [[nodiscard]] static double most_columns_on(const sample& seen, int k, bool cut) {
-        if (!cut || !seen.varies(k)) return 1;
-        return seen.extent[k] > 0 ? std::max(1.0, columns_per_extent * seen.width(k) / seen.extent[k]) : numbers.back();
+    [[nodiscard]] static double most_columns_on(const sample& seen, int k, bool is_cut) {
+        if (!is_cut || !seen.varies(k)) return 1;
+        return seen.extent[k] > 0 ? std::max(1.0, columns_per_extent * seen.width(k) / seen.extent[k])
+                                  : column_counts.back();
     }
 
     /// The cost per box in nanoseconds: placing its entries, and testing each of them by vectors against the entries
@@ -244,9 +245,10 @@ private:
         const cost_model& ns = machine_costs();
         const int u = p.axis_across(0);
         const int v = p.axis_across(1);
-        const auto per = [&](int k, std::uint32_t n) { return n > 1 ? n * seen.per_width[k] : 0.0; };
-        const double iu = per(u, p.across[0]);
-        const double iv = per(v, p.across[1]);
+        const auto cuts_per_length = [&](int k, std::uint32_t n) { return n > 1 ? n * seen.per_width[k] : 0.0; };
+        const double iu = cuts_per_length(u, p.across[0]);
+        const double iv = cuts_per_length(v, p.across[1]);
+        // Means per box: its entries, one per column that it overlaps, and the sum of their lengths along the columns.
         const double entries = 1 + seen.extent[u] * iu + seen.extent[v] * iv + seen.product[p.axis] * iu * iv;
         const double length = seen.extent[p.axis] + seen.product[v] * iu + seen.product[u] * iv + seen.volume * iu * iv;
         const auto columns = static_cast<double>(p.columns());
@@ -263,7 +265,7 @@ private:
         simd::words first, last;   ///< column numbers, packed like the coordinates in `lower`
         simd::words begin, end;    ///< bucket numbers
 
-        /// Quantizes the sampled boxes from index `first` on.
+        /// Quantizes a vector of sampled boxes from index `first_box` on, and finds their columns and buckets.
         void fill(const sample& seen, std::size_t first_box, const column_plan& plan, std::uint32_t bucket_bits) {
             for (std::size_t k = 0; k < 6; ++k) std::memcpy(&ends[k], &seen.ends[k][first_box], sizeof ends[k]);
             const int u = plan.axis_across(0);
@@ -300,7 +302,8 @@ private:
     [[nodiscard]] static bool are_clustered(const sample& seen, const column_plan& plan, std::size_t boxes,
                                             double planned) {
         const cost_model& ns = machine_costs();
-        // Costs are in nanoseconds per box.
+        // Costs are in nanoseconds per box. A vector tests `width` pairs that share a column and buckets at once; each
+        // pair that only the exact test rejects costs another test.
         const double most = planned + ns.column_entry;
         const auto cost = [&](double met, double rejected) { return ns.column_test * (met / simd::width + rejected); };
         const auto n = static_cast<double>(boxes);
@@ -310,8 +313,7 @@ private:
             entries[i / simd::width].fill(seen, i, plan, plan.bucket_bits(boxes));
         // Only some of the sample are tested against the rest, so that the estimate takes a small share of the search.
         const std::size_t tested = std::min(seen.kept, std::max<std::size_t>(boxes / boxes_per_tested, 1));
-        int met = 0;
-        int rejected = 0;
+        int met = 0, rejected = 0;
         for (std::size_t k = 0; k < tested; ++k) {
             const std::size_t i = k * seen.kept / tested;
             const sampled_entries& others = entries[i / simd::width];

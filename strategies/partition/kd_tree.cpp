@@ -26,6 +26,7 @@ struct sampled {
     box bounds = empty_box();
     vec3d extent{};  // mean
 
+    /// Takes boxes at a regular stride, and measures their bounds and mean extent.
     sampled(std::span<const box> boxes_by_id, std::span<const std::uint32_t> ids) {
         const std::size_t step = (ids.size() + most_sampled - 1) / most_sampled;
         for (std::size_t i = 0; i < ids.size(); i += step) {
@@ -76,10 +77,10 @@ bool lies_right(const box& b, std::uint32_t axis, float plane) {
 
 }  // namespace
 
-/// Collects the present objects; a tree for other swept axes is discarded.
+/// Collects the present objects, and discards a tree for other swept axes, on which the costs of splits depend.
+/// @returns the axes whose sorted lists the partition needs: none
 axis_set kd_tree_partition::axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
-    // The costs of splits depend on the swept axes.
-    is_whole_ &= swept == swept_;
+    is_tree_valid_ &= swept == swept_;
     swept_ = swept;
     present_.clear();
     for (std::uint32_t id = 0; id < boxes.size(); ++id)
@@ -87,13 +88,13 @@ axis_set kd_tree_partition::axes(std::span<const box> boxes, const membership& o
     return 0;
 }
 
-/// Rebuilds what is stale, and finds the leaves of all boxes.
+/// Rebuilds the subtrees that the last frame found stale, and finds the leaves of all boxes.
 void kd_tree_partition::fit(const whole_subset& scene) {
     built_nodes_ = 0;
     // After an exception, the next frame rebuilds the whole tree.
-    if (!std::exchange(is_whole_, false))
+    if (!std::exchange(is_tree_valid_, false))
         rebuild_all(scene.boxes);
-    else if (!groups_.empty())
+    else if (!stale_roots_.empty())
         rebuild_stale(scene.boxes);
     [[maybe_unused]] bool placed = place_boxes(scene.boxes);
     if (!placed) {
@@ -103,59 +104,59 @@ void kd_tree_partition::fit(const whole_subset& scene) {
     find_stale_nodes();
     // Stale subtrees are usually rebuilt in the next frame, so that boxes are placed only once per frame, but not if
     // they make the current frame much more expensive.
-    if (!groups_.empty() && pairs_ > 2 * initial_pairs_) {
+    if (!stale_roots_.empty() && pairs_ > 2 * initial_pairs_) {
         rebuild_stale(scene.boxes);
         placed = place_boxes(scene.boxes);
         find_stale_nodes();
     }
     assert(placed);
-    is_whole_ = true;
+    is_tree_valid_ = true;
 }
 
 std::size_t kd_tree_partition::bytes() const noexcept {
-    return bytes_of(present_, nodes_, starts_, entries_, homes_, new_index_, copies_in_leaf_, copies_below_, old_,
-                    groups_, group_of_, group_starts_, group_ends_, ids_);
+    return bytes_of(present_, nodes_, starts_, entries_, start_nodes_, new_index_, copies_in_leaf_, copies_below_, old_,
+                    stale_roots_, root_of_leaf_, boxes_begin_, boxes_end_, ids_);
 }
 
-/// Rebuilds the whole tree.
+/// Builds the tree anew from the present objects.
 void kd_tree_partition::rebuild_all(std::span<const box> boxes) {
     nodes_.clear();
     leaves_ = 0;
-    groups_.clear();
-    copied_ = 0;
+    stale_roots_.clear();
+    extra_copies_ = 0;
     initial_pairs_ = 0;
     ids_ = present_;
-    homes_.clear();
-    build_subtree(boxes, 0, ids_.size(), {empty_box().max, empty_box().min}, 0);
+    start_nodes_.clear();
+    build_subtree(boxes, 0, ids_.size(), /*cell=*/{empty_box().max, empty_box().min}, /*depth=*/0);
 }
 
-/// Rebuilds the stale subtrees from the boxes that were in them.
+/// Rebuilds the stale subtrees, which hold many more or fewer copies than when built, from the boxes that were in them.
 void kd_tree_partition::rebuild_stale(std::span<const box> boxes) {
-    collect_group_boxes();
+    collect_stale_boxes();
     old_.swap(nodes_);
     nodes_.clear();
     leaves_ = 0;
-    copied_ = 0;
-    for (const std::uint32_t copies : copies_in_leaf_) copied_ += copies;
-    copied_ -= std::min<std::uint64_t>(copied_, present_.size());
+    extra_copies_ = 0;
+    for (const std::uint32_t copies : copies_in_leaf_) extra_copies_ += copies;
+    extra_copies_ -= std::min<std::uint64_t>(extra_copies_, present_.size());  // the first copy of each box
     initial_pairs_ = 0;
     new_index_.resize(old_.size());
-    copy_or_rebuild(boxes, 0, 0);
-    for (std::uint32_t& home : homes_) home = new_index_[home];
-    groups_.clear();
+    copy_or_rebuild(boxes, /*old=*/0, /*depth=*/0);
+    for (std::uint32_t& start : start_nodes_) start = new_index_[start];
+    stale_roots_.clear();
 }
 
 /// Copies a subtree of the old tree, except stale parts, which are rebuilt.
 void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_t old, std::size_t depth) {
     const auto self = static_cast<std::uint32_t>(nodes_.size());
-    const auto group = std::ranges::lower_bound(groups_, old);
-    if (group != groups_.end() && *group == old) {
-        const auto g = static_cast<std::size_t>(group - groups_.begin());
-        // Copy the group above all groups, since the others are still needed.
+    const auto root = std::ranges::lower_bound(stale_roots_, old);
+    if (root != stale_roots_.end() && *root == old) {
+        const auto r = static_cast<std::size_t>(root - stale_roots_.begin());
+        // Copy its boxes to the top of the stack: building overwrites what is above them, which is still needed.
         const std::size_t first = ids_.size();
-        const std::size_t count = group_ends_[g] - group_starts_[g];
+        const std::size_t count = boxes_end_[r] - boxes_begin_[r];
         ids_.resize(first + count);
-        std::copy_n(ids_.begin() + static_cast<std::ptrdiff_t>(group_starts_[g]), count,
+        std::copy_n(ids_.begin() + static_cast<std::ptrdiff_t>(boxes_begin_[r]), count,
                     ids_.begin() + static_cast<std::ptrdiff_t>(first));
         build_subtree(boxes, first, count, old_[old].cell, depth);
         ids_.resize(first);
@@ -176,30 +177,30 @@ void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_
     copy_or_rebuild(boxes, old_[old].children[1], depth + 1);
 }
 
-/// Builds the subtree of the boxes ids_[first .. first + count).
+/// Builds the subtree of the boxes ids_[first .. first + count), a single leaf if no split is cheaper.
 void kd_tree_partition::build_subtree(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell,
                                       std::size_t depth) {
     const std::size_t self = nodes_.size();
     ++built_nodes_;
-    nodes_.push_back({cell, 0, is_leaf, {leaves_, 0}, unknown});
+    nodes_.push_back({.cell = cell, .plane = 0, .axis = is_leaf, .children = {leaves_, 0}, .initial_copies = unknown});
     if (count >= 2 && depth < most_depth) {
         const split at = best_split(boxes, first, count);
-        std::array<std::size_t, 2> parts{};
-        if (at.axis != is_leaf && divide(boxes, first, count, at, parts)) {
+        std::array<std::size_t, 2> counts{};
+        if (at.axis != is_leaf && divide(boxes, first, count, at, counts)) {
             nodes_[self].plane = at.plane;
             nodes_[self].axis = at.axis;
             const std::size_t right = first + count;
-            const std::size_t left = right + parts[1];
+            const std::size_t left = right + counts[1];
             std::array<box, 2> cells{cell, cell};
             // Boxes may have left the cell of a stale node, so the plane may lie outside.
             const auto k = static_cast<int>(at.axis);
             cells[0].max[k] = std::min(at.plane, cell.max[k]);
             cells[1].min[k] = std::max(at.plane, cell.min[k]);
             nodes_[self].children[0] = static_cast<std::uint32_t>(nodes_.size());
-            build_subtree(boxes, left, parts[0], cells[0], depth + 1);
+            build_subtree(boxes, left, counts[0], cells[0], depth + 1);
             nodes_[self].children[1] = static_cast<std::uint32_t>(nodes_.size());
             ids_.resize(left);
-            build_subtree(boxes, right, parts[1], cells[1], depth + 1);
+            build_subtree(boxes, right, counts[1], cells[1], depth + 1);
             ids_.resize(right);
             return;
         }
@@ -207,10 +208,10 @@ void kd_tree_partition::build_subtree(std::span<const box> boxes, std::size_t fi
     ++leaves_;
 }
 
-/// Pushes the boxes right of a plane, then those left of it, onto the stack of ids.
+/// Pushes the boxes right of a plane, then those left of it, onto the stack of ids; `counts` are left, right.
 /// @returns false if that makes too many copies, or one side has all boxes
 bool kd_tree_partition::divide(std::span<const box> boxes, std::size_t first, std::size_t count, const split& at,
-                               std::array<std::size_t, 2>& parts) {
+                               std::array<std::size_t, 2>& counts) {
     const std::size_t end = first + count;
     ids_.resize(end + 2 * count);
     // The left side grows downwards from the end of the range, so that either side may have any length.
@@ -223,21 +224,21 @@ bool kd_tree_partition::divide(std::span<const box> boxes, std::size_t first, st
         ids_[left - 1] = id;
         left -= lies_left(boxes[id], at.axis, at.plane);
     }
-    parts = {ids_.size() - left, right - end};
-    const std::uint64_t copies = parts[0] + parts[1] - count;
-    const bool splits = parts[0] < count && parts[1] < count &&
-                        copied_ + copies <= (most_copies - 1) * present_.size() &&
+    counts = {ids_.size() - left, right - end};
+    const std::uint64_t copies = counts[0] + counts[1] - count;
+    const bool splits = counts[0] < count && counts[1] < count &&
+                        extra_copies_ + copies <= (most_copies - 1) * present_.size() &&
                         (!config_.leaf || 2 * copies <= count);
     if (!splits) {
         ids_.resize(end);
         return false;
     }
-    copied_ += copies;
+    extra_copies_ += copies;
     // Restore ascending order of ids.
     std::reverse(ids_.begin() + static_cast<std::ptrdiff_t>(left), ids_.end());
     std::copy(ids_.begin() + static_cast<std::ptrdiff_t>(left), ids_.end(),
               ids_.begin() + static_cast<std::ptrdiff_t>(right));
-    ids_.resize(right + parts[0]);
+    ids_.resize(right + counts[0]);
     return true;
 }
 
@@ -252,8 +253,7 @@ kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxe
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<int>(axis);
         const float plane = sample.median(k);
-        std::size_t left = 0;
-        std::size_t right = 0;
+        std::size_t left = 0, right = 0;
         for (std::size_t i = 0; i < sample.n; ++i) {
             left += lies_left(*sample.boxes[i], axis, plane);
             right += lies_right(*sample.boxes[i], axis, plane);
@@ -268,19 +268,19 @@ kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxe
     return best;
 }
 
-/// Finds the leaves of all boxes.
+/// Finds the leaves of all boxes, each from the lowest node that contained it in the last frame, if it still does.
 /// @returns false if there are too many copies, which requires a full rebuild
 bool kd_tree_partition::place_boxes(std::span<const box> boxes) {
     const std::size_t most = 2 * most_copies * present_.size();
     starts_.resize(boxes.size() + 1);
-    homes_.resize(boxes.size(), 0);
+    start_nodes_.resize(boxes.size(), 0);
     copies_in_leaf_.assign(leaves_, 0);
     entries_.clear();
     std::size_t next = 0;  // next element of starts_
     for (const std::uint32_t id : present_) {
         const box& b = boxes[id];
         while (next <= id) starts_[next++] = static_cast<std::uint32_t>(entries_.size());
-        homes_[id] = place_box(b, lies_within(b, nodes_[homes_[id]].cell) ? homes_[id] : 0);
+        start_nodes_[id] = place_box(b, lies_within(b, nodes_[start_nodes_[id]].cell) ? start_nodes_[id] : 0);
         if (entries_.size() > most) return false;
     }
     while (next <= boxes.size()) starts_[next++] = static_cast<std::uint32_t>(entries_.size());
@@ -296,14 +296,14 @@ inline std::uint32_t kd_tree_partition::place_box(const box& b, std::uint32_t fr
     };
     std::array<waiting, most_depth> stack;
     std::size_t height = 0;
-    std::uint32_t home = unknown;
+    std::uint32_t lowest = unknown;
     axis_set owned = every_axis;
     for (std::uint32_t at = from;;) {
         const node* n = &nodes_[at];
         for (; n->axis != is_leaf; n = &nodes_[at]) {
             const bool left = lies_left(b, n->axis, n->plane);
             if (left && lies_right(b, n->axis, n->plane)) {
-                home = std::min(home, at);
+                lowest = std::min(lowest, at);
                 stack[height++] = {n->children[1], owned & ~(axis_set{1} << n->axis)};
             }
             // Branch-free, since the side is hard to predict.
@@ -312,8 +312,8 @@ inline std::uint32_t kd_tree_partition::place_box(const box& b, std::uint32_t fr
         entries_.push_back(n->children[0] << 3 | owned);
         ++copies_in_leaf_[n->children[0]];
         // In preorder, descendants have greater indices.
-        home = std::min(home, at);
-        if (height == 0) return home;
+        lowest = std::min(lowest, at);
+        if (height == 0) return lowest;
         at = stack[--height].at;
         owned = stack[height].owned;
     }
@@ -331,9 +331,9 @@ void kd_tree_partition::find_stale_nodes() {
     pairs_ = 0;
     for (const std::uint32_t copies : copies_in_leaf_) pairs_ += static_cast<double>(copies) * copies;
     if (initial_pairs_ == 0) initial_pairs_ = pairs_;
-    groups_.clear();
+    stale_roots_.clear();
     if (is_stale(0))
-        groups_.push_back(0);
+        stale_roots_.push_back(0);
     else
         collect_stale_nodes(0);
 }
@@ -350,7 +350,7 @@ void kd_tree_partition::collect_stale_nodes(std::uint32_t at) {
     if (nodes_[at].axis == is_leaf) return;
     const auto [left, right] = nodes_[at].children;
     if (is_stale(left) || is_stale(right)) {
-        groups_.push_back(at);
+        stale_roots_.push_back(at);
         return;
     }
     collect_stale_nodes(left);
@@ -363,18 +363,19 @@ std::uint32_t kd_tree_partition::outermost_leaf(std::uint32_t at, std::size_t si
     return nodes_[at].children[0];
 }
 
-/// Collects the boxes of each group, ascending by id. The leaves of a box ascend, so those of a group are consecutive.
-void kd_tree_partition::collect_group_boxes() {
-    group_of_.assign(leaves_, 0);
-    group_starts_.resize(groups_.size());
-    group_ends_.resize(groups_.size());
+/// Collects the boxes below each stale root, ascending by id. The leaves of a box ascend, so those below one root are
+/// consecutive.
+void kd_tree_partition::collect_stale_boxes() {
+    root_of_leaf_.assign(leaves_, 0);
+    boxes_begin_.resize(stale_roots_.size());
+    boxes_end_.resize(stale_roots_.size());
     std::size_t total = 0;
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-        group_starts_[g] = group_ends_[g] = total;
-        total += copies_below_[groups_[g]];
-        const std::uint32_t last = outermost_leaf(groups_[g], 1);
-        for (std::uint32_t leaf = outermost_leaf(groups_[g], 0); leaf <= last; ++leaf)
-            group_of_[leaf] = static_cast<std::uint32_t>(g) + 1;
+    for (std::size_t r = 0; r < stale_roots_.size(); ++r) {
+        boxes_begin_[r] = boxes_end_[r] = total;
+        total += copies_below_[stale_roots_[r]];
+        const std::uint32_t last = outermost_leaf(stale_roots_[r], /*side=*/1);
+        for (std::uint32_t leaf = outermost_leaf(stale_roots_[r], /*side=*/0); leaf <= last; ++leaf)
+            root_of_leaf_[leaf] = static_cast<std::uint32_t>(r) + 1;
     }
     ids_.resize(total);
     for (const std::uint32_t id : present_) {
@@ -382,9 +383,9 @@ void kd_tree_partition::collect_group_boxes() {
         if (std::size_t{id} + 1 >= starts_.size()) break;
         std::uint32_t last = 0;
         for (std::uint32_t i = starts_[id]; i < starts_[id + 1]; ++i) {
-            const std::uint32_t group = group_of_[entries_[i] >> 3];
-            if (group != 0 && group != last) ids_[group_ends_[group - 1]++] = id;
-            last = group;
+            const std::uint32_t root = root_of_leaf_[entries_[i] >> 3];
+            if (root != 0 && root != last) ids_[boxes_end_[root - 1]++] = id;
+            last = root;
         }
     }
 }

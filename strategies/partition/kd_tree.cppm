@@ -86,22 +86,23 @@ private:
     [[nodiscard]] std::uint32_t outermost_leaf(std::uint32_t at, std::size_t side) const noexcept;
     [[nodiscard]] split best_split(std::span<const box> boxes, std::size_t first, std::size_t count) const;
     [[nodiscard]] bool divide(std::span<const box> boxes, std::size_t first, std::size_t count, const split& at,
-                              std::array<std::size_t, 2>& parts);
+                              std::array<std::size_t, 2>& counts);
     [[nodiscard]] bool place_boxes(std::span<const box> boxes);
     void find_stale_nodes();
     [[nodiscard]] bool is_stale(std::uint32_t at) const noexcept;
     void collect_stale_nodes(std::uint32_t at);
-    void collect_group_boxes();
+    void collect_stale_boxes();
 
     config config_;
     axis_set swept_ = 0;
-    bool is_whole_ = false;  // the members below are consistent: the last frame completed without an exception
+    bool is_tree_valid_ = false;  // the members below are consistent: the last frame completed without an exception
     std::vector<std::uint32_t> present_;
     std::vector<node> nodes_;
     std::uint32_t leaves_ = 1;
-    std::vector<std::uint32_t> starts_;          // by id, in entries_
-    std::vector<std::uint32_t> entries_;         // leaf << 3 | the axes whose lower end lies there
-    std::vector<std::uint32_t> homes_;           // by id: the lowest node whose cell contains the box
+    std::vector<std::uint32_t> starts_;   // by id, in entries_
+    std::vector<std::uint32_t> entries_;  // leaf << 3 | the axes whose lower end lies there
+    std::vector<std::uint32_t>
+        start_nodes_;  // by id: the lowest node whose cell contains the box, where its descent starts
     std::vector<std::uint32_t> copies_in_leaf_;  // by leaf: number of copies
     std::vector<std::uint32_t> copies_below_;    // by node: number of copies in its leaves
     double pairs_ = 0;                           // number of ordered pairs within leaves
@@ -109,13 +110,13 @@ private:
     std::size_t built_nodes_ = 0;
     // Used while planes are chosen:
     std::vector<node> old_;
-    std::vector<std::uint32_t> new_index_;   // by old node: its new index, or that of the subtree that replaces it
-    std::vector<std::uint32_t> groups_;      // nodes whose subtrees the next frame rebuilds, ascending
-    std::vector<std::uint32_t> group_of_;    // by leaf: index of its group plus one, or 0 if the leaf stays
-    std::vector<std::size_t> group_starts_;  // indices into ids_
-    std::vector<std::size_t> group_ends_;
+    std::vector<std::uint32_t> new_index_;     // by old node: its new index, or that of the subtree that replaces it
+    std::vector<std::uint32_t> stale_roots_;   // nodes whose subtrees the next frame rebuilds, ascending
+    std::vector<std::uint32_t> root_of_leaf_;  // by leaf: index of its stale root plus one, or 0 if the leaf stays
+    std::vector<std::size_t> boxes_begin_;     // by stale root: range of its boxes in ids_
+    std::vector<std::size_t> boxes_end_;
     std::vector<std::uint32_t> ids_;  // a stack of the boxes of the nodes being built, children above their parents
-    std::uint64_t copied_ = 0;
+    std::uint64_t extra_copies_ = 0;  // number of copies beyond the first of each box
 };
 
 static_assert(CuttingPartition<kd_tree_partition>);

@@ -32,6 +32,7 @@ public:
     /// Needs no sorted lists: cells follow from the boxes alone.
     static axis_set axes(std::span<const box>, const membership&, axis_set) noexcept { return 0; }
 
+    /// Sets the cells: of the configured size, or of twice the mean longest extent, enlarged until they are few enough.
     /// @throws input_error if there would be more than 2^26 cells.
     void fit(const whole_subset& scene) {
         const std::span<const projection> present =
@@ -50,7 +51,7 @@ public:
         origin_ = world.min;
         const auto objects = static_cast<double>(present.size());
         if (config_.cell_size) {
-            if (cells_of(world, *config_.cell_size) > most_cells)
+            if (set_cells(world, *config_.cell_size) > most_cells)
                 throw input_error("uniform_grid: a cell_size of " + std::get<0>(parameters).show(config_) +
                                   " cuts this world into more than 2^26 cells");
             return;
@@ -59,7 +60,7 @@ public:
         const double span = double{world.max[longest]} - double{world.min[longest]};
         double size = std::max(2 * extents / objects, span * 0x1p-20);
         if (size == 0) return;  // all objects lie at one point
-        while (cells_of(world, size) > std::min(4 * objects, most_cells)) size *= 1.25;
+        while (set_cells(world, size) > std::min(4 * objects, most_cells)) size *= 1.25;
         assert(static_cast<double>(subset_count()) <= most_cells);
     }
 
@@ -71,10 +72,10 @@ public:
         return count;
     }
 
+    /// Visits the cells that a box overlaps, with the axes on which the box begins in them.
     template <class Visit>
     void for_each_subset(std::uint32_t, const box& b, Visit visit) const {
-        std::array<std::uint32_t, 3> first{};
-        std::array<std::uint32_t, 3> last{};
+        std::array<std::uint32_t, 3> first{}, last{};
         for (int k = 0; k < 3; ++k) {
             first[static_cast<std::size_t>(k)] = cell(b.min[k], k);
             last[static_cast<std::size_t>(k)] = cell(b.max[k], k);
@@ -90,7 +91,7 @@ private:
     static constexpr double most_cells = 1U << 26;
 
     /// Sets up the grid and returns its number of cells; the grid is usable only if these are at most `most_cells`.
-    double cells_of(const box& world, double size) {
+    double set_cells(const box& world, double size) {
         double count = 1;
         per_unit_ = std::min(1 / size, std::numeric_limits<double>::max());  // not infinity, which times 0 is NaN
         for (int k = 0; k < 3; ++k) {

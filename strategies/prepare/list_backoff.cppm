@@ -22,13 +22,14 @@ public:
     /// A list served as long as planned, so the next back-off is short again.
     void shorten() noexcept { next_ = shortest; }
 
-    /// Advances by one frame and ends the back-off once a list seems worth its cost. If the sample already moves too
-    /// far for any list, so does the whole scene, and the rest of the eight frames is skipped.
-    /// @param outlook estimates; its law is that of the sample
-    /// @param drawn as in `draw_id`
+    /// Advances by one frame. In the last eight of a back-off, the motion of a sample of boxes is observed, and the
+    /// back-off ends once a list seems worth its cost. If the sample already moves too far for any list, so does the
+    /// whole scene, and the rest of the eight frames is skipped.
+    /// @param estimate its law becomes that of the sample
+    /// @param ids_drawn as in `draw_id`
     /// @returns whether all eight frames passed without a list; another sample is watched next
     bool advance_frame(std::span<const box> boxes, const membership& objects, list_estimate& estimate,
-                       std::uint32_t& drawn) {
+                       std::uint32_t& ids_drawn) {
         --left_;
         const unsigned age = motion_sample::longest - std::min(left_, motion_sample::longest);
         if (std::has_single_bit(age) && !move_too_far_) {
@@ -43,9 +44,9 @@ public:
         const bool has_failed = left_ == 0;
         if (has_failed) left_ = motion_sample::longest + frames_between_samples(objects.size());
         if (left_ == motion_sample::longest) {
-            estimate.resample(boxes, objects, drawn);
+            estimate.resample(boxes, objects, ids_drawn);
             estimate.law.forget();
-            sample_.keep(boxes, drawn);
+            sample_.keep(boxes, ids_drawn);
             move_too_far_ = false;
         }
         return has_failed;

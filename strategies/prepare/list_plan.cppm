@@ -28,7 +28,7 @@ export namespace aabb {
 class growth_of_pairs {
 public:
     growth_of_pairs() = default;
-    /// @param sample boxes of the scene, in any order
+    /// Sums, over pairs of neighbours in a random sample of boxes, the polynomial by which their overlaps grow.
     explicit growth_of_pairs(std::span<const box> sample) {
         vec3d lengths{};
         box lower_corners = empty_box();
@@ -40,6 +40,7 @@ public:
         longest_margin_ = 4 * (lengths[0] + lengths[1] + lengths[2]) / (3.0 * static_cast<double>(sample.size()));
         for (std::size_t i = 1; i < sample.size(); ++i) {
             std::array<double, 4> product{1, 0, 0, 0};
+            // The coefficients of (e0 + x) (e1 + x) (e2 + x) for the summed extents of the pair on the axes.
             for (int k = 0; k < 3; ++k) {
                 if (spacing(k) <= lengths[k] / static_cast<double>(sample.size())) continue;
                 double extents = 0;
@@ -85,10 +86,10 @@ struct list_estimate {
     list_horizon horizon{};
 
     /// Estimates the growth again, from a new sample.
-    /// @param drawn as in `draw_id`
-    void resample(std::span<const box> boxes_by_id, const membership& objects, std::uint32_t& drawn) {
+    /// @param ids_drawn as in `draw_id`
+    void resample(std::span<const box> boxes_by_id, const membership& objects, std::uint32_t& ids_drawn) {
         std::array<box, 16> sample;
-        growth = growth_of_pairs(draw_boxes(boxes_by_id, objects, drawn, sample));
+        growth = growth_of_pairs(draw_boxes(boxes_by_id, objects, ids_drawn, sample));
     }
     /// The estimated number of pairs in a list with this margin.
     [[nodiscard]] double listed_pairs(double margin) const {

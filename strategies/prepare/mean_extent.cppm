@@ -19,9 +19,9 @@ public:
         of.sum += extent;
     }
 
-    /// The extent; 0 if no box was added.
+    /// The mean extent of the boxes up to the fourth octave above the median, without outliers; 0 if no box was added.
     [[nodiscard]] double operator()() const noexcept {
-        std::size_t longer = 0;
+        std::size_t longer = 0;  // number of boxes of positive extent, then of those in octaves above the median
         for (std::size_t i = 1; i < octaves_.size(); ++i) longer += octaves_[i].boxes;
         std::size_t median = 0;
         for (std::size_t half = longer / 2; longer > half; longer -= octaves_[median].boxes) ++median;

@@ -61,6 +61,7 @@ public:
         search_->remove(id);
     }
 
+    /// Chooses how to find the pairs of this frame by what is kept and how boxes have moved, and updates the search.
     void update(std::span<const box> boxes) override {
         frame_.begin();
         require_ieee_arithmetic();
@@ -82,7 +83,7 @@ public:
             const observation seen = observe_motion(boxes, any_arrivals);
             switch (actions[static_cast<std::size_t>(state_)][static_cast<std::size_t>(seen)]) {
                 case action::search: search_->update(boxes); break;
-                case action::keep: start_list(boxes, {0, 0}); break;
+                case action::keep: start_list(boxes, {.frames = 0, .margin = 0}); break;
                 // Objects inserted since the boxes were kept have no valid kept box, so their motion is unknown.
                 case action::plan: plan(boxes, seen == observation::changed && age_ > 0 && !any_arrivals); break;
                 case action::repeat: has_rested_ = true; break;
@@ -94,6 +95,7 @@ public:
         frame_.taken();
     }
 
+    /// Appends the pairs found by the search, all kept pairs of resting boxes, or those of the list that overlap.
     void search(std::vector<index_pair>& pairs) override {
         frame_.require_taken();
         require_ieee_arithmetic();
@@ -141,6 +143,7 @@ public:
         return stage_plans;
     }
 
+    /// For `explain`: what the search leaves out, and why no list is kept, if none is.
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
         if (state_ <= state::watching)
@@ -198,7 +201,7 @@ private:
         if (state_ != state::listing || moved_.margin > margin_) return observation::changed;
         if (!is_adaptive()) return observation::complete;
         if (age_ == age_when_made_ + 1 && !is_list_worth_it(objects_.size(), estimate_.pairs, list_.size())) {
-            planned_ = 0;  // the list ends because of its length, not because boxes moved too far
+            planned_frames_ = 0;  // the list ends because of its length, not because boxes moved too far
             return observation::changed;
         }
         // Boxes at rest keep the same motion bit for bit; boxes that fall together differ by rounding errors.
@@ -208,7 +211,7 @@ private:
     /// Watches a sample during a back-off, whose end may allow a list again.
     [[nodiscard]] observation observe_sample(std::span<const box> boxes) {
         if (!backoff_.is_active()) return observation::changed;
-        if (backoff_.advance_frame(boxes, objects_, estimate_, drawn_)) {
+        if (backoff_.advance_frame(boxes, objects_, estimate_, ids_drawn_)) {
             estimate_.correction = 1;  // learned from lists that are too old to predict the next one
             release(kept_);
             release(grown_);
@@ -221,69 +224,77 @@ private:
     /// which the model underestimates, up to every box listed with every other.
     [[nodiscard]] bool is_far_too_long(std::span<const box> boxes, double margin) {
         constexpr std::size_t by_chance = 8;  // fewer sampled pairs may lie within the margin by chance
-        const pair_estimate estimate = estimate_pairs(boxes, objects_, drawn_, margin);
+        const pair_estimate estimate = estimate_pairs(boxes, objects_, ids_drawn_, margin);
         const auto overlapping = std::max(estimate_.pairs, static_cast<std::size_t>(estimate.overlapping));
         return estimate.counted >= by_chance &&
                !is_list_worth_it(objects_.size(), overlapping, static_cast<std::size_t>(estimate.within_margin / 2));
     }
 
-    /// The first list is made before any motion has been observed.
+    /// Plans the first list, before any motion has been observed: with a default margin, or without one if that made
+    /// the list too long. If too few frames are left, returns nullopt and has a sample watched instead.
     [[nodiscard]] std::optional<next_list> first_list(std::span<const box> boxes) {
         estimate_.pairs = 0;
-        estimate_.resample(boxes, objects_, drawn_);
+        estimate_.resample(boxes, objects_, ids_drawn_);
         if (estimate_.horizon.frames_left < fewest_frames_of_first_list) {
             backoff_.begin_with_sample();
             static_cast<void>(observe_sample(boxes));
             return std::nullopt;
         }
         const double margin = typical_extents(extents_of_first_margin, boxes, objects_);
-        return next_list{0, is_far_too_long(boxes, margin) ? 0 : margin};
+        return next_list{.frames = 0, .margin = is_far_too_long(boxes, margin) ? 0 : margin};
     }
 
     /// Plans the cheapest list from the observed displacement, or repeats the last plan if its list lasted as planned.
     /// Returns nullopt if no list is worth its cost, or if boxes moved much farther than estimated and must be watched.
-    [[nodiscard]] std::optional<next_list> planned_list(std::span<const box> boxes, bool has_ended) {
-        const bool is_list = state_ == state::listing;
-        const bool has_failed = has_ended && is_list && 2 * (age_ - age_when_made_) < planned_;
-        // Without this success, the next back-off would be longer than the last one.
-        if (is_list ? !has_failed : has_rested_) backoff_.shorten();
-        if (has_failed) return std::nullopt;
-        if (has_ended && is_list && age_when_made_ == 0 && planned_ <= age_ && age_ < 2 * planned_ &&
-            repeated_ < longest_repetition && !is_far_too_long(boxes, margin_)) {
+    /// @param is_motion_known as in `plan`
+    [[nodiscard]] std::optional<next_list> planned_list(std::span<const box> boxes, bool is_motion_known) {
+        const bool had_list = state_ == state::listing;
+        const std::size_t frames_served = age_ - age_when_made_;
+        const bool ended_early = is_motion_known && had_list && 2 * frames_served < planned_frames_;
+        // After a list that served half of its planned frames, or boxes at rest, the next back-off is short again.
+        if (had_list ? !ended_early : has_rested_) backoff_.shorten();
+        if (ended_early) return std::nullopt;
+        const bool ended_as_planned = is_motion_known && had_list && age_when_made_ == 0 &&
+                                      planned_frames_ <= frames_served && frames_served < 2 * planned_frames_;
+        if (ended_as_planned && repeated_ < longest_repetition && !is_far_too_long(boxes, margin_)) {
             ++repeated_;
-            return next_list{planned_, margin_};
+            return next_list{.frames = planned_frames_, .margin = margin_};
         }
         repeated_ = 0;
-        estimate_.resample(boxes, objects_, drawn_);
-        if (is_list) estimate_.learn(margin_, list_.size());
+        estimate_.resample(boxes, objects_, ids_drawn_);
+        if (had_list) estimate_.learn(margin_, list_.size());
         const list_plan best = plan_list(estimate_);
-        next_list next{best.frames, best.margin};
+        next_list next{.frames = best.frames, .margin = best.margin};
         // Below the exponent of a random walk, boxes oscillate. Their displacement is known relative to the kept boxes,
         // but not relative to those of this frame, which may be at an extreme of the oscillation.
         constexpr double random_walk = 0.5;
-        if (best.frames > 1 && has_ended && estimate_.law.exponent() < random_walk)
-            next = {best.frames, estimate_.law.displacement_after(age_ + best.frames - 1), true};
+        if (best.frames > 1 && is_motion_known && estimate_.law.exponent() < random_walk)
+            next = {.frames = best.frames,
+                    .margin = estimate_.law.displacement_after(age_ + best.frames - 1),
+                    .around_kept_boxes = true};
         if (best.frames < 2 || is_far_too_long(boxes, next.margin)) return std::nullopt;
         return next;
     }
 
     /// Starts a list with the configured, estimated or default margin. If none is worth its cost, watches boxes that
     /// moved farther than expected for some frames, and then gives lists up for a back-off.
-    void plan(std::span<const box> boxes, bool has_ended) {
+    /// @param is_motion_known whether the motion since the boxes were kept is known, and has ended what was kept
+    void plan(std::span<const box> boxes, bool is_motion_known) {
         std::optional<next_list> next;
         if (config_.margin) {
-            estimate_.resample(boxes, objects_, drawn_);
-            next = {0, typical_extents(*config_.margin, boxes, objects_)};
+            estimate_.resample(boxes, objects_, ids_drawn_);
+            next = next_list{.frames = 0, .margin = typical_extents(*config_.margin, boxes, objects_)};
         } else if (config_.every > 0) {
             const displacement_law& law = estimate_.law;
-            next = {0, law.age() == 0 || config_.every == 1 ? 0 : law.displacement_after(config_.every - 1)};
+            const bool needs_no_margin = law.age() == 0 || config_.every == 1;
+            next = next_list{.frames = 0, .margin = needs_no_margin ? 0 : law.displacement_after(config_.every - 1)};
         } else if (state_ == state::nothing) {
             next = first_list(boxes);
         } else {
-            next = planned_list(boxes, has_ended);
+            next = planned_list(boxes, is_motion_known);
         }
         if (next) return start_list(boxes, *next);
-        if (state_ != state::nothing && has_ended && age_ < longest_watch) {
+        if (state_ != state::nothing && is_motion_known && age_ < longest_watch) {
             state_ = state::watching;
         } else {
             if (state_ != state::nothing) backoff_.begin(objects_.size());
@@ -303,7 +314,7 @@ private:
             estimate_.law.begin();
         }
         age_when_made_ = age_;
-        planned_ = next.frames;
+        planned_frames_ = next.frames;
         has_rested_ = false;
         if (margin_ > 0) {
             // Growing may turn an inverted box into a valid one, which the search could not reject any more.
@@ -333,7 +344,7 @@ private:
         list_.forget_certain();
         kept_.assign(boxes.begin(), boxes.end());
         margin_ = 0;
-        planned_ = 0;
+        planned_frames_ = 0;
         age_ = 0;
         age_when_made_ = 0;
         has_rested_ = true;
@@ -355,7 +366,7 @@ private:
         const double margin = std::max(estimate_.law.displacement_after(frames), shortest * margin_when_made_);
         if (!(margin < margin_ / 2)) return;
         margin_ = margin;
-        planned_ = 0;
+        planned_frames_ = 0;
         grow(kept_, margin_, grown_);
         count_tests(list_.tests_per_frame());
         list_.keep_overlapping(grown_);
@@ -388,21 +399,21 @@ private:
     state state_ = state::nothing;
     bool is_list_pending_ = false;  // the next search fills the list
     double share_of_update_ = 0;
-    std::vector<box> kept_;          // reference boxes from which the list was made
-    std::vector<box> grown_;         // the reference boxes grown by the margin
-    pair_list list_;                 // the pairs of the grown boxes, without those of removed objects
-    double margin_ = 0;              // the skin of the Verlet list
-    double margin_when_made_ = 0;    // the margin before the list was shortened
-    relative_motion moved_{};        // motion from the kept boxes to those of this frame
-    std::size_t age_ = 0;            // number of frames since the boxes were kept
-    std::size_t age_when_made_ = 0;  // age at which the list was made
-    bool has_rested_ = false;        // boxes have been at rest for at least one frame
-    std::size_t planned_ = 0;        // number of frames that the list is planned to serve; 0 if unplanned
-    unsigned repeated_ = 0;          // number of lists made since by the same plan
+    std::vector<box> kept_;           // reference boxes from which the list was made
+    std::vector<box> grown_;          // the reference boxes grown by the margin
+    pair_list list_;                  // the pairs of the grown boxes, without those of removed objects
+    double margin_ = 0;               // the skin of the Verlet list
+    double margin_when_made_ = 0;     // the margin before the list was shortened
+    relative_motion moved_{};         // motion from the kept boxes to those of this frame
+    std::size_t age_ = 0;             // number of frames since the boxes were kept
+    std::size_t age_when_made_ = 0;   // age at which the list was made
+    bool has_rested_ = false;         // boxes have been at rest for at least one frame
+    std::size_t planned_frames_ = 0;  // number of frames that the list is planned to serve; 0 if unplanned
+    unsigned repeated_ = 0;           // number of lists made since by the same plan
     list_estimate estimate_;
     list_backoff backoff_;
-    std::uint32_t drawn_ = 0;  // see `draw_id`
-    std::size_t frames_ = 0;   // number of earlier frames
+    std::uint32_t ids_drawn_ = 0;  // see `draw_id`
+    std::size_t frames_ = 0;       // number of earlier frames
     std::size_t expected_ = std::numeric_limits<std::size_t>::max();
     std::size_t since_arrival_ = 0;  // number of frames
     std::size_t between_arrivals_ = std::numeric_limits<std::size_t>::max();

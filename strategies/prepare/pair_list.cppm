@@ -82,7 +82,8 @@ public:
         return uncertain_;
     }
 
-    /// Moves the certain pairs out of those that each frame tests, by compress-stores of one vector of pairs each.
+    /// Moves the certain pairs, which overlap by more than two margins, out of those that each frame tests, by
+    /// compress-stores of one vector of pairs each.
     /// @param kept the boxes from which the list was made
     void mark_certain_pairs(std::span<const box> kept, double margin) {
         const float depth = certain_depth(margin);
@@ -145,13 +146,13 @@ public:
     /// Appends the overlapping pairs.
     /// @param hold whether boxes are still within the margin, so that certain pairs need no test
     /// @returns the number of tests
-    std::size_t append_to(std::vector<index_pair>& pairs, std::span<const box> boxes, bool hold) const {
-        if (hold)
+    std::size_t append_to(std::vector<index_pair>& pairs, std::span<const box> boxes, bool certain_hold) const {
+        if (certain_hold)
             pairs.insert(pairs.end(), certain_.begin(), certain_.end());
         else
             append_overlapping(boxes, certain_, pairs);
         append_overlapping(boxes, uncertain_, pairs);
-        return hold ? uncertain_.size() : size();
+        return certain_hold ? uncertain_.size() : size();
     }
 
     [[nodiscard]] std::size_t tests_per_frame() const noexcept { return uncertain_.size(); }

@@ -33,6 +33,7 @@ struct plane_motion {
     motion_range lower;
     motion_range upper;
 
+    /// Extends the ranges by the displacements of a box's planes.
     void take(const box& from, const box& to) noexcept {
         const auto widen = [](motion_range& range, int k, float moved) {
             range.least[k] = std::min(range.least[k], moved);
@@ -45,31 +46,29 @@ struct plane_motion {
     }
 };
 
-/// Boxes are stored as rows of six floats; three vectors hold a whole number of rows at any vector width.
+/// The ranges over all boxes, by vectors: three vectors hold an integer number of boxes, rows of six floats, at any
+/// width.
 [[nodiscard]] inline plane_motion plane_motion_between(std::span<const box> from, std::span<const box> to) noexcept {
     constexpr std::size_t block = simd::width / 2;
     plane_motion motion;
-    const std::size_t whole = to.size() / block * block;
-    if (whole > 0) {
+    const std::size_t in_vectors = to.size() / block * block;
+    if (in_vectors > 0) {
         const auto moved = [&](std::size_t row, std::size_t v) {
-            simd::floats a;
-            simd::floats b;
+            simd::floats a, b;
             const std::size_t at = row * sizeof(box) + v * sizeof a;
             std::memcpy(&a, reinterpret_cast<const char*>(from.data()) + at, sizeof a);
             std::memcpy(&b, reinterpret_cast<const char*>(to.data()) + at, sizeof b);
             return b - a;
         };
-        simd::floats least[3];
-        simd::floats most[3];
+        simd::floats least[3], most[3];
         for (std::size_t v = 0; v < 3; ++v) least[v] = most[v] = moved(0, v);
-        for (std::size_t row = block; row < whole; row += block)
+        for (std::size_t row = block; row < in_vectors; row += block)
             for (std::size_t v = 0; v < 3; ++v) {
                 const simd::floats d = moved(row, v);
                 least[v] = d < least[v] ? d : least[v];
                 most[v] = d > most[v] ? d : most[v];
             }
-        float down[3 * simd::width];
-        float up[3 * simd::width];
+        float down[3 * simd::width], up[3 * simd::width];
         std::memcpy(down, least, sizeof down);
         std::memcpy(up, most, sizeof up);
         // Reduce the rows to one by halves.
@@ -85,7 +84,7 @@ struct plane_motion {
             motion.upper.most[k] = std::max(motion.upper.most[k], up[3 + k]);
         }
     }
-    for (std::size_t i = whole; i < to.size(); ++i) motion.take(from[i], to[i]);
+    for (std::size_t i = in_vectors; i < to.size(); ++i) motion.take(from[i], to[i]);
     return motion;
 }
 
@@ -94,6 +93,7 @@ struct plane_motion {
     return (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2;
 }
 
+/// The least margins that cover these displacements of planes.
 [[nodiscard]] inline relative_motion motion_of(const plane_motion& motion) noexcept {
     relative_motion moved{};
     for (int k = 0; k < 3; ++k) {
@@ -139,7 +139,7 @@ inline void grow(std::span<const box> boxes, double margin, std::span<box> grown
     constexpr float greatest = std::numeric_limits<float>::max();
     const double with_rounding = margin * (1 + 0x1p-22) + double{std::numeric_limits<float>::min()};
     const auto wide = static_cast<float>(std::min(with_rounding, double{greatest}));
-    // Three vectors hold a whole number of rows, as in `plane_motion_between`.
+    // Three vectors hold an integer number of boxes, as in `plane_motion_between`.
     constexpr std::size_t block = simd::width / 2;
     constexpr std::size_t numbers = 3 * simd::width;
     simd::floats sign[3];

@@ -9,23 +9,24 @@ import aabb.std;
 export namespace aabb {
 
 /// A pseudorandom id below `count`: ids at regular strides may all belong to objects of one kind.
-/// @param drawn number of ids drawn so far
-[[nodiscard]] inline std::uint32_t draw_id(std::uint32_t& drawn, std::size_t count) noexcept {
+/// @param ids_drawn number of ids drawn so far
+[[nodiscard]] inline std::uint32_t draw_id(std::uint32_t& ids_drawn, std::size_t count) noexcept {
     // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4), applied twice: a single pass yields regular
     // strides again.
     constexpr std::uint64_t golden_ratio = 0x9e3779b97f4a7c15U;
-    std::uint64_t hash = ++drawn * golden_ratio;
+    std::uint64_t hash = ++ids_drawn * golden_ratio;
     hash = (hash ^ hash >> 32U) * golden_ratio;
     return static_cast<std::uint32_t>((hash >> 32U) * count >> 32U);
 }
 
-/// @param drawn as in `draw_id`
+/// Draws boxes at random, to estimate how the number of overlapping pairs grows with the boxes.
+/// @param ids_drawn as in `draw_id`
 /// @return boxes in `buffer`, which it fills unless some objects are absent
 [[nodiscard]] inline std::span<const box> draw_boxes(std::span<const box> boxes, const membership& objects,
-                                                     std::uint32_t& drawn, std::span<box> buffer) {
+                                                     std::uint32_t& ids_drawn, std::span<box> buffer) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < buffer.size() && i < boxes.size(); ++i) {
-        const std::uint32_t id = draw_id(drawn, boxes.size());
+        const std::uint32_t id = draw_id(ids_drawn, boxes.size());
         if (objects.contains(id)) buffer[count++] = boxes[id];
     }
     return buffer.first(count);
@@ -37,11 +38,12 @@ struct pair_estimate {
     double within_margin = 0;  ///< pairs that overlap when both boxes are grown by the margin
     std::size_t counted = 0;   ///< number of such pairs in the sample
 };
-/// @param drawn as in `draw_id`
+/// Estimates the length of a Verlet list before it is made.
+/// @param ids_drawn as in `draw_id`
 [[nodiscard]] inline pair_estimate estimate_pairs(std::span<const box> boxes, const membership& objects,
-                                                  std::uint32_t& drawn, double margin) {
+                                                  std::uint32_t& ids_drawn, double margin) {
     std::array<box, 8> buffer;
-    const std::span<const box> sample = draw_boxes(boxes, objects, drawn, buffer);
+    const std::span<const box> sample = draw_boxes(boxes, objects, ids_drawn, buffer);
     std::array<box, 8> grown;
     // Growing one box of a pair by twice the margin is equivalent to growing both by the margin.
     grow(sample, 2 * margin, grown);
@@ -49,7 +51,7 @@ struct pair_estimate {
     std::size_t overlapping = 0;
     pair_estimate estimate;
     for (std::size_t k = 0; k < others && !boxes.empty(); ++k) {
-        const box& b = boxes[draw_id(drawn, boxes.size())];
+        const box& b = boxes[draw_id(ids_drawn, boxes.size())];
         for (std::size_t i = 0; i < sample.size(); ++i) {
             if (!overlap_at_once(b, grown[i]) || b == sample[i]) continue;
             ++estimate.counted;
@@ -70,10 +72,10 @@ public:
     /// The number of frames for which a sample is watched.
     static constexpr unsigned longest = 8;
 
-    /// @param drawn as in `draw_id`
-    void keep(std::span<const box> boxes, std::uint32_t& drawn) {
+    /// @param ids_drawn as in `draw_id`
+    void keep(std::span<const box> boxes, std::uint32_t& ids_drawn) {
         for (std::size_t i = 0; i < ids_.size() && !boxes.empty(); ++i) {
-            ids_[i] = draw_id(drawn, boxes.size());
+            ids_[i] = draw_id(ids_drawn, boxes.size());
             kept_[i] = boxes[ids_[i]];
         }
     }

@@ -102,6 +102,7 @@ private:
         friend bool operator==(const split&, const split&) = default;
     };
 
+    /// Cuts an interval into equal pieces no longer than `longest`.
     [[nodiscard]] static cut_interval cut(float lower, float upper, double longest) {
         const double extent = double{upper} - double{lower};
         cut_interval interval{1, {lower, upper}};
@@ -109,14 +110,14 @@ private:
         const auto wanted = static_cast<double>(interval.pieces);
         for (std::size_t i = 1; i < interval.pieces; ++i) {
             interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);
-            // The interval contains too few floats to be divided.
+            // The interval is not divided if it contains too few floats.
             if (!(interval.at[i] > interval.at[i - 1] && interval.at[i] < upper)) return {1, {lower, upper}};
         }
         interval.at[interval.pieces] = upper;
         return interval;
     }
 
-    /// Sets the splits of the current frame, without their slots.
+    /// Finds the objects to divide in this frame, and their numbers of pieces.
     void find_splits(std::span<const box> boxes, double longest) {
         splits_now_.clear();
         std::size_t total = 0;
@@ -133,7 +134,8 @@ private:
         }
     }
 
-    /// Merges the new splits with the known ones; an unchanged split keeps its slots.
+    /// Gives each further piece of a divided object a slot, its id in the inner search. Merges the new splits with the
+    /// known ones: an unchanged split keeps its slots, and with them its places in sorted lists.
     void assign_slots() {
         free_slots_.insert(free_slots_.end(), left_slots_.begin(), left_slots_.end());
         left_slots_.clear();
@@ -200,16 +202,19 @@ private:
         }
     }
 
-    /// Whether this pair of pieces reports its objects: both pieces must contain the corner of the objects' overlap.
+    /// Whether a pair of overlapping pieces reports its objects, so that each pair is reported once: exactly one pair
+    /// of half-open pieces contains the corner of the objects' overlap with the least coordinates (the reference point
+    /// method of Dittrich and Seeger, "Data redundancy and duplicate detection in spatial join processing", 2000).
     [[nodiscard]] bool owns_pair(std::uint32_t piece_a, std::uint32_t piece_b) const {
         const std::uint32_t a = object_of(piece_a);
         const std::uint32_t b = object_of(piece_b);
         if (a == b) return false;
         for (int k = 0; k < 3; ++k) {
-            const float corner = std::max(boxes_[a].min[k], boxes_[b].min[k]);
+            const float reference = std::max(boxes_[a].min[k], boxes_[b].min[k]);
             for (const auto& [piece, object] : {std::pair{piece_a, a}, std::pair{piece_b, b}}) {
                 const bool is_last = pieces_[piece].max[k] == boxes_[object].max[k];
-                if (pieces_[piece].min[k] > corner || (!is_last && pieces_[piece].max[k] <= corner)) return false;
+                if (pieces_[piece].min[k] > reference) return false;
+                if (!is_last && pieces_[piece].max[k] <= reference) return false;
             }
         }
         return true;

@@ -58,6 +58,7 @@ public:
     split_mesh_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
         : search_(std::move(search)), size_(size), counted_(counted) {}
 
+    /// Divides meshes longer than `size_` mean extents of the objects into parts, by the centroids of their triangles.
     [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) override {
         std::vector<box> bounds;
         for (const mesh& m : scene.meshes) {

@@ -39,15 +39,15 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(starts_, from_); }
 
 private:
-    /// Sorts each bucket; crowded buckets by std::sort, since insertion sort would be quadratic there.
+    /// Sorts each bucket by insertion; those with many entries by std::sort, since insertion sort is quadratic.
     template <CounterPolicy Counters>
     void sort_buckets(std::span<projection> list, Counters& counters) const {
-        constexpr std::size_t most = 64;
+        constexpr std::size_t most_to_insert = 64;
         std::size_t begin = 0;
         for (const std::uint32_t end : std::span(starts_).first(starts_.size() - 1)) {
             const std::span bucket = list.subspan(begin, end - begin);
             begin = end;
-            if (bucket.size() > most)
+            if (bucket.size() > most_to_insert)
                 std::ranges::sort(bucket, [&](const projection& p, const projection& q) {
                     counters.add(work::comparisons);
                     return precedes(p, q);

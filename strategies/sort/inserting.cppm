@@ -12,11 +12,12 @@ struct ignore_swaps {
     }
 };
 
+using gap_of_one = std::integral_constant<std::size_t, 1>;
+
 /// Insertion sort of the entries at a distance of a gap: n + d comparisons for d inversions of such entries.
 /// @param on_swap gets the entry that is passed and the one that moves before it; returning false ends the sort there
 /// @tparam Gap a number; by default the constant 1, the usual insertion sort
-template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps,
-          class Gap = std::integral_constant<std::size_t, 1>>
+template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps, class Gap = gap_of_one>
 constexpr void insert_each(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}, Gap gap = {}) {
     for (std::size_t i = gap; i < list.size(); ++i) {
         const Entry inserted = list[i];

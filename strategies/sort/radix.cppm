@@ -14,6 +14,7 @@ public:
     static constexpr std::string_view name = "radix";
     static constexpr std::string_view summary = "radix sort of the keys' bits: linear for any order";
 
+    /// Distributes the entries by each digit, from the lowest on; one pass counts the values of all digits.
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {
         if (list.size() < 2) return;
@@ -21,7 +22,7 @@ public:
         const bool is_ordered = ordered == list.end();
         counters.add(work::comparisons, static_cast<std::size_t>(ordered - list.begin()) - is_ordered);
         if (is_ordered) return;
-        if (list.size() <= shortest) return insert_each(list, counters);
+        if (list.size() <= longest_to_insert) return insert_each(list, counters);
         other_.resize(list.size());
         std::array<std::array<std::uint32_t, digits>, passes> counts{};
         for (const projection& p : list)
@@ -30,7 +31,7 @@ public:
         std::span<projection> to = other_;
         for (std::size_t pass = 0; pass < passes; ++pass) {
             std::array<std::uint32_t, digits>& next = counts[pass];
-            if (next[digit(from[0], pass)] == list.size()) continue;
+            if (next[digit(from[0], pass)] == list.size()) continue;  // all keys share this digit
             std::uint32_t before = 0;
             for (std::uint32_t& n : next) {
                 const std::uint32_t count = n;
@@ -49,7 +50,7 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(other_); }
 
 private:
-    static constexpr std::size_t shortest = 64;
+    static constexpr std::size_t longest_to_insert = 64;
     static constexpr std::size_t bits = 11;
     static constexpr std::size_t passes = 3;
     static constexpr std::size_t digits = std::size_t{1} << bits;

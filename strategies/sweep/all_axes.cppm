@@ -25,6 +25,8 @@ public:
         return separating_axes(separation_of(boxes, objects));
     }
 
+    /// Reports the pairs that overlap on all lists, of which there may be one, two or three. With three, the pairs that
+    /// overlap on the first two are marked in a bitmap, for one block of rows at a time.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         std::array<std::span<const typename Subset::entry>, 3> lists;
@@ -85,7 +87,7 @@ private:
         std::uint32_t rank;
     };
 
-    /// Ranks the objects by their place in the first list, and finds for each the end of its overlaps there.
+    /// Ranks the objects by their index in the first list, and finds for each the end of its overlaps there.
     template <class Entry>
     void rank_objects(std::span<const box> boxes, std::span<const Entry> list, int axis) {
         if (rank_.size() < boxes.size()) rank_.resize(boxes.size());

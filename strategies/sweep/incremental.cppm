@@ -48,7 +48,8 @@ public:
             counters.add(work::restarts);
             pairs_.clear();
             restart_tests_ = 0;
-            find_pairs(boxes, longest_axis(separation), counters, [](std::uint32_t) { return true; });
+            const auto all_are_new = [](std::uint32_t) { return true; };
+            find_pairs(boxes, longest_axis(separation), counters, all_are_new);
         } else {
             apply_unreported_changes(axes_ & ~before, boxes, objects, separation, counters);
         }

@@ -24,15 +24,14 @@ public:
     one_axis_sweep() = default;
     explicit one_axis_sweep(const config& c) : config_(c) {}
 
+    /// Chooses the axis to sweep.
     axis_set axes(std::span<const box> boxes, const membership& objects) {
-        if (config_.axis != axis_choice::automatic) {
-            axis_ = static_cast<int>(config_.axis) - 1;
-        } else {
-            axis_ = longest_.choose(boxes, objects);
-        }
+        const bool is_automatic = config_.axis == axis_choice::automatic;
+        axis_ = is_automatic ? longest_.choose(boxes, objects) : static_cast<int>(config_.axis) - 1;
         return axis_set{1} << axis_;
     }
 
+    /// Copies the boxes of a sorted list with permuted axes, and tests those that overlap on the swept axis.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         const auto& list = subset.lists[static_cast<std::size_t>(axis_)];
@@ -73,7 +72,8 @@ private:
     void test_pairs(std::vector<index_pair>& pairs, Counters& counters) const {
         for (std::size_t i = 0; i < swept_.size(); ++i) {
             const swept_box a = swept_[i];
-            const quad lower = {-a.bounds[2], -a.bounds[3], -a.bounds[0], -a.bounds[1]};
+            const quad lower = {-a.bounds[2], -a.bounds[3], -a.bounds[0],
+                                -a.bounds[1]};  // u min, v min, -u max, -v max
             for (std::size_t j = i + 1; j < swept_.size() && swept_[j].begin <= a.end; ++j) {
                 const swept_box& b = swept_[j];
                 counters.add(work::box_tests);

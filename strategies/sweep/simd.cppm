@@ -28,15 +28,15 @@ public:
         const auto& list = subset.lists[static_cast<std::size_t>(longest_.axis())];
         if (list.size() < 2) return;
         convert_to_entries(subset, list);
-        sweep(column_block{subset.boxes, {}, entries_, list_ends_, longest_.axis()}, pairs,
+        sweep(column_block{subset.boxes, /*ids=*/{}, entries_, list_ends_, longest_.axis()}, pairs,
               std::numeric_limits<std::uint64_t>::max(), counters);
     }
 
     /// Sweeps columns, a vector of entries at a time.
-    /// @param most the sweep stops early after this many vector tests
+    /// @param most_tests the sweep stops early after this many vector tests
     /// @returns the number of vector tests
     template <CounterPolicy Counters>
-    std::uint64_t sweep(const column_block& block, std::vector<index_pair>& pairs, std::uint64_t most,
+    std::uint64_t sweep(const column_block& block, std::vector<index_pair>& pairs, std::uint64_t most_tests,
                         Counters& counters) {
         const std::size_t n = block.entries.size();
         active_.resize(n + width);
@@ -45,7 +45,7 @@ public:
         std::size_t active = 0;
         candidate_count_ = 0;
         std::size_t window = 0;  // the entry from which vectors are numbered
-        for (std::size_t first = 0; first < n && tests <= most; first += width) {
+        for (std::size_t first = 0; first < n && tests <= most_tests; first += width) {
             if (candidate_count_ > enough || first - window >= most_vectors * width) {
                 append_overlapping(block, window, pairs);
                 window = first;
@@ -79,6 +79,7 @@ private:
         simd::words ends;
         simd::words begins_earlier;
 
+        /// Transposes entries, and looks up the ends of the buckets in which they end.
         vector_of_entries(const column_entry* from, std::span<const std::uint32_t> bucket_ends) noexcept {
             simd::words fields[4];
             simd::load_rows_of_four(&from->lower, fields);

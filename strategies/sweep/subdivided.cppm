@@ -35,13 +35,15 @@ public:
     subdivided_sweep() = default;
     explicit subdivided_sweep(const config& c) : config_(c) {}
 
+    /// Updates the lists and pairs to a frame. Restarts with a new grid if more than half of the objects are new, or
+    /// their number has doubled or halved, or no steps are left.
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         if (boxes.size() > most_interval_objects)
             throw input_error("subdivided takes at most 2^31 objects, not " + std::to_string(boxes.size()));
         if (objects.any_departures()) forget_departures(objects);
         before_.resize(boxes.size());
-        places_.resize(boxes.size());
+        ranges_.resize(boxes.size());
         const std::size_t known = objects.size() - objects.arrivals();
         if (2 * known < objects.size() || objects.size() > 2 * planned_ || 2 * objects.size() < planned_) {
             restart(boxes, objects, counters);
@@ -58,7 +60,7 @@ public:
 
     [[nodiscard]] static constexpr axis_set axes() noexcept { return every_axis; }
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t total = bytes_of(regions_, touched_, places_, moved_, before_, sweep_, pairs_);
+        std::size_t total = bytes_of(regions_, touched_, ranges_, moved_, before_, sweep_, pairs_);
         for (const region& r : regions_)
             for (const auto& list : r.ends) total += bytes_of(list);
         return total;
@@ -90,6 +92,7 @@ private:
         const double along = (double{x} - origin_[k]) * per_unit_[k];
         return static_cast<std::uint16_t>(std::clamp(along, 0.0, static_cast<double>(count_[k] - 1)));
     }
+    /// The regions that a box overlaps.
     [[nodiscard]] region_range range_of(const box& b) const noexcept {
         region_range range;
         for (std::size_t k = 0; k < 2; ++k) {
@@ -98,11 +101,11 @@ private:
         }
         return range;
     }
-    /// @param visit gets each region of a range that is not in the other range
-    void for_each_region(const region_range& range, const region_range& other, auto visit) {
+    /// @param visit gets each region of a range that is not in the range `except`
+    void for_each_region(const region_range& range, const region_range& except, auto visit) {
         for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
             for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j)
-                if (!other.holds(i, j)) visit(i * count_[1] + j);
+                if (!except.holds(i, j)) visit(i * count_[1] + j);
     }
 
     [[nodiscard]] static std::uint64_t regions_in(const region_range& range) noexcept {
@@ -124,10 +127,10 @@ private:
     /// Removes departed objects from the pairs and from the lists of their regions.
     void forget_departures(const membership& objects) {
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
-        for (std::uint32_t id = 0; id < places_.size(); ++id) {
-            if (places_[id] == region_range{} || !objects.is_leaving(id)) continue;
-            for_each_region(places_[id], {}, [&](std::uint32_t r) { touch(r); });
-            places_[id] = {};
+        for (std::uint32_t id = 0; id < ranges_.size(); ++id) {
+            if (ranges_[id] == region_range{} || !objects.is_leaving(id)) continue;
+            for_each_region(ranges_[id], /*except=*/{}, [&](std::uint32_t r) { touch(r); });
+            ranges_[id] = {};
         }
         for (const std::uint32_t r : touched_) {
             erase_ends(regions_[r], [&](std::uint32_t id) { return objects.is_leaving(id); });
@@ -146,11 +149,11 @@ private:
             const region_range range = range_of(boxes[id]);
             spend(regions_in(range));
             if (steps_left_ == 0) return;
-            for_each_region(range, {}, [&](std::uint32_t r) { touch(r); });
-            if (range == places_[id]) continue;
-            for_each_region(places_[id], range, [&](std::uint32_t r) { leave_region(r, id, boxes, counters); });
-            for_each_region(range, places_[id], [&](std::uint32_t r) { enter_region(r, id, boxes); });
-            places_[id] = range;
+            for_each_region(range, /*except=*/{}, [&](std::uint32_t r) { touch(r); });
+            if (range == ranges_[id]) continue;
+            for_each_region(ranges_[id], range, [&](std::uint32_t r) { leave_region(r, id, boxes, counters); });
+            for_each_region(range, ranges_[id], [&](std::uint32_t r) { enter_region(r, id, boxes); });
+            ranges_[id] = range;
         }
         for (const std::uint32_t r : touched_) {
             for (std::size_t k = 0; k < 3 && steps_left_ > 0; ++k) sort_region(r, k, boxes, sort, counters);
@@ -203,18 +206,19 @@ private:
         regions_.resize(std::size_t{count_[0]} * count_[1]);
         for (std::uint32_t id = 0; id < boxes.size(); ++id) {
             if (!objects.contains(id)) continue;
-            places_[id] = range_of(boxes[id]);
-            for_each_region(places_[id], {}, [&](std::uint32_t r) { enter_region(r, id, boxes); });
+            ranges_[id] = range_of(boxes[id]);
+            for_each_region(ranges_[id], /*except=*/{}, [&](std::uint32_t r) { enter_region(r, id, boxes); });
         }
         std::uint64_t tests = 0;
         restart_steps_ = 1;
+        const auto all_are_new = [](std::uint32_t) { return true; };
         for (region& r : regions_) {
             for (auto& list : r.ends) {
                 sort_ends(list);
                 restart_steps_ += list.size() * std::bit_width(list.size());
             }
             const auto along = static_cast<std::size_t>(3 - cut_[0] - cut_[1]);
-            tests += sweep_.find(r.ends[along], boxes, pairs_, [](std::uint32_t) { return true; });
+            tests += sweep_.find(r.ends[along], boxes, pairs_, all_are_new);
         }
         counters.add(work::box_tests, tests);
         restart_steps_ += tests;
@@ -251,7 +255,7 @@ private:
     std::array<double, 2> per_unit_{};
     std::vector<region> regions_;
     std::vector<std::uint32_t> touched_;  // regions with objects that moved in this frame
-    std::vector<region_range> places_;    // by id
+    std::vector<region_range> ranges_;    // by id
     std::vector<std::uint8_t> moved_;     // whether the object moved in this frame, by id
     std::uint64_t restart_steps_ = 1;     // number of steps of the last restart
     interval_sweep sweep_;

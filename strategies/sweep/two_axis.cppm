@@ -23,6 +23,7 @@ public:
     static constexpr std::string_view summary =
         "sweeps along one axis and keeps the active boxes in the order of a second one";
 
+    /// Chooses the two axes with the greatest variance: one to sweep, and one that orders the active boxes.
     axis_set axes(std::span<const box> boxes, const membership& objects) {
         const spread along = spread_of(boxes, objects);
         swept_axis_ = swept_.choose(along, every_axis);
@@ -33,6 +34,7 @@ public:
         return swept | axis_set{1} << kept_axis_;
     }
 
+    /// Tests each box, in the order of the swept list, against active ones near it on the kept axis, and activates it.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         const auto& list = subset.lists[static_cast<std::size_t>(swept_axis_)];
@@ -80,7 +82,7 @@ private:
         pair_count_ = 0;
     }
 
-    /// Ranks boxes by their place in the kept list, and finds the first candidate word of each.
+    /// Ranks boxes by their index in the kept list, and finds the first word of the bitmap that may hold candidates.
     template <class Subset, class List>
     void rank_boxes(const Subset& subset, const List& list) {
         const std::size_t n = list.size();
@@ -140,7 +142,7 @@ private:
     template <class Subset>
     std::size_t test_and_activate(std::uint32_t rank) {
         const ranked_box a = ranked_[rank];
-        const quad lower = {-a.bounds[2], -a.bounds[3], -a.bounds[0], -a.bounds[1]};
+        const quad lower = {-a.bounds[2], -a.bounds[3], -a.bounds[0], -a.bounds[1]};  // min, min, -max, -max
         const auto overlaps = [&](const ranked_box& b) {
             return static_cast<std::size_t>(b.end >= a.begin) & static_cast<std::size_t>(all_at_most(lower, b.bounds)) &
                    static_cast<std::size_t>(Subset::owns(a.owned, b.owned));

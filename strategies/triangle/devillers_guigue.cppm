@@ -25,6 +25,7 @@ public:
     }
 
 private:
+    /// Whether the intervals in which the triangles cut the common line of their planes overlap.
     template <class Real>
     [[nodiscard]] static inline bool triangles_intersect(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
         const std::array<Real, 3> s_to_t = heights(s, t);
@@ -34,12 +35,12 @@ private:
         if (s_to_t == std::array<Real, 3>{}) return coplanar_intersects(s, t);
         triangle3<Real> u = s;
         triangle3<Real> v = t;
-        const bool t_turns = rotate_to_apex(u, s_to_t);
-        const bool s_turns = rotate_to_apex(v, t_to_s);
+        const bool flip_t = rotate_to_apex(u, s_to_t);
+        const bool flip_s = rotate_to_apex(v, t_to_s);
         // Now each apex lies above the other triangle, so that the intervals on the common line start at the edge to
         // corner 1 of one triangle and end at the edge to corner 2 of the other.
-        if (t_turns) v = {v[0], v[2], v[1]};
-        if (s_turns) u = {u[0], u[2], u[1]};
+        if (flip_t) v = {v[0], v[2], v[1]};
+        if (flip_s) u = {u[0], u[2], u[1]};
         return side(u[0], u[1], v[0], v[1]) <= 0 && side(u[0], u[2], v[2], v[0]) <= 0;
     }
 
@@ -72,6 +73,7 @@ private:
         return !any_edge_separates(s, t, dropped) && !any_edge_separates(t, s, dropped);
     }
 
+    /// Whether `t` lies strictly beyond the line of an edge of `s` in the axis plane without the axis `dropped`.
     template <class Real>
     [[nodiscard]] static inline bool any_edge_separates(const triangle3<Real>& s, const triangle3<Real>& t,
                                                         int dropped) noexcept {

@@ -16,7 +16,7 @@ class result {
 public:
     void add_corner(const vec3d& p) { common_.corners[common_.size++] = p; }
 
-    /// Adds where the edge ab crosses the other plane or edge, whose distances p and q have opposite signs, or zero.
+    /// Adds where the edge ab crosses the other plane or edge, from which a and b have the signed distances p and q.
     void add_crossing(vec3d a, vec3d b, scaled_double p, scaled_double q) {
         if (p.mantissa == 0) return add_corner(a);
         if (q.mantissa == 0) return add_corner(b);
@@ -120,7 +120,7 @@ struct view {
 };
 
 /// Intersects two coplanar hulls. The corners are those of one hull that lie in the other, and the proper crossings of
-/// edges. They are distinct, and none lies between two others.
+/// edges. They are distinct, and none lies between two others. `lines` are masks of the edges on whose lines they lie.
 triangle_intersection flat_intersection(const hull& g, const hull& h, const view& seen) {
     result common;
     std::array<unsigned, 6> lines{};
@@ -192,7 +192,7 @@ triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
     return {};
 }
 
-/// Intersects a segment with a triangle whose plane it crosses in one point.
+/// Intersects a segment with a triangle whose plane it crosses in one point. A corner on the segment is not rounded.
 triangle_intersection segment_intersection(const hull& segment, const triangle3d& t) {
     result common;
     for (const vec3d& corner : t.corner) {
@@ -254,6 +254,7 @@ triangle_intersection crossing_intersection(const triangle3d& original_s, const 
 
 }  // namespace
 
+/// Distinguishes coplanar triangles, those of zero area that cross a plane, and crossing triangles, by exact signs.
 triangle_intersection intersection_of(const triangle3d& s, const triangle3d& t) {
     require_ieee_arithmetic();
     // A shared corner is a hit, but the rest of the intersection must still be computed.

@@ -10,20 +10,21 @@ namespace aabb::detail {
 
 /// An interval that contains the exact value. The rounding mode stays to nearest: each end moves outward by at least
 /// the rounding error of the operation.
-struct bracket {
+struct interval {
     double low;
     double high;
 
     /// Encloses p - q.
-    [[nodiscard]] static inline bracket difference(double p, double q) noexcept { return widened(p - q, p - q, 0); }
+    [[nodiscard]] static inline interval difference(double p, double q) noexcept { return widened(p - q, p - q); }
 
-    friend inline bracket operator+(const bracket& p, const bracket& q) noexcept {
-        return widened(p.low + q.low, p.high + q.high, 0);
+    friend inline interval operator+(const interval& p, const interval& q) noexcept {
+        return widened(p.low + q.low, p.high + q.high);
     }
-    friend inline bracket operator-(const bracket& p, const bracket& q) noexcept {
-        return widened(p.low - q.high, p.high - q.low, 0);
+    friend inline interval operator-(const interval& p, const interval& q) noexcept {
+        return widened(p.low - q.high, p.high - q.low);
     }
-    friend inline bracket operator*(const bracket& p, const bracket& q) noexcept {
+    /// Encloses the products of all numbers in the two intervals.
+    friend inline interval operator*(const interval& p, const interval& q) noexcept {
         if (p.is_zero() || q.is_zero()) return {0, 0};
         const double a = p.low * q.low;
         const double b = p.low * q.high;
@@ -31,29 +32,29 @@ struct bracket {
         const double d = p.high * q.high;
         // After an overflow a product may be NaN, which `min` and `max` would hide.
         if (const double sum = a + b + c + d; std::isnan(sum)) return {sum, sum};
-        return widened(std::min(std::min(a, b), std::min(c, d)), std::max(std::max(a, b), std::max(c, d)),
-                       std::numeric_limits<double>::denorm_min());
+        constexpr double underflow = std::numeric_limits<double>::denorm_min();  // more than a denormal product's error
+        return widened(std::min(std::min(a, b), std::min(c, d)), std::max(std::max(a, b), std::max(c, d)), underflow);
     }
     [[nodiscard]] inline bool is_zero() const noexcept { return low == 0 && high == 0; }
 
 private:
     /// Half a unit in the last place is at most half an epsilon of the result. Denormal sums are exact; a denormal
     /// product has an error of up to half the smallest denormal.
-    [[nodiscard]] static inline bracket widened(double low, double high, double least) noexcept {
-        const auto beyond = [&](double x) { return std::abs(x) * std::numeric_limits<double>::epsilon() + least; };
+    [[nodiscard]] static inline interval widened(double low, double high, double underflow = 0) noexcept {
+        const auto beyond = [&](double x) { return std::abs(x) * std::numeric_limits<double>::epsilon() + underflow; };
         return {low - beyond(low), high + beyond(high)};
     }
 };
 
-using bracket3 = std::array<bracket, 3>;
+using interval3 = std::array<interval, 3>;
 
-[[nodiscard]] inline bracket3 difference(const vec3d& p, const vec3d& q) noexcept {
-    return {bracket::difference(p[0], q[0]), bracket::difference(p[1], q[1]), bracket::difference(p[2], q[2])};
+[[nodiscard]] inline interval3 difference(const vec3d& p, const vec3d& q) noexcept {
+    return {interval::difference(p[0], q[0]), interval::difference(p[1], q[1]), interval::difference(p[2], q[2])};
 }
-[[nodiscard]] inline bracket3 cross(const bracket3& p, const bracket3& q) noexcept {
+[[nodiscard]] inline interval3 cross(const interval3& p, const interval3& q) noexcept {
     return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
 }
-[[nodiscard]] inline bracket dot(const bracket3& p, const bracket3& q) noexcept {
+[[nodiscard]] inline interval dot(const interval3& p, const interval3& q) noexcept {
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
@@ -79,7 +80,7 @@ public:
     [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
         const int x = (axis + 1) % 3;
         const int y = (axis + 2) % 3;
-        const auto across = [](const vec3d& p, const vec3d& q, int k) { return bracket::difference(p[k], q[k]); };
+        const auto across = [](const vec3d& p, const vec3d& q, int k) { return interval::difference(p[k], q[k]); };
         return sign(across(b, a, x) * across(c, a, y) - across(b, a, y) * across(c, a, x),
                     [&] { return exact_turn(a, b, c, axis); });
     }
@@ -96,8 +97,9 @@ public:
     [[nodiscard]] inline bool unsure() const noexcept { return unsure_; }
 
 private:
+    /// The sides of the plane of `t` on which the corners of `s` lie.
     [[nodiscard]] inline corner_sides sides(const triangle3d& s, const triangle3d& t) noexcept {
-        const bracket3 normal = cross(difference(t[1], t[0]), difference(t[2], t[0]));
+        const interval3 normal = cross(difference(t[1], t[0]), difference(t[2], t[0]));
         const auto of = [&](const vec3d& p) {
             return sign(dot(normal, difference(p, t[0])), [&] { return exact_side(t[0], t[1], t[2], p); });
         };
@@ -105,12 +107,12 @@ private:
         return corner_sides(std::array{of(s[0]), of(s[1]), of(s[2])});
     }
 
-    /// The sign of all numbers in the interval; if they differ, that of the fallback.
+    /// The sign of all numbers in the interval. If they differ, the exact sign; without `Exact` 0, from then on unsure.
     template <class Compute>
-    [[nodiscard]] inline int sign(const bracket& interval, Compute compute_exactly) noexcept {
-        if (interval.low > 0) return 1;
-        if (interval.high < 0) return -1;
-        if (interval.is_zero()) return 0;
+    [[nodiscard]] inline int sign(const interval& value, Compute compute_exactly) noexcept {
+        if (value.low > 0) return 1;
+        if (value.high < 0) return -1;
+        if (value.is_zero()) return 0;
         if constexpr (Exact)
             return compute_exactly();
         else

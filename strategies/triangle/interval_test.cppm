@@ -46,6 +46,7 @@ public:
     interval_test() = default;
     explicit interval_test(const config& c) : config_(c) {}
 
+    /// Whether the intervals in which the triangles cut the common line of their planes overlap.
     [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
         const vec3<Real> normal_t = cross(t[1] - t[0], t[2] - t[0]);
         const std::array<Real, 3> s_to_t = distances(s, t[0], normal_t, zero_below(s, t, normal_t));
@@ -117,9 +118,7 @@ private:
                 alone = 2;
             else if (d[0] * d[2] > 0)
                 alone = 1;
-            else if (d[1] * d[2] > 0 || d[0] != 0)
-                alone = 0;
-            else
+            else if (!(d[1] * d[2] > 0 || d[0] != 0))
                 alone = d[1] != 0 ? 1 : 2;
             from_ = s[alone][axis];
             const auto edge_to = [&](int other) {
@@ -164,10 +163,10 @@ private:
     /// each triangle against the other triangle.
     [[nodiscard]] static bool coplanar_intersects(const triangle3<Real>& s, const triangle3<Real>& t,
                                                   const vec3<Real>& normal) noexcept {
-        // In ties the original drops the later axis, but y rather than z.
+        // Möller's published code, reproduced here, drops the later axis in ties, but y rather than z.
         const vec3<Real> length{std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2])};
-        const int rest = length[2] > length[1] ? 2 : 1;
-        const int dropped = length[0] > length[1] ? (length[0] > length[2] ? 0 : 2) : rest;
+        const int y_or_z = length[2] > length[1] ? 2 : 1;
+        const int dropped = length[0] > length[1] ? (length[0] > length[2] ? 0 : 2) : y_or_z;
         const int x = dropped == 0 ? 1 : 0;
         const int y = dropped == 2 ? 1 : 2;
         for (int i = 0; i < 3; ++i)

@@ -14,6 +14,7 @@ export namespace aabb {
 template <class Signs>
 class orientation_test {
 public:
+    /// Compares the boxes and the corners first, and only then computes orientations, in double.
     template <class Real>
     [[nodiscard]] static inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
         const auto [s_low, s_high] = range(s);
@@ -56,7 +57,7 @@ private:
         return false;
     }
 
-    /// Tests triangles whose boxes overlap.
+    /// Tests triangles whose boxes overlap. A sign that could not be decided counts as a hit.
     [[nodiscard]] static inline bool near_intersects(const triangle3d& s, const triangle3d& t, Signs& signs) noexcept {
         sides s_to_t;
         sides t_to_s;
@@ -126,7 +127,8 @@ private:
         return signs.in_order(s0, s1, s2, t0, t1, t2);
     }
 
-    /// `s` has zero area and crosses the plane of `t` in one point: is that point in `t`?
+    /// `s` has zero area and crosses the plane of `t` in one point: is that point in `t`? It is, unless the line of `s`
+    /// passes edges of `t` on different sides.
     [[nodiscard]] static inline bool line_meets(Signs& signs, const triangle3d& s, const sides& s_to_t,
                                                 const triangle3d& t) noexcept {
         const int other = s_to_t[0] != s_to_t[1] ? 1 : 2;

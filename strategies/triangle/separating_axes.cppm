@@ -26,6 +26,7 @@ public:
     }
 
 private:
+    /// Whether none of the 17 axes separates the triangles: normals, cross products of edges, and normals of edges.
     template <class Real>
     [[nodiscard]] static inline bool triangles_intersect(const triangle3<Real>& s, const triangle3<Real>& t) noexcept {
         const auto edges_of = [](const triangle3<Real>& of) {
