@@ -24,8 +24,7 @@ worker_threads::worker_threads(worker_threads&&) noexcept = default;
 worker_threads& worker_threads::operator=(worker_threads&&) noexcept = default;
 worker_threads::~worker_threads() = default;
 
-/// `for_each_index` on several threads, one index a task. It takes a function pointer instead of a template argument,
-/// so that importers do not see TBB's headers.
+/// `for_each_index` on several threads. The work is a function pointer, so that importers do not need TBB's headers.
 void worker_threads::run_in_arena(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker),
                                   void* work) {
     const auto share = [&] {

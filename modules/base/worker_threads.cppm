@@ -11,7 +11,6 @@ public:
     worker_threads(worker_threads&&) noexcept;
     worker_threads& operator=(worker_threads&&) noexcept;
     ~worker_threads();
-
     [[nodiscard]] unsigned count() const noexcept { return count_; }
 
     /// Calls `work(i, worker)` for each i < `n`, in unspecified order on more than one thread. Calls with the same

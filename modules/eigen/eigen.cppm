@@ -20,7 +20,6 @@ concept EigenTransform = requires(const T& from, T& to) {
     to.translation()(0) = from.translation()(0);
 };
 
-/// Converts an Eigen transform to a pose.
 /// @throws input_error if the transform is not rigid (`require_rigid`), as an affine one may be
 template <EigenTransform T>
 [[nodiscard]] inline pose to_pose(const T& transform) {
@@ -69,9 +68,8 @@ float scalar_of_element(const box& of);
 template <class Element>
 using scalar_of = decltype(scalar_of_element(std::declval<const Element&>()));
 
-/// Views each column of a matrix (each row, if it is row-major) as a point or box, without a copy: both are stored as
-/// the same consecutive scalars.
-/// @throws input_error if there is other memory between the columns
+/// Views each column of a matrix (row, if it is row-major) as a point or box of the same scalars, without a copy.
+/// @throws input_error if the columns are not contiguous
 template <class Element, class Matrix>
 [[nodiscard]] inline std::span<const Element> columns_as(const Matrix& m) {
     static_assert(std::same_as<typename Matrix::Scalar, scalar_of<Element>>);

@@ -45,7 +45,6 @@ static_assert(sizeof(box) == 24);
 [[nodiscard]] constexpr box bounds_of(const vec3f& p) noexcept {
     return {p, p};
 }
-
 [[nodiscard]] constexpr box bounds_of(const triangle3f& t) noexcept {
     return merged(merged(bounds_of(t[0]), bounds_of(t[1])), bounds_of(t[2]));
 }

@@ -45,9 +45,7 @@ struct triangle_intersection {
     moved.error = {};
     for (std::uint32_t i = 0; i < common.size; ++i)
         for (int k = 0; k < 3; ++k) {
-            double sum = 0;
-            double magnitude = 0;
-            double inherited = 0;
+            double sum = 0, magnitude = 0, inherited = 0;
             for (int j = 0; j < 3; ++j) {
                 const double r = by.rotation[3 * k + j];
                 const double product = r * common.corners[i][j];

@@ -23,7 +23,6 @@ template <class Real>
 [[nodiscard]] constexpr vec3<Real> operator-(const vec3<Real>& p, const vec3<Real>& q) noexcept {
     return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
-
 template <class Real>
 [[nodiscard]] constexpr vec3<Real> operator+(const vec3<Real>& p, const vec3<Real>& q) noexcept {
     return {p[0] + q[0], p[1] + q[1], p[2] + q[2]};

@@ -135,8 +135,7 @@ public:
         return {(*this)(t[0]), (*this)(t[1]), (*this)(t[2])};
     }
 
-    /// The images of several vertices at once, by coordinate, equal to those of the single vertices: leaving out an
-    /// identity rotation changes no result.
+    /// The images of several vertices at once, by coordinate: leaving out an identity rotation changes no result.
     template <class Doubles>
     [[nodiscard]] inline std::array<Doubles, 3> images(const std::array<Doubles, 3>& x) const noexcept {
         std::array<Doubles, 3> world = x;
@@ -187,8 +186,7 @@ public:
         };
         const std::array<vec3d, 3> rows{cross(turn_[1], turn_[2]), cross(turn_[2], turn_[0]),
                                         cross(turn_[0], turn_[1])};
-        double determinant = 0;
-        double magnitude = 0;
+        double determinant = 0, magnitude = 0;
         for (int i = 0; i < 3; ++i) {
             determinant += turn_[0][i] * rows[0][i];
             magnitude +=

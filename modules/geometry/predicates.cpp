@@ -194,8 +194,7 @@ vec3w wide_cross(const vec3i& p, const vec3i& q) noexcept {
 /// @returns whether the sign is certain
 bool volume_sign(const vec3w& normal, const vec3i& p, bool is_exact, int& sign) noexcept {
     // The normal is below 2^123. Its upper and lower 64 bits times p below 2^61, three times, fit 128 bits.
-    wide_signed high = 0;
-    wide_signed low = 0;
+    wide_signed high = 0, low = 0;
     for (int k = 0; k < 3; ++k) {
         high += (normal[k] >> 64) * p[k];
         low += wide_signed{static_cast<std::uint64_t>(normal[k])} * p[k];
@@ -307,7 +306,6 @@ bool are_on_lattice(const triangle3d& s, const triangle3d& t, const vec3d& exten
 scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
     return volume_of(a, b, c, d).rounded();
 }
-
 scaled_double exact_area(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
     return area_of(a, b, c, (axis + 1) % 3, (axis + 2) % 3).rounded();
 }

@@ -70,7 +70,6 @@ private:
     }
 
     [[nodiscard]] inline std::size_t next(std::size_t slot) const noexcept { return (slot + 1) & (table_.size() - 1); }
-
     /// Shifts displaced entries back into the gap, so that probing needs no tombstones.
     inline void close_gap(std::size_t gap) {
         for (std::size_t at = next(gap); table_[at] != none; at = next(at)) {

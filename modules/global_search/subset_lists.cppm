@@ -21,14 +21,12 @@ public:
     template <CuttingPartition Partition, CounterPolicy Counters>
     void distribute(const Partition& partition, const whole_subset& scene, axis_set axes, Counters& counters) {
         assert((axes & every_axis) != 0);
-        bool are_counted = false;
+        count(partition, scene.boxes, scene.lists[static_cast<std::size_t>(std::countr_zero(axes))]);
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_axis(axes, k)) {
                 entries_[k].clear();
                 continue;
             }
-            if (!are_counted) count(partition, scene.boxes, scene.lists[k]);
-            are_counted = true;
             entries_[k].resize(starts_.back());
             next_.assign(starts_.begin(), starts_.end() - 1);
             for (const projection& p : scene.lists[k])

@@ -192,7 +192,6 @@ private:
         for (std::uint32_t b = 0; b < poses_.size(); ++b)
             for (std::uint32_t a = 0; a < b; ++a) candidates_.push_back({a, b});
     }
-
     void require_searched() const {
         if (!searched_) throw input_error("there are no candidates to test: search was not called, or did not succeed");
         assert(poses_.size() == scene_.mesh_of.size());

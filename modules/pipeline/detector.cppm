@@ -56,7 +56,6 @@ public:
     }
     /// The pairs of objects a < b whose boxes overlap in the last frame, in unspecified order.
     [[nodiscard]] std::span<const index_pair> candidates() const noexcept { return pipeline_.candidates(); }
-
     [[nodiscard]] const Search& global() const noexcept { return search_; }
     [[nodiscard]] const Detection& local() const noexcept { return detection_; }
     /// Heap bytes without the meshes, by part of both stages; "buffers" hold candidates and contacts.

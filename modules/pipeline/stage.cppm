@@ -50,7 +50,6 @@ public:
     /// The share of the last search's time that belongs to the update. It is 0 except for stages that defer sorting to
     /// the search, so that the sorted data are still in a cache.
     [[nodiscard]] virtual double share_of_update() const { return 0; }
-
     [[nodiscard]] virtual work_counters counters() const = 0;
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
     [[nodiscard]] virtual std::vector<stage_plan> plans() const { return {}; }
@@ -93,7 +92,6 @@ public:
 
     /// Validates the model's whole tree against the mesh; nullopt for an engine that does not expose its tree.
     [[nodiscard]] virtual std::optional<tree_validation> validate_tree(std::uint32_t model) const = 0;
-
     [[nodiscard]] virtual work_counters counters() const = 0;
     [[nodiscard]] virtual std::vector<part_bytes> bytes() const = 0;
     [[nodiscard]] virtual std::vector<omission> left_out() const = 0;

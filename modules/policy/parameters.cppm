@@ -97,11 +97,10 @@ struct integer_parameter {
 
     /// Sets the field to the value of a text; returns false if it is none of `values()`.
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
-        if constexpr (or_auto)
-            if (text == "auto") {
-                config.*field = std::nullopt;
-                return true;
-            }
+        if (or_auto && text == "auto") {
+            config.*field = Value{};
+            return true;
+        }
         Integer value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         if (error != std::errc{} || end != text.data() + text.size() || value < least || value > most) return false;
@@ -122,7 +121,6 @@ struct number_parameter {
     bool or_equal = false;
 
     static constexpr bool or_auto = std::same_as<Value, std::optional<double>>;
-
     [[nodiscard]] parameter_values values() const { return number_values{above, at_most, or_equal, or_auto}; }
     [[nodiscard]] std::string show(const Config& config) const {
         if constexpr (or_auto)
@@ -133,11 +131,10 @@ struct number_parameter {
 
     /// Sets the field to the value of a text; returns false if it is none of `values()`.
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
-        if constexpr (or_auto)
-            if (text == "auto") {
-                config.*field = std::nullopt;
-                return true;
-            }
+        if (or_auto && text == "auto") {
+            config.*field = Value{};
+            return true;
+        }
         double value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         const bool is_in_range = (value > above || (or_equal && value == above)) && value <= at_most;

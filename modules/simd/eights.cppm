@@ -20,7 +20,6 @@ template <class Vector, class Number>
     std::memcpy(&v, from, sizeof v);
     return v;
 }
-
 template <class Number, class Vector>
 [[gnu::always_inline]] inline void store_eight(Number* to, Vector v) noexcept {
     static_assert(sizeof(Vector) == 8 * sizeof(Number));
@@ -33,7 +32,6 @@ template <class Number, class Vector>
     v = lesser(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
     return lesser(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6))[0];
 }
-
 [[nodiscard, gnu::always_inline]] inline float least(sixteen_floats v) noexcept {
     const eight_floats low = __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
     const eight_floats high = __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);

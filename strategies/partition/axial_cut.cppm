@@ -147,8 +147,7 @@ private:
         return ranges;
     }
 
-    /// Places the cuts of an axis at quantiles of its lower ends. With the limit, it moves or drops those by which a
-    /// box would be cut twice.
+    /// Places cuts at quantiles of the lower ends; with the limit, moves or drops those that would cut a box twice.
     void choose_cuts(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         std::vector<float>& cuts = cuts_[k];
         // The greatest upper end of the boxes that begin before the last cut.

@@ -14,11 +14,6 @@ namespace {
 /// Limit on the sample of boxes from which a split is chosen.
 constexpr std::size_t most_sampled = 128;
 
-/// Halves each coordinate first to avoid overflow.
-float centre_of(const box& b, int k) {
-    return b.min[k] / 2 + b.max[k] / 2;
-}
-
 /// A sample of a node's boxes.
 struct sampled {
     std::array<const box*, most_sampled> boxes;
@@ -38,9 +33,10 @@ struct sampled {
         for (int k = 0; k < 3; ++k) extent[k] /= static_cast<double>(n);
     }
 
+    /// The median of the centres, halved before they are summed to avoid overflow.
     [[nodiscard]] float median(int k) const {
         std::array<float, most_sampled> centres;
-        for (std::size_t i = 0; i < n; ++i) centres[i] = centre_of(*boxes[i], k);
+        for (std::size_t i = 0; i < n; ++i) centres[i] = boxes[i]->min[k] / 2 + boxes[i]->max[k] / 2;
         const auto middle = centres.begin() + static_cast<std::ptrdiff_t>(n / 2);
         std::nth_element(centres.begin(), middle, centres.begin() + static_cast<std::ptrdiff_t>(n));
         return *middle;
@@ -70,7 +66,6 @@ bool lies_within(const box& b, const box& cell) {
 bool lies_left(const box& b, std::uint32_t axis, float plane) {
     return b.min[static_cast<int>(axis)] < plane;
 }
-
 bool lies_right(const box& b, std::uint32_t axis, float plane) {
     return b.max[static_cast<int>(axis)] >= plane;
 }
@@ -363,8 +358,7 @@ std::uint32_t kd_tree_partition::outermost_leaf(std::uint32_t at, std::size_t si
     return nodes_[at].children[0];
 }
 
-/// Collects the boxes below each stale root, ascending by id. The leaves of a box ascend, so those below one root are
-/// consecutive.
+/// Collects the boxes below each stale root, ascending by id. Leaves of a box ascend, so those of a root are adjacent.
 void kd_tree_partition::collect_stale_boxes() {
     root_of_leaf_.assign(leaves_, 0);
     boxes_begin_.resize(stale_roots_.size());

@@ -38,7 +38,6 @@ public:
 
     /// Needs no sorted lists: planes follow from the boxes alone.
     axis_set axes(std::span<const box> boxes, const membership& objects, axis_set swept);
-
     void fit(const whole_subset& scene);
 
     [[nodiscard]] std::uint32_t subset_count() const noexcept { return leaves_; }

@@ -37,11 +37,10 @@ public:
     void fit(const whole_subset& scene) {
         const std::span<const projection> present =
             *std::ranges::max_element(scene.lists, {}, [](const auto& list) { return list.size(); });
-        const std::span<const box> boxes = scene.boxes;
         box world = empty_box();
         double extents = 0;
         for (const projection& p : present) {
-            const box& b = boxes[p.id];
+            const box& b = scene.boxes[p.id];
             world = merged(world, b);
             const int longest = longest_axis(b);
             extents += double{b.max[longest]} - double{b.min[longest]};

@@ -122,15 +122,12 @@ public:
         total.add(work::box_tests, tests_counted_);
         return total;
     }
-
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::vector<part_bytes> parts = search_->bytes();
         parts.push_back({"prepare", bytes_of(objects_, kept_, grown_) + list_.bytes()});
         return parts;
     }
-
     [[nodiscard]] double share_of_update() const override { return share_of_update_; }
-
     [[nodiscard]] std::vector<stage_plan> plans() const override {
         std::vector<stage_plan> stage_plans = search_->plans();
         if (state_ == state::listing)
@@ -264,14 +261,13 @@ private:
         estimate_.resample(boxes, objects_, ids_drawn_);
         if (had_list) estimate_.learn(margin_, list_.size());
         const list_plan best = plan_list(estimate_);
-        next_list next{.frames = best.frames, .margin = best.margin};
         // Below the exponent of a random walk, boxes oscillate. Their displacement is known relative to the kept boxes,
         // but not relative to those of this frame, which may be at an extreme of the oscillation.
         constexpr double random_walk = 0.5;
-        if (best.frames > 1 && is_motion_known && estimate_.law.exponent() < random_walk)
-            next = {.frames = best.frames,
-                    .margin = estimate_.law.displacement_after(age_ + best.frames - 1),
-                    .around_kept_boxes = true};
+        const bool oscillate = best.frames > 1 && is_motion_known && estimate_.law.exponent() < random_walk;
+        next_list next{.frames = best.frames,
+                       .margin = oscillate ? estimate_.law.displacement_after(age_ + best.frames - 1) : best.margin,
+                       .around_kept_boxes = oscillate};
         if (best.frames < 2 || is_far_too_long(boxes, next.margin)) return std::nullopt;
         return next;
     }
@@ -344,9 +340,7 @@ private:
         list_.forget_certain();
         kept_.assign(boxes.begin(), boxes.end());
         margin_ = 0;
-        planned_frames_ = 0;
-        age_ = 0;
-        age_when_made_ = 0;
+        age_ = age_when_made_ = planned_frames_ = 0;
         has_rested_ = true;
         estimate_.law.forget();
         state_ = state::resting;

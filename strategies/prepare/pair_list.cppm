@@ -82,8 +82,7 @@ public:
         return uncertain_;
     }
 
-    /// Moves the certain pairs, which overlap by more than two margins, out of those that each frame tests, by
-    /// compress-stores of one vector of pairs each.
+    /// Moves the certain pairs, which overlap by more than two margins, out of those that each frame tests.
     /// @param kept the boxes from which the list was made
     void mark_certain_pairs(std::span<const box> kept, double margin) {
         const float depth = certain_depth(margin);

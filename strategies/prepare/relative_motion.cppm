@@ -46,8 +46,7 @@ struct plane_motion {
     }
 };
 
-/// The ranges over all boxes, by vectors: three vectors hold an integer number of boxes, rows of six floats, at any
-/// width.
+/// The ranges over all boxes, by vectors: three vectors hold an integer number of boxes (six floats) at any width.
 [[nodiscard]] inline plane_motion plane_motion_between(std::span<const box> from, std::span<const box> to) noexcept {
     constexpr std::size_t block = simd::width / 2;
     plane_motion motion;
@@ -93,7 +92,7 @@ struct plane_motion {
     return (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2;
 }
 
-/// The least margins that cover these displacements of planes.
+/// The margins by which the earlier boxes must grow to contain the later ones, apart from a common shift.
 [[nodiscard]] inline relative_motion motion_of(const plane_motion& motion) noexcept {
     relative_motion moved{};
     for (int k = 0; k < 3; ++k) {

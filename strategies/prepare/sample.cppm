@@ -82,8 +82,7 @@ public:
 
     /// A lower bound on `motion_between` the kept frame and this one; 0 if no sampled object is left.
     [[nodiscard]] double least_motion(std::span<const box> boxes, const membership& objects) const {
-        std::array<box, few> from{};
-        std::array<box, few> to{};
+        std::array<box, few> from{}, to{};
         std::size_t count = 0;
         for (std::size_t i = 0; i < few; ++i) {
             if (ids_[i] >= boxes.size() || !objects.contains(ids_[i])) continue;

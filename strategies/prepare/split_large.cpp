@@ -27,7 +27,6 @@ public:
             search_->insert(id);
         });
     }
-
     void remove(std::uint32_t id) override {
         objects_.remove(id);
         search_->remove(id);
@@ -64,22 +63,18 @@ public:
     }
 
     [[nodiscard]] double share_of_update() const override { return search_->share_of_update(); }
-
     [[nodiscard]] work_counters counters() const override {
         work_counters total = search_->counters();
         total.add(work::pieces, pieces_counted_);
         return total;
     }
-
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::vector<part_bytes> parts = search_->bytes();
         parts.push_back({"prepare", bytes_of(objects_, splits_, slots_, splits_now_, slots_now_, object_of_slot_,
                                              free_slots_, left_slots_, pieces_, piece_pairs_)});
         return parts;
     }
-
     [[nodiscard]] std::vector<stage_plan> plans() const override { return search_->plans(); }
-
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
         if (splits_.empty()) absent.push_back({absence::division, "none is large"});
@@ -105,8 +100,7 @@ private:
     /// Cuts an interval into equal pieces no longer than `longest`.
     [[nodiscard]] static cut_interval cut(float lower, float upper, double longest) {
         const double extent = double{upper} - double{lower};
-        cut_interval interval{1, {lower, upper}};
-        interval.pieces = piece_count(extent, longest);
+        cut_interval interval{piece_count(extent, longest), {lower}};
         const auto wanted = static_cast<double>(interval.pieces);
         for (std::size_t i = 1; i < interval.pieces; ++i) {
             interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);

@@ -48,8 +48,7 @@ public:
             counters.add(work::restarts);
             pairs_.clear();
             restart_tests_ = 0;
-            const auto all_are_new = [](std::uint32_t) { return true; };
-            find_pairs(boxes, longest_axis(separation), counters, all_are_new);
+            find_pairs(boxes, longest_axis(separation), counters, /*is_new=*/[](std::uint32_t) { return true; });
         } else {
             apply_unreported_changes(axes_ & ~before, boxes, objects, separation, counters);
         }
@@ -95,7 +94,6 @@ private:
         return same;
     }
 
-    /// Builds the list of a new axis.
     void build_list(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         std::vector<interval_end>& list = ends_[axis];
         assert(list.empty());

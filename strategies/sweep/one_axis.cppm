@@ -62,11 +62,6 @@ private:
     };
     static_assert(sizeof(swept_box) == 32);
 
-    /// Four comparisons at once: branches would be more expensive, since the failing one is hard to predict.
-    [[nodiscard]] static inline bool all_at_most(quad lower, quad upper) noexcept {
-        return __builtin_reduce_and(lower <= upper) != 0;
-    }
-
     /// Tests each box against those that begin before it ends.
     template <class Subset, CounterPolicy Counters>
     void test_pairs(std::vector<index_pair>& pairs, Counters& counters) const {
@@ -77,7 +72,8 @@ private:
             for (std::size_t j = i + 1; j < swept_.size() && swept_[j].begin <= a.end; ++j) {
                 const swept_box& b = swept_[j];
                 counters.add(work::box_tests);
-                if (all_at_most(lower, b.bounds) && Subset::owns(a.owned, b.owned))
+                // Four comparisons at once: branches would be more expensive, since the failing one is hard to predict.
+                if (__builtin_reduce_and(lower <= b.bounds) != 0 && Subset::owns(a.owned, b.owned))
                     pairs.push_back(ordered_pair(a.id, b.id));
             }
         }

@@ -50,8 +50,10 @@ public:
                 append_overlapping(block, window, pairs);
                 window = first;
             }
-            // Reserve space for all candidates that this vector may add.
-            make_room(candidate_count_ + active + 3 * width);
+            // Make room for all candidates that this vector may add.
+            const std::size_t room = candidate_count_ + active + 3 * width;
+            for (auto* buffer : {&candidates_, &met_})
+                if (room > buffer->size()) buffer->resize(room);
             const vector_of_entries vector(&block.entries[first], block.ends);
             const auto number = static_cast<std::uint32_t>((first - window) / width);
             tests += active + width - 1;
@@ -99,12 +101,6 @@ private:
 
     /// The lanes of a vector that each of a few entries may overlap.
     using lane_overlaps = std::array<std::uint16_t, width>;
-
-    void make_room(std::size_t candidates) {
-        if (candidates <= met_.size()) return;
-        candidates_.resize(candidates);
-        met_.resize(candidates);
-    }
 
     /// Stores the entries that may overlap any lane as candidates, branch-free since that is hard to predict.
     inline void keep_candidates(simd::words entries, std::uint32_t present, const lane_overlaps& met, simd::words lanes,
@@ -196,12 +192,10 @@ private:
             entries_[i] = {plan.quantized(b.min[u], u) | plan.quantized(b.min[v], v) << 16,
                            plan.quantized(b.max[u], u) | plan.quantized(b.max[v], v) << 16,
                            static_cast<std::uint32_t>(i), list[i].id | begins_earlier << 29};
-            const auto begins_within = [&](const auto& e) {
-                return subset.boxes[e.id].min[plan.axis] <= b.max[plan.axis];
-            };
-            list_ends_[i] = static_cast<std::uint32_t>(
-                std::partition_point(list.begin() + static_cast<std::ptrdiff_t>(i), list.end(), begins_within) -
-                list.begin());
+            const auto past = std::ranges::upper_bound(list.subspan(i), b.max[plan.axis], {}, [&](const auto& e) {
+                return subset.boxes[e.id].min[plan.axis];
+            });
+            list_ends_[i] = static_cast<std::uint32_t>(past - list.begin());
         }
     }
 

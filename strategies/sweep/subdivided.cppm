@@ -92,7 +92,6 @@ private:
         const double along = (double{x} - origin_[k]) * per_unit_[k];
         return static_cast<std::uint16_t>(std::clamp(along, 0.0, static_cast<double>(count_[k] - 1)));
     }
-    /// The regions that a box overlaps.
     [[nodiscard]] region_range range_of(const box& b) const noexcept {
         region_range range;
         for (std::size_t k = 0; k < 2; ++k) {
@@ -211,14 +210,13 @@ private:
         }
         std::uint64_t tests = 0;
         restart_steps_ = 1;
-        const auto all_are_new = [](std::uint32_t) { return true; };
         for (region& r : regions_) {
             for (auto& list : r.ends) {
                 sort_ends(list);
                 restart_steps_ += list.size() * std::bit_width(list.size());
             }
             const auto along = static_cast<std::size_t>(3 - cut_[0] - cut_[1]);
-            tests += sweep_.find(r.ends[along], boxes, pairs_, all_are_new);
+            tests += sweep_.find(r.ends[along], boxes, pairs_, /*is_new=*/[](std::uint32_t) { return true; });
         }
         counters.add(work::box_tests, tests);
         restart_steps_ += tests;

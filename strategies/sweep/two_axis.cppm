@@ -69,10 +69,6 @@ private:
     };
     static_assert(sizeof(ranked_box) == 32);
 
-    [[nodiscard]] static inline bool all_at_most(quad lower, quad upper) noexcept {
-        return __builtin_reduce_and(lower <= upper) != 0;
-    }
-
     [[nodiscard]] inline bool is_long(const ranked_box& b) const noexcept {
         return b.bounds[0] + b.bounds[2] > longest_short_;
     }
@@ -144,7 +140,8 @@ private:
         const ranked_box a = ranked_[rank];
         const quad lower = {-a.bounds[2], -a.bounds[3], -a.bounds[0], -a.bounds[1]};  // min, min, -max, -max
         const auto overlaps = [&](const ranked_box& b) {
-            return static_cast<std::size_t>(b.end >= a.begin) & static_cast<std::size_t>(all_at_most(lower, b.bounds)) &
+            return static_cast<std::size_t>(b.end >= a.begin) &
+                   static_cast<std::size_t>(__builtin_reduce_and(lower <= b.bounds) != 0) &
                    static_cast<std::size_t>(Subset::owns(a.owned, b.owned));
         };
         const std::size_t short_count = list_candidates(first_word_[rank], a.bounds[0]);

@@ -211,10 +211,8 @@ triangle_intersection segment_intersection(const hull& segment, const triangle3d
 /// Intersects triangles with area in different planes that are known to intersect: returns the overlap of their
 /// intervals on the common line. Each is flipped so that the other's apex lies above it; then the interval of s runs
 /// from the cut on edge 01 to that on edge 02, and the interval of t in the opposite direction.
-triangle_intersection crossing_intersection(const triangle3d& original_s, const signs_of_corners& s_to_t,
-                                            const triangle3d& original_t, const signs_of_corners& t_to_s) {
-    triangle3d s = original_s;
-    triangle3d t = original_t;
+triangle_intersection crossing_intersection(triangle3d s, const signs_of_corners& s_to_t, triangle3d t,
+                                            const signs_of_corners& t_to_s) {
     const bool s_is_below = rotate_to_apex(s, s_to_t);
     const bool t_is_below = rotate_to_apex(t, t_to_s);
     if (t_is_below) std::swap(s[1], s[2]);

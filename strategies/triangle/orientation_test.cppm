@@ -59,8 +59,7 @@ private:
 
     /// Tests triangles whose boxes overlap. A sign that could not be decided counts as a hit.
     [[nodiscard]] static inline bool near_intersects(const triangle3d& s, const triangle3d& t, Signs& signs) noexcept {
-        sides s_to_t;
-        sides t_to_s;
+        sides s_to_t, t_to_s;
         if (signs.part(s_to_t, t_to_s)) return false;
         const bool crossing = crossing_intersects(s, s_to_t, t, t_to_s, signs);
         if constexpr (requires { signs.unsure(); })
@@ -127,13 +126,11 @@ private:
         return signs.in_order(s0, s1, s2, t0, t1, t2);
     }
 
-    /// `s` has zero area and crosses the plane of `t` in one point: is that point in `t`? It is, unless the line of `s`
-    /// passes edges of `t` on different sides.
+    /// `s` has zero area and crosses the plane of `t` in a point. Is it in `t`: does it pass all edges on one side?
     [[nodiscard]] static inline bool line_meets(Signs& signs, const triangle3d& s, const sides& s_to_t,
                                                 const triangle3d& t) noexcept {
         const int other = s_to_t[0] != s_to_t[1] ? 1 : 2;
-        bool left = false;
-        bool right = false;
+        bool left = false, right = false;
         for (int i = 0; i < 3; ++i) {
             const int passing = signs.side(s[0], s[other], t[i], t[(i + 1) % 3]);
             left |= passing > 0;
