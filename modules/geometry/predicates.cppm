@@ -81,6 +81,7 @@ public:
         : s_(s), t_(t) {
         const lanes<double> width = high - low;
         const auto in_range = (width == 0) | ((width >= 0x1p-200) & (width <= 0x1p200));
+        // Beyond that range the bounds become infinite, so that everything is computed exactly.
         const lanes<double> extent = in_range ? width : lanes<double>{} + std::numeric_limits<double>::infinity();
         extent_ = {extent[0], extent[1], extent[2]};
         side_error_ = 50 * unit * extent[0] * extent[1] * extent[2];

@@ -26,7 +26,6 @@ public:
             reject_doubles();
     }
     [[nodiscard]] bool takes_double() const override { return DoubleTrianglePolicy<Triangle>; }
-
     void intersect(std::span<const triangle_pair<float>> pairs, std::span<std::uint8_t> results) const override {
         test_pairs(pairs, results);
     }

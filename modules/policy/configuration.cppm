@@ -26,9 +26,10 @@ constexpr void for_each_parameter(const Take& take) {
 template <Configurable S>
 [[nodiscard]] std::vector<parameter_info> parameters_of() {
     std::vector<parameter_info> infos;
-    for_each_parameter<S>([&](const auto& p) {
+    const auto add = [&](const auto& p) {
         infos.push_back({std::string(p.name), p.values(), p.show(config_of<S>{}), std::string(p.help)});
-    });
+    };
+    for_each_parameter<S>(add);
     return infos;
 }
 

@@ -32,7 +32,6 @@ public:
     [[nodiscard]] std::size_t age() const noexcept { return age_; }
     /// The greatest observed displacement.
     [[nodiscard]] double farthest() const noexcept { return farthest_; }
-
     [[nodiscard]] double exponent() const noexcept {
         if (age_ < 2 || !(before_ > 0)) return known_exponent_;
         const double times = static_cast<double>(age_) / static_cast<double>(std::bit_floor(age_ / 2));

@@ -128,6 +128,7 @@ public:
         return parts;
     }
     [[nodiscard]] double share_of_update() const override { return share_of_update_; }
+    /// For `explain`: the plans of the search, and whether a list or earlier pairs serve this frame.
     [[nodiscard]] std::vector<stage_plan> plans() const override {
         std::vector<stage_plan> stage_plans = search_->plans();
         if (state_ == state::listing)

@@ -44,6 +44,7 @@ struct neighbour_list_prepare {
             "number of frames between searches, inexact above 1; 0: search when boxes have moved too far"}};
 
     static constexpr std::array contrasts{std::string_view("margin=0.1")};
+    /// Whether `auto` chooses this strategy for a scene, and why.
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         constexpr std::size_t fewest = scene_traits::fewest_frames_to_keep;
         if (scene.frames < fewest)

@@ -23,6 +23,7 @@ public:
     void insert(std::uint32_t id) override {
         objects_.insert(id);
         frame_.change([&] {
+            // The id of a new object may be that of a piece.
             if (id >= first_slot_) drop_pieces();
             search_->insert(id);
         });
@@ -32,6 +33,7 @@ public:
         search_->remove(id);
     }
 
+    /// Divides the large boxes of a frame, and updates the search with the pieces.
     void update(std::span<const box> boxes) override {
         frame_.begin();
         objects_.require_boxes_for_all(boxes.size());
@@ -51,6 +53,7 @@ public:
         frame_.taken();
     }
 
+    /// Searches the pieces, and appends the objects of each pair of pieces that owns its pair of objects.
     void search(std::vector<index_pair>& pairs) override {
         frame_.require_taken();
         if (splits_.empty()) return search_->search(pairs);

@@ -53,7 +53,6 @@ private:
             gaps[i] = static_cast<std::uint32_t>(gaps[i - 1] * std::uint64_t{9} / 4);
         return gaps;
     }();
-
     static constexpr table tokuda = [] {
         table gaps{};
         double exact = 1;

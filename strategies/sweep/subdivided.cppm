@@ -106,7 +106,6 @@ private:
             for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j)
                 if (!except.holds(i, j)) visit(i * count_[1] + j);
     }
-
     [[nodiscard]] static std::uint64_t regions_in(const region_range& range) noexcept {
         return (range.last[0] - range.first[0] + std::uint64_t{1}) *
                (range.last[1] - range.first[1] + std::uint64_t{1});
@@ -116,9 +115,7 @@ private:
         if (!regions_[r].is_touched) touched_.push_back(r);
         regions_[r].is_touched = true;
     }
-
     void spend(std::uint64_t steps) noexcept { steps_left_ -= std::min(steps, steps_left_); }
-
     static void erase_ends(region& r, auto is_leaving) {
         for (auto& list : r.ends) std::erase_if(list, [&](const interval_end& e) { return is_leaving(e.id); });
     }

@@ -101,7 +101,6 @@ private:
     [[nodiscard]] static bool on_one_side(const std::array<Real, 3>& d) noexcept {
         return (d[0] > 0 && d[1] > 0 && d[2] > 0) || (d[0] < 0 && d[1] < 0 && d[2] < 0);
     }
-
     [[nodiscard]] static int largest(const vec3<Real>& v) noexcept {
         int k = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
         return std::abs(v[2]) > std::abs(v[k]) ? 2 : k;
