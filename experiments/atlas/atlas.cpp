@@ -16,22 +16,23 @@ std::string label_of(candidate_name name) {
 
 }  // namespace
 
-const atlas_line* atlas_scene::find(std::string_view label) const {
-    const auto line = std::ranges::find(lines, label, &atlas_line::label);
-    return line != lines.end() ? &*line : nullptr;
+const atlas_candidate* atlas_scene::find(std::string_view label) const {
+    const auto candidate = std::ranges::find(candidates, label, &atlas_candidate::label);
+    return candidate != candidates.end() ? &*candidate : nullptr;
 }
 
-const atlas_line* atlas_scene::fastest_if(span_of_time span,
-                                          const std::function<bool(const atlas_line&)>& matches) const {
-    const atlas_line* fastest = nullptr;
-    for (const atlas_line& line : lines)
-        if (!line.automatic && matches(line) && (!fastest || line.ms(span) < fastest->ms(span))) fastest = &line;
+const atlas_candidate* atlas_scene::fastest_if(atlas_time time,
+                                               const std::function<bool(const atlas_candidate&)>& matches) const {
+    const atlas_candidate* fastest = nullptr;
+    for (const atlas_candidate& candidate : candidates)
+        if (!candidate.is_automatic && matches(candidate) && (!fastest || candidate.ms(time) < fastest->ms(time)))
+            fastest = &candidate;
     return fastest;
 }
 
-double atlas_scene::least_ms(span_of_time span) const {
-    double least = fastest(span).ms(span);
-    for (const atlas_line& line : lines) least = std::min(least, line.ms(span));
+double atlas_scene::least_ms(atlas_time time) const {
+    double least = fastest(time).ms(time);
+    for (const atlas_candidate& candidate : candidates) least = std::min(least, candidate.ms(time));
     return least;
 }
 
@@ -43,41 +44,46 @@ double atlas_scene::number(std::string_view parameter) const {
     return info != parameters.end() ? number_or_nan(info->fallback) : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// The atlas is mapped a second time without the winner of nearly every scene, to compare the classic strategies.
 std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas) {
     for (atlas_scene& scene : atlas)
-        std::erase_if(scene.lines, [](const atlas_line& line) {
-            return line.automatic || line.label.find("columns") != std::string::npos;
+        std::erase_if(scene.candidates, [](const atlas_candidate& candidate) {
+            return candidate.is_automatic || candidate.label.find("columns") != std::string::npos;
         });
-    std::erase_if(atlas, [](const atlas_scene& scene) { return scene.lines.empty(); });
+    std::erase_if(atlas, [](const atlas_scene& scene) { return scene.candidates.empty(); });
     return atlas;
 }
 
-estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time span) {
-    cells ratios(1, 1);
-    const std::vector<double>& arm_ms = arm.times(span);
-    const std::vector<double>& base_ms = base.times(span);
-    for (std::size_t repeat = 0; repeat < std::min(arm_ms.size(), base_ms.size()); ++repeat)
-        ratios.add(0, 0, std::log(arm_ms[repeat] / base_ms[repeat]));
+/// Repeats are paired: candidates take turns within each, so that both met the same speed of the machine.
+estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& baseline, atlas_time time) {
+    cells ratios(/*processes=*/1, /*seeds=*/1);
+    const std::vector<double>& candidate_ms = candidate.times(time);
+    const std::vector<double>& baseline_ms = baseline.times(time);
+    for (std::size_t repeat = 0; repeat < std::min(candidate_ms.size(), baseline_ms.size()); ++repeat)
+        ratios.add(0, 0, std::log(candidate_ms[repeat] / baseline_ms[repeat]));
     return bootstrap(ratios);
 }
 
-std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool unseen) {
+/// Groups the exact, timed rows by scene and candidate. A scene in which only `auto` was timed has no winner.
+std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is_held_out) {
     std::vector<atlas_scene> atlas;
-    std::map<scene_choice, std::size_t> places;
+    std::map<scene_choice, std::size_t> indices;
     for (const row& r : verified_rows(folder)) {
         const std::optional<double> frame_ms = measured("frame_ms")(r);
         const std::optional<double> whole_ms = measured("whole_ms")(r);
         if (r.status != "exact" || frame_ms.value_or(0) <= 0 || whole_ms.value_or(0) <= 0) continue;
-        const auto [place, is_new] = places.emplace(r.scene, atlas.size());
-        if (is_new) atlas.push_back({r.scene, unseen, measure_scene(r.scene), {}});
-        std::vector<atlas_line>& lines = atlas[place->second].lines;
+        const auto [index, is_new] = indices.emplace(r.scene, atlas.size());
+        if (is_new) atlas.push_back({r.scene, is_held_out, measure_scene(r.scene), {}});
+        std::vector<atlas_candidate>& candidates = atlas[index->second].candidates;
         const std::string label = label_of(r.name);
-        auto line = std::ranges::find(lines, label, &atlas_line::label);
-        if (line == lines.end()) line = lines.insert(line, {label, r.name.is_automatic(), {}, {}});
-        line->frame_ms.push_back(*frame_ms);
-        line->whole_ms.push_back(*whole_ms);
+        auto candidate = std::ranges::find(candidates, label, &atlas_candidate::label);
+        if (candidate == candidates.end())
+            candidate = candidates.insert(candidate, {label, r.name.is_automatic(), {}, {}});
+        candidate->frame_ms.push_back(*frame_ms);
+        candidate->whole_ms.push_back(*whole_ms);
     }
-    std::erase_if(atlas, [](const atlas_scene& s) { return std::ranges::all_of(s.lines, &atlas_line::automatic); });
+    std::erase_if(
+        atlas, [](const atlas_scene& s) { return std::ranges::all_of(s.candidates, &atlas_candidate::is_automatic); });
     return atlas;
 }
 

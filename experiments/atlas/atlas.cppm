@@ -14,40 +14,40 @@ import aabblab.tables;
 export namespace aabblab {
 
 /// The times that are compared.
-enum class span_of_time : unsigned char {
-    frame,  ///< the mean per frame after the first
-    whole   ///< all frames, including the construction of the stages
+enum class atlas_time : unsigned char {
+    per_frame,  ///< the mean per frame after the first
+    whole_run   ///< all frames, including the construction of the stages
 };
 
-/// The times of one composition or engine in one scene, by repeat; lines may differ in their number of repeats.
-struct atlas_line {
+/// The times of one composition or engine in one scene, by repeat; early stopping leaves slow candidates one repeat.
+struct atlas_candidate {
     std::string label;  ///< its strategies other than `none`: "bucket + columns + simd"
-    bool automatic = false;
+    bool is_automatic = false;
     std::vector<double> frame_ms, whole_ms;
 
-    [[nodiscard]] const std::vector<double>& times(span_of_time span) const {
-        return span == span_of_time::frame ? frame_ms : whole_ms;
+    [[nodiscard]] const std::vector<double>& times(atlas_time time) const {
+        return span == atlas_time::per_frame ? frame_ms : whole_ms;
     }
     /// The median over repeats.
-    [[nodiscard]] double ms(span_of_time span) const { return quartiles_of(times(span)).median; }
+    [[nodiscard]] double ms(atlas_time time) const { return quartiles_of(times(time)).median; }
 };
 
 struct atlas_scene {
     scene_choice scene;
-    bool unseen = false;  ///< not in the map; held out to test models fitted to it
+    bool is_held_out = false;  ///< not in the map, but kept to test models that are fitted to the map
     scene_measures measures;
-    std::vector<atlas_line> lines;  ///< exact ones
+    std::vector<atlas_candidate> candidates;  ///< exact ones
 
-    /// Null if the scene has no such line.
-    [[nodiscard]] const atlas_line* find(std::string_view label) const;
-    /// The fastest of the lines that match, except `auto`, which is no fixed composition; null if none matches.
-    [[nodiscard]] const atlas_line* fastest_if(span_of_time span,
-                                               const std::function<bool(const atlas_line&)>& matches) const;
-    [[nodiscard]] const atlas_line& fastest(span_of_time span) const {
-        return *fastest_if(span, [](const atlas_line&) { return true; });
+    /// Null if the scene has no such candidate.
+    [[nodiscard]] const atlas_candidate* find(std::string_view label) const;
+    /// The fastest of those that match, except `auto`, which is no fixed composition; null if none matches.
+    [[nodiscard]] const atlas_candidate* fastest_if(atlas_time time,
+                                                    const std::function<bool(const atlas_candidate&)>& matches) const;
+    [[nodiscard]] const atlas_candidate& fastest(atlas_time time) const {
+        return *fastest_if(span, [](const atlas_candidate&) { return true; });
     }
-    /// The time of the fastest line, including `auto`.
-    [[nodiscard]] double least_ms(span_of_time span) const;
+    /// The time of the fastest candidate, including `auto`.
+    [[nodiscard]] double least_ms(atlas_time time) const;
     /// A parameter of the scene as a number, by default its default value; NaN if the scene has no such parameter.
     [[nodiscard]] double number(std::string_view parameter) const;
 };
@@ -56,22 +56,21 @@ struct atlas_scene {
 /// classic strategies.
 [[nodiscard]] std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas);
 
-/// The logarithm of the ratio of two lines' times, over the repeats that both have.
-[[nodiscard]] estimate log_ratio(const atlas_line& arm, const atlas_line& base, span_of_time span);
+/// The logarithm of the ratio of two candidates' times, over the repeats that both have.
+[[nodiscard]] estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& baseline, atlas_time time);
 
 /// Reads the scenes of an experiment from its results folder. Each scene is generated again to compute its measures.
-/// @param unseen whether the scenes are held out from the map
-[[nodiscard]] std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool unseen);
+[[nodiscard]] std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is_held_out);
 
 /// In how many scenes each composition or engine is the fastest, one row each.
 [[nodiscard]] table winners_table(const std::vector<atlas_scene>& atlas);
 /// One row per scene: its measures, the fastest, the lead over the second, and the ratio of `auto` to the fastest.
 [[nodiscard]] table cells_table(const std::vector<atlas_scene>& atlas);
 /// The regret of using one of them everywhere, relative to the fastest of each scene, including `auto`.
-[[nodiscard]] table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time span);
+[[nodiscard]] table regrets_table(const std::vector<atlas_scene>& atlas, atlas_time time);
 
-/// The value of one parameter, all others equal, at which the fastest of one scene and of the next swap places. Lines
-/// that differ only in parameters, such as the skin of a Verlet list, count as one, represented by the fastest.
+/// The value of one parameter, all others equal, at which the fastest of one scene and of the next swap places.
+/// Candidates that differ only in parameters, such as the skin of a Verlet list, count as one, their fastest.
 struct border {
     std::string before, after, parameter;
     std::string others;  ///< the other settings of the scene
@@ -80,13 +79,13 @@ struct border {
 };
 [[nodiscard]] std::vector<border> borders_of(const std::vector<atlas_scene>& atlas);
 [[nodiscard]] table borders_table(const std::vector<border>& borders);
-/// One row for all borders between the same two lines along the same parameter.
+/// One row for all borders between the same two candidates along the same parameter.
 [[nodiscard]] table borders_summary(const std::vector<border>& borders);
 
 /// One ratio on which the verdict on a statement depends.
 struct judged_ratio {
-    std::string where;  ///< the scenes: "10,000 boxes, a tenth moves"
-    std::string lines;  ///< "bullet_sap over bullet_dbvt"
+    std::string where;       ///< the scenes: "10,000 boxes, a tenth moves"
+    std::string candidates;  ///< "bullet_sap over bullet_dbvt"
     std::size_t scenes = 0;
     double ratio = 0;
     interval range{};
@@ -107,18 +106,18 @@ struct judged_statement {
 
 /// A linear cost model of the time per frame: the costs of the terms that a scene's measures count, fitted to the
 /// scenes of the map, and the factor by which it is off there and in the scenes held out.
-struct line_model {
+struct candidate_model {
     std::string label;
     std::vector<estimate> costs;  ///< ns per unit of each term
-    accuracy seen;
-    accuracy unseen;
+    accuracy in_map{};
+    accuracy held_out{};
 };
-[[nodiscard]] std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas);
-[[nodiscard]] table models_table(const std::vector<line_model>& models);
-[[nodiscard]] table costs_table(const std::vector<line_model>& models);
-/// The regret of choosing the line with the least predicted time, in each held-out scene.
+[[nodiscard]] std::vector<candidate_model> models_of(const std::vector<atlas_scene>& atlas);
+[[nodiscard]] table models_table(const std::vector<candidate_model>& models);
+[[nodiscard]] table costs_table(const std::vector<candidate_model>& models);
+/// The regret of choosing the candidate with the least predicted time, in each held-out scene.
 [[nodiscard]] std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas,
-                                                    const std::vector<line_model>& models);
+                                                    const std::vector<candidate_model>& models);
 
 [[nodiscard]] std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas);
 

@@ -22,8 +22,9 @@ std::string settings_without(const scene_choice& scene, std::string_view paramet
     return settings_text(others);
 }
 
-/// The fraction of the segment at which the interpolated logarithm of the ratio is 0, and its 95 % interval by sampling
-/// both ends.
+/// Interpolates the logarithm of a ratio of times between two scenes.
+/// @returns the fraction of the way at which it is 0, so that the times are equal, and a 95 % interval, by drawing both
+/// ends from their normal distributions
 std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
     const auto share = [](double a, double b) { return a == b ? 0.5 : std::clamp(a / (a - b), 0.0, 1.0); };
     constexpr std::size_t draws = 2000;
@@ -38,27 +39,29 @@ std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
     for (std::size_t i = 0; i < draws; ++i) {
         const double a = drawn(from);
         const double b = drawn(to);
-        // Clamp to an end if one of them is ahead at both.
+        // Clamp to an end if one candidate is ahead at both.
         shares.push_back(a >= 0 ? 0 : b <= 0 ? 1 : share(a, b));
     }
     std::ranges::sort(shares);
     return {share(from.value, to.value), {shares[draws / 40], shares[draws - 1 - draws / 40]}};
 }
 
-/// The fastest line of a family; null if the scene has none.
-const atlas_line* fastest_of(const atlas_scene& scene, const std::string& family) {
-    return scene.fastest_if(per_frame, [&](const atlas_line& line) { return family_of(line.label) == family; });
+/// The fastest candidate with these strategies, whatever their parameters; null if the scene has none.
+const atlas_candidate* fastest_of(const atlas_scene& scene, const std::string& family) {
+    return scene.fastest_if(per_frame,
+                            [&](const atlas_candidate& candidate) { return family_of(candidate.label) == family; });
 }
 
-/// The border between two scenes that differ in one parameter; empty if the same family is the fastest in both.
+/// The value of the parameter in which two scenes differ at which the winner of the first and that of the second take
+/// the same time; empty if both are won by the same strategies, or if a winner was not timed in both.
 std::optional<border> border_between(const atlas_scene& from, const atlas_scene& to, std::string_view parameter) {
-    const atlas_line& first_best = from.fastest(per_frame);
-    const atlas_line& last_best = to.fastest(per_frame);
+    const atlas_candidate& first_best = from.fastest(per_frame);
+    const atlas_candidate& last_best = to.fastest(per_frame);
     const std::string before = family_of(first_best.label);
     const std::string after = family_of(last_best.label);
     if (before == after) return std::nullopt;
-    const atlas_line* after_at_first = fastest_of(from, after);
-    const atlas_line* before_at_last = fastest_of(to, before);
+    const atlas_candidate* after_at_first = fastest_of(from, after);
+    const atlas_candidate* before_at_last = fastest_of(to, before);
     if (!after_at_first || !before_at_last) return std::nullopt;
     const double log_from = std::log(from.number(parameter));
     const double log_length = std::log(to.number(parameter)) - log_from;
@@ -75,7 +78,7 @@ std::optional<border> border_between(const atlas_scene& from, const atlas_scene&
                   {std::exp(log_from + range.low * log_length), std::exp(log_from + range.high * log_length)}};
 }
 
-/// The logarithm of the position of a border, and its error.
+/// The logarithm of the position of a border, with the error that its 95 % interval implies.
 estimate log_position_of(const border& b) {
     constexpr double errors_in_interval = 2 * 1.96;
     constexpr double many_degrees = 1000;
@@ -84,14 +87,15 @@ estimate log_position_of(const border& b) {
 
 }  // namespace
 
+/// Along each parameter, compares successive scenes of the map that agree in all other parameters.
 std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
     std::vector<border> borders;
     for (const std::string_view parameter : parameters) {
-        std::map<std::string, std::vector<const atlas_scene*>> lines;
+        std::map<std::string, std::vector<const atlas_scene*>> by_others;
         for (const atlas_scene& scene : atlas)
-            if (!scene.unseen && !std::isnan(scene.number(parameter)))
-                lines[settings_without(scene.scene, parameter)].push_back(&scene);
-        for (auto& [others, scenes] : lines) {
+            if (!scene.is_held_out && !std::isnan(scene.number(parameter)))
+                by_others[settings_without(scene.scene, parameter)].push_back(&scene);
+        for (auto& [others, scenes] : by_others) {
             std::ranges::stable_sort(scenes, {}, [&](const atlas_scene* s) { return s->number(parameter); });
             for (std::size_t i = 1; i < scenes.size(); ++i)
                 if (auto b = border_between(*scenes[i - 1], *scenes[i], parameter)) borders.push_back(*std::move(b));
@@ -108,18 +112,19 @@ table borders_table(const std::vector<border>& borders) {
     return t;
 }
 
+/// One row per parameter and pair of winners, the most frequent first; positions have a geometric mean.
 table borders_summary(const std::vector<border>& borders) {
-    std::map<std::tuple<std::string, std::string, std::string>, std::vector<const border*>> by_lines;
-    for (const border& b : borders) by_lines[{b.parameter, b.before, b.after}].push_back(&b);
+    std::map<std::tuple<std::string, std::string, std::string>, std::vector<const border*>> by_winners;
+    for (const border& b : borders) by_winners[{b.parameter, b.before, b.after}].push_back(&b);
     std::vector<std::vector<const border*>> groups;
-    for (const auto& [key, group] : by_lines) groups.push_back(group);
+    for (const auto& [key, group] : by_winners) groups.push_back(group);
     std::ranges::stable_sort(groups, [](const auto& a, const auto& b) { return a.size() > b.size(); });
     table t = empty_table({"along", "fastest before", "fastest after"}, {"borders", "at", "95 %", "from", "to"});
     for (const std::vector<const border*>& group : groups) {
-        std::vector<estimate> places;
-        for (const border* b : group) places.push_back(log_position_of(*b));
+        std::vector<estimate> log_positions;
+        for (const border* b : group) log_positions.push_back(log_position_of(*b));
         const auto [low, high] = std::ranges::minmax(group, {}, &border::position);
-        const estimate mean = mean_of(places);
+        const estimate mean = mean_of(log_positions);
         const border& first = *group.front();
         t.rows.push_back({first.parameter, first.before, first.after, grouped(group.size()),
                           fmt::format("{:.3g}", std::exp(mean.value)),

@@ -10,15 +10,15 @@ namespace {
 /// The kind of the scenes in the map.
 constexpr const char* kind_of_map = "cloud";
 
-/// The winners that get a series of their own in a figure; the others share the series "another".
+/// The strategies that win most scenes, which get a series of their own in figures; others share the series "another".
 std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& atlas) {
-    constexpr std::size_t most = 7;
+    constexpr std::size_t most_series = 7;
     std::map<std::string, std::size_t> wins;
     for (const atlas_scene& scene : atlas) ++wins[family_of(scene.fastest(per_frame).label)];
     std::vector<std::string> labels;
     for (const auto& [label, count] : wins) labels.push_back(label);
     std::ranges::stable_sort(labels, [&](const auto& a, const auto& b) { return wins[a] > wins[b]; });
-    if (labels.size() > most) labels.resize(most);
+    if (labels.size() > most_series) labels.resize(most_series);
     return labels;
 }
 
@@ -30,12 +30,14 @@ std::vector<series> empty_series(const std::vector<std::string>& winners) {
     return lines;
 }
 
+/// Adds a scene to the series of its winner, or to the last one, "another".
 void add_point(std::vector<series>& to, const std::string& winner, double x, double y) {
     const auto match = std::ranges::find(to, winner, &series::label);
-    series& line = match != to.end() ? *match : to.back();
-    line.points.push_back({x, y});
+    (match != to.end() ? *match : to.back()).points.push_back({x, y});
 }
 
+/// A map of the winners by number of objects and displacement, with one panel per density and ratio of sizes.
+/// @param clouds only scenes with this number of separate clouds, in which all boxes move
 /// @param among empty, or text that names the restricted set of candidates
 figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners, double clouds,
               const std::string& among) {
@@ -51,18 +53,18 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
         if (scene.scene.kind != kind_of_map || scene.number("clouds") != clouds || scene.number("moving") != 1)
             continue;
         const std::pair key{scene.number("density"), scene.number("ratio")};
-        const auto [place, is_new] = panels.try_emplace(key);
+        const auto [panel, is_new] = panels.try_emplace(key);
         if (is_new)
-            place->second = {fmt::format("density {:g}, sizes 1 to {:g}", key.first, key.second),
+            panel->second = {fmt::format("density {:g}, sizes 1 to {:g}", key.first, key.second),
                              empty_series(winners)};
-        add_point(place->second.lines, family_of(scene.fastest(per_frame).label), scene.number("objects"),
+        add_point(panel->second.lines, family_of(scene.fastest(per_frame).label), scene.number("objects"),
                   scene.number("displacement"));
     }
     for (auto& [key, panel] : panels) f.panels.push_back(std::move(panel));
     return f;
 }
 
-/// All scenes in motion, by measures that are defined for each of them.
+/// A map of the winners of all scenes in motion, by measures that are defined for each, unlike the parameters.
 figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners,
                       const std::string& among) {
     figure f{.name = among.empty() ? "map_inversions" : "map_classic_inversions",
@@ -79,9 +81,10 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
     return f;
 }
 
-/// Regrets in ascending order, one curve per line, for the lines with the smallest median regret.
+/// One curve of regrets in ascending order for each of the seven candidates with the least median regret, out of those
+/// timed in at least half of the scenes.
 figure regret_figure(const std::vector<atlas_scene>& atlas) {
-    constexpr std::size_t most = 7;
+    constexpr std::size_t most_curves = 7;
     constexpr std::size_t least_scenes = 2;
     figure f{.name = "regret",
              .caption =
@@ -98,10 +101,11 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
         f.lines.push_back(std::move(curve));
     }
     std::ranges::stable_sort(f.lines, {}, [](const series& s) { return s.points[s.points.size() / 2].y; });
-    if (f.lines.size() > most) f.lines.resize(most);
+    if (f.lines.size() > most_curves) f.lines.resize(most_curves);
     return f;
 }
 
+/// Adds a map for each number of clouds that occurs, and the map of all scenes in motion.
 void add_maps(std::vector<figure>& figures, const std::vector<atlas_scene>& atlas, const std::string& among) {
     const std::vector<std::string> winners = most_frequent_winners(atlas);
     std::vector<double> clouds;
@@ -117,7 +121,7 @@ void add_maps(std::vector<figure>& figures, const std::vector<atlas_scene>& atla
 
 std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas) {
     std::vector<figure> figures;
-    add_maps(figures, atlas, "");
+    add_maps(figures, atlas, /*among=*/"");
     if (const auto others = without_columns(atlas); !others.empty())
         add_maps(figures, others, " of the candidates without columns");
     figures.push_back(regret_figure(atlas));

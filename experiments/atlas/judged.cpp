@@ -10,9 +10,9 @@ namespace {
 
 using scene_filter = std::function<bool(const atlas_scene&)>;
 
-/// A ratio of times over a set of scenes.
+/// A ratio of times over a set of scenes: of a candidate to another, its baseline.
 struct stated_ratio {
-    std::string where, arm, base;
+    std::string where, candidate, baseline;
     scene_filter scenes;
     expectation expected = expectation::less;
     double band = equivalence_band;
@@ -45,7 +45,7 @@ struct setting_is {
     double value;
 };
 
-/// Scenes of the map with these values.
+/// Matches the scenes of the map with these values of parameters.
 /// @param all_move excludes scenes in which some boxes rest
 scene_filter map_with(std::vector<setting_is> settings, bool all_move = true) {
     return [settings = std::move(settings), all_move](const atlas_scene& s) {
@@ -56,7 +56,7 @@ scene_filter map_with(std::vector<setting_is> settings, bool all_move = true) {
     };
 }
 
-/// All boxes move by this displacement per frame.
+/// Matches the scenes of the map in which all boxes move by this displacement per frame.
 scene_filter moved(double objects, double displacement) {
     return map_with({{"objects", objects}, {"displacement", displacement}});
 }
@@ -69,40 +69,41 @@ scene_filter sizes_to(double ratio, double objects) {
     return map_with({{"objects", objects}, {"ratio", ratio}});
 }
 
-/// The ratio in some scenes relative to the ratio in others.
-stated_ratio relative(std::string where, std::string arm, std::string base, scene_filter scenes,
+/// The ratio in some scenes relative to the same ratio in others, for statements of what a candidate suffers from.
+stated_ratio relative(std::string where, std::string candidate, std::string baseline, scene_filter scenes,
                       scene_filter reference_scenes) {
-    stated_ratio ratio{std::move(where), std::move(arm), std::move(base), std::move(scenes)};
+    stated_ratio ratio{std::move(where), std::move(candidate), std::move(baseline), std::move(scenes)};
     ratio.reference_scenes = std::move(reference_scenes);
     return ratio;
 }
 
-/// Only a share of the boxes moves.
+/// Matches the scenes of the map in which only a share of the boxes moves.
 scene_filter partly_moving(double objects, double moving) {
-    return map_with({{"objects", objects}, {"moving", moving}}, false);
+    return map_with({{"objects", objects}, {"moving", moving}}, /*all_move=*/false);
 }
 
 scene_filter kind_is(std::string kind) {
     return [kind = std::move(kind)](const atlas_scene& s) { return s.scene.kind == kind; };
 }
 
-/// One ratio for each pair of number of boxes and displacement.
-std::vector<stated_ratio> by_motion(const std::string& arm, const std::string& base,
+/// The ratio of a candidate to a baseline for each pair of number of boxes and displacement.
+std::vector<stated_ratio> by_motion(const std::string& candidate, const std::string& baseline,
                                     std::initializer_list<std::pair<double, double>> cases) {
     std::vector<stated_ratio> ratios;
     for (const auto& [objects, displacement] : cases)
         ratios.push_back({fmt::format("{} boxes, by {:g}", grouped(static_cast<std::uint64_t>(objects)), displacement),
-                          arm, base, moved(objects, displacement)});
+                          candidate, baseline, moved(objects, displacement)});
     return ratios;
 }
 
-/// One ratio for each number of boxes.
-std::vector<stated_ratio> by_count(const std::string& arm, const std::string& base, std::initializer_list<double> sizes,
-                                   expectation expected = expectation::less, double band = equivalence_band) {
+/// The ratio of a candidate to a baseline for each number of boxes.
+std::vector<stated_ratio> by_count(const std::string& candidate, const std::string& baseline,
+                                   std::initializer_list<double> sizes, expectation expected = expectation::less,
+                                   double band = equivalence_band) {
     std::vector<stated_ratio> ratios;
     for (const double objects : sizes)
-        ratios.push_back(
-            {grouped(static_cast<std::uint64_t>(objects)) + " boxes", arm, base, boxes(objects), expected, band});
+        ratios.push_back({grouped(static_cast<std::uint64_t>(objects)) + " boxes", candidate, baseline, boxes(objects),
+                          expected, band});
     return ratios;
 }
 
@@ -220,19 +221,22 @@ struct measured_ratio {
     estimate log{std::nan(""), 0, 1};
 };
 
-/// The mean over the scenes that have both lines; scenes are independent estimates.
+/// The geometric mean of a ratio over the matching scenes that have both candidates, as independent estimates.
 measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_ratio& r, const scene_filter& matches) {
     std::vector<estimate> logs;
     for (const atlas_scene& scene : atlas) {
         if (!matches(scene)) continue;
-        const atlas_line* arm = scene.find(r.arm);
-        const atlas_line* base = scene.find(r.base);
-        if (!arm || !base) continue;
-        if (const estimate log = log_ratio_in(scene, *arm, *base, per_frame); log.is_known()) logs.push_back(log);
+        const atlas_candidate* candidate = scene.find(r.candidate);
+        const atlas_candidate* baseline = scene.find(r.baseline);
+        if (!candidate || !baseline) continue;
+        if (const estimate log = log_ratio_in(scene, *candidate, *baseline, per_frame); log.is_known())
+            logs.push_back(log);
     }
     return logs.empty() ? measured_ratio() : measured_ratio{logs.size(), mean_of(logs)};
 }
 
+/// The ratio that a statement speaks of, divided by that in the reference scenes if there are any; without scenes
+/// if either was not measured.
 measured_ratio measure(const std::vector<atlas_scene>& atlas, const stated_ratio& r) {
     measured_ratio ratio = ratio_in(atlas, r, r.scenes);
     if (!r.reference_scenes || ratio.scenes == 0) return ratio;
@@ -243,6 +247,7 @@ measured_ratio measure(const std::vector<atlas_scene>& atlas, const stated_ratio
 
 }  // namespace
 
+/// Measures all ratios first, because Holm's correction for multiple tests needs the whole family.
 std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& atlas) {
     std::vector<judged_statement> verdicts;
     std::vector<tested> evidence;
@@ -257,9 +262,9 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
             const measured_ratio ratio = measure(atlas, r);
             if (ratio.scenes == 0 || !ratio.log.is_known()) continue;
             const interval range = ratio.log.range();
-            judged.push_back(
-                &entry.ratios.emplace_back(r.where, r.arm + " over " + r.base, ratio.scenes, std::exp(ratio.log.value),
-                                           interval{std::exp(range.low), std::exp(range.high)}, support::undecided));
+            judged.push_back(&entry.ratios.emplace_back(
+                r.where, r.candidate + " over " + r.baseline, ratio.scenes, std::exp(ratio.log.value),
+                interval{std::exp(range.low), std::exp(range.high)}, support::undecided));
             evidence.push_back({r.expected, tails_of(ratio.log, r.band)});
         }
     }
@@ -274,6 +279,7 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
     return verdicts;
 }
 
+/// One row per statement: its verdict and its ratios.
 table statements_table(const std::vector<judged_statement>& judged) {
     table t{{{"statement", false}, {"says", false}, {"source", false}, {"verdict", false}, {"ratios", false}}, {}};
     for (const judged_statement& s : judged) {
@@ -284,11 +290,12 @@ table statements_table(const std::vector<judged_statement>& judged) {
     return t;
 }
 
+/// One row per ratio on which the verdict on a statement depends.
 table ratios_table(const std::vector<judged_statement>& judged) {
     table t = empty_table({"statement", "where", "time of a frame"}, {"scenes", "ratio", "95 %"}, {"found"});
     for (const judged_statement& s : judged)
         for (const judged_ratio& r : s.ratios)
-            t.rows.push_back({s.id, r.where, r.lines, grouped(r.scenes), fmt::format("{:.3g}", r.ratio),
+            t.rows.push_back({s.id, r.where, r.candidates, grouped(r.scenes), fmt::format("{:.3g}", r.ratio),
                               fmt::format("{:.3g}-{:.3g}", r.range.low, r.range.high), text_of(r.verdict)});
     return t;
 }
@@ -297,7 +304,7 @@ std::vector<std::string> labels_in_statements() {
     std::vector<std::string> labels;
     for (const statement& s : statements())
         for (const stated_ratio& r : s.ratios)
-            for (const std::string& label : {r.arm, r.base})
+            for (const std::string& label : {r.candidate, r.baseline})
                 if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
     return labels;
 }

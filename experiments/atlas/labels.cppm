@@ -7,18 +7,18 @@ import aabblab.statistics;
 
 namespace aabblab {
 
-inline constexpr span_of_time per_frame = span_of_time::frame;
+inline constexpr atlas_time per_frame = atlas_time::per_frame;
 
 /// All labels, in the order of their first appearance.
 [[nodiscard]] inline std::vector<std::string> labels_of(const std::vector<atlas_scene>& atlas) {
     std::vector<std::string> labels;
     for (const atlas_scene& scene : atlas)
-        for (const atlas_line& line : scene.lines)
-            if (std::ranges::find(labels, line.label) == labels.end()) labels.push_back(line.label);
+        for (const atlas_candidate& candidate : scene.candidates)
+            if (std::ranges::find(labels, candidate.label) == labels.end()) labels.push_back(candidate.label);
     return labels;
 }
 
-/// The strategies of a line without their parameters: "neighbour_list + bucket + columns + simd".
+/// The strategies in a label without their parameters: "neighbour_list + bucket + columns + simd".
 [[nodiscard]] inline std::string family_of(std::string_view label) {
     std::string family;
     for (std::size_t i = 0; i < label.size(); ++i) {
@@ -30,23 +30,25 @@ inline constexpr span_of_time per_frame = span_of_time::frame;
 
 /// Times relative to the fastest, one per scene that has the label, in ascending order.
 [[nodiscard]] inline std::vector<double> regrets_of(const std::vector<atlas_scene>& atlas, const std::string& label,
-                                                    span_of_time span) {
+                                                    atlas_time time) {
     std::vector<double> regrets;
     for (const atlas_scene& scene : atlas)
-        if (const atlas_line* line = scene.find(label)) regrets.push_back(line->ms(span) / scene.least_ms(span));
+        if (const atlas_candidate* candidate = scene.find(label))
+            regrets.push_back(candidate->ms(time) / scene.least_ms(time));
     std::ranges::sort(regrets);
     return regrets;
 }
 
-/// The logarithm of the ratio of two lines. If their own repeats give no error, it is pooled from the repeats of all
-/// lines of the scene; without any repeats the result is unknown.
-[[nodiscard]] inline estimate log_ratio_in(const atlas_scene& scene, const atlas_line& arm, const atlas_line& base,
-                                           span_of_time span) {
-    const estimate of_repeats = log_ratio(arm, base, span);
+/// The logarithm of the ratio of two candidates' times in a scene. If their repeats give no error, since early stopping
+/// left only one, the error is that of two times with the variance pooled over the repeats of all candidates of the
+/// scene; the result is unknown (NaN) if none was repeated.
+[[nodiscard]] inline estimate log_ratio_in(const atlas_scene& scene, const atlas_candidate& candidate,
+                                           const atlas_candidate& baseline, atlas_time time) {
+    const estimate of_repeats = log_ratio(candidate, baseline, time);
     if (of_repeats.error > 0) return of_repeats;
     double squares = 0, degrees = 0;
-    for (const atlas_line& line : scene.lines) {
-        const std::vector<double>& times = line.times(span);
+    for (const atlas_candidate& any : scene.candidates) {
+        const std::vector<double>& times = any.times(time);
         const auto count = static_cast<double>(times.size());
         double mean = 0;
         for (const double ms : times) mean += std::log(ms) / count;

@@ -21,9 +21,10 @@ double objects(const scene_measures& m) {
 double pairs(const scene_measures& m) {
     return objects(m) * m.pairs_per_object;
 }
-/// The relative motion of neighbouring boxes in typical extents, at most 1.
+/// About the share of neighbours that are new in a frame: their relative motion in typical extents, at most 1.
 double renewed(const scene_measures& m) {
-    return m.motion && m.boxes.typical_extent > 0 ? std::min(1.0, m.motion->relative_displacement / m.boxes.typical_extent) : 0;
+    if (!m.motion || m.boxes.typical_extent <= 0) return 0;
+    return std::min(1.0, m.motion->relative_displacement / m.boxes.typical_extent);
 }
 double inversions(const scene_measures& m) {
     return m.motion ? objects(m) * m.motion->inversions : 0;
@@ -47,16 +48,18 @@ std::vector<double> work_of(const scene_measures& m) {
     return work;
 }
 
-/// The measured times and the work of one line in the scenes of the map, or in those held out.
-std::vector<timed_work> observations_of(const std::vector<atlas_scene>& atlas, const std::string& label, bool unseen) {
+/// The measured times and the work of one candidate, to fit a cost model or to test it: in the scenes of the map, or in
+/// those held out.
+std::vector<timed_work> observations_of(const std::vector<atlas_scene>& atlas, const std::string& label,
+                                        bool held_out) {
     std::vector<timed_work> observations;
     for (const atlas_scene& scene : atlas) {
-        const atlas_line* line = scene.find(label);
-        if (!line || scene.unseen != unseen) continue;
+        const atlas_candidate* candidate = scene.find(label);
+        if (!candidate || scene.is_held_out != held_out) continue;
         // One observation per scene gives each the same weight, whatever its repeats.
         observations.push_back({scene.scene.kind + " " + settings_text(scene.scene),
                                 work_of(scene.measures),
-                                {1e6 * line->ms(per_frame)}});
+                                {1e6 * candidate->ms(per_frame)}});
     }
     return observations;
 }
@@ -71,38 +74,40 @@ double predicted_ns(const std::vector<estimate>& costs, const scene_measures& m)
 
 }  // namespace
 
-std::vector<line_model> models_of(const std::vector<atlas_scene>& atlas) {
-    std::vector<line_model> models;
+/// Fits the costs of each candidate that was timed in more scenes than the model has terms.
+std::vector<candidate_model> models_of(const std::vector<atlas_scene>& atlas) {
+    std::vector<candidate_model> models;
     const std::vector<std::string> labels = labels_of(atlas);
     progress shown("fitting costs", labels.size());
     for (std::size_t i = 0; i < labels.size(); ++i) {
         const std::string& label = labels[i];
         shown.at(i);
-        const std::vector<timed_work> seen = observations_of(atlas, label, false);
-        if (seen.size() <= terms.size()) continue;
-        line_model m{label, fit_costs(seen), {}, {}};
-        m.seen = accuracy_of(seen, m.costs);
-        if (const std::vector<timed_work> unseen = observations_of(atlas, label, true); !unseen.empty())
-            m.unseen = accuracy_of(unseen, m.costs);
+        const std::vector<timed_work> in_map = observations_of(atlas, label, /*held_out=*/false);
+        if (in_map.size() <= terms.size()) continue;
+        candidate_model m{label, fit_costs(in_map)};
+        m.in_map = accuracy_of(in_map, m.costs);
+        if (const std::vector<timed_work> held_out = observations_of(atlas, label, true); !held_out.empty())
+            m.held_out = accuracy_of(held_out, m.costs);
         models.push_back(std::move(m));
     }
     return models;
 }
 
-table models_table(const std::vector<line_model>& models) {
+table models_table(const std::vector<candidate_model>& models) {
     table t = empty_table({"candidate"}, {"scenes", "off by", "worst", "unseen scenes", "off by there", "worst there"});
-    for (const line_model& m : models)
-        t.rows.push_back({m.label, grouped(m.seen.observations), fmt::format("{:.2f}", m.seen.median),
-                          fmt::format("{:.1f}", m.seen.worst), grouped(m.unseen.observations),
-                          fmt::format("{:.2f}", m.unseen.median), fmt::format("{:.1f}", m.unseen.worst)});
+    for (const candidate_model& m : models)
+        t.rows.push_back({m.label, grouped(m.in_map.observations), fmt::format("{:.2f}", m.in_map.median),
+                          fmt::format("{:.1f}", m.in_map.worst), grouped(m.held_out.observations),
+                          fmt::format("{:.2f}", m.held_out.median), fmt::format("{:.1f}", m.held_out.worst)});
     return t;
 }
 
-table costs_table(const std::vector<line_model>& models) {
+/// Each cost in ns per unit, with its 95 % interval; a cost is never negative.
+table costs_table(const std::vector<candidate_model>& models) {
     table t{{{"candidate", false}}, {}};
     for (const term& cost : terms)
         for (const char* part : {"", " low", " high"}) t.columns.push_back({std::string(cost.name) + part});
-    for (const line_model& m : models) {
+    for (const candidate_model& m : models) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{m.label});
         for (const estimate& cost : m.costs)
             for (const double ns : {cost.value, std::max(0.0, cost.range().low), cost.range().high})
@@ -111,18 +116,21 @@ table costs_table(const std::vector<line_model>& models) {
     return t;
 }
 
-std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas, const std::vector<line_model>& models) {
+/// How well the models choose in scenes that they were not fitted to: the measured time of the candidate with the least
+/// predicted time, relative to that of the fastest, one per scene.
+std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas,
+                                      const std::vector<candidate_model>& models) {
     std::vector<double> regrets;
     for (const atlas_scene& scene : atlas) {
-        if (!scene.unseen) continue;
-        const atlas_line* chosen = nullptr;
-        double least = std::numeric_limits<double>::infinity();
-        for (const line_model& m : models) {
-            const atlas_line* line = scene.find(m.label);
+        if (!scene.is_held_out) continue;
+        const atlas_candidate* chosen = nullptr;
+        double least_ns = std::numeric_limits<double>::infinity();
+        for (const candidate_model& m : models) {
+            const atlas_candidate* candidate = scene.find(m.label);
             const double ns = predicted_ns(m.costs, scene.measures);
-            if (!line || line->automatic || ns >= least) continue;
-            chosen = line;
-            least = ns;
+            if (!candidate || candidate->is_automatic || ns >= least_ns) continue;
+            chosen = candidate;
+            least_ns = ns;
         }
         if (chosen) regrets.push_back(chosen->ms(per_frame) / scene.fastest(per_frame).ms(per_frame));
     }

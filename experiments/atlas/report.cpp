@@ -16,7 +16,8 @@ struct section {
     bool shown = true;  ///< in the page; otherwise only in its file
 };
 
-std::string models_text(const std::vector<atlas_scene>& atlas, const std::vector<line_model>& models) {
+/// Explains the table of models, with the regrets of relying on them in scenes held out.
+std::string models_text(const std::vector<atlas_scene>& atlas, const std::vector<candidate_model>& models) {
     std::string text =
         "A linear model predicts the time per frame as a sum of costs per box, pair, inversion and so on, fitted to "
         "the scenes of the map. \"off by\" is the factor by which a prediction is too long or too short: its median "
@@ -33,7 +34,7 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
     const std::vector<border> borders = borders_of(atlas);
     const std::vector<atlas_scene> classic = without_columns(atlas);
     const std::vector<border> classic_borders = borders_of(classic);
-    const std::vector<line_model> models = models_of(atlas);
+    const std::vector<candidate_model> models = models_of(atlas);
     const std::vector<judged_statement> judged = judged_statements(atlas);
     std::vector<section> sections{
         {"The fastest",
@@ -45,16 +46,16 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
         {"Regret of using one everywhere",
          "The time per frame relative to that of the fastest of each scene. Candidates that early stopping "
          "ended have a single repeat.",
-         "regrets", regrets_table(atlas, span_of_time::frame)},
+         "regrets", regrets_table(atlas, atlas_time::per_frame)},
         {"The same with the first frame and the construction",
          "By the time of all frames. Scenes are short, so the first frame matters: insertion sort takes quadratic time "
          "in it.",
-         "regrets_whole", regrets_table(atlas, span_of_time::whole)}};
-    std::vector<atlas_scene> unseen;
-    std::ranges::copy_if(atlas, std::back_inserter(unseen), &atlas_scene::unseen);
-    if (!unseen.empty())
+         "regrets_whole", regrets_table(atlas, atlas_time::whole_run)}};
+    std::vector<atlas_scene> held_out;
+    std::ranges::copy_if(atlas, std::back_inserter(held_out), &atlas_scene::is_held_out);
+    if (!held_out.empty())
         sections.push_back({"The same per frame, in the scenes outside the map", "", "regrets_unseen",
-                            regrets_table(unseen, span_of_time::frame)});
+                            regrets_table(held_out, atlas_time::per_frame)});
     sections.push_back(
         {"Borders",
          "A border is the value of one parameter, all others equal, at which the fastest of one scene and that of the "
@@ -78,8 +79,8 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
 }
 
 std::string heading_of(const std::vector<atlas_scene>& atlas) {
-    const auto unseen = static_cast<std::size_t>(std::ranges::count_if(atlas, &atlas_scene::unseen));
-    return fmt::format("{} scenes of the map, {} other scenes", grouped(atlas.size() - unseen), grouped(unseen));
+    const auto held_out = static_cast<std::size_t>(std::ranges::count_if(atlas, &atlas_scene::is_held_out));
+    return fmt::format("{} scenes of the map, {} other scenes", grouped(atlas.size() - held_out), grouped(held_out));
 }
 
 }  // namespace

@@ -8,19 +8,21 @@ namespace aabblab {
 
 namespace {
 
-/// The second fastest line; null if there is none.
-const atlas_line* second_of(const atlas_scene& scene) {
-    const atlas_line& best = scene.fastest(per_frame);
-    return scene.fastest_if(per_frame, [&](const atlas_line& line) { return &line != &best; });
+/// The second fastest candidate; null if there is none.
+const atlas_candidate* second_of(const atlas_scene& scene) {
+    const atlas_candidate& best = scene.fastest(per_frame);
+    return scene.fastest_if(per_frame, [&](const atlas_candidate& candidate) { return &candidate != &best; });
 }
 
-/// True if the interval of the ratio to the fastest lies above 1.
-bool is_slower(const atlas_line& line, const atlas_line& best) {
-    return log_ratio(line, best, per_frame).range().low > 0;
+/// True if the 95 % interval of the ratio to the fastest lies above 1.
+bool is_slower(const atlas_candidate& candidate, const atlas_candidate& best) {
+    return log_ratio(candidate, best, per_frame).range().low > 0;
 }
 
 }  // namespace
 
+/// Per candidate: the scenes that it wins, those in which its lead over the second is significant (`shown`), and those
+/// in which it is not significantly slower than the winner (`as_fast`).
 table winners_table(const std::vector<atlas_scene>& atlas) {
     table t{{{row_number}, {"candidate", false}, {"scenes"}, {"fastest in"}, {"shown in"}, {"as fast in"}}, {}};
     struct standing {
@@ -32,16 +34,16 @@ table winners_table(const std::vector<atlas_scene>& atlas) {
         standing& entry = standings.emplace_back();
         entry.label = label;
         for (const atlas_scene& scene : atlas) {
-            const atlas_line* line = scene.find(label);
-            if (!line) continue;
+            const atlas_candidate* candidate = scene.find(label);
+            if (!candidate) continue;
             ++entry.scenes;
-            const atlas_line& best = scene.fastest(per_frame);
-            if (line != &best) {
-                if (!is_slower(*line, best)) ++entry.as_fast;
+            const atlas_candidate& best = scene.fastest(per_frame);
+            if (candidate != &best) {
+                if (!is_slower(*candidate, best)) ++entry.as_fast;
                 continue;
             }
             ++entry.fastest;
-            const atlas_line* second = second_of(scene);
+            const atlas_candidate* second = second_of(scene);
             if (!second || is_slower(*second, best)) ++entry.shown;
         }
     }
@@ -54,6 +56,7 @@ table winners_table(const std::vector<atlas_scene>& atlas) {
     return t;
 }
 
+/// One row per scene, with the lead of the fastest; an empty cell if the scene lacks a second, `auto` or motion.
 table cells_table(const std::vector<atlas_scene>& atlas) {
     table t = empty_table({"scene", "parameters"},
                           {"pairs_an_object", "inversions", "at_rest", "clustering", "size_ratio"}, {"fastest"});
@@ -61,9 +64,9 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
         t.columns.end(),
         {{"frame_ms"}, {"second", false}, {"second_ratio"}, {"second_low"}, {"second_high"}, {"auto_ratio"}});
     for (const atlas_scene& scene : atlas) {
-        const atlas_line& best = scene.fastest(per_frame);
-        const atlas_line* second = second_of(scene);
-        const auto automatic = std::ranges::find_if(scene.lines, &atlas_line::automatic);
+        const atlas_candidate& best = scene.fastest(per_frame);
+        const atlas_candidate* second = second_of(scene);
+        const auto is_automatic = std::ranges::find_if(scene.candidates, &atlas_candidate::is_automatic);
         const scene_measures& m = scene.measures;
         const auto text = [](double value) { return fmt::format("{:.4g}", value); };
         std::vector<std::string> cells{scene.scene.kind,
@@ -81,15 +84,17 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
             for (const double log : {ratio.value, ratio.range().low, ratio.range().high})
                 cells.push_back(text(std::exp(log)));
         } else {
-            cells.resize(cells.size() + 3);
+            cells.resize(cells.size() + 3);  // no ratio and no interval
         }
-        cells.push_back(automatic != scene.lines.end() ? text(automatic->ms(per_frame) / best.ms(per_frame)) : "");
+        cells.push_back(is_automatic != scene.candidates.end() ? text(is_automatic->ms(per_frame) / best.ms(per_frame))
+                                                               : "");
         t.rows.push_back(std::move(cells));
     }
     return t;
 }
 
-table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time span) {
+/// Candidates in ascending order of their median time relative to the fastest of each scene.
+table regrets_table(const std::vector<atlas_scene>& atlas, atlas_time time) {
     struct standing {
         std::string label;
         std::vector<double> regrets;
@@ -97,7 +102,7 @@ table regrets_table(const std::vector<atlas_scene>& atlas, span_of_time span) {
     };
     std::vector<standing> standings;
     for (const std::string& label : labels_of(atlas)) {
-        standing& entry = standings.emplace_back(label, regrets_of(atlas, label, span));
+        standing& entry = standings.emplace_back(label, regrets_of(atlas, label, time));
         entry.median = quartiles_of(entry.regrets).median;
     }
     std::ranges::stable_sort(standings, {}, &standing::median);

@@ -8,18 +8,21 @@ import aabblab.scenes;
 import aabblab.statistics;
 import aabblab.tables;
 
-using aabblab::atlas_line;
+using aabblab::atlas_candidate;
 using aabblab::atlas_scene;
-using aabblab::span_of_time;
+using aabblab::atlas_time;
 
 namespace {
 
-atlas_line line(const std::string& label, double ms, bool automatic = false) {
-    return {label, automatic, {ms, ms * 1.01, ms * 0.99}, {2 * ms, 2 * ms, 2 * ms}};
+atlas_candidate line(const std::string& label, double ms, bool is_automatic = false) {
+    return {label, is_automatic, {ms, ms * 1.01, ms * 0.99}, {2 * ms, 2 * ms, 2 * ms}};
 }
 
-atlas_scene cloud(const std::string& displacement, std::vector<atlas_line> lines, bool unseen = false) {
-    return {{"cloud", {{"objects", "1000"}, {"displacement", displacement}}, {}, 1}, unseen, {}, std::move(lines)};
+atlas_scene cloud(const std::string& displacement, std::vector<atlas_candidate> candidates, bool is_held_out = false) {
+    return {{"cloud", {{"objects", "1000"}, {"displacement", displacement}}, {}, 1},
+            is_held_out,
+            {},
+            std::move(candidates)};
 }
 
 std::string cell(const aabblab::table& t, const std::string& tested, const std::string& column) {
@@ -52,15 +55,15 @@ TEST_CASE("The atlas counts who wins, and what it costs to use one everywhere") 
     // auto is as fast as the fastest of the second scene, but is no composition that could be the fastest.
     CHECK(cell(winners, "auto", "fastest in") == "0");
     CHECK(cell(winners, "auto", "as fast in") == "1");
-    const aabblab::table regrets = regrets_table(atlas, span_of_time::frame);
+    const aabblab::table regrets = regrets_table(atlas, atlas_time::per_frame);
     CHECK(cell(regrets, "a", "worst") == "2.00");
     CHECK(cell(regrets, "a", "median") == "1.50");
     CHECK(cell(regrets, "auto", "worst") == "1.50");
     CHECK(cell(regrets, "auto", "over 1.3") == "1");
     // auto may itself be the fastest.
     std::vector<atlas_scene> won = atlas;
-    won[1].lines[2] = line("auto", 0.5, true);
-    const aabblab::table others = regrets_table(won, span_of_time::frame);
+    won[1].candidates[2] = line("auto", 0.5, true);
+    const aabblab::table others = regrets_table(won, atlas_time::per_frame);
     CHECK(cell(others, "b", "worst") == "2.00");
     CHECK(cell(others, "a", "worst") == "4.00");
 }
@@ -82,7 +85,7 @@ TEST_CASE("A border lies where two take the same time, between two scenes that d
     atlas[1].scene.settings[0].value = "5000";
     CHECK(borders_of(atlas).empty());
     atlas[1].scene.settings[0].value = "1000";
-    atlas[1].unseen = true;
+    atlas[1].is_held_out = true;
     CHECK(borders_of(atlas).empty());
 }
 
@@ -102,9 +105,9 @@ TEST_CASE("Lists of several margins have one border, that of the fastest of them
 TEST_CASE("A border between single repeats is as sure as the repeats of others make it") {
     std::vector<atlas_scene> atlas = two_scenes();
     for (atlas_scene& scene : atlas)
-        for (atlas_line& one : scene.lines) one.frame_ms.resize(1);
+        for (atlas_candidate& one : scene.candidates) one.frame_ms.resize(1);
     CHECK(borders_of(atlas).empty());
-    for (atlas_scene& scene : atlas) scene.lines.push_back(line("another", 9));
+    for (atlas_scene& scene : atlas) scene.candidates.push_back(line("another", 9));
     const std::vector<aabblab::border> borders = borders_of(atlas);
     REQUIRE(borders.size() == 1);
     CHECK(borders[0].range.low < 0.0999);
@@ -114,22 +117,22 @@ TEST_CASE("A border between single repeats is as sure as the repeats of others m
 TEST_CASE("A model of a line's times is fitted to the map, and judged by the scenes beside it") {
     std::vector<atlas_scene> atlas;
     for (std::size_t objects = 100; objects <= 25600; objects *= 2)
-        for (const bool unseen : {false, true})
+        for (const bool is_held_out : {false, true})
             for (const double pairs_per_object : {0.1, 2.0}) {
                 // 10 ns a box and 5 a pair; beside the map, half as much again.
                 const double n = static_cast<double>(objects);
-                const double ms = (10 * n + 5 * n * pairs_per_object) * (unseen ? 1.5e-6 : 1e-6);
-                atlas.push_back(cloud("0.1", {line("linear", ms), line("slow", 1e-6 * n * n)}, unseen));
+                const double ms = (10 * n + 5 * n * pairs_per_object) * (is_held_out ? 1.5e-6 : 1e-6);
+                atlas.push_back(cloud("0.1", {line("linear", ms), line("slow", 1e-6 * n * n)}, is_held_out));
                 atlas.back().scene.settings[0].value = std::to_string(objects);
                 atlas.back().measures.objects = objects;
                 atlas.back().measures.pairs_per_object = pairs_per_object;
-                atlas.back().lines[0].frame_ms = {atlas.back().lines[0].frame_ms[0]};
+                atlas.back().candidates[0].frame_ms = {atlas.back().candidates[0].frame_ms[0]};
             }
-    const std::vector<aabblab::line_model> models = models_of(atlas);
+    const std::vector<aabblab::candidate_model> models = models_of(atlas);
     REQUIRE(models.size() == 2);
     CHECK(models[0].label == "linear");
-    CHECK(models[0].seen.median < 1.01);
-    CHECK(std::abs(models[0].unseen.median - 1.5) < 0.02);
+    CHECK(models[0].in_map.median < 1.01);
+    CHECK(std::abs(models[0].held_out.median - 1.5) < 0.02);
     const std::vector<double> regrets = regrets_of_models(atlas, models);
     CHECK(regrets.size() == atlas.size() / 2);
     for (const double regret : regrets) CHECK(regret < 1.2);
@@ -148,7 +151,7 @@ TEST_CASE("A statement is judged by the ratios that it speaks of, and undecided 
     const auto verdict = [&](const std::string& id) { return judged(atlas, id).verdict; };
     CHECK(verdict("B9") == aabblab::verdict_kind::does_not_hold);
     CHECK(verdict("B1") == aabblab::verdict_kind::undecided);
-    for (atlas_scene& scene : atlas) std::swap(scene.lines[0].frame_ms, scene.lines[1].frame_ms);
+    for (atlas_scene& scene : atlas) std::swap(scene.candidates[0].frame_ms, scene.candidates[1].frame_ms);
     CHECK(verdict("B9") == aabblab::verdict_kind::holds);
 }
 
@@ -157,16 +160,16 @@ TEST_CASE("A single ratio of single repeats is as sure as the repeats of others 
                                     false,
                                     {},
                                     {line("insertion + incremental", 8), line("bucket + columns + simd", 1)}}};
-    std::vector<atlas_line>& lines = atlas[0].lines;
-    for (atlas_line& one : lines) one.frame_ms.resize(1);
+    std::vector<atlas_candidate>& candidates = atlas[0].candidates;
+    for (atlas_candidate& one : candidates) one.frame_ms.resize(1);
     const auto ratios = [&] { return judged(atlas, "B2").ratios; };
     CHECK(ratios().empty());
-    lines.push_back(line("another", 3));
+    candidates.push_back(line("another", 3));
     REQUIRE(ratios().size() == 1);
     CHECK(ratios()[0].range.low < 7.99);
     CHECK(ratios()[0].range.high > 8.01);
     CHECK(ratios()[0].verdict == aabblab::support::contradicts);
-    lines.back().frame_ms = {1, 3, 9};
+    candidates.back().frame_ms = {1, 3, 9};
     CHECK(ratios()[0].verdict == aabblab::support::undecided);
 }
 
