@@ -24,19 +24,20 @@ public:
     struct entry {
         Point point;
         std::unique_ptr<aabb::triangle_test> test;
-        std::size_t share = 1;   ///< runs on every `share`-th batch
-        std::vector<double> ns;  ///< per pair, for each batch
+        std::size_t batches_per_run = 1;  ///< slow tests run on every n-th batch only
+        std::vector<double> ns;           ///< per pair, for each batch
     };
 
     void add(entry added) { entries_.push_back(std::move(added)); }
 
+    /// Times each test on a batch of pairs, in an order that varies with the batch, and adds the errors to its point.
     /// @param pairs the number of pairs in the batch
     /// @param work is timed, for each test
     /// @param judge compares the result with the ground truth, untimed
     template <class Work, class Judge>
     void run_batch(std::size_t pairs, Work work, Judge judge) {
         run_round(entries_, batches_, [&](entry& e) {
-            if (batches_ % e.share != 0) return;
+            if (batches_ % e.batches_per_run != 0) return;
             const double ms = milliseconds_of([&] { work(*e.test); });
             e.ns.push_back(ms * 1e6 / static_cast<double>(pairs));
             judge(e.point);
@@ -44,6 +45,7 @@ public:
         ++batches_;
     }
 
+    /// The results of all tests; they are moved out.
     /// @param time the member of a point that receives the quartiles of its times
     [[nodiscard]] std::vector<Point> points(quartiles Point::* time) {
         std::vector<Point> points;
@@ -65,16 +67,18 @@ constexpr std::size_t pairs_in_batch = 4096;
 /// Runs the methods of a study on one set of pairs.
 class error_run {
 public:
+    /// @param in_double leaves out the tests that take floats only
     error_run(const error_study& study, const std::string& name, bool in_double) {
         for (const error_curve& curve : study.curves)
             for (const aabb::strategy_choice& choice : curve.triangles) {
                 std::unique_ptr<aabb::triangle_test> test = triangle_test_named(choice);
                 if (in_double && !test->takes_double()) continue;
                 error_point point{.pairs = name, .in_double = in_double, .curve = curve.label, .triangle = choice};
-                methods_.add({std::move(point), std::move(test), 1, {}});
+                methods_.add({.point = std::move(point), .test = std::move(test), .ns = {}});
             }
     }
 
+    /// Times the methods on a batch, and counts their errors against the exact predicates.
     template <class Real>
     void run_batch(std::span<const aabb::triangle_pair<Real>> batch) {
         truth_.resize(batch.size());
@@ -89,6 +93,7 @@ public:
     [[nodiscard]] std::vector<error_point> points() { return methods_.points(&error_point::ns_per_pair); }
 
 private:
+    /// Adds the false negatives and false positives of the last results; results and truth are 0 or 1.
     void count(error_point& point) const {
         point.count += results_.size();
         for (std::size_t i = 0; i < results_.size(); ++i) {
@@ -102,7 +107,7 @@ private:
     std::vector<std::uint8_t> truth_, results_;
 };
 
-/// Runs the methods on generated pairs, batch by batch.
+/// Runs the methods on the generated pairs of a set, batch by batch, so that memory does not grow with their number.
 template <class Real>
 std::vector<error_point> run_pairs(const error_study& study, const pair_set& set, progress& shown, std::size_t& done) {
     error_run run(study, set.pair_class, set.in_double);
@@ -117,9 +122,10 @@ std::vector<error_point> run_pairs(const error_study& study, const pair_set& set
     return run.points();
 }
 
-/// Appends the candidate pairs of two objects.
-void add_candidates(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b,
-                    std::vector<aabb::triangle_pair<float>>& candidates) {
+/// Appends the pairs of triangles of two objects whose boxes overlap. A global search over the boxes of all triangles
+/// of both finds them in less than quadratic time; of its pairs, those within one object do not matter.
+void add_overlapping(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b,
+                     std::vector<aabb::triangle_pair<float>>& overlapping) {
     const aabb::box bounds_b = aabb::bounds_of(b);
     const aabb::relative_pose to_a(pose_a, pose_b, bounds_b);
     if (!aabb::overlaps(aabb::bounds_of(a), to_a(bounds_b))) return;
@@ -137,27 +143,28 @@ void add_candidates(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::m
     search->search(pairs);
     for (const aabb::index_pair p : pairs)
         if (p.a < a.triangle_count() && p.b >= a.triangle_count())
-            candidates.push_back({a.triangle(p.a), images[p.b - a.triangle_count()]});
+            overlapping.push_back({a.triangle(p.a), images[p.b - a.triangle_count()]});
 }
 
 /// The pairs of triangles with overlapping boxes, of objects with overlapping boxes, over all frames. The second
 /// triangle is transformed into the frame of the first mesh, as in the leaves of a tree.
-std::vector<aabb::triangle_pair<float>> candidate_triangles(const scene_choice& choice) {
+std::vector<aabb::triangle_pair<float>> overlapping_triangles(const scene_choice& choice) {
     const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
-    std::vector<aabb::triangle_pair<float>> candidates;
+    std::vector<aabb::triangle_pair<float>> overlapping;
     const auto mesh_of = [&](std::size_t object) -> const aabb::mesh& { return scene->meshes[scene->mesh_of[object]]; };
     for (std::vector<aabb::pose> poses; scene->next(poses);)
         for (std::size_t a = 0; a < poses.size(); ++a)
             for (std::size_t b = a + 1; b < poses.size(); ++b)
-                add_candidates(mesh_of(a), poses[a], mesh_of(b), poses[b], candidates);
-    return candidates;
+                add_overlapping(mesh_of(a), poses[a], mesh_of(b), poses[b], overlapping);
+    return overlapping;
 }
 
+/// Runs the methods on the pairs that a narrow phase would test in a scene of meshes.
 std::vector<error_point> run_scene(const error_study& study, const scene_choice& scene) {
-    error_run run(study, scene.kind + " " + parameters_text(scene), false);
-    std::vector<aabb::triangle_pair<float>> pairs = candidate_triangles(scene);
-    if (pairs.empty())
-        throw aabb::input_error(scene.kind + " " + parameters_text(scene) + " has no triangles whose boxes overlap");
+    const std::string name = scene.kind + " " + parameters_text(scene);
+    error_run run(study, name, /*in_double=*/false);
+    std::vector<aabb::triangle_pair<float>> pairs = overlapping_triangles(scene);
+    if (pairs.empty()) throw aabb::input_error(name + " has no triangles whose boxes overlap");
     // A tree traversal yields pairs in an unpredictable order; this search yields them row by row.
     std::ranges::shuffle(pairs, std::mt19937_64(1));  // NOLINT(*-msc51-cpp): the same order in every run
     const std::span<const aabb::triangle_pair<float>> shuffled(pairs);
@@ -168,8 +175,8 @@ std::vector<error_point> run_scene(const error_study& study, const scene_choice&
 
 constexpr std::size_t hits_in_batch = 1024;
 constexpr std::uint64_t most_pairs_per_hit = 1000;
-/// Library tests run on one batch in `library_share`: CGAL's takes a hundred times as long as ours.
-constexpr std::size_t library_share = 16;
+/// Tests of libraries run on one batch in sixteen: CGAL's takes a hundred times as long as ours.
+constexpr std::size_t batches_per_library_run = 16;
 
 /// Raises the greatest errors so far to those of one hit.
 void raise_to(aabb::corner_errors& greatest, const aabb::corner_errors& errors) {
@@ -179,20 +186,21 @@ void raise_to(aabb::corner_errors& greatest, const aabb::corner_errors& errors) 
     greatest.bound = errors.bound;
 }
 
-/// Runs the constructing tests on the hits of one class.
+/// Runs the tests that construct the intersection of two triangles on the hits (intersecting pairs) of one class.
 class hit_run {
 public:
     explicit hit_run(const pair_set& set) {
         const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);
         for (const std::string& name : constructing_tests()) {
             const bool of_library = std::ranges::find(strategies, name) == strategies.end();
-            tests_.add({{.pairs = set.pair_class, .in_double = set.in_double, .triangle = name},
-                        triangle_test_named({name, {}}),
-                        of_library ? library_share : 1,
-                        {}});
+            tests_.add({.point = {.pairs = set.pair_class, .in_double = set.in_double, .triangle = name},
+                        .test = triangle_test_named({name, {}}),
+                        .batches_per_run = of_library ? batches_per_library_run : 1,
+                        .ns = {}});
         }
     }
 
+    /// Times the tests on some hits, and compares each constructed intersection with CGAL's exact one.
     void run_batch(std::span<const aabb::triangle_pair<double>> hits) {
         std::deque<aabb::exact_intersection> exact;
         for (const aabb::triangle_pair<double>& hit : hits) exact.emplace_back(hit.a, hit.b);
@@ -223,6 +231,7 @@ private:
 };
 
 /// Generates pairs until there are enough hits, and runs the constructing tests on these.
+/// @param done the hits of earlier sets, for the progress shown
 template <class Real>
 std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint64_t done) {
     hit_run run(set);
@@ -254,6 +263,7 @@ std::string number_text(double number) {
 
 }  // namespace
 
+/// Runs all methods on all generated sets of pairs, then on all scenes; each part has a progress line of its own.
 std::vector<error_point> measure_errors(const error_study& study,
                                         const std::function<void(std::span<const error_point>)>& finished) {
     std::vector<error_point> points;
@@ -293,6 +303,7 @@ std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
     return points;
 }
 
+/// One row per class and test, with the greatest error over the hits, also relative to the bound that the test states.
 table hit_summary(std::span<const hit_point> points, bool in_double) {
     table t = empty_table({"pairs", "triangle"}, {"hits", "differ", "error/bound", "error", "bound", "ns/hit"});
     for (const hit_point& p : points) {

@@ -15,7 +15,7 @@ namespace {
 using cost = std::array<double, 2>;
 
 /// The Pareto front: the indices of the methods whose cost no other cost dominates, in ascending order of the first
-/// number; of equal costs only one.
+/// number; of equal costs only one. In that order, a method is on the front if its second number is a new minimum.
 template <class Method, class CostOf>
 std::vector<std::size_t> front_of(const std::vector<Method>& methods, CostOf cost_of) {
     std::vector<std::size_t> order(methods.size());
@@ -54,7 +54,7 @@ cost cost_of(const pooled& method) {
     return {method.ns(), method.error()};
 }
 
-/// One entry per method, in order of appearance.
+/// Sums the results over the sets of pairs: one entry per method (a test with its parameter), in order of appearance.
 std::vector<pooled> pooled_over(std::span<const error_point> points) {
     std::vector<pooled> methods;
     for (const error_point& p : points) {
@@ -124,9 +124,9 @@ figure figure_of(const std::string& name, const std::string& sets, std::span<con
         return figure_point{m.ns(), share};
     };
     for (const pooled& m : methods) {
-        auto line = std::ranges::find(f.lines, m.curve, &series::label);
-        if (line == f.lines.end()) line = f.lines.insert(f.lines.end(), {m.curve});
-        line->points.push_back(point_of(m));
+        auto curve = std::ranges::find(f.lines, m.curve, &series::label);
+        if (curve == f.lines.end()) curve = f.lines.insert(f.lines.end(), {m.curve});
+        curve->points.push_back(point_of(m));
     }
     series front{"Pareto front"};
     for (const std::size_t i : front_of(methods, cost_of)) front.points.push_back(point_of(methods[i]));
@@ -137,8 +137,8 @@ figure figure_of(const std::string& name, const std::string& sets, std::span<con
     return f;
 }
 
-/// The position of a composition in a plot.
-struct place {
+/// A composition with the values of its metrics.
+struct plotted_composition {
     std::string label;
     double x, y;
 };
@@ -151,44 +151,47 @@ public:
 
     /// A sentence about the compositions at both ends of the Pareto front; empty if there is no trade-off.
     [[nodiscard]] std::string statement_of(std::span<const error_curve> curves) const {
-        std::vector<place> positions;
+        std::vector<plotted_composition> plotted;
         for (const error_curve& curve : curves)
             for (const aabb::composition& c : curve.compositions)
-                if (std::optional<place> position = place_of(c)) {
+                if (std::optional<plotted_composition> values = values_of(c)) {
                     // A curve with a single composition keeps its label in the config.
-                    if (curve.compositions.size() == 1) position->label = curve.label;
-                    positions.push_back(*std::move(position));
+                    if (curve.compositions.size() == 1) values->label = curve.label;
+                    plotted.push_back(*std::move(values));
                 }
-        const std::vector<std::size_t> front = front_of(positions);
+        const std::vector<std::size_t> front = front_of(plotted);
         if (front.size() < 2 || !has_front()) return {};
-        const place& first = positions[front.front()];
-        const place& last = positions[front.back()];
+        const plotted_composition& first = plotted[front.front()];
+        const plotted_composition& last = plotted[front.back()];
         return fmt::format("In {}, {} has the best {}, {}, with a {} of {}; {} has the best {}, {}, with a {} of {}.",
                            title(), first.label, x_.name, value_text(x_, first.x), y_.name, value_text(y_, first.y),
                            last.label, y_.name, value_text(y_, last.y), x_.name, value_text(x_, last.x));
     }
 
+    /// One curve per method over its parameter, with the Pareto front if both metrics have a better direction.
     [[nodiscard]] figure figure_of(const std::string& name, std::span<const error_curve> curves) const {
         figure f{.name = name,
                  .caption = fmt::format("{} over {} in {}: each method over its parameter.", y_.name, x_.name, title()),
                  .x = {label_of(x_), false},
                  .y = {label_of(y_), false}};
-        std::vector<place> positions;
+        std::vector<plotted_composition> plotted;
         for (const error_curve& curve : curves) {
-            series line{curve.label};
+            series& drawn = f.lines.emplace_back(series{curve.label});
             for (const aabb::composition& c : curve.compositions)
-                if (const std::optional<place> position = place_of(c)) {
-                    line.points.push_back(point_of(*position));
-                    positions.push_back(*position);
+                if (const std::optional<plotted_composition> values = values_of(c)) {
+                    drawn.points.push_back(point_of(*values));
+                    plotted.push_back(*values);
                 }
-            f.lines.push_back(std::move(line));
         }
         // A logarithmic axis cannot show zero.
-        f.x.logarithmic = std::ranges::all_of(positions, [](const place& p) { return p.x > 0; });
-        f.y.logarithmic = has_floor() || std::ranges::all_of(positions, [](const place& p) { return p.y > 0; });
+        f.x.logarithmic = std::ranges::all_of(plotted, [](const plotted_composition& c) { return c.x > 0; });
+        f.y.logarithmic =
+            has_floor() || std::ranges::all_of(plotted, [](const plotted_composition& c) { return c.y > 0; });
         if (has_front()) {
+            series front{"Pareto front"};
+            for (const std::size_t i : front_of(plotted)) front.points.push_back(point_of(plotted[i]));
             // Drawn first, below the curves.
-            f.lines.insert(f.lines.begin(), front_line(positions));
+            f.lines.insert(f.lines.begin(), std::move(front));
             f.caption += " A line joins the Pareto front.";
         }
         if (has_floor()) {
@@ -209,13 +212,14 @@ private:
         return m.name + (m.unit.empty() ? "" : " (" + m.unit + ")");
     }
 
-    [[nodiscard]] std::optional<place> place_of(const aabb::composition& c) const {
+    /// The metrics of a composition in this scene; empty if it did not run in it.
+    [[nodiscard]] std::optional<plotted_composition> values_of(const aabb::composition& c) const {
         const candidate_name name = candidate_of(c, has_meshes(scene_.scene)).name;
-        const auto line = std::ranges::find(scene_.lines, name, &summary_line::name);
-        if (line == scene_.lines.end()) return std::nullopt;
-        const std::optional<double>& x = line->metrics[static_cast<std::size_t>(&x_ - metrics().data())];
-        const std::optional<double>& y = line->metrics[static_cast<std::size_t>(&y_ - metrics().data())];
-        return x && y ? std::optional(place{line->label, *x, *y}) : std::nullopt;
+        const auto found = std::ranges::find(scene_.candidates, name, &candidate_summary::name);
+        if (found == scene_.candidates.end()) return std::nullopt;
+        const std::optional<double>& x = found->metrics[static_cast<std::size_t>(&x_ - metrics().data())];
+        const std::optional<double>& y = found->metrics[static_cast<std::size_t>(&y_ - metrics().data())];
+        return x && y ? std::optional(plotted_composition{found->label, *x, *y}) : std::nullopt;
     }
 
     [[nodiscard]] bool has_front() const { return x_.direction != better::neither && y_.direction != better::neither; }
@@ -223,30 +227,26 @@ private:
         return fmt::format("{:.3g}{}", value, m.unit.empty() ? "" : " " + m.unit);
     }
 
+    /// True if shares of wrong pairs are drawn, in which no errors are drawn as one wrong pair, since log 0 is
+    /// infinite.
     [[nodiscard]] bool has_floor() const { return y_.name == "wrong_share" && exact_pairs() > 0; }
     [[nodiscard]] std::uint64_t exact_pairs() const {
-        const summary_line& line = scene_.lines[0];
-        return line.contacts.value_or(line.pairs) + line.false_negatives.value_or(0) - line.false_positives.value_or(0);
+        const candidate_summary& any = scene_.candidates[0];
+        return any.contacts.value_or(any.pairs) + any.false_negatives.value_or(0) - any.false_positives.value_or(0);
     }
     [[nodiscard]] double least_share() const { return 1 / static_cast<double>(exact_pairs()); }
 
-    [[nodiscard]] figure_point point_of(const place& p) const {
-        const double y = has_floor() ? std::max(p.y, least_share()) : p.y;
-        return {p.x, y};
+    [[nodiscard]] figure_point point_of(const plotted_composition& c) const {
+        const double y = has_floor() ? std::max(c.y, least_share()) : c.y;
+        return {c.x, y};
     }
 
-    [[nodiscard]] std::vector<std::size_t> front_of(const std::vector<place>& positions) const {
+    [[nodiscard]] std::vector<std::size_t> front_of(const std::vector<plotted_composition>& plotted) const {
         const auto signed_by = [](const metric& m, double value) {
             return m.direction == better::more ? -value : value;
         };
-        return aabblab::front_of(positions,
-                                 [&](const place& p) { return cost{signed_by(x_, p.x), signed_by(y_, p.y)}; });
-    }
-
-    [[nodiscard]] series front_line(const std::vector<place>& positions) const {
-        series line{"Pareto front"};
-        for (const std::size_t i : front_of(positions)) line.points.push_back(point_of(positions[i]));
-        return line;
+        return aabblab::front_of(
+            plotted, [&](const plotted_composition& c) { return cost{signed_by(x_, c.x), signed_by(y_, c.y)}; });
     }
 
     const scene_summary& scene_;
@@ -269,6 +269,7 @@ std::string_view title_of(pair_group group) {
     return titles[static_cast<std::size_t>(group)];
 }
 
+/// Methods from the least to the greatest share of wrong results (FN: false negatives, FP: false positives).
 table error_summary(std::span<const error_point> points, pair_group group) {
     table t{{{"triangle", false}, {"ns/pair"}, {"wrong"}, {"FN"}, {"FP"}}, {}};
     std::vector<pooled> methods = pooled_over(of_group(points, group));
@@ -280,6 +281,7 @@ table error_summary(std::span<const error_point> points, pair_group group) {
     return t;
 }
 
+/// The false negatives + false positives of each method, one column per set of pairs.
 table errors_by_set(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> subset = of_group(points, group);
     table t{{{"triangle", false}}, {}};
@@ -308,6 +310,7 @@ figure group_figure(std::span<const error_point> points, pair_group group) {
                      subset);
 }
 
+/// A sentence about both ends of the Pareto front: the fastest method, and the one with the fewest errors.
 std::string group_statement(std::span<const error_point> points, pair_group group) {
     const std::vector<pooled> methods = pooled_over(of_group(points, group));
     const std::vector<std::size_t> front = front_of(methods, cost_of);
@@ -324,6 +327,7 @@ std::string group_statement(std::span<const error_point> points, pair_group grou
     return text + ".";
 }
 
+/// A figure for each group of sets of pairs, followed by one for each of its sets.
 std::vector<figure> error_figures(std::span<const error_point> points) {
     std::vector<figure> figures;
     for (const pair_group group : groups_in(points)) {

@@ -78,7 +78,7 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
 /// Prints one table over scenes per baseline, because scenes of boxes and of meshes have different ones.
 void print_overall(std::span<const scene_summary> scenes) {
     std::map<candidate_name, std::vector<scene_summary>> by_baseline;
-    for (const scene_summary& scene : scenes) by_baseline[scene.lines[0].name].push_back(scene);
+    for (const scene_summary& scene : scenes) by_baseline[scene.candidates[0].name].push_back(scene);
     for (const auto& [baseline, group] : by_baseline)
         if (const table overall = overall_table_of(group); group.size() > 1 && !overall.rows.empty())
             print(fmt::format(

@@ -60,13 +60,13 @@ TEST_CASE("Ratios are taken within a repeat") {
         rows.push_back(repeat_of("std", repeat, slow));
         rows.push_back(repeat_of("insertion", repeat, 2 * slow));
     }
-    const aabblab::summary_line line = aabblab::summarise(rows)[0].lines[1];
+    const aabblab::candidate_summary line = aabblab::summarise(rows)[0].candidates[1];
     CHECK(std::abs(line.ratio.value_or(0) - 2) < 1e-12);
     CHECK(std::abs(line.ratio_interval->low - 2) < 1e-12);
     CHECK(std::abs(line.ratio_interval->high - 2) < 1e-12);
     CHECK(line.repeats == 7);
     // Of one repeat nobody can tell how far it is off.
-    CHECK_FALSE(aabblab::summarise(std::span(rows).first(2))[0].lines[1].ratio_interval.has_value());
+    CHECK_FALSE(aabblab::summarise(std::span(rows).first(2))[0].candidates[1].ratio_interval.has_value());
 }
 
 TEST_CASE("Repeats that are too few for an interval are said to be") {
@@ -78,13 +78,13 @@ TEST_CASE("Repeats that are too few for an interval are said to be") {
     }
     for (const std::size_t few : {1U, 2U, 3U}) {
         const auto scene = aabblab::summarise(std::span(rows).first(2 * few))[0];
-        CHECK(scene.lines[1].ratio.has_value());
-        CHECK_FALSE(scene.lines[1].ratio_interval.has_value());
+        CHECK(scene.candidates[1].ratio.has_value());
+        CHECK_FALSE(scene.candidates[1].ratio_interval.has_value());
         CHECK(holds(aabblab::heading_of(scene), said));
         CHECK(column_of(aabblab::table_of(scene), "95 %").front() == "-");
     }
     const auto scene = aabblab::summarise(rows)[0];
-    CHECK(scene.lines[1].ratio_interval.has_value());
+    CHECK(scene.candidates[1].ratio_interval.has_value());
     CHECK_FALSE(holds(aabblab::heading_of(scene), "too few"));
 }
 
@@ -104,7 +104,7 @@ TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean
     CHECK(scenes[0].scene == without_seed(rows[0].scene));
     CHECK(scenes[0].seeds == std::vector<std::uint64_t>{1, 20});
     CHECK(scenes[0].digest.empty());
-    const aabblab::summary_line& line = scenes[0].lines[1];
+    const aabblab::candidate_summary& line = scenes[0].candidates[1];
     CHECK(std::abs(line.ratio.value_or(0) - 4) < 1e-12);
     // Two seeds that disagree leave the ratio open: they are too few for an interval.
     CHECK_FALSE(line.ratio_interval.has_value());
@@ -126,7 +126,7 @@ TEST_CASE("One seed that is inexact makes a line inexact, with what all seeds mi
     second.false_negatives = second.false_positives = 0;
     for (const auto& rows : {std::vector<row>{first, second}, std::vector<row>{second, first}}) {
         const auto scene = aabblab::summarise(rows)[0];
-        CHECK(scene.lines[0].status == "inexact");
+        CHECK(scene.candidates[0].status == "inexact");
         CHECK(column_of(aabblab::table_of(scene), "result") == texts{"-2 +1"});
     }
 }

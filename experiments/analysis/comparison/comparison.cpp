@@ -73,7 +73,7 @@ std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     const scene_summary scene = summarise(rows).at(0);
     if (names.size() == 1 && !scene.common.empty()) return {scene.common};
     std::vector<std::string> labels;
-    for (const summary_line& line : scene.lines) labels.push_back(line.label);
+    for (const candidate_summary& line : scene.candidates) labels.push_back(line.label);
     return labels;
 }
 
@@ -136,7 +136,7 @@ std::optional<candidate_name> baseline_of(const shared_scene& scene, const rows_
 }
 
 /// The logarithms of one composition or engine in a scene, in A and in B.
-struct measured_line {
+struct measured_candidate {
     std::size_t scene;  ///< index in the report
     std::string label;
     cells a;
@@ -144,11 +144,11 @@ struct measured_line {
 };
 
 /// Decides all lines as one family of tests, and adds each to its scene.
-void add_decided(std::span<const measured_line> lines, std::vector<compared_time> compared_scene::* times_of_scene,
+void add_decided(std::span<const measured_candidate> lines, std::vector<compared_time> compared_scene::* times_of_scene,
                  std::vector<compared_scene>& scenes) {
     std::vector<compared_time> times;
     std::vector<evidence> evidences;
-    for (const measured_line& entry : lines) {
+    for (const measured_candidate& entry : lines) {
         const estimate a = bootstrap(entry.a);
         const estimate b = bootstrap(entry.b);
         const estimate change = difference_of(b, a);
@@ -264,7 +264,7 @@ comparison compare(const run_results& a, const run_results& b, compared quantiti
                                 " have no scene in common: scenes must agree in experiment, kind, parameters and seed");
     report.only_in_a = count_only_in(of_a, of_b);
     report.only_in_b = count_only_in(of_b, of_a);
-    std::vector<measured_line> ratios, times;
+    std::vector<measured_candidate> ratios, times;
     for (const shared_scene& shared : scenes_shared(a.rows, of_b)) {
         const std::size_t place = report.scenes.size();
         const std::vector<std::string> labels = labels_of(shared.names);
@@ -276,8 +276,8 @@ comparison compare(const run_results& a, const run_results& b, compared quantiti
         if (!baseline) continue;
         for (std::size_t i = 0; i < labels.size(); ++i) {
             const candidate_name& name = shared.names[i];
-            const auto add = [&](std::vector<measured_line>& lines, const candidate_name* denominator) {
-                measured_line entry{place, labels[i], log_times(of_a, shared, name, denominator),
+            const auto add = [&](std::vector<measured_candidate>& lines, const candidate_name* denominator) {
+                measured_candidate entry{place, labels[i], log_times(of_a, shared, name, denominator),
                                     log_times(of_b, shared, name, denominator)};
                 if (!entry.a.empty() && !entry.b.empty()) lines.push_back(std::move(entry));
             };

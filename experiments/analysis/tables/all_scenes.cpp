@@ -7,27 +7,28 @@ namespace aabblab {
 
 namespace {
 
-/// The ratio of the fastest exact line; empty if no exact line was timed.
+/// The ratio, to the baseline, of the fastest exact candidate of a scene; empty if none was timed.
 std::optional<double> least_ratio_of(const scene_summary& scene) {
     std::optional<double> least;
-    for (const summary_line& line : scene.lines)
-        if (line.ratio && line.status == "exact") least = std::min(least.value_or(*line.ratio), *line.ratio);
+    for (const candidate_summary& candidate : scene.candidates)
+        if (candidate.ratio && candidate.status == "exact")
+            least = std::min(least.value_or(*candidate.ratio), *candidate.ratio);
     return least;
 }
 
 /// The ratios of one composition or engine over the scenes.
 struct standing {
     candidate_name name;
-    std::size_t wins = 0;  ///< scenes in which it is the fastest exact line
-    bool exact = true;
+    std::size_t wins = 0;  ///< scenes in which it is the fastest exact one
+    bool is_exact = true;
     std::vector<double> ratios;
-    std::vector<double> regrets;  ///< ratios relative to the fastest exact line
+    std::vector<double> regrets;  ///< ratios relative to the fastest exact one
 
-    void add(const summary_line& line, bool is_fastest, std::optional<double> least_ratio) {
-        if (least_ratio) regrets.push_back(*line.ratio / *least_ratio);
+    void add(const candidate_summary& candidate, bool is_fastest, std::optional<double> least_ratio) {
+        if (least_ratio) regrets.push_back(*candidate.ratio / *least_ratio);
         wins += is_fastest ? 1 : 0;
-        exact = exact && line.status == "exact";
-        ratios.push_back(*line.ratio);
+        is_exact = is_exact && candidate.status == "exact";
+        ratios.push_back(*candidate.ratio);
     }
     /// The geometric mean over the scenes.
     [[nodiscard]] double ratio() const {
@@ -47,61 +48,67 @@ bool has_own_column(const metric& m) {
     return std::ranges::find(names, m.name) != names.end();
 }
 
-/// The cells of a line in the columns of `full_table_of`.
-std::vector<std::string> cells_of(const scene_summary& scene, const summary_line& line, std::size_t rank) {
+/// The cells of a candidate in the columns of `full_table_of`: its names, results, times, bytes and metrics.
+std::vector<std::string> cells_of(const scene_summary& scene, const candidate_summary& candidate, std::size_t rank) {
     std::vector<std::string> cells{scene.experiment,
                                    scene.scene.kind,
                                    parameters_json(scene.scene),
                                    fmt::format("{}", fmt::join(scene.seeds, " ")),
                                    fmt::format("{}", scene.objects),
                                    fmt::format("{}", scene.frames)};
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds) cells.push_back(line.name[kind]);
-    cells.insert(cells.end(), {line.name.engine, fmt::format("{}", rank), line.status, text_of(line.false_negatives),
-                               text_of(line.false_positives), fmt::format("{}", line.pairs), text_of(line.contacts),
-                               fmt::format("{}", line.repeats)});
-    const auto& ms = line.ms_per_frame;
-    const auto& range = line.ratio_interval;
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) cells.push_back(candidate.name[kind]);
+    cells.insert(cells.end(),
+                 {candidate.name.engine, fmt::format("{}", rank), candidate.status, text_of(candidate.false_negatives),
+                  text_of(candidate.false_positives), fmt::format("{}", candidate.pairs), text_of(candidate.contacts),
+                  fmt::format("{}", candidate.repeats)});
+    const auto& ms = candidate.ms_per_frame;
+    const auto& range = candidate.ratio_interval;
     for (const std::optional<double>& value :
          {ms ? std::optional(ms->median) : std::nullopt, ms ? std::optional(ms->low) : std::nullopt,
-          ms ? std::optional(ms->high) : std::nullopt, line.ratio, range ? std::optional(range->low) : std::nullopt,
-          range ? std::optional(range->high) : std::nullopt, line.build_ms})
+          ms ? std::optional(ms->high) : std::nullopt, candidate.ratio,
+          range ? std::optional(range->low) : std::nullopt, range ? std::optional(range->high) : std::nullopt,
+          candidate.build_ms})
         cells.push_back(value ? fmt::format("{:.6f}", *value) : "");
-    cells.push_back(text_of(line.bytes));
+    cells.push_back(text_of(candidate.bytes));
     for (std::size_t i = 0; i < metrics().size(); ++i)
-        if (!has_own_column(metrics()[i])) cells.push_back(line.metrics[i] ? fifteen_digits(*line.metrics[i]) : "");
+        if (!has_own_column(metrics()[i]))
+            cells.push_back(candidate.metrics[i] ? fifteen_digits(*candidate.metrics[i]) : "");
     return cells;
 }
 
 }  // namespace
 
+/// Ratios are times relative to the baseline of each scene; wins and regrets compare with its fastest exact candidate,
+/// which has the least ratio.
 table overall_table_of(std::span<const scene_summary> scenes) {
     std::vector<standing> standings;
-    std::map<candidate_name, std::size_t> places;
+    std::map<candidate_name, std::size_t> indices;
     for (const scene_summary& scene : scenes) {
-        const summary_line* const fastest = ranking_of(scene).front();
+        const candidate_summary* const fastest = ranking_of(scene).front();
         const std::optional<double> least_ratio = least_ratio_of(scene);
-        for (const summary_line& line : scene.lines) {
-            if (!line.ratio) continue;
-            const auto [place, is_new] = places.emplace(line.name, standings.size());
-            if (is_new) standings.emplace_back().name = line.name;
-            standings[place->second].add(line, &line == fastest, least_ratio);
+        for (const candidate_summary& candidate : scene.candidates) {
+            if (!candidate.ratio) continue;
+            const auto [index, is_new] = indices.emplace(candidate.name, standings.size());
+            if (is_new) standings.emplace_back().name = candidate.name;
+            standings[index->second].add(candidate, &candidate == fastest, least_ratio);
         }
     }
     std::vector<candidate_name> names;
     for (const standing& entry : standings) names.push_back(entry.name);
     const std::vector<aabb::strategy_kind> differing = differing_kinds(names);
-    std::ranges::sort(standings, {}, [](const standing& s) { return std::tuple(!s.exact, s.ratio(), s.name); });
-    const bool inexact = std::ranges::any_of(standings, [](const standing& entry) { return !entry.exact; });
+    std::ranges::sort(standings, {}, [](const standing& s) { return std::tuple(!s.is_exact, s.ratio(), s.name); });
+    const bool inexact = !std::ranges::all_of(standings, &standing::is_exact);
     table t{name_columns_of(differing), {}};
     if (inexact) t.columns.push_back({"result"});
-    t.columns.insert(t.columns.end(),
-                     {{"ratio"}, {"least", true, 2}, {"greatest", true, 1}, {"scenes"}, {"fastest in"}});
+    t.columns.insert(
+        t.columns.end(),
+        {{"ratio"}, {.name = "least", .spare = 2}, {.name = "greatest", .spare = 1}, {"scenes"}, {"fastest in"}});
     const bool has_regrets =
         std::ranges::all_of(standings, [](const standing& entry) { return !entry.regrets.empty(); });
     if (has_regrets) t.columns.insert(t.columns.end(), {{"regret"}, {"worst"}});
     for (const standing& entry : standings) {
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, entry.name, t.rows.size() + 1));
-        if (inexact) cells.emplace_back(entry.exact ? "exact" : "inexact");
+        if (inexact) cells.emplace_back(entry.is_exact ? "exact" : "inexact");
         const auto [least, greatest] = std::ranges::minmax(entry.ratios);
         for (const double ratio : {entry.ratio(), least, greatest}) cells.push_back(fmt::format("{:.2f}", ratio));
         cells.push_back(grouped(entry.ratios.size()));
@@ -113,6 +120,7 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     return t;
 }
 
+/// One row per scene and candidate, for programs: no column is left out, and names are not abbreviated.
 table full_table_of(std::span<const scene_summary> scenes) {
     table t;
     for (const char* name : {"experiment", "scene", "scene_parameters", "seeds", "objects", "frames"})
@@ -126,7 +134,8 @@ table full_table_of(std::span<const scene_summary> scenes) {
         if (!has_own_column(m)) t.columns.push_back({m.name});
     for (const scene_summary& scene : scenes) {
         std::size_t rank = 0;
-        for (const summary_line* line : ranking_of(scene)) t.rows.push_back(cells_of(scene, *line, ++rank));
+        for (const candidate_summary* candidate : ranking_of(scene))
+            t.rows.push_back(cells_of(scene, *candidate, ++rank));
     }
     return t;
 }

@@ -22,32 +22,33 @@ std::string interval_text(const std::optional<interval>& range) {
     return range ? fmt::format("{:.2f}-{:.2f}", range->low, range->high) : "-";
 }
 
-/// True if any line of the scene has a value of the member.
+/// True if any candidate of the scene has a value of the member.
 template <class Value>
-bool any_has(const scene_summary& scene, std::optional<Value> summary_line::* member) {
-    return std::ranges::any_of(scene.lines, [&](const summary_line& line) { return (line.*member).has_value(); });
+bool any_has(const scene_summary& scene, std::optional<Value> candidate_summary::* member) {
+    return std::ranges::any_of(scene.candidates,
+                               [&](const candidate_summary& candidate) { return (candidate.*member).has_value(); });
 }
 
 /// "exact", "inexact", or "-3 +5" for three false negatives and five false positives.
-std::string result_of(const summary_line& line) {
-    if (line.status == "exact" || !line.false_negatives) return line.status;
-    return fmt::format("-{} +{}", *line.false_negatives, *line.false_positives);
+std::string result_of(const candidate_summary& candidate) {
+    if (candidate.status == "exact" || !candidate.false_negatives) return candidate.status;
+    return fmt::format("-{} +{}", *candidate.false_negatives, *candidate.false_positives);
 }
 
-/// The decimals that show at least three digits of the fastest line of a scene.
+/// The decimals that show at least three digits of the fastest time of a scene.
 int decimals_of(const scene_summary& scene) {
     double least = 100;
-    for (const summary_line& line : scene.lines)
-        if (line.ms_per_frame) least = std::min(least, line.ms_per_frame->median);
+    for (const candidate_summary& candidate : scene.candidates)
+        if (candidate.ms_per_frame) least = std::min(least, candidate.ms_per_frame->median);
     return least < 1 ? 4 : least < 10 ? 3 : 2;
 }
 
-/// The timing cells of a line; "-" if it was not timed.
-std::vector<std::string> time_cells(const summary_line& line, int decimals) {
-    if (!line.ms_per_frame) return {"-", "-", "-", "-"};
-    const auto [low, median, high] = *line.ms_per_frame;
+/// The cells of time, quartiles, ratio and its interval; "-" if the candidate was not timed.
+std::vector<std::string> time_cells(const candidate_summary& candidate, int decimals) {
+    if (!candidate.ms_per_frame) return {"-", "-", "-", "-"};
+    const auto [low, median, high] = *candidate.ms_per_frame;
     return {fmt::format("{:.{}f}", median, decimals), three_digits(low) + "-" + three_digits(high),
-            text_or_dash(line.ratio, 2), interval_text(line.ratio_interval)};
+            text_or_dash(candidate.ratio, 2), interval_text(candidate.ratio_interval)};
 }
 
 /// A column that moves above the table if it is constant.
@@ -61,29 +62,31 @@ struct shared_column {
     }
 };
 
-/// The columns of results, which are equal for all exact lines, and of bytes.
-std::vector<shared_column> shared_columns(const scene_summary& scene, std::span<const summary_line* const> ranking) {
+/// The columns of results, which are equal for all exact candidates, and of bytes: a column whose cells are all equal
+/// is not shown, but named once in the heading.
+std::vector<shared_column> shared_columns(const scene_summary& scene,
+                                          std::span<const candidate_summary* const> ranking) {
     shared_column result{{"result"}, "result {}", {}};
     shared_column pairs{{"pairs"}, "{} pairs", {}};
-    shared_column contacts{{"contacts", true, 1}, "{} contacts", {}};
-    shared_column bytes{{"KiB", true, 2}, "{} KiB", {}};
-    for (const summary_line* line : ranking) {
-        result.cells.push_back(result_of(*line));
-        pairs.cells.push_back(grouped(line->pairs));
-        contacts.cells.push_back(line->contacts ? grouped(*line->contacts) : "-");
-        bytes.cells.push_back(line->bytes ? kib_text(*line->bytes) : "-");
+    shared_column contacts{{.name = "contacts", .spare = 1}, "{} contacts", {}};
+    shared_column bytes{{.name = "KiB", .spare = 2}, "{} KiB", {}};
+    for (const candidate_summary* candidate : ranking) {
+        result.cells.push_back(result_of(*candidate));
+        pairs.cells.push_back(grouped(candidate->pairs));
+        contacts.cells.push_back(candidate->contacts ? grouped(*candidate->contacts) : "-");
+        bytes.cells.push_back(candidate->bytes ? kib_text(*candidate->bytes) : "-");
     }
     std::vector<shared_column> columns{std::move(result), std::move(pairs)};
-    if (any_has(scene, &summary_line::contacts)) columns.push_back(std::move(contacts));
-    if (any_has(scene, &summary_line::bytes)) columns.push_back(std::move(bytes));
+    if (any_has(scene, &candidate_summary::contacts)) columns.push_back(std::move(contacts));
+    if (any_has(scene, &candidate_summary::bytes)) columns.push_back(std::move(bytes));
     return columns;
 }
 
-/// True if any composition has a value other than 0 at this index.
+/// True if any composition, not only engines, has a value other than 0 at this index: tables omit other columns.
 template <class Numbers>
-bool is_used(const scene_summary& scene, Numbers summary_line::* numbers, std::size_t index) {
-    return std::ranges::any_of(scene.lines, [&](const summary_line& line) {
-        return !line.name.is_reference() && (line.*numbers)[index].value_or(0) > 0;
+bool any_composition_has(const scene_summary& scene, Numbers candidate_summary::* numbers, std::size_t index) {
+    return std::ranges::any_of(scene.candidates, [&](const candidate_summary& candidate) {
+        return !candidate.name.is_reference() && (candidate.*numbers)[index].value_or(0) > 0;
     });
 }
 
@@ -101,21 +104,22 @@ std::string count_text(double value) {
 
 }  // namespace
 
+/// One row per candidate, by rank: times if it was timed, results that differ, bytes, and the metrics asked for.
 table table_of(const scene_summary& scene, std::span<const std::string> shown) {
-    const bool has_meshes = any_has(scene, &summary_line::contacts);
+    const bool has_meshes = any_has(scene, &candidate_summary::contacts);
     const int decimals = decimals_of(scene);
-    const std::vector<const summary_line*> ranking = ranking_of(scene);
+    const std::vector<const candidate_summary*> ranking = ranking_of(scene);
     table t{name_columns_of(scene.differing), {}};
-    for (const summary_line* line : ranking)
-        t.rows.push_back(name_cells_of(scene.differing, line->name, t.rows.size() + 1));
-    if (any_has(scene, &summary_line::ms_per_frame)) {
-        t.columns.insert(t.columns.end(), {{"ms/frame"}, {"quartiles", true, 4}, {"ratio"}, {"95 %"}});
-        if (has_meshes) t.columns.push_back({"build ms", true, 3});
+    for (const candidate_summary* candidate : ranking)
+        t.rows.push_back(name_cells_of(scene.differing, candidate->name, t.rows.size() + 1));
+    if (any_has(scene, &candidate_summary::ms_per_frame)) {
+        t.columns.insert(t.columns.end(), {{"ms/frame"}, {.name = "quartiles", .spare = 4}, {"ratio"}, {"95 %"}});
+        if (has_meshes) t.columns.push_back({.name = "build ms", .spare = 3});
         std::size_t i = 0;
-        for (const summary_line* line : ranking) {
+        for (const candidate_summary* candidate : ranking) {
             std::vector<std::string>& cells = t.rows[i++];
-            for (std::string& cell : time_cells(*line, decimals)) cells.push_back(std::move(cell));
-            if (has_meshes) cells.push_back(text_or_dash(line->build_ms, 2));
+            for (std::string& cell : time_cells(*candidate, decimals)) cells.push_back(std::move(cell));
+            if (has_meshes) cells.push_back(text_or_dash(candidate->build_ms, 2));
         }
     }
     for (const shared_column& c : shared_columns(scene, ranking)) {
@@ -125,16 +129,18 @@ table table_of(const scene_summary& scene, std::span<const std::string> shown) {
     }
     for (const std::string& name : shown) {
         const metric& m = metric_named(name);
-        const auto place = static_cast<std::size_t>(&m - metrics().data());
+        const auto index = static_cast<std::size_t>(&m - metrics().data());
         t.columns.push_back({m.unit.empty() ? name : name + " (" + m.unit + ")"});
         for (std::size_t i = 0; i < t.rows.size(); ++i) {
-            const std::optional<double>& value = ranking[i]->metrics[place];
+            const std::optional<double>& value = ranking[i]->metrics[index];
             t.rows[i].push_back(value ? fmt::format("{:.6g}", *value) : "-");
         }
     }
     return t;
 }
 
+/// What the table would otherwise repeat in every row: the scene, shared strategies, constant columns; and how to read
+/// its order, its results and missing intervals.
 std::string heading_of(const scene_summary& scene) {
     std::string text =
         fmt::format("{}: {}, {}\n", scene.scene.kind, counted(scene.objects, "object"), counted(scene.frames, "frame"));
@@ -143,47 +149,49 @@ std::string heading_of(const scene_summary& scene) {
     text += parameters + "\n";
     if (scene.seeds.size() > 1)
         text += fmt::format("pooled over {} seeds: pairs and contacts are sums\n", scene.seeds.size());
-    const auto is_automatic = [](const summary_line& line) { return line.name.is_automatic(); };
+    const auto is_automatic = [](const candidate_summary& candidate) { return candidate.name.is_automatic(); };
     if (!scene.common.empty())
-        text += (scene.differing.empty()                          ? "this composition: "
-                 : std::ranges::any_of(scene.lines, is_automatic) ? "all compositions but auto: "
-                                                                  : "all compositions: ") +
+        text += (scene.differing.empty()                               ? "this composition: "
+                 : std::ranges::any_of(scene.candidates, is_automatic) ? "all compositions but auto: "
+                                                                       : "all compositions: ") +
                 scene.common + "\n";
     std::string constant;
-    const std::vector<const summary_line*> ranking = ranking_of(scene);
+    const std::vector<const candidate_summary*> ranking = ranking_of(scene);
     for (const shared_column& c : shared_columns(scene, ranking))
         if (c.is_constant())
             constant += (constant.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
     if (!constant.empty()) text += "all lines: " + constant + "\n";
     if (!scene.digest.empty()) text += "digest of the ground truth: " + scene.digest + "\n";
-    const auto is_inexact = [](const summary_line& line) { return line.status != "exact"; };
-    const bool inexact = std::ranges::any_of(scene.lines, is_inexact);
-    const auto counted_line = std::ranges::find_if(
-        ranking, [](const summary_line* line) { return line->status != "exact" && line->false_negatives.has_value(); });
+    const auto is_inexact = [](const candidate_summary& candidate) { return candidate.status != "exact"; };
+    const bool inexact = std::ranges::any_of(scene.candidates, is_inexact);
+    const auto counted_line = std::ranges::find_if(ranking, [](const candidate_summary* candidate) {
+        return candidate->status != "exact" && candidate->false_negatives.has_value();
+    });
     if (counted_line != ranking.end())
         text += fmt::format("a result {} has {} false negatives and {} false positives\n", result_of(**counted_line),
                             *(*counted_line)->false_negatives, *(*counted_line)->false_positives);
     std::size_t repeats = 0;
-    for (const summary_line& line : scene.lines) repeats = std::max(repeats, line.repeats);
+    for (const candidate_summary& candidate : scene.candidates) repeats = std::max(repeats, candidate.repeats);
     std::string stopped;
-    for (const summary_line& line : scene.lines)
-        if (line.repeats < repeats) stopped += (stopped.empty() ? "" : ", ") + line.label;
+    for (const candidate_summary& candidate : scene.candidates)
+        if (candidate.repeats < repeats) stopped += (stopped.empty() ? "" : ", ") + candidate.label;
     if (!stopped.empty()) text += "repeated less often than others: " + stopped + "\n";
-    if (scene.lines.size() > 1 && any_has(scene, &summary_line::ratio))
+    if (scene.candidates.size() > 1 && any_has(scene, &candidate_summary::ratio))
         text += (inexact ? "exact results before inexact ones, each in ascending order of ratio; ratio to "
                          : "in ascending order of ratio; ratio to ") +
-                scene.lines[0].label + "\n";
-    if (std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ratio && !l.ratio_interval; }))
+                scene.candidates[0].label + "\n";
+    if (std::ranges::any_of(scene.candidates, [](const candidate_summary& l) { return l.ratio && !l.ratio_interval; }))
         text += "95 %: - if there are too few repeats, seeds or processes for an interval\n";
     return text;
 }
 
+/// One row per composition with its work and its bytes; engines count neither.
 table counts_table_of(const scene_summary& scene) {
     constexpr auto copies = static_cast<std::size_t>(aabb::work::subset_copies);
     table t{name_columns_of(scene.differing), {}};
     std::vector<std::size_t> works, parts;  // indices of the columns with values
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
-        if (!is_used(scene, &summary_line::counts, i)) continue;
+        if (!any_composition_has(scene, &candidate_summary::counts, i)) continue;
         works.push_back(i);
         t.columns.push_back({spaced(aabb::work_names[i])});
         if (i == copies) t.columns.push_back({"copies per object"});
@@ -191,29 +199,30 @@ table counts_table_of(const scene_summary& scene) {
     for (std::size_t i = 0; i < byte_columns.size(); ++i) {
         // The meshes are the same for all compositions.
         if (byte_columns[i] == "triangles" || byte_columns[i] == "vertices") continue;
-        if (!is_used(scene, &summary_line::bytes_by_part, i)) continue;
+        if (!any_composition_has(scene, &candidate_summary::bytes_by_part, i)) continue;
         parts.push_back(i);
         t.columns.push_back({"KiB " + spaced(byte_columns[i])});
     }
     if (works.empty() && parts.empty()) return {};
-    const bool trees = any_has(scene, &summary_line::bytes_per_triangle);
-    const bool inflated =
-        std::ranges::any_of(scene.lines, [](const summary_line& line) { return line.box_inflation.value_or(0) > 0; });
-    if (trees) t.columns.push_back({"tree bytes per triangle"});
+    const bool has_trees = any_has(scene, &candidate_summary::bytes_per_triangle);
+    const bool inflated = std::ranges::any_of(
+        scene.candidates, [](const candidate_summary& candidate) { return candidate.box_inflation.value_or(0) > 0; });
+    if (has_trees) t.columns.push_back({"tree bytes per triangle"});
     if (inflated) t.columns.push_back({"box inflation %"});
     std::size_t rank = 0;
-    for (const summary_line* line : ranking_of(scene)) {
+    for (const candidate_summary* candidate : ranking_of(scene)) {
         ++rank;
-        if (line->name.is_reference()) continue;
-        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene.differing, line->name, rank));
+        if (candidate->name.is_reference()) continue;
+        std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(scene.differing, candidate->name, rank));
         for (const std::size_t i : works) {
-            const double count = line->counts[i].value_or(0);
+            const double count = candidate->counts[i].value_or(0);
             cells.push_back(count_text(count));
             if (i == copies) cells.push_back(fmt::format("{:.3f}", count / static_cast<double>(scene.objects)));
         }
-        for (const std::size_t i : parts) cells.push_back(kib_text(line->bytes_by_part[i].value_or(0)));
-        if (trees) cells.push_back(text_or_dash(line->bytes_per_triangle, 2));
-        if (inflated) cells.push_back(line->box_inflation ? fmt::format("{:.3f}", 100 * *line->box_inflation) : "-");
+        for (const std::size_t i : parts) cells.push_back(kib_text(candidate->bytes_by_part[i].value_or(0)));
+        if (has_trees) cells.push_back(text_or_dash(candidate->bytes_per_triangle, 2));
+        if (inflated)
+            cells.push_back(candidate->box_inflation ? fmt::format("{:.3f}", 100 * *candidate->box_inflation) : "-");
     }
     return t;
 }

@@ -6,7 +6,7 @@ namespace aabblab {
 
 namespace {
 
-using repeats_of_line = std::vector<const row*>;
+using repeats_of_candidate = std::vector<const row*>;
 
 std::optional<double> ms_per_frame(const row& r) {
     static const row_value& frame = measured("frame_ms");
@@ -19,34 +19,36 @@ void add(std::optional<Number>& sum, const std::optional<Number>& value) {
     if (value) sum = sum.value_or(0) + *value;
 }
 
-/// Adds the values that do not vary between the repeats of a seed.
+/// Adds the values that do not vary between the repeats of a seed: sums of pairs and errors, maxima of bytes, means of
+/// counts.
 /// @param share the weight of the seed in means over the seeds
-void add_seed(const row& r, double share, summary_line& line) {
-    line.pairs += r.candidates;
-    add(line.contacts, r.contacts);
-    add(line.false_negatives, r.false_negatives);
-    add(line.false_positives, r.false_positives);
-    if (line.status != "inexact") line.status = r.status;
+void add_seed(const row& r, double share, candidate_summary& summary) {
+    summary.pairs += r.candidates;
+    add(summary.contacts, r.contacts);
+    add(summary.false_negatives, r.false_negatives);
+    add(summary.false_positives, r.false_positives);
+    if (summary.status != "inexact") summary.status = r.status;
     const auto all_bytes = measured("all_bytes")(r);
-    line.bytes = std::max(line.bytes, all_bytes ? std::optional(static_cast<std::uint64_t>(*all_bytes)) : std::nullopt);
+    summary.bytes =
+        std::max(summary.bytes, all_bytes ? std::optional(static_cast<std::uint64_t>(*all_bytes)) : std::nullopt);
     const auto tree_bytes = measured("tree_bytes")(r);
-    if (tree_bytes.value_or(0) > 0) line.bytes_per_triangle = std::max(line.bytes_per_triangle, tree_bytes);
-    if (r.box_inflation) add(line.box_inflation, std::optional(*r.box_inflation * share));
+    if (tree_bytes.value_or(0) > 0) summary.bytes_per_triangle = std::max(summary.bytes_per_triangle, tree_bytes);
+    if (r.box_inflation) add(summary.box_inflation, std::optional(*r.box_inflation * share));
     const double frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
     for (std::size_t i = 0; i < r.counts.size(); ++i)
-        if (r.counts[i]) add(line.counts[i], std::optional(static_cast<double>(*r.counts[i]) / frames * share));
+        if (r.counts[i]) add(summary.counts[i], std::optional(static_cast<double>(*r.counts[i]) / frames * share));
     for (std::size_t i = 0; i < r.bytes.size(); ++i)
-        line.bytes_by_part[i] = std::max(line.bytes_by_part[i], r.bytes[i]);
+        summary.bytes_by_part[i] = std::max(summary.bytes_by_part[i], r.bytes[i]);
 }
 
 /// Summarises all repeats of one composition or engine in one scene, except its ratio to the baseline.
-summary_line line_of(std::span<const row* const> repeats) {
-    summary_line line;
-    line.name = repeats[0]->name;
-    line.repeats = repeats.size();
+candidate_summary summary_of(std::span<const row* const> repeats) {
+    candidate_summary summary;
+    summary.name = repeats[0]->name;
+    summary.repeats = repeats.size();
     std::map<std::optional<std::uint64_t>, const row*> seeds;
     for (const row* r : repeats) seeds.emplace(r->scene.seed, r);
-    for (const auto& [seed, r] : seeds) add_seed(*r, 1 / static_cast<double>(seeds.size()), line);
+    for (const auto& [seed, r] : seeds) add_seed(*r, 1 / static_cast<double>(seeds.size()), summary);
     std::vector<double> times, builds;
     for (const row* r : repeats)
         if (const std::optional<double> ms = ms_per_frame(*r)) {
@@ -58,22 +60,23 @@ summary_line line_of(std::span<const row* const> repeats) {
         for (const row* r : repeats)
             if (const std::optional<double> value = m.value(*r)) values.push_back(*value);
         // A median over seeds would hide errors that occur in a single seed.
-        line.metrics.push_back(
+        summary.metrics.push_back(
             values.empty() ? std::nullopt
             : m.group == metric_group::error
                 ? std::optional(std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()))
                 : std::optional(quartiles_of(values).median));
     }
-    if (times.empty()) return line;
-    line.ms_per_frame = quartiles_of(times);
-    line.build_ms = quartiles_of(builds).median;
-    return line;
+    if (times.empty()) return summary;
+    summary.ms_per_frame = quartiles_of(times);
+    summary.build_ms = quartiles_of(builds).median;
+    return summary;
 }
 
-/// Sets the ratio of the line's times to the baseline's in the same repeats of the same seeds.
-void set_ratio(summary_line& line, std::span<const row* const> repeats, std::span<const row* const> base) {
+/// Sets the ratio of a candidate's times to the baseline's in the same repeats of the same seeds, in which both met the
+/// same speed of the machine.
+void set_ratio(candidate_summary& summary, std::span<const row* const> repeats, std::span<const row* const> baseline) {
     std::map<std::pair<std::optional<std::uint64_t>, std::uint64_t>, double> base_ms;  // by seed and repeat
-    for (const row* b : base)
+    for (const row* b : baseline)
         if (ms_per_frame(*b).value_or(0) > 0) base_ms.emplace(std::pair(b->scene.seed, b->repeat), *ms_per_frame(*b));
     std::map<std::optional<std::uint64_t>, std::size_t> seeds;
     std::map<std::uint64_t, std::size_t> processes;
@@ -92,17 +95,18 @@ void set_ratio(summary_line& line, std::span<const row* const> repeats, std::spa
     }
     if (count == 0) return;
     const estimate log_ratio = bootstrap(ratios);
-    line.ratio = std::exp(log_ratio.value);
+    summary.ratio = std::exp(log_ratio.value);
     // Student's t has infinite variance with two degrees of freedom or fewer: such an interval is useless.
     if (count == 1 || (log_ratio.error > 0 && log_ratio.degrees <= 2)) return;
     const auto [low, high] = log_ratio.range();
-    line.ratio_interval = {std::exp(low), std::exp(high)};
+    summary.ratio_interval = {std::exp(low), std::exp(high)};
 }
 
-/// Splits the strategies into those that differ and those that all share; labels consist of the former.
+/// Splits the strategies of a scene's compositions into those that differ, which make their labels, and those that all
+/// share, which the heading names once.
 void set_labels(scene_summary& scene) {
     std::vector<candidate_name> names;
-    for (const summary_line& line : scene.lines) names.push_back(line.name);
+    for (const candidate_summary& summary : scene.candidates) names.push_back(summary.name);
     scene.differing = differing_kinds(names);
     const auto composition = std::ranges::find(names, "", &candidate_name::engine);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -110,22 +114,23 @@ void set_labels(scene_summary& scene) {
         if (const std::string value = text_in_line(composition->choices, {&kind, 1}); !value.empty())
             scene.common += (scene.common.empty() ? "" : ", ") + std::string(name_of(kind)) + " " + value;
     }
-    for (summary_line& line : scene.lines) {
-        line.label = line.name.engine.empty() ? text_in_line(line.name.choices, scene.differing) : line.name.engine;
-        if (line.label.empty()) line.label = only_name_of(line.name);
+    for (candidate_summary& summary : scene.candidates) {
+        summary.label =
+            summary.name.engine.empty() ? text_in_line(summary.name.choices, scene.differing) : summary.name.engine;
+        if (summary.label.empty()) summary.label = only_name_of(summary.name);
     }
 }
 
 /// The rows of a scene over all its seeds, by composition or engine.
 struct rows_of_scene {
     scene_summary scene;
-    std::vector<repeats_of_line> lines;
-    std::map<candidate_name, std::size_t> places;  // indices of `lines`
+    std::vector<repeats_of_candidate> candidates;
+    std::map<candidate_name, std::size_t> indices;  // of `candidates`
 
     void add(const row& r) {
-        const auto [place, is_new] = places.emplace(r.name, lines.size());
-        if (is_new) lines.emplace_back();
-        lines[place->second].push_back(&r);
+        const auto [index, is_new] = indices.emplace(r.name, candidates.size());
+        if (is_new) candidates.emplace_back();
+        candidates[index->second].push_back(&r);
         if (r.scene.seed && std::ranges::find(scene.seeds, *r.scene.seed) == scene.seeds.end())
             scene.seeds.push_back(*r.scene.seed);
         if (r.status == "exact") scene.digest = r.digest;
@@ -134,11 +139,12 @@ struct rows_of_scene {
 
 }  // namespace
 
+/// Groups the rows by scene, over all seeds, then by candidate; the first candidate of a scene is its baseline.
 std::vector<scene_summary> summarise(std::span<const row> rows) {
     std::vector<rows_of_scene> groups;
-    std::map<std::pair<std::string, scene_choice>, std::size_t> places;
+    std::map<std::pair<std::string, scene_choice>, std::size_t> indices;
     for (const row& r : rows) {
-        const auto [place, is_new] = places.emplace(std::pair(r.experiment, without_seed(r.scene)), groups.size());
+        const auto [index, is_new] = indices.emplace(std::pair(r.experiment, without_seed(r.scene)), groups.size());
         if (is_new) {
             scene_summary& scene = groups.emplace_back().scene;
             scene.experiment = r.experiment;
@@ -146,13 +152,13 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
             scene.objects = r.objects;
             scene.frames = r.frames;
         }
-        groups[place->second].add(r);
+        groups[index->second].add(r);
     }
     std::vector<scene_summary> scenes;
     for (rows_of_scene& group : groups) {
-        for (const repeats_of_line& repeats : group.lines) {
-            group.scene.lines.push_back(line_of(repeats));
-            set_ratio(group.scene.lines.back(), repeats, group.lines[0]);
+        for (const repeats_of_candidate& repeats : group.candidates) {
+            group.scene.candidates.push_back(summary_of(repeats));
+            set_ratio(group.scene.candidates.back(), repeats, group.candidates[0]);
         }
         if (group.scene.seeds.size() > 1) group.scene.digest.clear();
         set_labels(group.scene);
@@ -161,18 +167,20 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
     return scenes;
 }
 
-std::vector<const summary_line*> ranking_of(const scene_summary& scene) {
-    std::vector<const summary_line*> lines;
-    for (const summary_line& line : scene.lines) lines.push_back(&line);
-    const auto key = [](const summary_line* line) {
-        const double ms = line->ms_per_frame ? line->ms_per_frame->median : 0;
-        return std::tuple(!line->ms_per_frame, line->status != "exact", !line->ratio, line->ratio.value_or(0), ms,
-                          line);
+/// Exact candidates before inexact ones, then those without times; each in ascending order of ratio, or else of time.
+std::vector<const candidate_summary*> ranking_of(const scene_summary& scene) {
+    std::vector<const candidate_summary*> candidates;
+    for (const candidate_summary& summary : scene.candidates) candidates.push_back(&summary);
+    const auto key = [](const candidate_summary* summary) {
+        const double ms = summary->ms_per_frame ? summary->ms_per_frame->median : 0;
+        return std::tuple(!summary->ms_per_frame, summary->status != "exact", !summary->ratio,
+                          summary->ratio.value_or(0), ms, summary);
     };
-    std::ranges::sort(lines, {}, key);
-    return lines;
+    std::ranges::sort(candidates, {}, key);
+    return candidates;
 }
 
+/// The kinds of strategies in which these compositions differ: tables name only these in each row. Engines have none.
 std::vector<aabb::strategy_kind> differing_kinds(std::span<const candidate_name> names) {
     std::vector<aabb::strategy_kind> kinds;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -191,6 +199,7 @@ std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differi
     return columns;
 }
 
+/// The rank of a candidate and its strategies of the kinds that differ; an engine's name stands in the first of these.
 std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing, const candidate_name& name,
                                        std::size_t rank) {
     std::vector<std::string> cells{std::to_string(rank)};

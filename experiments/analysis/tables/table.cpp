@@ -51,7 +51,7 @@ void remove_columns(table& t, std::size_t begin, std::size_t end) {
 }
 
 /// Removes spare columns until the table fits or none is left, and returns a line that lists them.
-std::string leave_out(table& t, std::size_t width) {
+std::string leave_out_spare_columns(table& t, std::size_t width) {
     std::string names;
     while (!fits(t, width)) {
         const auto spare = std::ranges::max_element(t.columns, {}, &column::spare);
@@ -82,8 +82,8 @@ std::string legend_of(const std::string& number, const std::vector<std::string>&
     return text + line + "\n";
 }
 
-/// Replaces the names of the rows by numbers, and returns the legend.
-std::string number_rows(table& t, std::size_t width) {
+/// Saves width: replaces the names of the rows by numbers, and returns a legend of the names.
+std::string replace_names_by_numbers(table& t, std::size_t width) {
     if (!has_numbered_rows(t)) {
         t.columns.insert(t.columns.begin(), {row_number});
         std::size_t row = 0;
@@ -116,6 +116,7 @@ table empty_table(std::initializer_list<const char*> words, std::initializer_lis
     return t;
 }
 
+/// Aligns the columns with spaces: numbers to the right, names to the left.
 std::string to_text(const table& t) {
     std::vector<std::size_t> widths;
     for (std::size_t k = 0; k < t.columns.size(); ++k) widths.push_back(width_of(t, k));
@@ -139,6 +140,7 @@ std::string to_csv(const table& t) {
     return text;
 }
 
+/// A table in the syntax of GitHub; `---:` aligns a column of numbers to the right.
 std::string to_markdown(const table& t) {
     std::string text;
     const auto add = [&](const std::vector<std::string>& cells) {
@@ -158,15 +160,17 @@ std::string to_markdown(const table& t) {
     return text;
 }
 
+/// Fits a table into lines of this width: leaves out spare columns; if that is not enough, moves long names to a legend
+/// and splits the other columns into blocks, each with the names.
 std::string to_text(table t, std::size_t width) {
     if (name_count(t) == t.columns.size()) return to_text(t);
     table fewer = t;
-    std::string left_out = leave_out(fewer, width);
+    std::string left_out = leave_out_spare_columns(fewer, width);
     // Names up to half of the width stay; longer ones would take too much room in every block.
     const bool long_names = !fits(fewer, width) && width_of(t, 0, name_count(t)) > width / 2;
-    const std::string legend = long_names ? number_rows(t, width) : "";
+    const std::string legend = long_names ? replace_names_by_numbers(t, width) : "";
     if (long_names)
-        left_out = leave_out(t, width);
+        left_out = leave_out_spare_columns(t, width);
     else
         t = std::move(fewer);
     const std::size_t names = name_count(t);

@@ -52,7 +52,7 @@ struct named_table {
 [[nodiscard]] std::string tex_text(std::string_view text);
 
 /// All repeats of one composition or engine in one scene, over all seeds.
-struct summary_line {
+struct candidate_summary {
     candidate_name name;
     std::string label;        ///< the parts of the name that differ within the scene
     std::size_t repeats = 0;  ///< over all seeds
@@ -82,19 +82,19 @@ struct scene_summary {
     scene_choice scene;                ///< `without_seed`
     std::vector<std::uint64_t> seeds;  ///< in the order of the rows
     std::uint64_t objects = 0, frames = 0;
-    std::string digest;                          ///< of the ground truth, if there is one seed and an exact line
+    std::string digest;                          ///< of the ground truth, if there is one seed and an exact candidate
     std::vector<aabb::strategy_kind> differing;  ///< kinds in which the compositions differ
-    std::string common;               ///< the strategies that all compositions share, "sweep one_axis, triangle exact"
-    std::vector<summary_line> lines;  ///< in the order of the rows; the first is the baseline
+    std::string common;  ///< the strategies that all compositions share, "sweep one_axis, triangle exact"
+    std::vector<candidate_summary> candidates;  ///< in the order of the rows; the first is the baseline
 };
 
 /// Groups the rows by scene, in their order.
 [[nodiscard]] std::vector<scene_summary> summarise(std::span<const row> rows);
 
-/// The lines in ascending order of ratio: exact ones first, then inexact ones, then those without times.
-[[nodiscard]] std::vector<const summary_line*> ranking_of(const scene_summary& scene);
+/// The candidates in ascending order of ratio: exact ones first, then inexact ones, then those without times.
+[[nodiscard]] std::vector<const candidate_summary*> ranking_of(const scene_summary& scene);
 
-/// The lines of a scene by rank. Columns that are constant move to the heading.
+/// The candidates of a scene by rank. Columns that are constant move to the heading.
 /// @param shown the names of metrics that get additional columns
 [[nodiscard]] table table_of(const scene_summary& scene, std::span<const std::string> shown = {});
 /// The lines of text above the table.
@@ -105,11 +105,11 @@ struct scene_summary {
 [[nodiscard]] table counts_table_of(const scene_summary& scene);
 
 /// One table over scenes that share a baseline: compositions and engines in ascending order of the geometric mean of
-/// their ratios. `regret` is the time relative to the fastest exact line of the scene: the median and the maximum
+/// their ratios. `regret` is the time relative to the fastest exact one of the scene: the median and the maximum
 /// over the scenes.
 [[nodiscard]] table overall_table_of(std::span<const scene_summary> scenes);
 
-/// The table of a summary.csv: every line of every scene with its rank, with all digits.
+/// The table of a summary.csv: every candidate of every scene with its rank, with all digits.
 [[nodiscard]] table full_table_of(std::span<const scene_summary> scenes);
 
 }  // namespace aabblab

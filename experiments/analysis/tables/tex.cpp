@@ -20,8 +20,9 @@ std::size_t longest_cell(const table& t, std::size_t column) {
     return longest;
 }
 
-/// `P{share}` is a column type of paper/tex/layout.tex.
-std::string columns_of(const table& t) {
+/// The column types of a LaTeX tabular: `r` for numbers, `l` for short texts, and for long ones `P{share}` of
+/// paper/tex/layout.tex, which breaks lines; they share the page width by the square roots of their longest cells.
+std::string column_types_of(const table& t) {
     double sum = 0, letters = 0;
     const auto weight = [&](std::size_t k) {
         const std::size_t longest = longest_cell(t, k);
@@ -60,6 +61,7 @@ std::string head_of(const column& c) {
 
 }  // namespace
 
+/// Escapes the characters that LaTeX treats as commands.
 std::string tex_text(std::string_view text) {
     std::string safe;
     for (const char c : text) switch (c) {
@@ -78,10 +80,11 @@ std::string tex_text(std::string_view text) {
     return safe;
 }
 
+/// A LaTeX tabular with the rules of the package booktabs.
 std::string to_tex(const table& t) {
     std::vector<std::string> heads;
     for (const column& c : t.columns) heads.push_back(head_of(c));
-    std::string text = fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n{} \\\\\n\\midrule\n", columns_of(t),
+    std::string text = fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n{} \\\\\n\\midrule\n", column_types_of(t),
                                    fmt::join(heads, " & "));
     for (const std::vector<std::string>& cells : t.rows) text += line_of(cells);
     return text + "\\bottomrule\n\\end{tabular}\n";
