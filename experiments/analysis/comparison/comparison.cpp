@@ -48,22 +48,23 @@ void add_once(std::vector<T>& list, const T& value) {
     if (std::ranges::find(list, value) == list.end()) list.push_back(value);
 }
 
-/// The scenes of A that occur in B, too.
+/// The scenes of A that occur in B, too, each with the seeds and the candidates that both have.
 std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_scene& b) {
     std::vector<shared_scene> scenes;
-    std::map<scene_key, std::size_t> places;  // keyed without the seed
+    std::map<scene_key, std::size_t> indices;  // keyed without the seed
     for (const row& r : a) {
         const scene_key seed{r.experiment, r.scene};
         if (b.of(seed, r.name).empty()) continue;
-        const auto [place, is_new] = places.emplace(scene_key{r.experiment, without_seed(r.scene)}, scenes.size());
+        const auto [index, is_new] = indices.emplace(scene_key{r.experiment, without_seed(r.scene)}, scenes.size());
         if (is_new) scenes.push_back({&r, {}, {}});
-        add_once(scenes[place->second].seeds, seed);
-        add_once(scenes[place->second].names, r.name);
+        add_once(scenes[index->second].seeds, seed);
+        add_once(scenes[index->second].names, r.name);
     }
     return scenes;
 }
 
-/// The labels that `table_of` would give to these compositions: the parts of their names in which they differ.
+/// The labels that `table_of` would give to these compositions: the parts of their names in which they differ. Rows
+/// without times are summarised, because only summaries have labels.
 std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     std::vector<row> rows(names.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -85,6 +86,7 @@ std::optional<double> log_ms(const row& r) {
     return std::isfinite(ms) && ms > 0 ? std::optional(std::log(ms)) : std::nullopt;
 }
 
+/// The logarithm of the time, among these rows, of the same repeat as that row.
 std::optional<double> log_ms_in(const rows_by_scene::repeats& rows, const row& same_repeat) {
     for (const row* r : rows)
         if (r->repeat == same_repeat.repeat)
@@ -143,38 +145,40 @@ struct measured_candidate {
     cells b;
 };
 
-/// Decides all lines as one family of tests, and adds each to its scene.
-void add_decided(std::span<const measured_candidate> lines, std::vector<compared_time> compared_scene::* times_of_scene,
-                 std::vector<compared_scene>& scenes) {
+/// Decides which candidates changed from A to B, all as one family of tests (Holm), and adds each to its scene.
+/// @param times_of_scene the list to which they are added: ratios or times
+void add_decided(std::span<const measured_candidate> measured,
+                 std::vector<compared_time> compared_scene::* times_of_scene, std::vector<compared_scene>& scenes) {
     std::vector<compared_time> times;
     std::vector<evidence> evidences;
-    for (const measured_candidate& entry : lines) {
+    for (const measured_candidate& entry : measured) {
         const estimate a = bootstrap(entry.a);
         const estimate b = bootstrap(entry.b);
         const estimate change = difference_of(b, a);
-        const double least = least_p_value(count_values(entry.a), count_values(entry.b));
+        const double least_p = least_p_value(count_values(entry.a), count_values(entry.b));
         evidence& entry_evidence = evidences.emplace_back(evidence_of(change));
-        entry_evidence.p = std::max(entry_evidence.p, least);
-        compared_time& time = times.emplace_back();
-        time.label = entry.label;
-        time.in_a = std::exp(a.value);
-        time.in_b = std::exp(b.value);
-        time.change = std::exp(change.value);
-        time.change_range = {std::exp(change.range().low), std::exp(change.range().high)};
-        time.lacks_repeats = decide({outcome::more, least * static_cast<double>(lines.size())}) == outcome::undecided;
+        entry_evidence.p = std::max(entry_evidence.p, least_p);
+        // Even the least p-value must survive the correction for all tests.
+        const outcome best = decide({outcome::more, least_p * static_cast<double>(measured.size())});
+        times.push_back({.label = entry.label,
+                         .in_a = std::exp(a.value),
+                         .in_b = std::exp(b.value),
+                         .change = std::exp(change.value),
+                         .change_range = {std::exp(change.range().low), std::exp(change.range().high)},
+                         .lacks_repeats = best == outcome::undecided});
     }
     const std::vector<outcome> outcomes = decide_together(evidences);
     for (std::size_t i = 0; i < times.size(); ++i) {
-        // Only changes are corrected; otherwise hundreds of unchanged lines would all end up undecided.
+        // Only changes are corrected; otherwise hundreds of unchanged candidates would all end up undecided.
         times[i].verdict =
             outcomes[i] == outcome::undecided && decide(evidences[i]) == outcome::same ? outcome::same : outcomes[i];
-        (scenes[lines[i].scene].*times_of_scene).push_back(std::move(times[i]));
+        (scenes[measured[i].scene].*times_of_scene).push_back(std::move(times[i]));
     }
 }
 
 using number = std::pair<std::string, std::optional<std::uint64_t>>;
 
-/// The values that do not vary between repeats, by column.
+/// The values that do not vary between repeats, by column, so that any change is one of the program.
 std::vector<number> numbers_of(const row& r) {
     std::vector<number> numbers = {{"candidates", r.candidates}, {"contacts", r.contacts}};
     for (std::size_t i = 0; i < r.counts.size(); ++i) numbers.emplace_back(aabb::work_names[i], r.counts[i]);
@@ -197,7 +201,7 @@ std::string text_of(const std::set<std::string>& digests) {
     return digests.empty() ? "-" : fmt::format("{}", fmt::join(digests, " "));
 }
 
-/// Records each scene whose exact rows do not all have the same digest.
+/// Records each scene whose exact rows in A and B do not all have the same digest, that is, find the same pairs.
 void compare_results(const rows_by_scene& a, const rows_by_scene& b, comparison& report) {
     for (const auto& [scene, in_a] : a.scenes()) {
         const auto in_b = b.scenes().find(scene);
@@ -254,6 +258,7 @@ std::size_t count_only_in(const rows_by_scene& run, const rows_by_scene& other) 
 
 }  // namespace
 
+/// Compares results first, then counts and bytes, then times relative to a baseline, and milliseconds if requested.
 comparison compare(const run_results& a, const run_results& b, compared quantities) {
     const rows_by_scene of_a(a.rows);
     const rows_by_scene of_b(b.rows);
@@ -266,7 +271,7 @@ comparison compare(const run_results& a, const run_results& b, compared quantiti
     report.only_in_b = count_only_in(of_b, of_a);
     std::vector<measured_candidate> ratios, times;
     for (const shared_scene& shared : scenes_shared(a.rows, of_b)) {
-        const std::size_t place = report.scenes.size();
+        const std::size_t index = report.scenes.size();
         const std::vector<std::string> labels = labels_of(shared.names);
         compared_scene& scene = report.scenes.emplace_back();
         scene.experiment = shared.first_row->experiment;
@@ -276,10 +281,10 @@ comparison compare(const run_results& a, const run_results& b, compared quantiti
         if (!baseline) continue;
         for (std::size_t i = 0; i < labels.size(); ++i) {
             const candidate_name& name = shared.names[i];
-            const auto add = [&](std::vector<measured_candidate>& lines, const candidate_name* denominator) {
-                measured_candidate entry{place, labels[i], log_times(of_a, shared, name, denominator),
-                                    log_times(of_b, shared, name, denominator)};
-                if (!entry.a.empty() && !entry.b.empty()) lines.push_back(std::move(entry));
+            const auto add = [&](std::vector<measured_candidate>& measured, const candidate_name* denominator) {
+                measured_candidate entry{index, labels[i], log_times(of_a, shared, name, denominator),
+                                         log_times(of_b, shared, name, denominator)};
+                if (!entry.a.empty() && !entry.b.empty()) measured.push_back(std::move(entry));
             };
             if (quantities == compared::ratios_and_times) add(times, nullptr);
             if (name == *baseline)

@@ -49,7 +49,7 @@ struct changed_number {
 /// A scene with the seeds that A and B share.
 struct compared_scene {
     std::string experiment;
-    scene_choice scene;  ///< `without_seed`
+    scene_choice scene;    ///< `without_seed`
     std::string baseline;  ///< denominator of `ratios`: the first in A that is timed in both; empty if there is none
     std::vector<compared_time> ratios;
     std::vector<compared_time> times;

@@ -27,7 +27,7 @@ void print_different_results(const comparison& report) {
     print_block(fmt::format("the results differ in {} of {} scenes", t.rows.size(), report.results_compared), t);
 }
 
-/// Lists the times that changed beyond noise, or all of them.
+/// The table of a scene's compared ratios or times: those that changed beyond noise, or all of them.
 table table_of(std::span<const compared_time> times, const std::string& unit, bool list_all) {
     table t{{{"composition", false}, {unit + " in A"}, {"in B"}, {"B/A"}, {"95 %"}, {"B is", false}}, {}};
     for (const compared_time& time : times)
@@ -75,6 +75,7 @@ std::string percents(std::uint64_t before, std::uint64_t after) {
     return fmt::format("{:+.2f}", 100 * (static_cast<double>(after) / static_cast<double>(before) - 1));
 }
 
+/// Prints the counts and bytes that changed, a table per scene, then a line of totals.
 void print_numbers(const comparison& report) {
     std::size_t changed = 0;
     for (const compared_scene& s : report.scenes) {
@@ -91,6 +92,7 @@ void print_numbers(const comparison& report) {
 
 }  // namespace
 
+/// The exit status is 1 if results differ; slower times are no error.
 int print_comparison(const compare_request& request) {
     const run_results a = read_results(request.a);
     const run_results b = read_results(request.b);

@@ -6,7 +6,8 @@ namespace aabblab {
 
 namespace {
 
-/// The factors of a scene, except its seed and its number of frames, on which times per frame do not depend.
+/// What identifies the condition of a scene: its kind, parameters and meshes, but neither its seed nor its number of
+/// frames, on which times per frame do not depend.
 factors factors_of(const scene_choice& scene) {
     factors scene_factors{{"scene", scene.kind}};
     for (const aabb::setting& s : scene.settings)
@@ -41,7 +42,7 @@ selection selection::with(aabb::strategy_kind kind, std::string choice) const {
     return changed;
 }
 
-// Older results, such as the archived run, omit `axes` where two were cut, which was the default at the time.
+/// Older results, such as the archived run, omit `axes` where two were cut, which was the default at the time.
 static std::string with_default_axes(const std::string& choice) {
     constexpr std::string_view cut = "axial_cut";
     if (!choice.starts_with(cut) || choice.find("axes=") != std::string::npos) return choice;
@@ -49,6 +50,7 @@ static std::string with_default_axes(const std::string& choice) {
     return std::string(cut) + ":axes=2" + others;
 }
 
+/// True for a composition that has all strategies of the selection; never for an engine.
 bool selection::matches(const candidate_name& name) const {
     return name.engine.empty() && std::ranges::all_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
                return wanted_[kind].empty() || wanted_[kind] == name[kind] ||
@@ -91,10 +93,11 @@ std::vector<const row*> condition::rows_of(const selection& composition) const {
     return rows;
 }
 
-cells condition::log_ratios(const selection& arm, const selection& base, const row_value& quantity) const {
+/// Pairs the rows of two compositions by repeat and seed; values that are not positive have no logarithm.
+cells condition::log_ratios(const selection& composition, const selection& baseline, const row_value& quantity) const {
     cells ratios(processes(), seeds());
-    const std::vector<const row*> base_rows = rows_of(base);
-    for (const row* r : rows_of(arm)) {
+    const std::vector<const row*> base_rows = rows_of(baseline);
+    for (const row* r : rows_of(composition)) {
         const double value = quantity(*r).value_or(0);
         if (!(value > 0)) continue;
         for (const row* b : base_rows) {
@@ -116,11 +119,12 @@ std::vector<double> condition::values(const row_value& quantity) const {
     return values_in(rows_, quantity);
 }
 
+/// The noise of a measurement: relative differences of each row to the preceding repeat of its composition and seed.
 std::vector<double> condition::differences(const row_value& quantity) const {
-    std::map<std::pair<candidate_name, std::optional<std::uint64_t>>, const row*> before;
+    std::map<std::pair<candidate_name, std::optional<std::uint64_t>>, const row*> preceding;
     std::vector<double> shares;
     for (const row* r : rows_) {
-        const row*& last = before[{r->name, r->scene.seed}];
+        const row*& last = preceding[{r->name, r->scene.seed}];
         if (last) {
             const double a = quantity(*last).value_or(0), b = quantity(*r).value_or(0);
             if (a + b > 0) shares.push_back(2 * std::abs(a - b) / (a + b));
@@ -141,6 +145,7 @@ std::optional<figure_point> condition::point(double x, const selection& composit
     return figure_point{x, q->median, q->low, q->high};
 }
 
+/// Reads an experiment on first use, and groups its rows by condition; empty if it has no results.
 const measurements::experiment_results& measurements::read(const std::string& experiment) const {
     std::unique_ptr<experiment_results>& results = read_[experiment];
     if (results) return *results;
@@ -166,6 +171,7 @@ std::vector<std::string> measurements::experiments() const {
     return names;
 }
 
+/// Counts the distinct compositions, scenes, processes, seeds and repeats of an experiment.
 extent_of_results measurements::extent(const std::string& experiment) const {
     const std::vector<row>& rows = read(experiment).rows;
     const auto distinct = [&](auto value) {

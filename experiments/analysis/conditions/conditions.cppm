@@ -62,7 +62,8 @@ public:
     [[nodiscard]] std::optional<double> value(const selection& composition, const row_value& quantity) const;
 
     /// Logarithms of the ratios of two compositions in the same repeat.
-    [[nodiscard]] cells log_ratios(const selection& arm, const selection& base, const row_value& quantity) const;
+    [[nodiscard]] cells log_ratios(const selection& composition, const selection& baseline,
+                                   const row_value& quantity) const;
     /// Logarithms of one composition's values: for counts and bytes, which do not depend on the machine.
     [[nodiscard]] cells logs(const selection& composition, const row_value& quantity) const;
     /// The values of all repeats of all compositions that have one.

@@ -10,7 +10,7 @@ namespace {
 using optional_number = std::optional<double>;
 using time_column = optional_number row::*;
 
-/// The columns of one clock.
+/// The columns of one clock: wall time, or processor time of the thread.
 struct times {
     time_column build, first, update, search, detect;
 };
@@ -54,18 +54,20 @@ row_value whole_time(const times& t) {
     };
 }
 
+/// The processor time of the broad phase per frame after frame 0.
 optional_number global_cpu_ms(const row& r) {
     if (!r.update_cpu_ms || r.frames == 1) return std::nullopt;
     return (*r.update_cpu_ms + *r.search_cpu_ms) / frames_after_first(r);
 }
 
+/// The share of the broad phase in the processor time of both phases, in percent.
 optional_number global_share(const row& r) {
     if (!r.update_cpu_ms || !r.detect_cpu_ms || r.frames == 1) return std::nullopt;
     const double global = *r.update_cpu_ms + *r.search_cpu_ms;
     return 100 * global / (global + *r.detect_cpu_ms);
 }
 
-/// The share of the wall time in which the thread did not run.
+/// The share of the wall time in which the thread did not run, in percent: it shows that a machine was busy.
 optional_number waiting(const row& r) {
     if (!r.update_cpu_ms || !r.update_ms) return std::nullopt;
     const double wall_ms = *r.first_ms + *r.update_ms + *r.search_ms + *r.detect_ms;
@@ -73,6 +75,7 @@ optional_number waiting(const row& r) {
     return wall_ms > 0 ? optional_number(100 * std::max(0.0, 1 - cpu_ms / wall_ms)) : std::nullopt;
 }
 
+/// The memory of all parts except the meshes, which all compositions share; empty if none was reported.
 optional_number all_bytes(const row& r) {
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < byte_columns.size(); ++i)
@@ -96,7 +99,8 @@ optional_number wrong_share(const row& r) {
     return (false_negatives + false_positives) / std::max(reported - false_positives + false_negatives, 1.0);
 }
 
-/// The metrics that do not count work.
+/// The metrics that do not count work, in the order of `aabblab list`. Summaries that two clocks share have a name
+/// here.
 std::vector<metric> row_metrics() {
     using enum metric_group;
     const std::string cpu = "processor ";
@@ -147,7 +151,7 @@ bool describes_input(aabb::work counted) {
            counted == pieces;
 }
 
-/// One metric per work counter: its value per frame.
+/// One metric per work counter: its value per frame after frame 0, of which less is better if it counts work.
 std::vector<metric> work_metrics() {
     std::vector<metric> list;
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
@@ -165,6 +169,7 @@ std::vector<metric> work_metrics() {
 
 }  // namespace
 
+/// All metrics, made once.
 std::span<const metric> metrics() {
     static const std::vector<metric> registered = [] {
         std::vector<metric> list = row_metrics();
@@ -190,6 +195,7 @@ const row_value& measured(std::string_view name) {
     return metric_named(name).value;
 }
 
+/// The sum of the bytes of these parts; empty if a row has none of them.
 row_value bytes_of(std::vector<std::string> parts) {
     return [parts = std::move(parts)](const row& r) -> std::optional<double> {
         std::optional<double> sum;
@@ -200,6 +206,7 @@ row_value bytes_of(std::vector<std::string> parts) {
     };
 }
 
+/// The sum of some metrics; empty if a row lacks the first, while the others then count as 0.
 row_value sum_of(const std::vector<std::string>& names) {
     std::vector<row_value> parts;
     for (const std::string& name : names) parts.push_back(measured(name));
@@ -207,7 +214,7 @@ row_value sum_of(const std::vector<std::string>& names) {
         std::optional<double> sum;
         for (const row_value& part : parts) {
             const std::optional<double> value = part(r);
-            if (&part == parts.data() && !value) return std::nullopt;
+            if (&part == &parts.front() && !value) return std::nullopt;
             sum = sum.value_or(0) + value.value_or(0);
         }
         return sum;

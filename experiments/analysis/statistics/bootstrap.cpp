@@ -37,7 +37,7 @@ double median_of(std::span<double> values) {
     return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
-/// The variance of the statistic over resamples of one level.
+/// The variance of the statistic over bootstrap resamples of one level: processes, seeds or repeats.
 double variance_of(const sample_size& size, level drawn, const std::function<double(const resample&)>& statistic) {
     std::uint64_t state = 1;
     std::vector<double> values;
@@ -68,6 +68,7 @@ resample::resample(std::size_t processes, std::size_t seeds, level drawn, std::u
     seeds_ = indices_of(seeds, drawn == level::seeds, random_);
 }
 
+/// The mean over the drawn cells of the median of their repeats, which are drawn too if that is the resampled level.
 double resample::mean_of(const cells& measured) const {
     double sum = 0;
     std::size_t count = 0;
@@ -87,6 +88,7 @@ double resample::mean_of(const cells& measured) const {
     return count > 0 ? sum / static_cast<double>(count) : std::nan("");
 }
 
+/// The interval by Student's t; a miss of 0.025 on either side makes it one of 95 %.
 interval estimate::range(double miss) const {
     if (!(error > 0)) return {value, value};
     const double radius = error * quantile(complement(boost::math::students_t(degrees), miss));
@@ -103,6 +105,8 @@ double estimate::p_if_below(double limit) const {
     return cdf(boost::math::students_t(degrees), (limit - value) / error);
 }
 
+/// Adds the variances of the levels. Each is that between resamples times n / (n - 1), as the bootstrap of n values
+/// underestimates it; the degrees of freedom of the sum follow Satterthwaite (1946).
 estimate bootstrap(const sample_size& size, const std::function<double(const resample&)>& statistic) {
     estimate result{statistic(resample(size.processes, size.seeds, level::none, 0)), 0, 1};
     const auto variance = [&](level drawn, std::size_t count) {
@@ -134,6 +138,8 @@ estimate bootstrap(const cells& measured) {
     return bootstrap(measured.size(), [&](const resample& d) { return d.mean_of(measured); });
 }
 
+/// The mean of independent estimates. Its variance is what their errors imply (`within`) or, if they disagree by more,
+/// what their spread implies (`between`).
 estimate mean_of(std::span<const estimate> estimates) {
     if (estimates.size() == 1) return estimates.front();
     const auto count = static_cast<double>(estimates.size());
@@ -151,6 +157,7 @@ estimate mean_of(std::span<const estimate> estimates) {
     return {mean, std::sqrt(sum), degrees > 0 ? sum * sum / degrees : 1};
 }
 
+/// a - b of independent estimates; the degrees of freedom follow Satterthwaite (1946).
 estimate difference_of(const estimate& a, const estimate& b) {
     const double var_a = a.error * a.error;
     const double var_b = b.error * b.error;
@@ -159,17 +166,19 @@ estimate difference_of(const estimate& a, const estimate& b) {
     return {a.value - b.value, std::sqrt(sum), sum * sum / (var_a * var_a / a.degrees + var_b * var_b / b.degrees)};
 }
 
+/// Interpolates linearly between the two nearest values.
 quartiles quartiles_of(std::vector<double> values) {
     std::ranges::sort(values);
     const auto quantile_at = [&](double share) {
-        const double place = share * static_cast<double>(values.size() - 1);
-        const auto below = static_cast<std::size_t>(place);
+        const double position = share * static_cast<double>(values.size() - 1);
+        const auto below = static_cast<std::size_t>(position);
         const std::size_t above = std::min(below + 1, values.size() - 1);
-        return values[below] + (values[above] - values[below]) * (place - static_cast<double>(below));
+        return values[below] + (values[above] - values[below]) * (position - static_cast<double>(below));
     };
     return {quantile_at(0.25), quantile_at(0.5), quantile_at(0.75)};
 }
 
+/// The line of least squares.
 fitted_line line_through(std::span<const double> x, std::span<const double> y) {
     const auto count = static_cast<double>(x.size());
     double mean_x = 0, mean_y = 0;

@@ -4,14 +4,15 @@ namespace aabblab {
 
 namespace {
 
-/// The smallest p-value among the outcomes.
+/// The least p-value among the outcomes that decide a claim; it stands for the claim in Holm's rule.
 double least_p_value(const tested& t) {
     const double direction = std::min(t.p.less, t.p.more);
     return std::min(direction, t.expected == expectation::not_more ? t.p.not_more : t.p.same);
 }
 
-/// The level at which each p-value is decided by Holm's step-down rule (1979), in ascending order; 0 from the first
-/// p-value above its level.
+/// The level at which each p-value is decided by Holm's step-down rule (1979), which corrects for many tests: the k-th
+/// least of n p-values is compared with 1/(n - k + 1) of the level; from the first that exceeds it on, levels are 0.
+/// @param p_of the p-value of an element of the family
 template <class Tested, class P>
 std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
     std::vector<std::size_t> order(family.size());
@@ -28,6 +29,8 @@ std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
 
 }  // namespace
 
+/// Tests whether a ratio is below, within or above the equivalence band, and returns the outcome with the least
+/// p-value. It is within if it is shown to be neither above nor below: two one-sided tests.
 evidence evidence_of(const estimate& log_ratio) {
     const double high = std::log1p(equivalence_band);
     const double low = -high;
@@ -65,6 +68,7 @@ outcome direction_of(const tails& p, double level) {
     return outcome::undecided;
 }
 
+/// Whether a measured ratio supports a claim, judged at this level of significance.
 support support_of(expectation expected, const tails& p, double level) {
     if (expected == expectation::not_more && p.not_more <= level) return support::favours;
     const outcome direction = direction_of(p, level);
@@ -83,6 +87,7 @@ std::vector<double> levels_together(std::span<const tested> family) {
     return holm_levels(family, least_p_value);
 }
 
+/// The verdict on a claim, from the support by each of its primary endpoints.
 verdict_kind verdict_of(std::span<const support> primary) {
     const auto any_is = [&](support s) { return std::ranges::find(primary, s) != primary.end(); };
     const bool any_otherwise = any_is(support::contradicts) || any_is(support::no_difference);
