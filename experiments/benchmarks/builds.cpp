@@ -22,7 +22,8 @@ constexpr std::array<std::string_view, 2> built_meshes = {"noise_sphere:triangle
 
 constexpr int turns = 5;
 
-/// Times a build by one thread, by two threads, and two builds at once, in turn.
+/// Times the build of a tree by one thread, by two threads, and two builds at once, in turn. Their ratios are the
+/// speedup of a build by two threads, and the greatest speedup that this machine allows, that of independent builds.
 template <class Build>
 void time_build(benchmark::State& state, const aabb::mesh& m) {
     Build by_one;
@@ -55,6 +56,7 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
 
 }  // namespace
 
+/// Adds every build strategy on every mesh; this thread is pinned to a processor except during a build.
 void add_build_benchmarks(const idlest_processor& pinned) {
     for_each_strategy(aabb::builds{}, [&]<class Build>(aabb::type_list<Build>) {
         for (const std::string_view mesh : built_meshes)

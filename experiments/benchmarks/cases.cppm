@@ -34,7 +34,7 @@ template <class Parameter>
 }
 }  // namespace detail
 
-/// The strategy with every combination of its parameters' values.
+/// The strategy with every combination of its parameters' values: each parameter multiplies the choices so far.
 template <aabb::Strategy S>
 [[nodiscard]] std::vector<aabb::strategy_choice> choices_of() {
     std::vector<aabb::strategy_choice> choices{{std::string(S::name), {}}};
@@ -54,6 +54,7 @@ template <aabb::Strategy S>
     return choices;
 }
 
+/// The strategy with the parameters of a choice.
 template <aabb::Strategy S>
 [[nodiscard]] S make_configured(const aabb::strategy_choice& choice) {
     return aabb::make_strategy<S>(aabb::configured<S>(choice.settings));
@@ -98,7 +99,7 @@ public:
 
     [[nodiscard]] std::span<const aabb::box> boxes() const noexcept { return boxes_; }
     [[nodiscard]] const aabb::membership& objects() const noexcept { return objects_; }
-    /// The input of a strategy that requested these axes.
+    /// The input of a strategy that requested the sorted lists of these axes.
     [[nodiscard]] aabb::whole_subset with_lists(aabb::axis_set axes) const noexcept {
         aabb::whole_subset whole{boxes_, {}};
         for (std::size_t k = 0; k < 3; ++k)

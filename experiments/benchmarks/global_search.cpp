@@ -12,6 +12,7 @@ namespace aabblab {
 
 namespace {
 
+/// Registers a benchmark by the name of its case; `run` is timed.
 template <class Run>
 auto* add_case(std::string_view stage, const aabb::strategy_choice& choice, std::uint32_t objects,
                std::string_view displacement, const Run& run) {
@@ -21,8 +22,8 @@ auto* add_case(std::string_view stage, const aabb::strategy_choice& choice, std:
 
 using list_of_frame = std::vector<aabb::projection>;
 
-/// The lists of one axis, one per frame: the keys of the frame in the order of the previous frame. With fewer frames,
-/// the branch predictor would learn the outcomes of the comparisons.
+/// What a sort gets in a moving scene: the list of one axis for each frame, with the keys of this frame in the order of
+/// the previous frame. With fewer frames, the branch predictor would learn the outcomes of the comparisons.
 std::vector<list_of_frame> lists_over_frames(std::uint32_t objects, std::string_view displacement) {
     constexpr std::uint32_t frames = 16;
     constexpr int axis = 0;
@@ -84,9 +85,9 @@ void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame
     }
 }
 
-constexpr aabb::axis_set swept = 0b001;
+constexpr aabb::axis_set swept = 0b001;  // x
 
-/// Times a partition that distributes sorted lists: the choice of axes, the fit and the distribution.
+/// Times what a partition that cuts sorted lists does per frame: it chooses axes, fits its cuts, and distributes lists.
 template <class Partition>
 void time_partition(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);
@@ -111,7 +112,7 @@ void time_partition(benchmark::State& state, Partition partition, std::uint32_t 
     state.counters["bytes"] = static_cast<double>(aabb::bytes_of(partition) + subsets.bytes());
 }
 
-/// Times a column partition, which distributes boxes to columns bucket by bucket.
+/// Times a column partition: the update of a search by columns, which distributes boxes to columns bucket by bucket.
 template <class Partition>
 void time_column_search(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);
@@ -134,23 +135,19 @@ void report_work(benchmark::State& state, const aabb::work_counters& counted, st
     state.counters["pairs/n"] = static_cast<double>(pairs) / objects;
 }
 
-template <aabb::ListSweep Sweep>
-[[nodiscard]] aabb::axis_set swept_axes(Sweep& sweep, const sorted_frame& frame) {
-    return sweep.axes(frame.boxes(), frame.objects());
-}
-
 /// True if a sweep uses a single list. A sweep of several lists may visit every pair that overlaps on any axis, and
 /// all_axes does so for each block of its bits, which takes too long for a micro-benchmark of the largest scene.
 template <aabb::ListSweep Sweep>
 [[nodiscard]] bool uses_one_list(const aabb::strategy_choice& choice) {
-    Sweep sweep = make_configured<Sweep>(choice);
-    return std::popcount(swept_axes(sweep, sorted_frame(sizes.front()))) == 1;
+    const sorted_frame frame(sizes.front());
+    return std::popcount(make_configured<Sweep>(choice).axes(frame.boxes(), frame.objects())) == 1;
 }
 
+/// Times a sweep over the sorted lists of a whole frame.
 template <aabb::ListSweep Sweep>
 void time_sweep(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     const sorted_frame frame(objects);
-    const aabb::whole_subset whole = frame.with_lists(swept_axes(sweep, frame));
+    const aabb::whole_subset whole = frame.with_lists(sweep.axes(frame.boxes(), frame.objects()));
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
     sweep.sweep(whole, pairs, counted);  // also grows the buffers
@@ -173,7 +170,10 @@ void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     aabb::no_counters none;
     constexpr auto no_limit = std::numeric_limits<std::uint64_t>::max();
     const aabb::column_plan plan = aabb::columns_partition().plan(frame.boxes(), aabb::everywhere);
-    if (columns.fill(frame.boxes(), {}, plan, false, no_limit, sort, none) != aabb::fill_result::complete)
+    constexpr std::span<const std::uint32_t> ids_are_indices{};
+    constexpr bool by_keys = false;  // the sort `bucket` leaves buckets unsorted
+    if (columns.fill(frame.boxes(), ids_are_indices, plan, by_keys, no_limit, sort, none) !=
+        aabb::fill_result::complete)
         throw std::logic_error("the scene has a box that is not valid");
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
@@ -195,7 +195,8 @@ template <aabb::CoherentSweep Sweep, class Sort, class... Sorts>
         return sort_for<Sweep>(aabb::type_list<Sorts...>{});
 }
 
-/// Alternates forwards and backwards through the frames, so that every step spans one frame for any number of steps.
+/// A sweep that follows a scene. It runs forwards and backwards through the frames, so that every step spans one frame
+/// for any number of steps.
 template <aabb::CoherentSweep Sweep>
 class moving_sweep {
 public:
@@ -246,6 +247,7 @@ void time_steps(benchmark::State& state, Sweep sweep, std::uint32_t objects, std
     }
 }
 
+/// Adds a sweep of lists; one of several lists only in the smaller scenes.
 template <aabb::ListSweep Sweep>
 void add_sweep(const aabb::strategy_choice& choice) {
     const std::size_t cases = uses_one_list<Sweep>(choice) ? sizes.size() : sizes.size() - 1;
@@ -258,6 +260,7 @@ void add_sweep(const aabb::strategy_choice& choice) {
                      [=](benchmark::State& state) { time_columns(state, make_configured<Sweep>(choice), objects); });
 }
 
+/// Adds a sweep that keeps its pairs, at each displacement.
 template <aabb::CoherentSweep Sweep>
 void add_sweep(const aabb::strategy_choice& choice) {
     for (const std::uint32_t objects : std::span(sizes).first(sizes.size() - 1))

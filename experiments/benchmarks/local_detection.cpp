@@ -22,7 +22,7 @@ namespace {
 
 using walked_tree = aabb::canonical_tree;
 
-/// A pair of nodes of which one is a newly reached leaf.
+/// A pair of nodes of which one is a leaf that the traversal has just reached.
 struct reached_leaf {
     walked_tree::cursor a;
     walked_tree::cursor b;
@@ -42,6 +42,7 @@ struct leaf_pair {
 /// of hits and misses and the relative sizes of boxes are representative.
 class walked_pairs {
 public:
+    /// Records the pairs, and compares their numbers with those that `local_detection` counts.
     /// @throws std::logic_error if local_detection no longer tests these pairs
     walked_pairs() {
         traverse();
@@ -78,7 +79,8 @@ private:
         return poses;
     }
 
-    /// Opens nodes in the order of `local_detection`, and records the tests.
+    /// Opens pairs of nodes in the order of `local_detection`, and records the tests. Of two inner nodes, the one with
+    /// the longer box is opened.
     void traverse() {
         test({a_.root(), b_.root(), to_a_(b_.bounds())});
         while (!open_.empty()) {
@@ -86,9 +88,13 @@ private:
             open_.pop_back();
             const bool a_is_leaf = a_.tree().is_leaf(nodes.a);
             const bool b_is_leaf = b_.tree().is_leaf(nodes.b);
-            if (a_is_leaf && b_is_leaf)
-                record_triangles(a_.tree().triangle(nodes.a), b_.tree().triangle(nodes.b));
-            else if (b_is_leaf || (!a_is_leaf && length(a_.tree().bounds(nodes.a)) >= length(nodes.b_bounds)))
+            if (a_is_leaf && b_is_leaf) {
+                const std::uint32_t of_b = b_.tree().triangle(nodes.b);
+                triangles_.push_back({a_.tree().triangle(nodes.a), of_b, to_a_(b_.triangles().triangle(of_b))});
+                continue;
+            }
+            const bool a_is_longer = longest_edge(a_.tree().bounds(nodes.a)) >= longest_edge(nodes.b_bounds);
+            if (b_is_leaf || (!a_is_leaf && a_is_longer))
                 for (const cursor child : a_.tree().children(nodes.a, a_.triangles()))
                     reach_child_of_a({child, nodes.b, nodes.b_bounds});
             else
@@ -114,12 +120,7 @@ private:
         if (overlaps(a_.tree().bounds(next.a), next.b_bounds)) open_.push_back(next);
     }
 
-    void record_triangles(std::uint32_t a, std::uint32_t b) {
-        triangles_.push_back({a, b, to_a_(b_.triangles().triangle(b))});
-    }
-
-    /// The traversal opens the node with the longer box.
-    [[nodiscard]] static float length(const aabb::box& b) noexcept {
+    [[nodiscard]] static float longest_edge(const aabb::box& b) noexcept {
         const int k = aabb::longest_axis(b);
         return b.max[k] - b.min[k];
     }
@@ -160,8 +161,8 @@ std::vector<Pair> in_random_order(std::vector<Pair> pairs) {
     return order;
 }
 
-/// An iteration is one test and the branch on its result, as in a traversal: the cost of mispredicted branches is part
-/// of the cost of the test.
+/// Times a test on recorded pairs. An iteration is one test and the branch on its result, as in a traversal: the cost
+/// of mispredicted branches is part of the cost of the test.
 /// @param test must be `[[gnu::always_inline]]`, as in a traversal: it is called twice here, and would otherwise be an
 /// out-of-line function
 template <class Pair, class Test>
@@ -272,7 +273,7 @@ struct rotated_box_15_test {
     }
 };
 
-/// The triangles in the leaves below a node.
+/// The triangles in the leaves below a node, or in it if it is a leaf.
 [[nodiscard]] std::vector<std::uint32_t> triangles_below(const aabb::model<walked_tree>& m, walked_tree::cursor node) {
     std::vector<std::uint32_t> triangles;
     std::vector<walked_tree::cursor> open{node};
@@ -287,7 +288,7 @@ struct rotated_box_15_test {
     return triangles;
 }
 
-/// True if any two triangles below the pair of nodes intersect.
+/// True if any two triangles below the pair of nodes intersect: then a leaf test that rejects the pair loses a contact.
 [[nodiscard]] bool any_intersect(const walked_pairs& walk, const reached_leaf& p) {
     for (const std::uint32_t of_b : triangles_below(walk.b(), p.b)) {
         const aabb::triangle3f image = walk.to_a()(walk.b().triangles().triangle(of_b));
@@ -308,7 +309,8 @@ template <class Test>
 template <class Test>
 constexpr bool may_miss = requires { requires !Test::exact; };
 
-/// Times the test. Its false negatives are reported if the test is inexact.
+/// Times a test of a leaf against a node on all pairs that the traversal reached. Its false negatives are reported if
+/// the test is inexact.
 /// @throws std::logic_error if an exact test has false negatives
 template <class Test>
 void time_leaf_test(benchmark::State& state) {
@@ -325,19 +327,20 @@ void time_leaf_test(benchmark::State& state) {
 }
 
 template <template <class> class Test, class Leaf>
-void add() {
+void add_leaf_test() {
     const std::string name = std::string(Test<Leaf>::name) + std::string(Leaf::suffix);
     benchmark::RegisterBenchmark(name.c_str(), time_leaf_test<Test<Leaf>>);
 }
 
+/// Adds all tests of a leaf against a node, with the leaf in one of the two meshes.
 template <class Leaf>
-void add_all() {
-    add<box_test, Leaf>();
-    add<rotated_box_6_test, Leaf>();
-    add<rotated_box_15_test, Leaf>();
-    add<triangle_box_test, Leaf>();
-    add<triangle_box_moller_test, Leaf>();
-    add<triangle_aabb_test, Leaf>();
+void add_leaf_tests() {
+    add_leaf_test<box_test, Leaf>();
+    add_leaf_test<rotated_box_6_test, Leaf>();
+    add_leaf_test<rotated_box_15_test, Leaf>();
+    add_leaf_test<triangle_box_test, Leaf>();
+    add_leaf_test<triangle_box_moller_test, Leaf>();
+    add_leaf_test<triangle_aabb_test, Leaf>();
 }
 
 /// Transforms the triangle of B into A's frame, as for the first triangle of A that it is tested with …
@@ -363,7 +366,7 @@ struct cached_test {
 };
 
 template <class Test>
-void add(const std::string& name, const aabb::strategy_choice& choice) {
+void add_triangle_test(const std::string& name, const aabb::strategy_choice& choice) {
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
         static const std::vector<leaf_pair> pairs = in_random_order(walked().triangles());
         time_tests(state, pairs, Test{make_configured<decltype(Test::triangle)>(choice), walked()});
@@ -373,16 +376,17 @@ void add(const std::string& name, const aabb::strategy_choice& choice) {
 }  // namespace
 
 void add_leaf_test_benchmarks() {
-    add_all<leaf_of_b>();
-    add_all<leaf_of_a>();
+    add_leaf_tests<leaf_of_b>();
+    add_leaf_tests<leaf_of_a>();
 }
 
+/// Adds each triangle test twice: with the transform of the second triangle, and ("/frame:a") with its cached image.
 void add_triangle_test_benchmarks() {
     for_each_strategy(aabb::triangles{}, []<class Triangle>(aabb::type_list<Triangle>) {
         for (const aabb::strategy_choice& choice : choices_of<Triangle>()) {
             const std::string name = "test/triangle/" + to_text(choice);
-            add<transformed_test<Triangle>>(name, choice);
-            add<cached_test<Triangle>>(name + "/frame:a", choice);
+            add_triangle_test<transformed_test<Triangle>>(name, choice);
+            add_triangle_test<cached_test<Triangle>>(name + "/frame:a", choice);
         }
     });
 }

@@ -26,6 +26,8 @@ struct box_pair {
 /// which holds for all axes here, and all rounding errors in double.
 class rotated_boxes {
 public:
+    /// Computes B's axes in A's frame and A's in B's, the shift between the origins, and the margin for rounding
+    /// errors.
     /// @param b_bounds the bounds of B's vertices in B's frame
     rotated_boxes(const aabb::pose& a, const aabb::pose& b, const aabb::box& b_bounds) {
         for (std::size_t i = 0; i < 3; ++i)
@@ -86,7 +88,8 @@ private:
     [[nodiscard]] static inline three yzx(const three& v) noexcept { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
     [[nodiscard]] static inline three zxy(const three& v) noexcept { return __builtin_shufflevector(v, v, 2, 0, 1, 3); }
 
-    /// Tests the cross products of B's axis J with each edge of A.
+    /// True if a cross product of B's axis J with an edge of A separates the boxes: if the distance of their centres
+    /// along it exceeds the sum of their radii. The three edges of A, which are unit vectors, are tested at once.
     template <std::size_t J>
     [[nodiscard]] inline bool edge_separates(const box_pair& p) const noexcept {
         constexpr std::size_t next = (J + 1) % 3;

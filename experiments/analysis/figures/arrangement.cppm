@@ -51,8 +51,8 @@ inline constexpr double tick_room = 0.9;  ///< length of a tick with the gap to 
 }
 
 // In ems.
-constexpr double figure_width = 36;  // about 10 pixels per em on a phone of 400 pixels
-constexpr double character = 0.6;    // of the widest common sans-serif fonts
+constexpr double figure_width = 36;      // about 10 pixels per em on a phone of 400 pixels
+constexpr double character_width = 0.6;  // of the widest common sans-serif fonts
 constexpr double legend_row = 1.4;
 constexpr double legend_sample = 6;  // of a line in the legend, including gaps
 constexpr double end_sign = 1.6;     // of the sign before a label at a line's end, including gaps
@@ -63,7 +63,7 @@ constexpr std::size_t longest_name = 54;
 constexpr std::size_t end_label_length = 18;
 
 double width_of(const std::string& line) {
-    return character * static_cast<double>(characters(line));
+    return character_width * static_cast<double>(characters(line));
 }
 
 double width_of(const std::vector<std::string>& lines) {
@@ -77,7 +77,7 @@ double height_of(const std::vector<std::string>& lines) {
 }
 
 std::size_t length_in(double width) {
-    return static_cast<std::size_t>(std::max(width / character, 1.));
+    return static_cast<std::size_t>(std::max(width / character_width, 1.));
 }
 
 double width_of(const scale& axis, const tick& t, std::size_t name_length) {
@@ -106,20 +106,20 @@ struct end_label {
 struct legend {
     std::vector<std::vector<std::string>> entries;  ///< the lines of each label; empty if it has none
     double left = 0;
-    double column = 0;  ///< the width of a column
+    double column_width = 0;
     std::size_t rows = 0;
     bool has_long_entries = false;
 
     [[nodiscard]] double height() const { return rows == 0 ? 0 : legend_row * static_cast<double>(rows) + gap; }
 };
 
-/// The text beside the line of a mark, like a flag at its pole.
+/// The text beside the vertical line of a mark, like a flag at its pole; `begin` and `end` are its horizontal extent.
 struct flag {
     double line_x, begin, end;
     std::size_t row = 0;  ///< counted from below
 };
 
-/// Assigns rows to the texts so that no line of another mark crosses them.
+/// Assigns rows to the texts of marks so that no text meets another, or the line of another mark.
 /// @returns the number of rows
 std::size_t assign_rows(std::vector<flag>& flags) {
     const auto crosses = [](const flag& line, const flag& text) {
@@ -147,17 +147,18 @@ class arranger {
 public:
     explicit arranger(const drawing& d)
         : drawing_(d),
-          panels_(d.panels.size()),
-          columns_(std::min<std::size_t>(panels_, 2)),
-          rows_((panels_ + columns_ - 1) / columns_) {}
+          panel_count_(d.panels.size()),
+          column_count_(std::min<std::size_t>(panel_count_, 2)),
+          row_count_((panel_count_ + column_count_ - 1) / column_count_) {}
 
+    /// Margins depend on labels, the plots on margins and the legend, and the places of texts on the plots.
     arrangement arranged() && {
         place_left();
         const std::vector<end_label> ends = place_ends();
         const double below_plot = tick_room + place_x_ticks();
         std::vector<std::vector<flag>> flags;
         std::size_t flag_rows = 0;
-        for (std::size_t i = 0; i < panels_; ++i) {
+        for (std::size_t i = 0; i < panel_count_; ++i) {
             flags.push_back(flags_of(i));
             flag_rows = std::max(flag_rows, assign_rows(flags.back()));
         }
@@ -170,20 +171,22 @@ public:
         bool is_in_cell = false;
         if (ends.empty()) {
             labels = legend_of(plot_width());
-            is_in_cell = panels_ % columns_ != 0 && labels.height() + below_plot <= row && !labels.has_long_entries;
+            is_in_cell =
+                panel_count_ % column_count_ != 0 && labels.height() + below_plot <= row && !labels.has_long_entries;
             if (!is_in_cell) labels = legend_of(figure_width);
-            labels.left = is_in_cell ? plot_left(panels_) + gap : std::min(labels.left, std::max(gap, left_));
+            labels.left =
+                is_in_cell ? plot_left(panel_count_) + gap : std::min(labels.left, std::max(gap, left_margin_));
         }
 
         const double low = (is_in_cell ? 0 : labels.height()) + gap / 2;
         const double bottom = add_x_label(low) + gap / 2 + below_plot;
         constexpr double row_gap = 1.2;
-        const auto rows = static_cast<double>(rows_);
+        const auto rows = static_cast<double>(row_count_);
         layout_.width = figure_width;
         layout_.height = bottom + rows * row + (rows - 1) * row_gap + (titled ? gap / 2 : 1);
-        for (std::size_t i = 0; i < panels_; ++i) {
-            const std::size_t from_above = i / columns_;
-            const auto from_below = static_cast<double>(rows_ - 1 - from_above);
+        for (std::size_t i = 0; i < panel_count_; ++i) {
+            const std::size_t from_above = i / column_count_;
+            const auto from_below = static_cast<double>(row_count_ - 1 - from_above);
             add_plot(i, bottom + from_below * (row + row_gap), marks, flags[i]);
         }
         add_y_label((bottom + layout_.plots.front().top) / 2);
@@ -194,24 +197,24 @@ public:
 
 private:
     [[nodiscard]] double plot_width() const {
-        const auto count = static_cast<double>(columns_);
-        return (figure_width - left_ - right_ - column_gap_ * (count - 1)) / count;
+        const auto count = static_cast<double>(column_count_);
+        return (figure_width - left_margin_ - right_margin_ - column_gap_ * (count - 1)) / count;
     }
     [[nodiscard]] double plot_left(std::size_t panel) const {
-        return left_ + static_cast<double>(panel % columns_) * (plot_width() + column_gap_);
+        return left_margin_ + static_cast<double>(panel % column_count_) * (plot_width() + column_gap_);
     }
 
     /// Sets the height of the plots, which grows with the number of names on the y axis, and the left margin.
     void place_left() {
         const auto [width, height] = extent_of_labels(drawing_.y, y_name_length);
-        plot_height_ = panels_ == 1 ? 17 : 10;
+        plot_height_ = panel_count_ == 1 ? 17 : 10;
         if (drawing_.y.named)
             plot_height_ = std::max(plot_height_, (height + gap) * static_cast<double>(drawing_.y.ticks.size()));
-        y_label_ = lines_of(drawing_.f.y.label, length_in(plot_height_ * static_cast<double>(rows_) + 1.5));
-        left_ = gap / 2 + height_of(y_label_) + gap + width + tick_room;
+        y_label_ = lines_of(drawing_.f.y.label, length_in(plot_height_ * static_cast<double>(row_count_) + 1.5));
+        left_margin_ = gap / 2 + height_of(y_label_) + gap + width + tick_room;
     }
 
-    /// Removes labels of ticks until no two overlap.
+    /// Clears the labels of ticks but every second one, third one, and so on, until no two overlap.
     void thin_x_ticks() {
         std::vector<tick*> labelled;
         for (tick& t : layout_.x_ticks)
@@ -237,7 +240,7 @@ private:
     double place_x_ticks() {
         layout_.x_name_length = longest_name;
         layout_.x_ticks = drawing_.x.ticks;
-        if (columns_ > 1) column_gap_ = 1.5;
+        if (column_count_ > 1) column_gap_ = 1.5;
         std::vector<tick> labelled;
         std::ranges::copy_if(drawing_.x.ticks, std::back_inserter(labelled),
                              [](const tick& t) { return !t.label.empty(); });
@@ -255,8 +258,8 @@ private:
             };
             const double left_overhang = overhang(labelled.front(), drawing_.x.place(labelled.front().at));
             const double right_overhang = overhang(labelled.back(), 1 - drawing_.x.place(labelled.back().at));
-            right_ = std::max(right_, right_overhang + gap / 2);
-            if (columns_ > 1)
+            right_margin_ = std::max(right_margin_, right_overhang + gap / 2);
+            if (column_count_ > 1)
                 column_gap_ = std::max(column_gap_, std::max(left_overhang, 0.) + std::max(right_overhang, 0.) + gap);
             if (!drawing_.x.named) thin_x_ticks();
             return height;
@@ -265,7 +268,7 @@ private:
         constexpr double slant = 30 * std::numbers::pi / 180;
         constexpr double widest_margin = 16;
         layout_.x_name_length = longest_name;
-        double left = left_;
+        double left = left_margin_;
         double longest = 0;
         for (const tick& t : labelled) {
             longest = std::max(longest, width_of(t.label));
@@ -273,7 +276,7 @@ private:
         }
         if (slot * std::sin(slant) >= 0.8 && left <= widest_margin) {
             layout_.x_name_angle = 30;
-            left_ = left;
+            left_margin_ = left;
             return longest * std::sin(slant) + 0.5;
         }
         layout_.x_name_angle = 90;
@@ -284,7 +287,7 @@ private:
     [[nodiscard]] std::vector<end_label> wanted_ends() const {
         constexpr double near_edge = 0.9;
         std::vector<end_label> ends;
-        if (panels_ > 1) return ends;
+        if (panel_count_ > 1) return ends;
         for (std::size_t i = 0; i < drawing_.labels.size(); ++i) {
             if (drawing_.labels[i].text.empty()) continue;
             const shown_series& s = drawing_.panels.front().lines[i];
@@ -296,7 +299,7 @@ private:
         return ends;
     }
 
-    /// Places labels at the ends of lines; returns none if a label would be too far from its line.
+    /// Places labels at the ends of lines, which need no legend; returns none if one would be too far from its line.
     std::vector<end_label> place_ends() {
         constexpr double furthest = 2.2;
         std::vector<end_label> ends = wanted_ends();
@@ -304,7 +307,7 @@ private:
         for (end_label& end : ends) {
             end.middle = end.wanted;
             widest = std::max(widest, width_of(end.lines));
-            if (end.lines.size() > 3 || widest > character * static_cast<double>(end_label_length)) return {};
+            if (end.lines.size() > 3 || widest > character_width * static_cast<double>(end_label_length)) return {};
         }
         std::ranges::sort(ends, {}, &end_label::middle);
         // The overlap of two neighbouring labels.
@@ -323,7 +326,7 @@ private:
             }
         for (std::size_t i = 0; i < ends.size(); ++i)
             if ((i > 0 && overlap(i) > 0.1) || std::abs(ends[i].middle - ends[i].wanted) > furthest) return {};
-        if (!ends.empty()) right_ = std::max(right_, end_sign + widest + gap / 2);
+        if (!ends.empty()) right_margin_ = std::max(right_margin_, end_sign + widest + gap / 2);
         return ends;
     }
 
@@ -340,13 +343,13 @@ private:
             widest = std::max(widest, width_of(entry));
         }
         if (lines == 0) return result;
-        result.column = legend_sample + widest;
-        auto columns = std::max<std::size_t>(1, static_cast<std::size_t>((width - gap) / result.column));
+        result.column_width = legend_sample + widest;
+        auto columns = std::max<std::size_t>(1, static_cast<std::size_t>((width - gap) / result.column_width));
         // A label of several lines must not be split between columns.
         if (result.has_long_entries) columns = 1;
         result.rows = (lines + columns - 1) / columns;
         columns = (lines + result.rows - 1) / result.rows;
-        result.left = std::max(gap, width - result.column * static_cast<double>(columns));
+        result.left = std::max(gap, width - result.column_width * static_cast<double>(columns));
         return result;
     }
 
@@ -369,9 +372,9 @@ private:
         for (std::size_t i = 0; i < lines.size(); ++i) add(centres[i], lines[i], end);
     }
 
-    /// @returns the upper edge of the label
+    /// Adds the label of the x axis, centred below the plots. @returns its upper edge
     double add_x_label(double bottom) {
-        const double middle = (left_ + figure_width - right_) / 2;
+        const double middle = (left_margin_ + figure_width - right_margin_) / 2;
         const double room = 2 * std::min(middle, figure_width - middle);
         const std::vector<std::string> lines = lines_of(drawing_.f.x.label, length_in(room - gap));
         const double top = bottom + height_of(lines);
@@ -387,11 +390,13 @@ private:
         }
     }
 
+    /// Adds the edges of a panel's plot, its title, and the texts of its marks above it.
+    /// @param marks the height for these texts
     void add_plot(std::size_t panel, double bottom, double marks, const std::vector<flag>& flags) {
         const double left = plot_left(panel);
         const double top = bottom + plot_height_;
-        arrangement::box& plot = layout_.plots.emplace_back(left, left + plot_width(), bottom, top,
-                                                            panel + columns_ >= panels_, panel % columns_ == 0);
+        arrangement::box& plot = layout_.plots.emplace_back(
+            left, left + plot_width(), bottom, top, panel + column_count_ >= panel_count_, panel % column_count_ == 0);
         const shown_panel& shown = drawing_.panels[panel];
         if (!shown.title.empty()) add({left, top + marks + gap / 2 + line_height / 2}, shown.title);
         for (std::size_t i = 0; i < flags.size(); ++i) {
@@ -417,13 +422,14 @@ private:
         }
     }
 
+    /// Adds the legend column by column; an entry of several lines has one sample, beside the first.
     void add_legend(const legend& labels, double bottom) {
         std::size_t entry = 0;
         for (std::size_t i = 0; i < labels.entries.size(); ++i)
             for (const std::string& text : labels.entries[i]) {
                 const std::size_t column = entry / labels.rows;
                 const auto from_below = static_cast<double>(labels.rows - 1 - entry % labels.rows);
-                const place at{labels.left + static_cast<double>(column) * labels.column,
+                const place at{labels.left + static_cast<double>(column) * labels.column_width,
                                bottom + (from_below + 0.5) * legend_row};
                 if (&text == labels.entries[i].data()) layout_.samples.push_back({at, &drawing_.labels[i], false});
                 add({at.x + legend_sample - 0.8, at.y}, text);
@@ -433,9 +439,9 @@ private:
 
     const drawing& drawing_;
     arrangement layout_{};
-    std::size_t panels_, columns_, rows_;
-    double left_ = 0;
-    double right_ = 1.5;
+    std::size_t panel_count_, column_count_, row_count_;
+    double left_margin_ = 0;
+    double right_margin_ = 1.5;
     double column_gap_ = 0, plot_height_ = 0;
     std::vector<std::string> y_label_;
 };

@@ -8,7 +8,7 @@ import aabblab.figures;
 
 namespace aabblab {
 
-/// The points of a series in NAME.csv: all finite ones, or the first for a level.
+/// The points of a series that the figure's CSV file lists: all finite ones, or only the first for a level.
 [[nodiscard]] std::vector<figure_point> points_of(const series& s) {
     std::vector<figure_point> points;
     for (figure_point p : s.points) {
@@ -20,7 +20,7 @@ namespace aabblab {
     return points;
 }
 
-/// A series with its number in NAME.csv: first the series that all panels share, then those of each panel.
+/// A series with its number in the figure's CSV file: first those that all panels share, then those of each panel.
 struct numbered_series {
     const series* source;
     std::size_t number;         ///< from 1
@@ -35,7 +35,7 @@ struct numbered_series {
     return list;
 }
 
-/// Half the distance of the two nearest names; the square root of their ratio if the axis is logarithmic.
+/// Half the distance of the two nearest names on an axis; the square root of their ratio if it is logarithmic.
 [[nodiscard]] double half_gap(const figure_axis& axis) {
     double gap = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < axis.names.size(); ++i) {
@@ -50,11 +50,12 @@ struct numbered_series {
 /// The part of a series that can be shown.
 struct shown_series {
     const series* source;
-    std::size_t look;  ///< from 0; series with the same label in several panels share it
+    std::size_t appearance;  ///< index of colour, dashes and sign; series with one label in several panels share it
     std::vector<figure_point> points;
     bool varies;  ///< has quartiles to show
 
     [[nodiscard]] bool is(series_style style) const { return source->style == style; }
+    /// True if lines join its points.
     [[nodiscard]] bool is_joined() const { return is(series_style::line) && points.size() > 1; }
 };
 
@@ -67,7 +68,7 @@ struct shown_panel {
 /// An entry of the legend, or a label at the end of a line.
 struct shown_label {
     std::string text;
-    std::size_t look;
+    std::size_t appearance;
     series_style style;  ///< `points` for a line with a single point
 };
 
@@ -87,20 +88,22 @@ struct extent {
     return std::isfinite(value) && (!axis.logarithmic || value > 0);
 }
 
-/// With panels, series with equal labels share a look; every other series has a look of its own.
-[[nodiscard]] std::vector<std::size_t> looks_of(const figure& f, const std::vector<numbered_series>& lines) {
-    std::vector<std::size_t> looks;
+/// The appearance of each series, an index of colours, dashes and signs: series with equal labels in several panels
+/// share it; every other series has its own.
+[[nodiscard]] std::vector<std::size_t> appearances_of(const figure& f, const std::vector<numbered_series>& lines) {
+    std::vector<std::size_t> appearances;
     std::vector<const series*> first;
     for (const numbered_series& s : lines) {
         const auto known = std::ranges::find_if(first, [&](const series* other) {
             return !f.panels.empty() && !other->label.empty() && other->label == s.source->label;
         });
-        looks.push_back(static_cast<std::size_t>(known - first.begin()));
+        appearances.push_back(static_cast<std::size_t>(known - first.begin()));
         if (known == first.end()) first.push_back(s.source);
     }
-    return looks;
+    return appearances;
 }
 
+/// The marks of the figure and of a panel that the x axis can show, from left to right.
 [[nodiscard]] std::vector<figure_mark> shown_marks(const figure& f, const figure_panel* panel) {
     std::vector<figure_mark> marks = f.marks;
     if (panel != nullptr) marks.insert(marks.end(), panel->marks.begin(), panel->marks.end());
@@ -109,9 +112,10 @@ struct extent {
     return marks;
 }
 
+/// The panels with the series and points that can be shown; a figure without panels counts as one.
 [[nodiscard]] std::vector<shown_panel> shown_panels_of(const figure& f) {
     const std::vector<numbered_series> series_list = numbered_series_of(f);
-    const std::vector<std::size_t> looks = looks_of(f, series_list);
+    const std::vector<std::size_t> appearances = appearances_of(f, series_list);
     std::vector<shown_panel> panels;
     for (std::size_t i = 0; i < std::max<std::size_t>(f.panels.size(), 1); ++i) {
         const figure_panel* const panel = f.panels.empty() ? nullptr : &f.panels[i];
@@ -119,7 +123,7 @@ struct extent {
         to.marks = shown_marks(f, panel);
         for (std::size_t k = 0; k < series_list.size(); ++k) {
             if (series_list[k].panel != nullptr && series_list[k].panel != panel) continue;
-            shown_series s{series_list[k].source, looks[k], points_of(*series_list[k].source), false};
+            shown_series s{series_list[k].source, appearances[k], points_of(*series_list[k].source), false};
             std::erase_if(s.points, [&](const figure_point& p) {
                 return !has_place(f.y, p.y) || (!s.is(series_style::level) && !has_place(f.x, p.x));
             });
@@ -130,16 +134,17 @@ struct extent {
     return panels;
 }
 
-/// One label per look.
+/// The entries of the legend: one per appearance (colour, dashes and sign), whatever the number of panels that show it.
+/// A line that has a single point in every panel is shown as a point.
 [[nodiscard]] std::vector<shown_label> labels_of(const std::vector<shown_panel>& panels) {
     std::vector<shown_label> labels;
     for (const shown_panel& panel : panels)
         for (const shown_series& s : panel.lines) {
-            const bool is_dot = s.is(series_style::line) && !s.is_joined();
-            const series_style style = is_dot ? series_style::points : s.source->style;
-            const auto known = std::ranges::find(labels, s.look, &shown_label::look);
+            const bool is_single_point = s.is(series_style::line) && !s.is_joined();
+            const series_style style = is_single_point ? series_style::points : s.source->style;
+            const auto known = std::ranges::find(labels, s.appearance, &shown_label::appearance);
             if (known == labels.end())
-                labels.push_back({s.source->label, s.look, style});
+                labels.push_back({s.source->label, s.appearance, style});
             else if (s.is_joined())
                 known->style = style;
         }

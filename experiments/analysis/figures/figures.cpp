@@ -12,14 +12,15 @@ namespace aabblab {
 
 namespace {
 
-[[nodiscard]] std::string name_at(const figure_axis& axis, double place) {
+[[nodiscard]] std::string name_at(const figure_axis& axis, double position) {
     for (const auto& [at, name] : axis.names)
-        if (at == place) return one_line(name);
+        if (at == position) return one_line(name);
     return {};
 }
 
 }  // namespace
 
+/// One row per point, with the columns that the figure needs: panels, and names of its axes.
 std::string csv_of(const figure& f) {
     std::vector<std::string> header{"number", "x", "y", "low", "high", "series"};
     if (!f.panels.empty()) header.emplace_back("panel");

@@ -45,7 +45,7 @@ char code_of(char32_t character) {
     return '?';
 }
 
-/// Decodes UTF-8 to the codes of the font's characters.
+/// Converts UTF-8 to the codes of the font's characters, one byte each, since PDF's standard fonts know no Unicode.
 std::string encoded(std::string_view utf8) {
     std::string text;
     for (std::size_t i = 0; i < utf8.size();) {
@@ -61,7 +61,7 @@ std::string encoded(std::string_view utf8) {
     return text;
 }
 
-/// The width in ems.
+/// The width of a text in Helvetica, in ems: PDF has no anchors, so that centred texts need it.
 double width_of(std::string_view encoded_text) {
     double width = 0;
     for (const char c : encoded_text)
@@ -89,7 +89,7 @@ std::string operands_of(std::string_view hexadecimal) {
     return text;
 }
 
-/// The PDF operators that draw lines or fill areas.
+/// The PDF operators that draw lines or fill areas, in a graphics state of their own (q, Q).
 std::string operators_of(const strokes& s) {
     const bool is_area = s.width == 0;
     std::string text = "q ";
@@ -130,6 +130,7 @@ std::string operators_of(const words& w) {
 
 }  // namespace
 
+/// A file of one page: five objects, then the table of their byte positions (xref), which PDF requires.
 std::string pdf_of(const sheet& s) {
     std::string page;
     for (const auto& part : s.parts) page += std::visit([](const auto& p) { return operators_of(p); }, part);
@@ -142,15 +143,15 @@ std::string pdf_of(const sheet& s) {
         fmt::format("<</Type/Font/Subtype/Type1/BaseFont/Helvetica/Encoding{}>>", encoding)};
     // The second line marks the file as binary.
     std::string pdf = "%PDF-1.4\n%\xe2\xe3\xcf\xd3\n";
-    std::string places;
+    std::string positions;
     for (std::size_t i = 0; i < objects.size(); ++i) {
-        places += fmt::format("{:010} 00000 n \n", pdf.size());
+        positions += fmt::format("{:010} 00000 n \n", pdf.size());
         pdf += fmt::format("{} 0 obj\n{}\nendobj\n", i + 1, objects[i]);
     }
     const std::size_t count = objects.size() + 1;
     return pdf +
            fmt::format("xref\n0 {}\n0000000000 65535 f \n{}trailer\n<</Size {}/Root 1 0 R>>\nstartxref\n{}\n%%EOF\n",
-                       count, places, count, pdf.size());
+                       count, positions, count, pdf.size());
 }
 
 }  // namespace aabblab

@@ -55,7 +55,7 @@ constexpr double thin = 0.06;
 
 using places = std::vector<place>;
 
-/// Adds the outlines of a sign centred at a place.
+/// Adds the outlines of a sign (the symbol of a point), centred at a place. A disc is a point with a round cap.
 void add_sign(const sign& s, place centre, std::vector<places>& outlines) {
     if (s.corners == is_disc) return outlines.push_back({centre});
     const auto corner = [&](int i, int count) {
@@ -77,6 +77,7 @@ public:
     explicit painter(const figure& f)
         : drawing_(f), layout_(aabblab::arranged(drawing_)), sheet_{layout_.width, layout_.height, {}} {}
 
+    /// Paints each panel from back to front, then the texts and the legend.
     sheet painted() && {
         for (std::size_t i = 0; i < drawing_.panels.size(); ++i) {
             plot_ = &layout_.plots[i];
@@ -109,15 +110,15 @@ private:
                 std::vector<double> pattern = {}) {
         sheet_.parts.emplace_back(strokes{std::move(lines), colour, thickness, std::move(pattern)});
     }
-    void stroke_look(std::vector<places> lines, std::size_t look, bool dashed) {
+    void stroke_series(std::vector<places> lines, std::size_t appearance, bool is_dashed) {
         std::vector<double> lengths;
-        if (dashed)
-            for (const double tenths : dashes[look % dashes.size()]) lengths.push_back(tenths / 10);
-        stroke(std::move(lines), colour_of(look), line_width, std::move(lengths));
+        if (is_dashed)
+            for (const double tenths : dashes[appearance % dashes.size()]) lengths.push_back(tenths / 10);
+        stroke(std::move(lines), colour_of(appearance), line_width, std::move(lengths));
     }
-    void put_signs(const places& centres, std::size_t look) {
-        const sign& s = signs[look % signs.size()];
-        strokes drawn{{}, colour_of(look)};
+    void put_signs(const places& centres, std::size_t appearance) {
+        const sign& s = signs[appearance % signs.size()];
+        strokes drawn{{}, colour_of(appearance)};
         for (const place& p : centres) add_sign(s, p, drawn.lines);
         drawn.closed = s.corners > is_cross;
         drawn.round = s.corners == is_disc;
@@ -125,11 +126,11 @@ private:
         if (drawn.round) drawn.width = 2 * s.size;
         if (!centres.empty()) sheet_.parts.emplace_back(std::move(drawn));
     }
-    void fill(places outline, std::size_t look) {
+    void fill(places outline, std::size_t appearance) {
         sheet_.parts.emplace_back(
-            strokes{.lines = {std::move(outline)}, .colour = colour_of(look), .closed = true, .faint = true});
+            strokes{.lines = {std::move(outline)}, .colour = colour_of(appearance), .closed = true, .faint = true});
     }
-    static std::string_view colour_of(std::size_t look) { return colours[look % colours.size()]; }
+    static std::string_view colour_of(std::size_t appearance) { return colours[appearance % colours.size()]; }
 
     [[nodiscard]] double x(double value) const {
         return plot_->left + drawing_.x.place(value) * (plot_->right - plot_->left);
@@ -156,6 +157,7 @@ private:
         return (before - (count - 1) / 2) * std::min(0.3, 1.4 / count) * half_gap(drawing_.f.x);
     }
 
+    /// Draws a line across the plot at each labelled tick.
     void draw_grid() {
         std::vector<places> lines;
         for (const tick& t : layout_.x_ticks)
@@ -171,40 +173,42 @@ private:
         if (s.is(series_style::level)) {
             const double bottom = low(s.points.front());
             const double top = y(s.points.front().high);
-            fill({{plot_->left, bottom}, {plot_->left, top}, {plot_->right, top}, {plot_->right, bottom}}, s.look);
+            fill({{plot_->left, bottom}, {plot_->left, top}, {plot_->right, top}, {plot_->right, bottom}},
+                 s.appearance);
         } else if (s.is_joined()) {
             places outline;
             for (const figure_point& p : s.points) outline.push_back({x(p.x), y(p.high)});
             for (auto p = s.points.rbegin(); p != s.points.rend(); ++p) outline.push_back({x(p->x), low(*p)});
-            fill(std::move(outline), s.look);
+            fill(std::move(outline), s.appearance);
         }
     }
 
+    /// Draws a bar from quartile to quartile at each point that no line joins.
     void draw_bars(const shown_series& s) {
         if (!s.varies || s.is(series_style::level) || s.is_joined()) return;
         const double shift = shift_of(s);
         std::vector<places> lines;
         for (const figure_point& p : s.points)
             if (p.low < p.high) lines.push_back({{x(p.x + shift), low(p)}, {x(p.x + shift), y(p.high)}});
-        stroke_look(std::move(lines), s.look, false);
+        stroke_series(std::move(lines), s.appearance, /*is_dashed=*/false);
     }
 
     /// Draws the line of a series and the signs of its points.
     void draw_line(const shown_series& s) {
         if (s.is(series_style::level)) {
             const double height = y(s.points.front().y);
-            return stroke_look({{{plot_->left, height}, {plot_->right, height}}}, s.look, true);
+            return stroke_series({{{plot_->left, height}, {plot_->right, height}}}, s.appearance, true);
         }
         const double shift = shift_of(s);
         places points;
         for (const figure_point& p : s.points) points.push_back({x(p.x + shift), y(p.y)});
-        if (s.is_joined()) stroke_look({points}, s.look, true);
+        if (s.is_joined()) stroke_series({points}, s.appearance, true);
         // Signs at all points of a long line would merge into one thick line.
         constexpr std::size_t readable = 20;
         const std::size_t step = s.is_joined() && points.size() > readable ? points.size() / (readable / 2) : 1;
         places sparse;
         for (std::size_t i = 0; i < points.size(); i += step) sparse.push_back(points[i]);
-        put_signs(sparse, s.look);
+        put_signs(sparse, s.appearance);
     }
 
     void draw_marks() {
@@ -238,11 +242,12 @@ private:
     }
 
     void draw_sample(const arrangement::sample& s) {
-        if (s.is_end) return put_signs({s.at}, s.label->look);
+        if (s.is_end) return put_signs({s.at}, s.label->appearance);
         constexpr double length = 4.4;
         const auto [x, y] = s.at;
-        if (s.label->style != series_style::points) stroke_look({{{x, y}, {x + length, y}}}, s.label->look, true);
-        if (s.label->style != series_style::level) put_signs({{x + length / 2, y}}, s.label->look);
+        if (s.label->style != series_style::points)
+            stroke_series({{{x, y}, {x + length, y}}}, s.label->appearance, true);
+        if (s.label->style != series_style::level) put_signs({{x + length / 2, y}}, s.label->appearance);
     }
 
     drawing drawing_;

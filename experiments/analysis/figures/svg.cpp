@@ -15,6 +15,7 @@ struct svg_writer {
     double height;
     svg_picture picture{};
 
+    /// Writes lines or filled areas as one path.
     void operator()(strokes s) {
         for (std::vector<place>& line : s.lines)
             for (place& p : line) p = in_pixels(p);
@@ -30,6 +31,7 @@ struct svg_writer {
                       {"stroke-linecap", s.round ? "round" : ""}});
     }
 
+    /// Writes a line of text, turned about its anchor.
     void operator()(const words& w) {
         constexpr std::array<std::string_view, 3> anchors = {"start", "middle", "end"};
         const place at = in_pixels(w.at);

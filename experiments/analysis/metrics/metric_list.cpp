@@ -99,8 +99,7 @@ optional_number wrong_share(const row& r) {
     return (false_negatives + false_positives) / std::max(reported - false_positives + false_negatives, 1.0);
 }
 
-/// The metrics that do not count work, in the order of `aabblab list`. Summaries that two clocks share have a name
-/// here.
+/// The metrics of times, bytes and errors, which do not count work; `aabblab list` prints their summaries.
 std::vector<metric> row_metrics() {
     using enum metric_group;
     const std::string cpu = "processor ";
