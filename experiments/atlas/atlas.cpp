@@ -77,13 +77,12 @@ std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is
         std::vector<atlas_candidate>& candidates = atlas[index->second].candidates;
         const std::string label = label_of(r.name);
         auto candidate = std::ranges::find(candidates, label, &atlas_candidate::label);
-        if (candidate == candidates.end())
-            candidate = candidates.insert(candidate, {label, r.name.is_automatic(), {}, {}});
+        if (candidate == candidates.end()) candidate = candidates.emplace(candidate, label, r.name.is_automatic());
         candidate->frame_ms.push_back(*frame_ms);
         candidate->whole_ms.push_back(*whole_ms);
     }
-    std::erase_if(
-        atlas, [](const atlas_scene& s) { return std::ranges::all_of(s.candidates, &atlas_candidate::is_automatic); });
+    std::erase_if(atlas,
+                  [](const auto& s) { return std::ranges::all_of(s.candidates, &atlas_candidate::is_automatic); });
     return atlas;
 }
 

@@ -23,7 +23,7 @@ enum class atlas_time : unsigned char {
 struct atlas_candidate {
     std::string label;  ///< its strategies other than `none`: "bucket + columns + simd"
     bool is_automatic = false;
-    std::vector<double> frame_ms, whole_ms;
+    std::vector<double> frame_ms{}, whole_ms{};
 
     [[nodiscard]] const std::vector<double>& times(atlas_time time) const {
         return span == atlas_time::per_frame ? frame_ms : whole_ms;
@@ -94,14 +94,13 @@ struct judged_ratio {
 struct judged_statement {
     std::string id, source, says;
     verdict_kind verdict = verdict_kind::undecided;
-    std::vector<judged_ratio> ratios;
+    std::vector<judged_ratio> ratios{};
 };
 /// Verdicts on published statements about broad phases, by the same rule as claims of the paper: ratios of times per
 /// frame, geometric means over scenes, decided as one family.
 [[nodiscard]] std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& atlas);
 [[nodiscard]] table statements_table(const std::vector<judged_statement>& judged);
 [[nodiscard]] table ratios_table(const std::vector<judged_statement>& judged);
-/// The labels on which statements depend.
 [[nodiscard]] std::vector<std::string> labels_in_statements();
 
 /// A linear cost model of the time per frame: the costs of the terms that a scene's measures count, fitted to the

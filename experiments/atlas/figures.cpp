@@ -30,7 +30,6 @@ std::vector<series> empty_series(const std::vector<std::string>& winners) {
     return lines;
 }
 
-/// Adds a scene to the series of its winner, or to the last one, "another".
 void add_point(std::vector<series>& to, const std::string& winner, double x, double y) {
     const auto match = std::ranges::find(to, winner, &series::label);
     (match != to.end() ? *match : to.back()).points.push_back({x, y});
@@ -81,8 +80,8 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
     return f;
 }
 
-/// One curve of regrets in ascending order for each of the seven candidates with the least median regret, out of those
-/// timed in at least half of the scenes.
+/// A curve of ascending regrets for each candidate with one of the least medians, if it was timed in half of the
+/// scenes.
 figure regret_figure(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most_curves = 7;
     constexpr std::size_t least_scenes = 2;

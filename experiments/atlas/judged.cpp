@@ -50,9 +50,7 @@ struct setting_is {
 scene_filter map_with(std::vector<setting_is> settings, bool all_move = true) {
     return [settings = std::move(settings), all_move](const atlas_scene& s) {
         if (s.scene.kind != "cloud" || (all_move && s.number("moving") != 1)) return false;
-        for (const setting_is& setting : settings)
-            if (s.number(setting.parameter) != setting.value) return false;
-        return true;
+        return std::ranges::all_of(settings, [&](const setting_is& i) { return s.number(i.parameter) == i.value; });
     };
 }
 
@@ -235,8 +233,7 @@ measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_rati
     return logs.empty() ? measured_ratio() : measured_ratio{logs.size(), mean_of(logs)};
 }
 
-/// The ratio that a statement speaks of, divided by that in the reference scenes if there are any; without scenes
-/// if either was not measured.
+/// The ratio that a statement speaks of, divided by that in the reference scenes; of no scenes if one is unknown.
 measured_ratio measure(const std::vector<atlas_scene>& atlas, const stated_ratio& r) {
     measured_ratio ratio = ratio_in(atlas, r, r.scenes);
     if (!r.reference_scenes || ratio.scenes == 0) return ratio;
@@ -251,35 +248,31 @@ measured_ratio measure(const std::vector<atlas_scene>& atlas, const stated_ratio
 std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& atlas) {
     std::vector<judged_statement> verdicts;
     std::vector<tested> evidence;
-    std::vector<judged_ratio*> judged;
-    // Reserve first, because `judged` points to the ratios.
-    verdicts.reserve(statements().size());
     for (const statement& s : statements()) {
-        judged_statement& entry =
-            verdicts.emplace_back(s.id, s.source, s.says, verdict_kind::undecided, std::vector<judged_ratio>());
-        entry.ratios.reserve(s.ratios.size());
+        judged_statement& entry = verdicts.emplace_back(s.id, s.source, s.says);
         for (const stated_ratio& r : s.ratios) {
             const measured_ratio ratio = measure(atlas, r);
             if (ratio.scenes == 0 || !ratio.log.is_known()) continue;
             const interval range = ratio.log.range();
-            judged.push_back(&entry.ratios.emplace_back(
-                r.where, r.candidate + " over " + r.baseline, ratio.scenes, std::exp(ratio.log.value),
-                interval{std::exp(range.low), std::exp(range.high)}, support::undecided));
+            entry.ratios.push_back({r.where, r.candidate + " over " + r.baseline, ratio.scenes,
+                                    std::exp(ratio.log.value), interval{std::exp(range.low), std::exp(range.high)}});
             evidence.push_back({r.expected, tails_of(ratio.log, r.band)});
         }
     }
     const std::vector<double> levels = levels_together(evidence);
-    for (std::size_t i = 0; i < judged.size(); ++i)
-        judged[i]->verdict = support_of(evidence[i].expected, evidence[i].p, levels[i]);
+    std::size_t i = 0;  // over the ratios of all statements
     for (judged_statement& s : verdicts) {
         std::vector<support> endpoints;
-        for (const judged_ratio& r : s.ratios) endpoints.push_back(r.verdict);
+        for (judged_ratio& r : s.ratios) {
+            r.verdict = support_of(evidence[i].expected, evidence[i].p, levels[i]);
+            endpoints.push_back(r.verdict);
+            ++i;
+        }
         s.verdict = verdict_of(endpoints);
     }
     return verdicts;
 }
 
-/// One row per statement: its verdict and its ratios.
 table statements_table(const std::vector<judged_statement>& judged) {
     table t{{{"statement", false}, {"says", false}, {"source", false}, {"verdict", false}, {"ratios", false}}, {}};
     for (const judged_statement& s : judged) {

@@ -26,16 +26,13 @@ double renewed(const scene_measures& m) {
     if (!m.motion || m.boxes.typical_extent <= 0) return 0;
     return std::min(1.0, m.motion->relative_displacement / m.boxes.typical_extent);
 }
-double inversions(const scene_measures& m) {
-    return m.motion ? objects(m) * m.motion->inversions : 0;
-}
 
 constexpr std::array<term, 9> terms{{
     {"frame", [](const scene_measures&) { return 1.0; }},
     {"object", objects},
     {"object log2", [](const scene_measures& m) { return objects(m) * std::log2(std::max(objects(m), 1.0)); }},
     {"pair", pairs},
-    {"inversion", inversions},
+    {"inversion", [](const scene_measures& m) { return m.motion ? objects(m) * m.motion->inversions : 0; }},
     {"swept pair", [](const scene_measures& m) { return objects(m) * std::ranges::min(m.boxes.overlaps) / 2; }},
     {"object moved", [](const scene_measures& m) { return m.motion ? objects(m) * (1 - m.motion->at_rest) : 0; }},
     {"object renewed", [](const scene_measures& m) { return objects(m) * renewed(m); }},
@@ -48,8 +45,7 @@ std::vector<double> work_of(const scene_measures& m) {
     return work;
 }
 
-/// The measured times and the work of one candidate, to fit a cost model or to test it: in the scenes of the map, or in
-/// those held out.
+/// The measured times and the work of one candidate in the scenes of the map, or in those held out.
 std::vector<timed_work> observations_of(const std::vector<atlas_scene>& atlas, const std::string& label,
                                         bool held_out) {
     std::vector<timed_work> observations;
@@ -116,8 +112,7 @@ table costs_table(const std::vector<candidate_model>& models) {
     return t;
 }
 
-/// How well the models choose in scenes that they were not fitted to: the measured time of the candidate with the least
-/// predicted time, relative to that of the fastest, one per scene.
+/// Judges the models' choice in scenes held out: the time of the candidate predicted to be fastest over the least time.
 std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas,
                                       const std::vector<candidate_model>& models) {
     std::vector<double> regrets;

@@ -10,10 +10,10 @@ namespace aabblab {
 namespace {
 
 struct section {
-    std::string title, text;
+    std::string title{}, text{};
     std::string file;  ///< stem of the CSV file
     table content;
-    bool shown = true;  ///< in the page; otherwise only in its file
+    bool is_shown = true;  ///< in the page; otherwise only in its file
 };
 
 /// Explains the table of models, with the regrets of relying on them in scenes held out.
@@ -64,11 +64,11 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
          "least and the greatest. borders.csv has each border with its interval.",
          "borders_summary", borders_summary(borders)});
     sections.push_back({"Borders without columns", "", "borders_classic_summary", borders_summary(classic_borders)});
-    sections.push_back({"", "", "borders", borders_table(borders), false});
-    sections.push_back({"", "", "borders_classic", borders_table(classic_borders), false});
+    sections.push_back({.file = "borders", .content = borders_table(borders), .is_shown = false});
+    sections.push_back({.file = "borders_classic", .content = borders_table(classic_borders), .is_shown = false});
     sections.push_back({"Predicted times", models_text(atlas, models), "models", models_table(models)});
-    sections.push_back({"", "", "costs", costs_table(models), false});
-    sections.push_back({"", "", "cells", cells_table(atlas), false});
+    sections.push_back({.file = "costs", .content = costs_table(models), .is_shown = false});
+    sections.push_back({.file = "cells", .content = cells_table(atlas), .is_shown = false});
     sections.push_back(
         {"Published statements",
          "Statements are judged by the rule of the paper's claims: each ratio is a geometric mean over scenes, its "
@@ -76,11 +76,6 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
          "statements", statements_table(judged)});
     sections.push_back({"Ratios of the statements", "", "statement_ratios", ratios_table(judged)});
     return sections;
-}
-
-std::string heading_of(const std::vector<atlas_scene>& atlas) {
-    const auto held_out = static_cast<std::size_t>(std::ranges::count_if(atlas, &atlas_scene::is_held_out));
-    return fmt::format("{} scenes of the map, {} other scenes", grouped(atlas.size() - held_out), grouped(held_out));
 }
 
 }  // namespace
@@ -93,11 +88,13 @@ void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_sc
     constexpr const char* title = "Atlas of broad phases (global search)";
     page out(title);
     out.title(title);
-    out.paragraph(heading_of(atlas) + ".");
+    const auto held_out = static_cast<std::size_t>(std::ranges::count_if(atlas, &atlas_scene::is_held_out));
+    out.paragraph(
+        fmt::format("{} scenes of the map, {} other scenes.", grouped(atlas.size() - held_out), grouped(held_out)));
     for (const figure& f : figures) out.add(f);
     for (const section& s : sections) {
         write_file(folder / (s.file + ".csv"), to_csv(s.content));
-        if (!s.shown) continue;
+        if (!s.is_shown) continue;
         out.heading(s.title);
         if (!s.text.empty()) out.paragraph(s.text);
         out.add(s.content);

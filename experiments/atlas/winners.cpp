@@ -31,20 +31,19 @@ table winners_table(const std::vector<atlas_scene>& atlas) {
     };
     std::vector<standing> standings;
     for (const std::string& label : labels_of(atlas)) {
-        standing& entry = standings.emplace_back();
-        entry.label = label;
+        standing& entry = standings.emplace_back(label);
         for (const atlas_scene& scene : atlas) {
             const atlas_candidate* candidate = scene.find(label);
             if (!candidate) continue;
             ++entry.scenes;
             const atlas_candidate& best = scene.fastest(per_frame);
-            if (candidate != &best) {
-                if (!is_slower(*candidate, best)) ++entry.as_fast;
-                continue;
+            if (candidate == &best) {
+                ++entry.fastest;
+                const atlas_candidate* second = second_of(scene);
+                entry.shown += !second || is_slower(*second, best);
+            } else {
+                entry.as_fast += !is_slower(*candidate, best);
             }
-            ++entry.fastest;
-            const atlas_candidate* second = second_of(scene);
-            if (!second || is_slower(*second, best)) ++entry.shown;
         }
     }
     std::ranges::stable_sort(standings, [](const standing& a, const standing& b) {
@@ -66,19 +65,15 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
     for (const atlas_scene& scene : atlas) {
         const atlas_candidate& best = scene.fastest(per_frame);
         const atlas_candidate* second = second_of(scene);
-        const auto is_automatic = std::ranges::find_if(scene.candidates, &atlas_candidate::is_automatic);
+        const auto automatic = std::ranges::find_if(scene.candidates, &atlas_candidate::is_automatic);
         const scene_measures& m = scene.measures;
         const auto text = [](double value) { return fmt::format("{:.4g}", value); };
-        std::vector<std::string> cells{scene.scene.kind,
-                                       settings_text(scene.scene),
-                                       text(m.pairs_per_object),
-                                       m.motion ? text(m.motion->inversions) : "",
-                                       m.motion ? text(m.motion->at_rest) : "",
-                                       text(m.clustering),
-                                       m.boxes.size_ratio ? text(*m.boxes.size_ratio) : "",
-                                       best.label,
-                                       text(best.ms(per_frame)),
-                                       second ? second->label : ""};
+        std::vector<std::string> cells{scene.scene.kind, settings_text(scene.scene), text(m.pairs_per_object)};
+        cells.push_back(m.motion ? text(m.motion->inversions) : "");
+        cells.push_back(m.motion ? text(m.motion->at_rest) : "");
+        cells.push_back(text(m.clustering));
+        cells.push_back(m.boxes.size_ratio ? text(*m.boxes.size_ratio) : "");
+        cells.insert(cells.end(), {best.label, text(best.ms(per_frame)), second ? second->label : ""});
         if (second) {
             const estimate ratio = log_ratio(*second, best, per_frame);
             for (const double log : {ratio.value, ratio.range().low, ratio.range().high})
@@ -86,8 +81,7 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
         } else {
             cells.resize(cells.size() + 3);  // no ratio and no interval
         }
-        cells.push_back(is_automatic != scene.candidates.end() ? text(is_automatic->ms(per_frame) / best.ms(per_frame))
-                                                               : "");
+        cells.push_back(automatic != scene.candidates.end() ? text(automatic->ms(per_frame) / best.ms(per_frame)) : "");
         t.rows.push_back(std::move(cells));
     }
     return t;

@@ -56,7 +56,6 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
 
 }  // namespace
 
-/// Adds every build strategy on every mesh; this thread is pinned to a processor except during a build.
 void add_build_benchmarks(const idlest_processor& pinned) {
     for_each_strategy(aabb::builds{}, [&]<class Build>(aabb::type_list<Build>) {
         for (const std::string_view mesh : built_meshes)

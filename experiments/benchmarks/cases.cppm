@@ -54,18 +54,9 @@ template <aabb::Strategy S>
     return choices;
 }
 
-/// The strategy with the parameters of a choice.
 template <aabb::Strategy S>
 [[nodiscard]] S make_configured(const aabb::strategy_choice& choice) {
     return aabb::make_strategy<S>(aabb::configured<S>(choice.settings));
-}
-
-/// The name of a benchmark, with the displacement if objects move.
-[[nodiscard]] inline std::string case_name(std::string_view stage, const aabb::strategy_choice& choice,
-                                           std::uint32_t objects, std::string_view displacement = {}) {
-    std::string name = std::string(stage) + "/" + to_text(choice) + "/n:" + std::to_string(objects);
-    if (!displacement.empty()) name += "/displacement:" + std::string(displacement);
-    return name;
 }
 
 /// A scene of cubes in Brownian motion.

@@ -12,12 +12,13 @@ namespace aabblab {
 
 namespace {
 
-/// Registers a benchmark by the name of its case; `run` is timed.
+/// @param displacement empty if objects do not move
 template <class Run>
 auto* add_case(std::string_view stage, const aabb::strategy_choice& choice, std::uint32_t objects,
                std::string_view displacement, const Run& run) {
-    return benchmark::RegisterBenchmark(case_name(stage, choice, objects, displacement).c_str(), run)
-        ->Unit(benchmark::kMicrosecond);
+    std::string name = std::string(stage) + "/" + to_text(choice) + "/n:" + std::to_string(objects);
+    if (!displacement.empty()) name += "/displacement:" + std::string(displacement);
+    return benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMicrosecond);
 }
 
 using list_of_frame = std::vector<aabb::projection>;
@@ -195,8 +196,7 @@ template <aabb::CoherentSweep Sweep, class Sort, class... Sorts>
         return sort_for<Sweep>(aabb::type_list<Sorts...>{});
 }
 
-/// A sweep that follows a scene. It runs forwards and backwards through the frames, so that every step spans one frame
-/// for any number of steps.
+/// A sweep that alternates forwards and backwards through the frames, so that every step spans one frame.
 template <aabb::CoherentSweep Sweep>
 class moving_sweep {
 public:

@@ -42,8 +42,7 @@ struct leaf_pair {
 /// of hits and misses and the relative sizes of boxes are representative.
 class walked_pairs {
 public:
-    /// Records the pairs, and compares their numbers with those that `local_detection` counts.
-    /// @throws std::logic_error if local_detection no longer tests these pairs
+    /// @throws std::logic_error if `local_detection` no longer tests as many pairs as recorded
     walked_pairs() {
         traverse();
         aabb::local_detection<walked_tree, aabb::exact_triangle, aabb::work_counters> detection;
@@ -79,8 +78,7 @@ private:
         return poses;
     }
 
-    /// Opens pairs of nodes in the order of `local_detection`, and records the tests. Of two inner nodes, the one with
-    /// the longer box is opened.
+    /// Records the tests of `local_detection` in its order: of two inner nodes, it opens that with the longer box.
     void traverse() {
         test({a_.root(), b_.root(), to_a_(b_.bounds())});
         while (!open_.empty()) {
@@ -161,8 +159,7 @@ std::vector<Pair> in_random_order(std::vector<Pair> pairs) {
     return order;
 }
 
-/// Times a test on recorded pairs. An iteration is one test and the branch on its result, as in a traversal: the cost
-/// of mispredicted branches is part of the cost of the test.
+/// Times a test and the branch on its result, as in a traversal: mispredicted branches are part of its cost.
 /// @param test must be `[[gnu::always_inline]]`, as in a traversal: it is called twice here, and would otherwise be an
 /// out-of-line function
 template <class Pair, class Test>
@@ -201,59 +198,52 @@ struct leaf_of_a {
     }
 };
 
-/// The test of trees that store leaf boxes.
-template <class Leaf>
-struct box_test {
-    static constexpr std::string_view name = "test/box";
+/// A test of a leaf of one mesh, in `Leaf`, against a node of the other.
+template <class Test, class Leaf>
+struct leaf_test {
     Leaf leaf;
 
-    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const { return Test::meets(leaf, p); }
+};
+
+/// The test of trees that store leaf boxes.
+struct box_test {
+    static constexpr std::string_view name = "test/box";
+    [[nodiscard, gnu::always_inline]] static bool meets(const auto& leaf, const reached_leaf& p) {
         return overlaps(leaf.box(p), p.other);
     }
 };
 
 /// The test of `leaf_test=triangle_box`.
-template <class Leaf>
 struct triangle_box_test {
     static constexpr std::string_view name = "test/triangle_box";
-    Leaf leaf;
-
-    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+    [[nodiscard, gnu::always_inline]] static bool meets(const auto& leaf, const reached_leaf& p) {
         return triangle_meets_box(leaf.triangle(p), p.other);
     }
 };
 
 /// The test of `leaf_test=triangle_aabb`, including the computation of the box.
-template <class Leaf>
 struct triangle_aabb_test {
     static constexpr std::string_view name = "test/triangle_aabb";
-    Leaf leaf;
-
-    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+    [[nodiscard, gnu::always_inline]] static bool meets(const auto& leaf, const reached_leaf& p) {
         return overlaps(bounds_of(leaf.triangle(p)), p.other);
     }
 };
 
 /// Möller's original of `triangle_box` (Akenine-Möller 2001), without the margin that prevents false negatives due to
 /// rounding.
-template <class Leaf>
 struct triangle_box_moller_test {
     static constexpr std::string_view name = "test/triangle_box_moller";
     static constexpr bool exact = false;
-    Leaf leaf;
-
-    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+    [[nodiscard, gnu::always_inline]] static bool meets(const auto& leaf, const reached_leaf& p) {
         return moller_triangle_meets_box(leaf.triangle(p), p.other);
     }
 };
 
 /// The separating axis test of both boxes in their own frames, without a new AABB, with six axes.
-template <class Leaf>
 struct rotated_box_6_test {
     static constexpr std::string_view name = "test/rotated_box_6";
-    Leaf leaf;
-
-    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+    [[nodiscard, gnu::always_inline]] static bool meets(const auto& leaf, const reached_leaf& p) {
         const walked_pairs& walk = leaf.walk;
         return walk.rotated().meet_by_faces(
             walk.rotated().pair_of(walk.a().tree().bounds(p.a), walk.b().tree().bounds(p.b)));
@@ -261,12 +251,9 @@ struct rotated_box_6_test {
 };
 
 /// The same with all fifteen axes.
-template <class Leaf>
 struct rotated_box_15_test {
     static constexpr std::string_view name = "test/rotated_box_15";
-    Leaf leaf;
-
-    [[nodiscard, gnu::always_inline]] bool operator()(const reached_leaf& p) const {
+    [[nodiscard, gnu::always_inline]] static bool meets(const auto& leaf, const reached_leaf& p) {
         const walked_pairs& walk = leaf.walk;
         const box_pair boxes = walk.rotated().pair_of(walk.a().tree().bounds(p.a), walk.b().tree().bounds(p.b));
         return walk.rotated().meet_by_faces(boxes) && walk.rotated().meet_by_edges(boxes);
@@ -309,12 +296,11 @@ template <class Test>
 template <class Test>
 constexpr bool may_miss = requires { requires !Test::exact; };
 
-/// Times a test of a leaf against a node on all pairs that the traversal reached. Its false negatives are reported if
-/// the test is inexact.
+/// Times a test of a leaf against a node on the recorded pairs, and reports its false negatives if it is inexact.
 /// @throws std::logic_error if an exact test has false negatives
-template <class Test>
+template <class Test, class Leaf>
 void time_leaf_test(benchmark::State& state) {
-    const Test test{{walked()}};
+    const leaf_test<Test, Leaf> test{{walked()}};
     static const std::size_t false_negatives = false_negatives_of(test);
     if (false_negatives > 0 && !may_miss<Test>)
         throw std::logic_error(std::string(Test::name) + " has false negatives");
@@ -326,21 +312,15 @@ void time_leaf_test(benchmark::State& state) {
             1 - static_cast<double>(false_negatives) / static_cast<double>(test.leaf.pairs().size());
 }
 
-template <template <class> class Test, class Leaf>
+template <class Test, class Leaf>
 void add_leaf_test() {
-    const std::string name = std::string(Test<Leaf>::name) + std::string(Leaf::suffix);
-    benchmark::RegisterBenchmark(name.c_str(), time_leaf_test<Test<Leaf>>);
+    const std::string name = std::string(Test::name) + std::string(Leaf::suffix);
+    benchmark::RegisterBenchmark(name.c_str(), time_leaf_test<Test, Leaf>);
 }
 
-/// Adds all tests of a leaf against a node, with the leaf in one of the two meshes.
-template <class Leaf>
-void add_leaf_tests() {
-    add_leaf_test<box_test, Leaf>();
-    add_leaf_test<rotated_box_6_test, Leaf>();
-    add_leaf_test<rotated_box_15_test, Leaf>();
-    add_leaf_test<triangle_box_test, Leaf>();
-    add_leaf_test<triangle_box_moller_test, Leaf>();
-    add_leaf_test<triangle_aabb_test, Leaf>();
+template <class Leaf, class... Tests>
+void add_leaf_tests(aabb::type_list<Tests...>) {
+    (add_leaf_test<Tests, Leaf>(), ...);
 }
 
 /// Transforms the triangle of B into A's frame, as for the first triangle of A that it is tested with …
@@ -376,8 +356,11 @@ void add_triangle_test(const std::string& name, const aabb::strategy_choice& cho
 }  // namespace
 
 void add_leaf_test_benchmarks() {
-    add_leaf_tests<leaf_of_b>();
-    add_leaf_tests<leaf_of_a>();
+    constexpr aabb::type_list<box_test, rotated_box_6_test, rotated_box_15_test, triangle_box_test,
+                              triangle_box_moller_test, triangle_aabb_test>
+        tests{};
+    add_leaf_tests<leaf_of_b>(tests);
+    add_leaf_tests<leaf_of_a>(tests);
 }
 
 /// Adds each triangle test twice: with the transform of the second triangle, and ("/frame:a") with its cached image.

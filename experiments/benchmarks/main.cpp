@@ -20,7 +20,6 @@ void reject_value() {
 
 }  // namespace
 
-/// Registers all benchmarks of the stages, and runs those that the command line selects.
 int main(int argc, char** argv) {
     // The default makes all benchmarks take about 90 s; a time on the command line follows and overrides it.
     char min_time[] = "--benchmark_min_time=" AABBLAB_MIN_TIME;

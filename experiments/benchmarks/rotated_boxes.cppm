@@ -26,8 +26,7 @@ struct box_pair {
 /// which holds for all axes here, and all rounding errors in double.
 class rotated_boxes {
 public:
-    /// Computes B's axes in A's frame and A's in B's, the shift between the origins, and the margin for rounding
-    /// errors.
+    /// Computes the axes of each frame in the other, the shift between the origins, and the margin for rounding.
     /// @param b_bounds the bounds of B's vertices in B's frame
     rotated_boxes(const aabb::pose& a, const aabb::pose& b, const aabb::box& b_bounds) {
         for (std::size_t i = 0; i < 3; ++i)
@@ -36,9 +35,8 @@ public:
                     a.rotation[3 * k + i] * (b.translation[static_cast<int>(k)] - a.translation[static_cast<int>(k)]);
                 for (std::size_t j = 0; j < 3; ++j) b_axes_[j][i] += a.rotation[3 * k + i] * b.rotation[3 * k + j];
             }
-        for (std::size_t i = 0; i < 3; ++i)
-            for (std::size_t j = 0; j < 3; ++j) a_axes_[i][j] = b_axes_[j][i];
         for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) a_axes_[i][j] = b_axes_[j][i];
             b_magnitudes_[i] = magnitude(b_axes_[i]);
             a_magnitudes_[i] = magnitude(a_axes_[i]);
         }

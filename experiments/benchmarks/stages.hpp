@@ -20,9 +20,8 @@ void add_partition_benchmarks();
 void add_sweep_benchmarks();
 
 // The tests of the narrow phase, one per iteration. The pairs are those of a BVH traversal (`walked_pairs`), and each
-// test includes reading the box from its tree or the triangle from its mesh. The name is that of the test: "test/box".
-// It transforms its operand of B into A's frame, unless "/frame:a" is appended. The counter `hits` is the fraction of
-// positive tests.
+// test includes reading the box from its tree or the triangle from its mesh. It transforms its operand of B into A's
+// frame, unless "/frame:a" is appended to its name. The counter `hits` is the fraction of positive tests.
 
 /// Tests a leaf, by its box, its triangle or the box of its triangle, against the box of a node.
 void add_leaf_test_benchmarks();
@@ -30,9 +29,8 @@ void add_leaf_test_benchmarks();
 /// Runs every triangle test on leaves whose boxes overlap.
 void add_triangle_test_benchmarks();
 
-/// Every build of `implicit` by one thread. The counter `two_threads` is the speedup of a build by two threads, and
-/// `two_builds` the throughput of two independent builds, the maximum speedup on this machine. All three are timed in
-/// turn, five times per iteration; counters are medians. A name consists of build and mesh: "build/sah/torus_knot:…".
+/// Every build of `implicit` by one thread, with the counters `two_threads`, the speedup by two threads, and
+/// `two_builds`, the throughput of two builds at once: medians of five turns. "build/sah/torus_knot:…"
 /// @param pinned pins this thread to one processor, except during builds
 void add_build_benchmarks(const idlest_processor& pinned);
 

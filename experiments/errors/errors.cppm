@@ -28,15 +28,13 @@ struct error_point {
     [[nodiscard]] std::uint64_t wrong() const { return false_negatives + false_positives; }
 };
 
-/// Runs every method on every set of pairs that it supports. Pairs are generated batch by batch, so that memory does
-/// not grow with their number.
+/// Runs every method on every set of pairs that it supports.
 /// @param finished if set, receives all points so far after each set
 std::vector<error_point> measure_errors(const error_study& study,
                                         const std::function<void(std::span<const error_point>)>& finished = {});
 
 /// The text of an errors.csv: a row per method and set of pairs, with all digits.
 [[nodiscard]] std::string csv_of(std::span<const error_point> points);
-/// The inverse of `csv_of`.
 /// @throws aabb::input_error with file and line if it is not an errors.csv.
 [[nodiscard]] std::vector<error_point> read_error_rows(const std::filesystem::path& file);
 
@@ -98,7 +96,6 @@ std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
 /// The text of an intersections.csv: a row per test and set, with all digits.
 [[nodiscard]] std::string csv_of(std::span<const hit_point> points);
 
-/// A summary for one precision, for the terminal.
 [[nodiscard]] table hit_summary(std::span<const hit_point> points, bool in_double);
 
 }  // namespace aabblab

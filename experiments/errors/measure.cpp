@@ -17,7 +17,6 @@ namespace {
 
 /// Runs triangle tests alternately on batches of pairs. The order varies from batch to batch, so that no test always
 /// inherits the cache state of the same predecessor.
-/// @tparam Point the result of a test
 template <class Point>
 class alternating_tests {
 public:
@@ -31,7 +30,6 @@ public:
     void add(entry added) { entries_.push_back(std::move(added)); }
 
     /// Times each test on a batch of pairs, in an order that varies with the batch, and adds the errors to its point.
-    /// @param pairs the number of pairs in the batch
     /// @param work is timed, for each test
     /// @param judge compares the result with the ground truth, untimed
     template <class Work, class Judge>
@@ -45,7 +43,6 @@ public:
         ++batches_;
     }
 
-    /// The results of all tests; they are moved out.
     /// @param time the member of a point that receives the quartiles of its times
     [[nodiscard]] std::vector<Point> points(quartiles Point::* time) {
         std::vector<Point> points;
@@ -256,14 +253,8 @@ std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint6
     return run.points(tried);
 }
 
-/// "0", "0.53", "4.4e-16".
-std::string number_text(double number) {
-    return fmt::format("{:.2g}", number);
-}
-
 }  // namespace
 
-/// Runs all methods on all generated sets of pairs, then on all scenes; each part has a progress line of its own.
 std::vector<error_point> measure_errors(const error_study& study,
                                         const std::function<void(std::span<const error_point>)>& finished) {
     std::vector<error_point> points;
@@ -308,9 +299,11 @@ table hit_summary(std::span<const hit_point> points, bool in_double) {
     table t = empty_table({"pairs", "triangle"}, {"hits", "differ", "error/bound", "error", "bound", "ns/hit"});
     for (const hit_point& p : points) {
         if (p.in_double != in_double) continue;
-        t.rows.push_back({p.pairs, p.triangle, grouped(p.count), grouped(p.different), number_text(p.greatest.of_bound),
-                          number_text(p.greatest.greatest), number_text(p.greatest.bound),
-                          fmt::format("{:.0f}", p.ns_per_hit.median)});
+        std::vector<std::string> cells{p.pairs, p.triangle, grouped(p.count), grouped(p.different)};
+        for (const double error : {p.greatest.of_bound, p.greatest.greatest, p.greatest.bound})
+            cells.push_back(fmt::format("{:.2g}", error));
+        cells.push_back(fmt::format("{:.0f}", p.ns_per_hit.median));
+        t.rows.push_back(std::move(cells));
     }
     return t;
 }

@@ -20,7 +20,7 @@ template <class Method, class CostOf>
 std::vector<std::size_t> front_of(const std::vector<Method>& methods, CostOf cost_of) {
     std::vector<std::size_t> order(methods.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto cost_at = [&](std::size_t i) -> cost { return cost_of(methods[i]); };
+    const auto cost_at = [&](std::size_t i) -> cost { return std::invoke(cost_of, methods[i]); };
     std::ranges::sort(order, {}, cost_at);
     std::vector<std::size_t> front;
     for (const std::size_t i : order)
@@ -48,11 +48,8 @@ struct pooled : error_point {
 
     [[nodiscard]] double error() const { return static_cast<double>(wrong()) / static_cast<double>(count); }
     [[nodiscard]] double ns() const { return ns_of_sets / static_cast<double>(sets); }
+    [[nodiscard]] cost costs() const { return {ns(), error()}; }
 };
-
-cost cost_of(const pooled& method) {
-    return {method.ns(), method.error()};
-}
 
 /// Sums the results over the sets of pairs: one entry per method (a test with its parameter), in order of appearance.
 std::vector<pooled> pooled_over(std::span<const error_point> points) {
@@ -90,8 +87,7 @@ std::vector<error_point> of_group(std::span<const error_point> points, pair_grou
 
 /// "0", "1.2e-05", "0.31": a share of the pairs.
 std::string share_text(std::uint64_t wrong, std::uint64_t pairs) {
-    if (pairs == 0) return "-";
-    return wrong == 0 ? "0" : fmt::format("{:.2g}", static_cast<double>(wrong) / static_cast<double>(pairs));
+    return pairs == 0 ? "-" : fmt::format("{:.2g}", static_cast<double>(wrong) / static_cast<double>(pairs));
 }
 
 std::string name_of(pair_group group) {
@@ -120,8 +116,7 @@ figure figure_of(const std::string& name, const std::string& sets, std::span<con
         .y = {"share of wrong results", true}};
     const double least_share = 1 / static_cast<double>(methods.front().count);
     const auto point_of = [&](const pooled& m) {
-        const double share = std::max(least_share, m.error());
-        return figure_point{m.ns(), share};
+        return figure_point{.x = m.ns(), .y = std::max(least_share, m.error())};
     };
     for (const pooled& m : methods) {
         auto curve = std::ranges::find(f.lines, m.curve, &series::label);
@@ -129,7 +124,7 @@ figure figure_of(const std::string& name, const std::string& sets, std::span<con
         curve->points.push_back(point_of(m));
     }
     series front{"Pareto front"};
-    for (const std::size_t i : front_of(methods, cost_of)) front.points.push_back(point_of(methods[i]));
+    for (const std::size_t i : front_of(methods, &pooled::costs)) front.points.push_back(point_of(methods[i]));
     // Drawn first, below the curves.
     f.lines.insert(f.lines.begin(), front);
     f.lines.push_back(
@@ -227,8 +222,7 @@ private:
         return fmt::format("{:.3g}{}", value, m.unit.empty() ? "" : " " + m.unit);
     }
 
-    /// True if shares of wrong pairs are drawn, in which no errors are drawn as one wrong pair, since log 0 is
-    /// infinite.
+    /// True if shares of wrong pairs are drawn: since log 0 is infinite, no errors are drawn as one wrong pair.
     [[nodiscard]] bool has_floor() const { return y_.name == "wrong_share" && exact_pairs() > 0; }
     [[nodiscard]] std::uint64_t exact_pairs() const {
         const candidate_summary& any = scene_.candidates[0];
@@ -237,16 +231,14 @@ private:
     [[nodiscard]] double least_share() const { return 1 / static_cast<double>(exact_pairs()); }
 
     [[nodiscard]] figure_point point_of(const plotted_composition& c) const {
-        const double y = has_floor() ? std::max(c.y, least_share()) : c.y;
-        return {c.x, y};
+        return {.x = c.x, .y = has_floor() ? std::max(c.y, least_share()) : c.y};
     }
 
     [[nodiscard]] std::vector<std::size_t> front_of(const std::vector<plotted_composition>& plotted) const {
         const auto signed_by = [](const metric& m, double value) {
             return m.direction == better::more ? -value : value;
         };
-        return aabblab::front_of(
-            plotted, [&](const plotted_composition& c) { return cost{signed_by(x_, c.x), signed_by(y_, c.y)}; });
+        return aabblab::front_of(plotted, [&](const auto& c) { return cost{signed_by(x_, c.x), signed_by(y_, c.y)}; });
     }
 
     const scene_summary& scene_;
@@ -281,7 +273,6 @@ table error_summary(std::span<const error_point> points, pair_group group) {
     return t;
 }
 
-/// The false negatives + false positives of each method, one column per set of pairs.
 table errors_by_set(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> subset = of_group(points, group);
     table t{{{"triangle", false}}, {}};
@@ -313,7 +304,7 @@ figure group_figure(std::span<const error_point> points, pair_group group) {
 /// A sentence about both ends of the Pareto front: the fastest method, and the one with the fewest errors.
 std::string group_statement(std::span<const error_point> points, pair_group group) {
     const std::vector<pooled> methods = pooled_over(of_group(points, group));
-    const std::vector<std::size_t> front = front_of(methods, cost_of);
+    const std::vector<std::size_t> front = front_of(methods, &pooled::costs);
     const auto wrong = [](const pooled& m) {
         return (m.wrong() == 0 ? "none" : grouped(m.wrong())) + " of " + grouped(m.count) + " pairs wrong";
     };
@@ -327,7 +318,6 @@ std::string group_statement(std::span<const error_point> points, pair_group grou
     return text + ".";
 }
 
-/// A figure for each group of sets of pairs, followed by one for each of its sets.
 std::vector<figure> error_figures(std::span<const error_point> points) {
     std::vector<figure> figures;
     for (const pair_group group : groups_in(points)) {

@@ -63,8 +63,7 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_sc
     return scenes;
 }
 
-/// The labels that `table_of` would give to these compositions: the parts of their names in which they differ. Rows
-/// without times are summarised, because only summaries have labels.
+/// The labels that `table_of` would give to these compositions: it summarises rows that have only names.
 std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     std::vector<row> rows(names.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -86,7 +85,6 @@ std::optional<double> log_ms(const row& r) {
     return std::isfinite(ms) && ms > 0 ? std::optional(std::log(ms)) : std::nullopt;
 }
 
-/// The logarithm of the time, among these rows, of the same repeat as that row.
 std::optional<double> log_ms_in(const rows_by_scene::repeats& rows, const row& same_repeat) {
     for (const row* r : rows)
         if (r->repeat == same_repeat.repeat)
@@ -258,7 +256,6 @@ std::size_t count_only_in(const rows_by_scene& run, const rows_by_scene& other) 
 
 }  // namespace
 
-/// Compares results first, then counts and bytes, then times relative to a baseline, and milliseconds if requested.
 comparison compare(const run_results& a, const run_results& b, compared quantities) {
     const rows_by_scene of_a(a.rows);
     const rows_by_scene of_b(b.rows);

@@ -16,8 +16,7 @@ struct run_results {
     std::vector<manifest_summary> manifests;  ///< one per experiment
 };
 /// Reads the folder of one experiment, or otherwise each of its sub-folders that holds a results.csv.
-/// @throws aabb::input_error if there are no results, if some cannot be read or were altered, or if an experiment
-/// occurs twice.
+/// @throws aabb::input_error if results are absent, unreadable or altered, or if an experiment occurs twice.
 [[nodiscard]] run_results read_results(const std::filesystem::path& folder);
 
 /// The build and processor of the results: "commit d27dba3, Clang 19.1.7, Intel Xeon"; a list if experiments differ.

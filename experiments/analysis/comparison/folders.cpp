@@ -31,7 +31,6 @@ std::string maker_of(const manifest_summary& m) {
 
 }  // namespace
 
-/// Collects the rows and manifests of all experiments in the folder; each experiment may occur once.
 run_results read_results(const std::filesystem::path& folder) {
     if (!std::filesystem::is_directory(folder))
         throw aabb::input_error(folder.string() +
@@ -63,7 +62,6 @@ std::string makers_of(const run_results& run) {
     return fmt::format("{}", fmt::join(makers, "; "));
 }
 
-/// Milliseconds of different machines are not comparable.
 void require_one_machine(const run_results& a, const run_results& b) {
     for (const manifest_summary& of_a : a.manifests)
         for (const manifest_summary& of_b : b.manifests)

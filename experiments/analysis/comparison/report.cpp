@@ -92,7 +92,6 @@ void print_numbers(const comparison& report) {
 
 }  // namespace
 
-/// The exit status is 1 if results differ; slower times are no error.
 int print_comparison(const compare_request& request) {
     const run_results a = read_results(request.a);
     const run_results b = read_results(request.b);

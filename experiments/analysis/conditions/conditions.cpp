@@ -6,8 +6,8 @@ namespace aabblab {
 
 namespace {
 
-/// What identifies the condition of a scene: its kind, parameters and meshes, but neither its seed nor its number of
-/// frames, on which times per frame do not depend.
+/// What identifies a condition: kind, parameters and meshes, but not the frames, on which times per frame do not
+/// depend.
 factors factors_of(const scene_choice& scene) {
     factors scene_factors{{"scene", scene.kind}};
     for (const aabb::setting& s : scene.settings)
@@ -50,7 +50,6 @@ static std::string with_default_axes(const std::string& choice) {
     return std::string(cut) + ":axes=2" + others;
 }
 
-/// True for a composition that has all strategies of the selection; never for an engine.
 bool selection::matches(const candidate_name& name) const {
     return name.engine.empty() && std::ranges::all_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
                return wanted_[kind].empty() || wanted_[kind] == name[kind] ||
@@ -171,7 +170,6 @@ std::vector<std::string> measurements::experiments() const {
     return names;
 }
 
-/// Counts the distinct compositions, scenes, processes, seeds and repeats of an experiment.
 extent_of_results measurements::extent(const std::string& experiment) const {
     const std::vector<row>& rows = read(experiment).rows;
     const auto distinct = [&](auto value) {

@@ -48,7 +48,6 @@ class condition {
 public:
     condition(factors scene, std::vector<const row*> rows);
 
-    /// The experiment of the condition.
     [[nodiscard]] std::string experiment() const { return rows_.empty() ? "" : rows_.front()->experiment; }
     /// The scene and its parameters, without the seed.
     [[nodiscard]] const factors& scene() const { return factors_; }
@@ -72,7 +71,6 @@ public:
     [[nodiscard]] std::vector<double> differences(const row_value& quantity) const;
     /// Median and quartiles over all repeats; empty if there are none.
     [[nodiscard]] std::optional<quartiles> spread(const selection& composition, const row_value& quantity) const;
-    /// The spread as a point of a figure.
     [[nodiscard]] std::optional<figure_point> point(double x, const selection& composition,
                                                     const row_value& quantity) const;
 

@@ -8,8 +8,7 @@ import :sheet;
 namespace aabblab {
 
 struct arrangement {
-    double width;   ///< of the whole figure
-    double height;  ///< of the whole figure
+    double width, height;  ///< of the whole figure
 
     /// The edges of a plot, measured from the left and lower edges of the figure.
     struct box {
@@ -36,6 +35,12 @@ struct arrangement {
 // In ems.
 inline constexpr double line_height = 1.25;
 inline constexpr double tick_room = 0.9;  ///< length of a tick with the gap to its label
+constexpr double figure_width = 36;       // about 10 pixels per em on a phone of 400 pixels
+constexpr double character_width = 0.6;   // of the widest common sans-serif fonts
+constexpr double legend_row = 1.4;
+constexpr double legend_sample = 6;  // of a line in the legend, including gaps
+constexpr double end_sign = 1.6;     // of the sign before a label at a line's end, including gaps
+constexpr double gap = 0.6;
 
 /// The lines of a tick label: names are broken into short lines, numbers are not.
 [[nodiscard]] std::vector<std::string> lines_of(const scale& axis, const tick& t, std::size_t length) {
@@ -49,14 +54,6 @@ inline constexpr double tick_room = 0.9;  ///< length of a tick with the gap to 
         centres.push_back({top.x, top.y - line_height * (static_cast<double>(i) + 0.5)});
     return centres;
 }
-
-// In ems.
-constexpr double figure_width = 36;      // about 10 pixels per em on a phone of 400 pixels
-constexpr double character_width = 0.6;  // of the widest common sans-serif fonts
-constexpr double legend_row = 1.4;
-constexpr double legend_sample = 6;  // of a line in the legend, including gaps
-constexpr double end_sign = 1.6;     // of the sign before a label at a line's end, including gaps
-constexpr double gap = 0.6;
 
 // Maximum lengths of lines in labels, in characters.
 constexpr std::size_t longest_name = 54;
@@ -390,15 +387,14 @@ private:
         }
     }
 
-    /// Adds the edges of a panel's plot, its title, and the texts of its marks above it.
-    /// @param marks the height for these texts
-    void add_plot(std::size_t panel, double bottom, double marks, const std::vector<flag>& flags) {
+    /// Adds the edges of a panel's plot, its title, and the texts of its marks between these.
+    void add_plot(std::size_t panel, double bottom, double height_of_marks, const std::vector<flag>& flags) {
         const double left = plot_left(panel);
         const double top = bottom + plot_height_;
         arrangement::box& plot = layout_.plots.emplace_back(
             left, left + plot_width(), bottom, top, panel + column_count_ >= panel_count_, panel % column_count_ == 0);
         const shown_panel& shown = drawing_.panels[panel];
-        if (!shown.title.empty()) add({left, top + marks + gap / 2 + line_height / 2}, shown.title);
+        if (!shown.title.empty()) add({left, top + height_of_marks + gap / 2 + line_height / 2}, shown.title);
         for (std::size_t i = 0; i < flags.size(); ++i) {
             const flag& f = flags[i];
             const double height = top + line_height * (static_cast<double>(f.row) + 0.5);
@@ -445,9 +441,5 @@ private:
     double column_gap_ = 0, plot_height_ = 0;
     std::vector<std::string> y_label_;
 };
-
-[[nodiscard]] arrangement arranged(const drawing& d) {
-    return arranger(d).arranged();
-}
 
 }  // namespace aabblab

@@ -55,7 +55,6 @@ struct shown_series {
     bool varies;  ///< has quartiles to show
 
     [[nodiscard]] bool is(series_style style) const { return source->style == style; }
-    /// True if lines join its points.
     [[nodiscard]] bool is_joined() const { return is(series_style::line) && points.size() > 1; }
 };
 
@@ -88,8 +87,7 @@ struct extent {
     return std::isfinite(value) && (!axis.logarithmic || value > 0);
 }
 
-/// The appearance of each series, an index of colours, dashes and signs: series with equal labels in several panels
-/// share it; every other series has its own.
+/// The appearance (colour, dashes and sign) of each series: its own, or with panels that of all with the same label.
 [[nodiscard]] std::vector<std::size_t> appearances_of(const figure& f, const std::vector<numbered_series>& lines) {
     std::vector<std::size_t> appearances;
     std::vector<const series*> first;
@@ -134,8 +132,7 @@ struct extent {
     return panels;
 }
 
-/// The entries of the legend: one per appearance (colour, dashes and sign), whatever the number of panels that show it.
-/// A line that has a single point in every panel is shown as a point.
+/// The legend: one entry per appearance (colour, dashes and sign), shown as a point if no panel joins its points.
 [[nodiscard]] std::vector<shown_label> labels_of(const std::vector<shown_panel>& panels) {
     std::vector<shown_label> labels;
     for (const shown_panel& panel : panels)

@@ -20,19 +20,10 @@ constexpr std::array<int, 95> widths = {278,  278, 355, 556, 556, 889, 667, 191,
 constexpr int usual_width = 556;  // of letters with accents
 constexpr int sign_width = 584;   // of mathematical signs
 
-/// The codes of characters outside Latin-1: as in Windows-1252, or control codes for signs that it lacks.
-constexpr std::array<std::pair<char32_t, char>, 12> codes = {{{U'\u2212', '\x01'},
-                                                              {U'\u2264', '\x02'},
-                                                              {U'\u2265', '\x03'},
-                                                              {U'\u20ac', '\x80'},
-                                                              {U'\u2026', '\x85'},
-                                                              {U'\u2018', '\x91'},
-                                                              {U'\u2019', '\x92'},
-                                                              {U'\u201c', '\x93'},
-                                                              {U'\u201d', '\x94'},
-                                                              {U'\u2022', '\x95'},
-                                                              {U'\u2013', '\x96'},
-                                                              {U'\u2014', '\x97'}}};
+/// Characters outside Latin-1, and their codes: as in Windows-1252, or control codes for signs that it lacks.
+constexpr std::array<char32_t, 12> beyond_latin = {U'\u2212', U'\u2264', U'\u2265', U'\u20ac', U'\u2026', U'\u2018',
+                                                   U'\u2019', U'\u201c', U'\u201d', U'\u2022', U'\u2013', U'\u2014'};
+constexpr std::string_view codes = "\x01\x02\x03\x80\x85\x91\x92\x93\x94\x95\x96\x97";
 constexpr std::string_view encoding =
     "<</Type/Encoding/BaseEncoding/WinAnsiEncoding/Differences[1/minus/lessequal/greaterequal]>>";
 
@@ -40,9 +31,8 @@ constexpr std::string_view encoding =
 char code_of(char32_t character) {
     if ((character >= ' ' && character < 0x7f) || (character >= 0xa0 && character <= 0xff))
         return static_cast<char>(character);
-    for (const auto& [known, code] : codes)
-        if (known == character) return code;
-    return '?';
+    const auto known = std::ranges::find(beyond_latin, character);
+    return known == beyond_latin.end() ? '?' : codes[static_cast<std::size_t>(known - beyond_latin.begin())];
 }
 
 /// Converts UTF-8 to the codes of the font's characters, one byte each, since PDF's standard fonts know no Unicode.

@@ -75,7 +75,7 @@ void add_sign(const sign& s, place centre, std::vector<places>& outlines) {
 class painter {
 public:
     explicit painter(const figure& f)
-        : drawing_(f), layout_(aabblab::arranged(drawing_)), sheet_{layout_.width, layout_.height, {}} {}
+        : drawing_(f), layout_(arranger(drawing_).arranged()), sheet_{layout_.width, layout_.height, {}} {}
 
     /// Paints each panel from back to front, then the texts and the legend.
     sheet painted() && {
@@ -157,7 +157,6 @@ private:
         return (before - (count - 1) / 2) * std::min(0.3, 1.4 / count) * half_gap(drawing_.f.x);
     }
 
-    /// Draws a line across the plot at each labelled tick.
     void draw_grid() {
         std::vector<places> lines;
         for (const tick& t : layout_.x_ticks)

@@ -54,13 +54,11 @@ row_value whole_time(const times& t) {
     };
 }
 
-/// The processor time of the broad phase per frame after frame 0.
 optional_number global_cpu_ms(const row& r) {
     if (!r.update_cpu_ms || r.frames == 1) return std::nullopt;
     return (*r.update_cpu_ms + *r.search_cpu_ms) / frames_after_first(r);
 }
 
-/// The share of the broad phase in the processor time of both phases, in percent.
 optional_number global_share(const row& r) {
     if (!r.update_cpu_ms || !r.detect_cpu_ms || r.frames == 1) return std::nullopt;
     const double global = *r.update_cpu_ms + *r.search_cpu_ms;
@@ -75,7 +73,6 @@ optional_number waiting(const row& r) {
     return wall_ms > 0 ? optional_number(100 * std::max(0.0, 1 - cpu_ms / wall_ms)) : std::nullopt;
 }
 
-/// The memory of all parts except the meshes, which all compositions share; empty if none was reported.
 optional_number all_bytes(const row& r) {
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < byte_columns.size(); ++i)
@@ -150,9 +147,8 @@ bool describes_input(aabb::work counted) {
            counted == pieces;
 }
 
-/// One metric per work counter: its value per frame after frame 0, of which less is better if it counts work.
-std::vector<metric> work_metrics() {
-    std::vector<metric> list;
+/// Adds one metric per work counter: its value per frame after frame 0, of which less is better if it counts work.
+void add_work_metrics(std::vector<metric>& list) {
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
         std::string spaced(aabb::work_names[i]);
         std::ranges::replace(spaced, '_', ' ');
@@ -163,16 +159,14 @@ std::vector<metric> work_metrics() {
                             return static_cast<double>(*r.counts[i]) / frames_after_first(r);
                         }});
     }
-    return list;
 }
 
 }  // namespace
 
-/// All metrics, made once.
 std::span<const metric> metrics() {
     static const std::vector<metric> registered = [] {
         std::vector<metric> list = row_metrics();
-        for (const metric& counted : work_metrics()) list.push_back(counted);
+        add_work_metrics(list);
         return list;
     }();
     return registered;
@@ -209,13 +203,9 @@ row_value bytes_of(std::vector<std::string> parts) {
 row_value sum_of(const std::vector<std::string>& names) {
     std::vector<row_value> parts;
     for (const std::string& name : names) parts.push_back(measured(name));
-    return [parts](const row& r) -> std::optional<double> {
-        std::optional<double> sum;
-        for (const row_value& part : parts) {
-            const std::optional<double> value = part(r);
-            if (&part == &parts.front() && !value) return std::nullopt;
-            sum = sum.value_or(0) + value.value_or(0);
-        }
+    return [parts](const row& r) {
+        optional_number sum = parts.front()(r);
+        for (std::size_t i = 1; sum && i < parts.size(); ++i) *sum += parts[i](r).value_or(0);
         return sum;
     };
 }

@@ -42,7 +42,6 @@ struct metric {
 /// @throws aabb::input_error on an unknown name, suggesting the nearest one.
 [[nodiscard]] const metric& metric_named(std::string_view name);
 
-/// The function of a metric.
 [[nodiscard]] const row_value& measured(std::string_view name);
 
 // Functions for values that no single metric provides.

@@ -88,7 +88,6 @@ double resample::mean_of(const cells& measured) const {
     return count > 0 ? sum / static_cast<double>(count) : std::nan("");
 }
 
-/// The interval by Student's t; a miss of 0.025 on either side makes it one of 95 %.
 interval estimate::range(double miss) const {
     if (!(error > 0)) return {value, value};
     const double radius = error * quantile(complement(boost::math::students_t(degrees), miss));
@@ -138,8 +137,7 @@ estimate bootstrap(const cells& measured) {
     return bootstrap(measured.size(), [&](const resample& d) { return d.mean_of(measured); });
 }
 
-/// The mean of independent estimates. Its variance is what their errors imply (`within`) or, if they disagree by more,
-/// what their spread implies (`between`).
+/// The variance of the mean is what the errors imply (`within`) or, if greater, what the spread implies (`between`).
 estimate mean_of(std::span<const estimate> estimates) {
     if (estimates.size() == 1) return estimates.front();
     const auto count = static_cast<double>(estimates.size());
@@ -157,7 +155,6 @@ estimate mean_of(std::span<const estimate> estimates) {
     return {mean, std::sqrt(sum), degrees > 0 ? sum * sum / degrees : 1};
 }
 
-/// a - b of independent estimates; the degrees of freedom follow Satterthwaite (1946).
 estimate difference_of(const estimate& a, const estimate& b) {
     const double var_a = a.error * a.error;
     const double var_b = b.error * b.error;
@@ -166,7 +163,6 @@ estimate difference_of(const estimate& a, const estimate& b) {
     return {a.value - b.value, std::sqrt(sum), sum * sum / (var_a * var_a / a.degrees + var_b * var_b / b.degrees)};
 }
 
-/// Interpolates linearly between the two nearest values.
 quartiles quartiles_of(std::vector<double> values) {
     std::ranges::sort(values);
     const auto quantile_at = [&](double share) {
@@ -178,7 +174,6 @@ quartiles quartiles_of(std::vector<double> values) {
     return {quantile_at(0.25), quantile_at(0.5), quantile_at(0.75)};
 }
 
-/// The line of least squares.
 fitted_line line_through(std::span<const double> x, std::span<const double> y) {
     const auto count = static_cast<double>(x.size());
     double mean_x = 0, mean_y = 0;

@@ -12,7 +12,6 @@ double least_p_value(const tested& t) {
 
 /// The level at which each p-value is decided by Holm's step-down rule (1979), which corrects for many tests: the k-th
 /// least of n p-values is compared with 1/(n - k + 1) of the level; from the first that exceeds it on, levels are 0.
-/// @param p_of the p-value of an element of the family
 template <class Tested, class P>
 std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
     std::vector<std::size_t> order(family.size());

@@ -88,9 +88,8 @@ struct estimate {
 inline constexpr std::size_t draws_per_level = 1000;
 
 /// Bootstraps level by level: resamples processes, then seeds, then repeats. The variance of a level beyond the noise
-/// of repeats has one degree of freedom less than there are processes or seeds; the degrees of the sum follow
-/// Satterthwaite (1946). Hence processes that disagree widen the interval, and processes that agree do not. The
-/// result is deterministic.
+/// of repeats has one degree of freedom less than there are processes or seeds, so that processes that disagree widen
+/// the interval, and processes that agree do not. The result is deterministic.
 [[nodiscard]] estimate bootstrap(const sample_size& size, const std::function<double(const resample&)>& statistic);
 /// Estimates the mean of one condition.
 [[nodiscard]] estimate bootstrap(const cells& measured);
@@ -170,9 +169,7 @@ enum class verdict_kind : unsigned char { holds, in_part, no_difference, does_no
 /// - otherwise does not hold.
 [[nodiscard]] verdict_kind verdict_of(std::span<const support> primary);
 
-/// "for", "no difference", "against", "undecided"
 [[nodiscard]] std::string text_of(support verdict);
-/// "holds", "holds in part", "no difference", "does not hold", "undecided"
 [[nodiscard]] std::string text_of(verdict_kind verdict);
 
 }  // namespace aabblab

@@ -10,9 +10,8 @@ namespace {
 /// The ratio, to the baseline, of the fastest exact candidate of a scene; empty if none was timed.
 std::optional<double> least_ratio_of(const scene_summary& scene) {
     std::optional<double> least;
-    for (const candidate_summary& candidate : scene.candidates)
-        if (candidate.ratio && candidate.status == "exact")
-            least = std::min(least.value_or(*candidate.ratio), *candidate.ratio);
+    for (const candidate_summary& c : scene.candidates)
+        if (c.ratio && c.status == "exact") least = std::min(least.value_or(*c.ratio), *c.ratio);
     return least;
 }
 
@@ -50,12 +49,9 @@ bool has_own_column(const metric& m) {
 
 /// The cells of a candidate in the columns of `full_table_of`: its names, results, times, bytes and metrics.
 std::vector<std::string> cells_of(const scene_summary& scene, const candidate_summary& candidate, std::size_t rank) {
-    std::vector<std::string> cells{scene.experiment,
-                                   scene.scene.kind,
-                                   parameters_json(scene.scene),
-                                   fmt::format("{}", fmt::join(scene.seeds, " ")),
-                                   fmt::format("{}", scene.objects),
-                                   fmt::format("{}", scene.frames)};
+    std::vector<std::string> cells{scene.experiment, scene.scene.kind, parameters_json(scene.scene)};
+    cells.push_back(fmt::format("{}", fmt::join(scene.seeds, " ")));
+    for (const std::uint64_t count : {scene.objects, scene.frames}) cells.push_back(fmt::format("{}", count));
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) cells.push_back(candidate.name[kind]);
     cells.insert(cells.end(),
                  {candidate.name.engine, fmt::format("{}", rank), candidate.status, text_of(candidate.false_negatives),
@@ -78,8 +74,8 @@ std::vector<std::string> cells_of(const scene_summary& scene, const candidate_su
 
 }  // namespace
 
-/// Ratios are times relative to the baseline of each scene; wins and regrets compare with its fastest exact candidate,
-/// which has the least ratio.
+/// Ratios are times relative to a scene's baseline; regrets compare with the least ratio, of the fastest exact
+/// candidate.
 table overall_table_of(std::span<const scene_summary> scenes) {
     std::vector<standing> standings;
     std::map<candidate_name, std::size_t> indices;
@@ -100,11 +96,9 @@ table overall_table_of(std::span<const scene_summary> scenes) {
     const bool inexact = !std::ranges::all_of(standings, &standing::is_exact);
     table t{name_columns_of(differing), {}};
     if (inexact) t.columns.push_back({"result"});
-    t.columns.insert(
-        t.columns.end(),
-        {{"ratio"}, {.name = "least", .spare = 2}, {.name = "greatest", .spare = 1}, {"scenes"}, {"fastest in"}});
-    const bool has_regrets =
-        std::ranges::all_of(standings, [](const standing& entry) { return !entry.regrets.empty(); });
+    const column least_column{.name = "least", .spare = 2}, greatest_column{.name = "greatest", .spare = 1};
+    t.columns.insert(t.columns.end(), {{"ratio"}, least_column, greatest_column, {"scenes"}, {"fastest in"}});
+    const bool has_regrets = std::ranges::none_of(standings, [](const standing& s) { return s.regrets.empty(); });
     if (has_regrets) t.columns.insert(t.columns.end(), {{"regret"}, {"worst"}});
     for (const standing& entry : standings) {
         std::vector<std::string>& cells = t.rows.emplace_back(name_cells_of(differing, entry.name, t.rows.size() + 1));
@@ -134,8 +128,7 @@ table full_table_of(std::span<const scene_summary> scenes) {
         if (!has_own_column(m)) t.columns.push_back({m.name});
     for (const scene_summary& scene : scenes) {
         std::size_t rank = 0;
-        for (const candidate_summary* candidate : ranking_of(scene))
-            t.rows.push_back(cells_of(scene, *candidate, ++rank));
+        for (const candidate_summary* c : ranking_of(scene)) t.rows.push_back(cells_of(scene, *c, ++rank));
     }
     return t;
 }

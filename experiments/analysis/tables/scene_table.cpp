@@ -17,16 +17,10 @@ std::string text_or_dash(const std::optional<double>& value, int decimals) {
     return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
 }
 
-/// "0.98-1.02", or "-" if there is none.
-std::string interval_text(const std::optional<interval>& range) {
-    return range ? fmt::format("{:.2f}-{:.2f}", range->low, range->high) : "-";
-}
-
 /// True if any candidate of the scene has a value of the member.
 template <class Value>
 bool any_has(const scene_summary& scene, std::optional<Value> candidate_summary::* member) {
-    return std::ranges::any_of(scene.candidates,
-                               [&](const candidate_summary& candidate) { return (candidate.*member).has_value(); });
+    return std::ranges::any_of(scene.candidates, [&](const candidate_summary& c) { return (c.*member).has_value(); });
 }
 
 /// "exact", "inexact", or "-3 +5" for three false negatives and five false positives.
@@ -47,8 +41,9 @@ int decimals_of(const scene_summary& scene) {
 std::vector<std::string> time_cells(const candidate_summary& candidate, int decimals) {
     if (!candidate.ms_per_frame) return {"-", "-", "-", "-"};
     const auto [low, median, high] = *candidate.ms_per_frame;
+    const std::optional<interval>& range = candidate.ratio_interval;
     return {fmt::format("{:.{}f}", median, decimals), three_digits(low) + "-" + three_digits(high),
-            text_or_dash(candidate.ratio, 2), interval_text(candidate.ratio_interval)};
+            text_or_dash(candidate.ratio, 2), range ? fmt::format("{:.2f}-{:.2f}", range->low, range->high) : "-"};
 }
 
 /// A column that moves above the table if it is constant.
@@ -62,8 +57,7 @@ struct shared_column {
     }
 };
 
-/// The columns of results, which are equal for all exact candidates, and of bytes: a column whose cells are all equal
-/// is not shown, but named once in the heading.
+/// The columns that move to the heading if all cells are equal: results, as of exact candidates, and bytes.
 std::vector<shared_column> shared_columns(const scene_summary& scene,
                                           std::span<const candidate_summary* const> ranking) {
     shared_column result{{"result"}, "result {}", {}};
@@ -139,8 +133,7 @@ table table_of(const scene_summary& scene, std::span<const std::string> shown) {
     return t;
 }
 
-/// What the table would otherwise repeat in every row: the scene, shared strategies, constant columns; and how to read
-/// its order, its results and missing intervals.
+/// What the table would otherwise repeat in every row, and how to read its order, its results and missing intervals.
 std::string heading_of(const scene_summary& scene) {
     std::string text =
         fmt::format("{}: {}, {}\n", scene.scene.kind, counted(scene.objects, "object"), counted(scene.frames, "frame"));
@@ -164,12 +157,11 @@ std::string heading_of(const scene_summary& scene) {
     if (!scene.digest.empty()) text += "digest of the ground truth: " + scene.digest + "\n";
     const auto is_inexact = [](const candidate_summary& candidate) { return candidate.status != "exact"; };
     const bool inexact = std::ranges::any_of(scene.candidates, is_inexact);
-    const auto counted_line = std::ranges::find_if(ranking, [](const candidate_summary* candidate) {
-        return candidate->status != "exact" && candidate->false_negatives.has_value();
-    });
-    if (counted_line != ranking.end())
-        text += fmt::format("a result {} has {} false negatives and {} false positives\n", result_of(**counted_line),
-                            *(*counted_line)->false_negatives, *(*counted_line)->false_positives);
+    const auto with_errors = std::ranges::find_if(
+        ranking, [](const candidate_summary* c) { return c->status != "exact" && c->false_negatives.has_value(); });
+    if (with_errors != ranking.end())
+        text += fmt::format("a result {} has {} false negatives and {} false positives\n", result_of(**with_errors),
+                            *(*with_errors)->false_negatives, *(*with_errors)->false_positives);
     std::size_t repeats = 0;
     for (const candidate_summary& candidate : scene.candidates) repeats = std::max(repeats, candidate.repeats);
     std::string stopped;

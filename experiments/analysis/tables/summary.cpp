@@ -19,8 +19,7 @@ void add(std::optional<Number>& sum, const std::optional<Number>& value) {
     if (value) sum = sum.value_or(0) + *value;
 }
 
-/// Adds the values that do not vary between the repeats of a seed: sums of pairs and errors, maxima of bytes, means of
-/// counts.
+/// Adds what does not vary between the repeats of a seed: pairs and errors to sums, bytes to maxima, counts to means.
 /// @param share the weight of the seed in means over the seeds
 void add_seed(const row& r, double share, candidate_summary& summary) {
     summary.pairs += r.candidates;
@@ -72,8 +71,7 @@ candidate_summary summary_of(std::span<const row* const> repeats) {
     return summary;
 }
 
-/// Sets the ratio of a candidate's times to the baseline's in the same repeats of the same seeds, in which both met the
-/// same speed of the machine.
+/// Sets the ratio of a candidate's times to the baseline's in the same repeats of the same seeds.
 void set_ratio(candidate_summary& summary, std::span<const row* const> repeats, std::span<const row* const> baseline) {
     std::map<std::pair<std::optional<std::uint64_t>, std::uint64_t>, double> base_ms;  // by seed and repeat
     for (const row* b : baseline)
@@ -102,8 +100,7 @@ void set_ratio(candidate_summary& summary, std::span<const row* const> repeats, 
     summary.ratio_interval = {std::exp(low), std::exp(high)};
 }
 
-/// Splits the strategies of a scene's compositions into those that differ, which make their labels, and those that all
-/// share, which the heading names once.
+/// Labels consist of the strategies that differ within the scene; the heading names those that all share.
 void set_labels(scene_summary& scene) {
     std::vector<candidate_name> names;
     for (const candidate_summary& summary : scene.candidates) names.push_back(summary.name);
@@ -115,9 +112,9 @@ void set_labels(scene_summary& scene) {
             scene.common += (scene.common.empty() ? "" : ", ") + std::string(name_of(kind)) + " " + value;
     }
     for (candidate_summary& summary : scene.candidates) {
-        summary.label =
-            summary.name.engine.empty() ? text_in_line(summary.name.choices, scene.differing) : summary.name.engine;
-        if (summary.label.empty()) summary.label = only_name_of(summary.name);
+        const candidate_name& name = summary.name;
+        summary.label = name.engine.empty() ? text_in_line(name.choices, scene.differing) : name.engine;
+        if (summary.label.empty()) summary.label = only_name_of(name);
     }
 }
 
@@ -171,10 +168,9 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
 std::vector<const candidate_summary*> ranking_of(const scene_summary& scene) {
     std::vector<const candidate_summary*> candidates;
     for (const candidate_summary& summary : scene.candidates) candidates.push_back(&summary);
-    const auto key = [](const candidate_summary* summary) {
-        const double ms = summary->ms_per_frame ? summary->ms_per_frame->median : 0;
-        return std::tuple(!summary->ms_per_frame, summary->status != "exact", !summary->ratio,
-                          summary->ratio.value_or(0), ms, summary);
+    const auto key = [](const candidate_summary* c) {
+        const double ms = c->ms_per_frame ? c->ms_per_frame->median : 0;
+        return std::tuple(!c->ms_per_frame, c->status != "exact", !c->ratio, c->ratio.value_or(0), ms, c);
     };
     std::ranges::sort(candidates, {}, key);
     return candidates;

@@ -31,7 +31,6 @@ struct table {
                                 std::initializer_list<const char*> numbers = {},
                                 std::initializer_list<const char*> more_words = {});
 
-/// A table of a report.
 struct named_table {
     std::string name;  ///< the stem of its files
     std::string caption;
@@ -40,9 +39,8 @@ struct named_table {
 
 /// Aligns the columns with spaces, for terminals.
 [[nodiscard]] std::string to_text(const table& t);
-/// Limits lines to `width` characters unless a single name or number is longer. Drops spare columns first and lists
-/// them in a last line; if that is not enough, replaces names longer than half of the width by numbers with a legend,
-/// and splits the columns into several blocks.
+/// Limits lines to `width` characters unless a single name or number is longer: leaves out spare columns, which a last
+/// line lists, then replaces names longer than half of the width by numbers, and splits the columns into blocks.
 [[nodiscard]] std::string to_text(table t, std::size_t width);
 [[nodiscard]] std::string to_csv(const table& t);
 [[nodiscard]] std::string to_markdown(const table& t);
@@ -97,16 +95,14 @@ struct scene_summary {
 /// The candidates of a scene by rank. Columns that are constant move to the heading.
 /// @param shown the names of metrics that get additional columns
 [[nodiscard]] table table_of(const scene_summary& scene, std::span<const std::string> shown = {});
-/// The lines of text above the table.
 [[nodiscard]] std::string heading_of(const scene_summary& scene);
 
 /// The work of each composition per frame after frame 0, and the bytes of its parts, by rank; columns without a value
 /// are omitted. Copies are also given per object. The table has no columns if nothing was counted.
 [[nodiscard]] table counts_table_of(const scene_summary& scene);
 
-/// One table over scenes that share a baseline: compositions and engines in ascending order of the geometric mean of
-/// their ratios. `regret` is the time relative to the fastest exact one of the scene: the median and the maximum
-/// over the scenes.
+/// One table over scenes that share a baseline: candidates in ascending order of the geometric mean of their ratios.
+/// `regret` is the time relative to the fastest exact one of the scene: median and maximum over the scenes.
 [[nodiscard]] table overall_table_of(std::span<const scene_summary> scenes);
 
 /// The table of a summary.csv: every candidate of every scene with its rank, with all digits.

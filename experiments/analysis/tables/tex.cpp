@@ -80,7 +80,6 @@ std::string tex_text(std::string_view text) {
     return safe;
 }
 
-/// A LaTeX tabular with the rules of the package booktabs.
 std::string to_tex(const table& t) {
     std::vector<std::string> heads;
     for (const column& c : t.columns) heads.push_back(head_of(c));
