@@ -80,8 +80,7 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
     return f;
 }
 
-/// A curve of ascending regrets for each candidate with one of the least medians, if it was timed in half of the
-/// scenes.
+/// The regrets in ascending order of the candidates with the least medians, of those timed in half of the scenes.
 figure regret_figure(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most_curves = 7;
     constexpr std::size_t least_scenes = 2;

@@ -46,8 +46,7 @@ std::vector<double> work_of(const scene_measures& m) {
 }
 
 /// The measured times and the work of one candidate in the scenes of the map, or in those held out.
-std::vector<timed_work> observations_of(const std::vector<atlas_scene>& atlas, const std::string& label,
-                                        bool held_out) {
+std::vector<timed_work> observations_of(const std::vector<atlas_scene>& atlas, std::string_view label, bool held_out) {
     std::vector<timed_work> observations;
     for (const atlas_scene& scene : atlas) {
         const atlas_candidate* candidate = scene.find(label);

@@ -173,9 +173,8 @@ void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     const aabb::column_plan plan = aabb::columns_partition().plan(frame.boxes(), aabb::everywhere);
     constexpr std::span<const std::uint32_t> ids_are_indices{};
     constexpr bool by_keys = false;  // the sort `bucket` leaves buckets unsorted
-    if (columns.fill(frame.boxes(), ids_are_indices, plan, by_keys, no_limit, sort, none) !=
-        aabb::fill_result::complete)
-        throw std::logic_error("the scene has a box that is not valid");
+    const auto filled = columns.fill(frame.boxes(), ids_are_indices, plan, by_keys, no_limit, sort, none);
+    if (filled != aabb::fill_result::complete) throw std::logic_error("the scene has a box that is not valid");
     std::vector<aabb::index_pair> pairs;
     aabb::work_counters counted;
     sweep.sweep(columns.block(), pairs, no_limit, counted);

@@ -51,7 +51,7 @@ int run(const atlas_request& request) {
         "beyond noise; as fast: another is faster, but not beyond noise");
     print(to_text(winners_table(atlas), output_width()) + "\n");
     print("The same time, relative to the fastest candidate of each scene\n" +
-          to_text(regrets_table(atlas, span_of_time::frame), output_width()) + "\n");
+          to_text(regrets_table(atlas, atlas_time::per_frame), output_width()) + "\n");
     for (const judged_statement& s : judged_statements(atlas))
         print_paragraph(fmt::format("{}: {} Here: {}. ({})", s.id, s.says, text_of(s.verdict), s.source));
     print("\nMaps, borders and every ratio are in " + visible((out / "atlas.html").string()) + "\n");

@@ -273,6 +273,7 @@ table error_summary(std::span<const error_point> points, pair_group group) {
     return t;
 }
 
+/// The shares of false negatives + false positives of each method, one column per set of pairs.
 table errors_by_set(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> subset = of_group(points, group);
     table t{{{"triangle", false}}, {}};

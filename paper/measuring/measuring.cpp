@@ -144,9 +144,9 @@ std::optional<report_section> atlas_section(const std::filesystem::path& folder)
         atlas_figures(atlas),
         {{"winners", "The fastest per frame after the first.", winners_table(atlas)},
          {"regrets", "The cost of using one everywhere: time per frame over that of the fastest in each scene.",
-          regrets_table(atlas, span_of_time::frame)},
+          regrets_table(atlas, atlas_time::per_frame)},
          {"regrets_whole", "The same for the time of all frames, including the first and construction.",
-          regrets_table(atlas, span_of_time::whole)}}};
+          regrets_table(atlas, atlas_time::whole_run)}}};
 }
 
 /// The stored errors, one sentence each.

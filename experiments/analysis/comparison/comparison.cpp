@@ -73,7 +73,7 @@ std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     const scene_summary scene = summarise(rows).at(0);
     if (names.size() == 1 && !scene.common.empty()) return {scene.common};
     std::vector<std::string> labels;
-    for (const candidate_summary& line : scene.candidates) labels.push_back(line.label);
+    for (const candidate_summary& candidate : scene.candidates) labels.push_back(candidate.label);
     return labels;
 }
 

@@ -6,8 +6,7 @@ namespace aabblab {
 
 namespace {
 
-/// What identifies a condition: kind, parameters and meshes, but not the frames, on which times per frame do not
-/// depend.
+/// What identifies a condition: kind, parameters and meshes, but not the number of frames, since times are per frame.
 factors factors_of(const scene_choice& scene) {
     factors scene_factors{{"scene", scene.kind}};
     for (const aabb::setting& s : scene.settings)
@@ -65,6 +64,7 @@ std::string text_of(const selection& s) {
     return text;
 }
 
+/// Sorts the seeds and processes that occur: their indices are those of cells.
 condition::condition(factors scene, std::vector<const row*> rows) : factors_(std::move(scene)), rows_(std::move(rows)) {
     for (const row* r : rows_) {
         if (std::ranges::find(seeds_, r->scene.seed) == seeds_.end()) seeds_.push_back(r->scene.seed);

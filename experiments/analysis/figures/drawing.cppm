@@ -165,6 +165,7 @@ struct extent {
 
 /// A prepared figure; it refers to the original, which must outlive it.
 struct drawing {
+    /// Selects what can be shown, and scales both axes to it.
     explicit drawing(const figure& source) : f(source), panels(shown_panels_of(source)), labels(labels_of(panels)) {
         extent x_values;
         extent y_values;

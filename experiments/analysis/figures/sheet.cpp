@@ -116,6 +116,7 @@ private:
             for (const double tenths : dashes[appearance % dashes.size()]) lengths.push_back(tenths / 10);
         stroke(std::move(lines), colour_of(appearance), line_width, std::move(lengths));
     }
+    /// Draws the sign of an appearance at each place.
     void put_signs(const places& centres, std::size_t appearance) {
         const sign& s = signs[appearance % signs.size()];
         strokes drawn{{}, colour_of(appearance)};

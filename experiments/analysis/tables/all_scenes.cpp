@@ -74,8 +74,7 @@ std::vector<std::string> cells_of(const scene_summary& scene, const candidate_su
 
 }  // namespace
 
-/// Ratios are times relative to a scene's baseline; regrets compare with the least ratio, of the fastest exact
-/// candidate.
+/// Ratios are times over those of a scene's baseline; regrets compare with the least ratio, of the fastest exact one.
 table overall_table_of(std::span<const scene_summary> scenes) {
     std::vector<standing> standings;
     std::map<candidate_name, std::size_t> indices;

@@ -155,8 +155,7 @@ std::string heading_of(const scene_summary& scene) {
             constant += (constant.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
     if (!constant.empty()) text += "all lines: " + constant + "\n";
     if (!scene.digest.empty()) text += "digest of the ground truth: " + scene.digest + "\n";
-    const auto is_inexact = [](const candidate_summary& candidate) { return candidate.status != "exact"; };
-    const bool inexact = std::ranges::any_of(scene.candidates, is_inexact);
+    const bool inexact = std::ranges::any_of(scene.candidates, [](const auto& c) { return c.status != "exact"; });
     const auto with_errors = std::ranges::find_if(
         ranking, [](const candidate_summary* c) { return c->status != "exact" && c->false_negatives.has_value(); });
     if (with_errors != ranking.end())
@@ -172,7 +171,7 @@ std::string heading_of(const scene_summary& scene) {
         text += (inexact ? "exact results before inexact ones, each in ascending order of ratio; ratio to "
                          : "in ascending order of ratio; ratio to ") +
                 scene.candidates[0].label + "\n";
-    if (std::ranges::any_of(scene.candidates, [](const candidate_summary& l) { return l.ratio && !l.ratio_interval; }))
+    if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
         text += "95 %: - if there are too few repeats, seeds or processes for an interval\n";
     return text;
 }
