@@ -17,27 +17,26 @@ struct column_group {
 /// depend on the number of threads.
 class column_groups {
 public:
-    /// The grid of groups: as many as planned, in the proportion of the columns, and no more than those on each axis.
-    /// If these are too few, as for boxes along a line, groups are cut along the columns instead of the axis with fewer
-    /// of them.
+    /// Turns a plan of columns into the grid of groups (cache-sized regions, each cut into columns separately): as many
+    /// as planned, in the proportion of the columns, and no more than those on each axis. If these are less than half,
+    /// as for boxes along a line, groups are cut along the columns instead of the axis with fewer of them.
     [[nodiscard]] static column_plan group_grid(column_plan plan) {
         const double groups = plan.groups;
         const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;
-        const std::uint32_t most = plan.across[1 - fewer];
-        const auto share = [](double n, std::uint32_t greatest) {
-            return static_cast<std::uint32_t>(std::clamp(std::round(n), 1.0, static_cast<double>(greatest)));
+        const auto rounded = [](double number, std::uint32_t most) {
+            return static_cast<std::uint32_t>(std::clamp(std::round(number), 1.0, static_cast<double>(most)));
         };
         const double ratio = std::sqrt(groups / plan.columns());
         std::array<std::uint32_t, 2> across{};
-        across[fewer] = share(plan.across[fewer] * ratio, plan.across[fewer]);
-        across[1 - fewer] = share(groups / across[fewer], most);
+        across[fewer] = rounded(plan.across[fewer] * ratio, plan.across[fewer]);
+        across[1 - fewer] = rounded(groups / across[fewer], plan.across[1 - fewer]);
         if (2 * across[0] * across[1] < groups && plan.most_along > across[fewer]) {
-            const int along = plan.axis;
-            const std::uint32_t beside = across[1 - fewer];
+            const int axis_of_columns = plan.axis;
+            const std::uint32_t kept = across[1 - fewer];
             plan.axis = plan.axis_across(fewer);
-            const std::size_t first = plan.axis_across(0) == along ? 0 : 1;
-            across[first] = share(groups / beside, std::min(plan.most_along, most_groups / beside));
-            across[1 - first] = beside;
+            const std::size_t along = plan.axis_across(0) == axis_of_columns ? 0 : 1;
+            across[along] = rounded(groups / kept, std::min(plan.most_along, most_groups / kept));
+            across[1 - along] = kept;
         }
         plan.across = across;
         return plan;
@@ -45,29 +44,30 @@ public:
 
     void clear() noexcept { starts_.resize(1); }
 
+    /// Copies each box into all groups of the grid that it overlaps, by a parallel counting sort: the threads count the
+    /// boxes of their parts by group, prefix sums turn counts into start indices, and the threads copy their parts.
     /// @param ids ids of the boxes; empty if the index is the id
-    /// @param most_in_group limit on the boxes of a group, copies included; beyond it the result is `crowded`
-    /// @returns `complete`, or else there are no groups
+    /// @param most_in_group limit on the boxes of a group, copies included
+    /// @returns `complete`, or else there are no groups: `not_worthwhile` above this limit or that on all copies
     [[nodiscard]] fill_result distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                          const column_plan& plan, std::size_t most_in_group, worker_threads& threads) {
         clear();
         plan_ = plan;
-        keys_.resize(boxes.size() + simd::width);
-        // Fewer boxes are not worth a part of their own. There are more parts than threads to balance the load.
-        constexpr std::size_t least = 4096;
-        const std::size_t most = threads.count() > 1 ? std::size_t{4} * threads.count() : 1;
-        parts_.resize(std::clamp(boxes.size() / least, std::size_t{1}, most));
-        wide_.resize(boxes.size() + simd::width * parts_.size());
-        wide_first_.resize(wide_.size());
-        wide_last_.resize(wide_.size());
+        first_group_of_box_.resize(boxes.size() + simd::width);
+        // There are more parts than threads to balance the load.
+        constexpr std::size_t least_boxes_per_part = 4096;
+        const std::size_t most_parts = threads.count() > 1 ? std::size_t{4} * threads.count() : 1;
+        parts_.resize(std::clamp(boxes.size() / least_boxes_per_part, std::size_t{1}, most_parts));
+        spanning_boxes_.resize(boxes.size() + simd::width * parts_.size());
+        first_cells_.resize(spanning_boxes_.size());
+        last_cells_.resize(spanning_boxes_.size());
         threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { find_groups(boxes, p); });
         std::size_t copies = 0;
         for (const part& p : parts_) {
             if (p.result != fill_result::complete) return p.result;
             copies += p.copies;
         }
-        if (copies > most_copies(boxes.size())) return fill_result::crowded;
-        if (!allocate_groups(most_in_group)) return fill_result::crowded;
+        if (copies > most_copies(boxes.size()) || !allocate_groups(most_in_group)) return fill_result::not_worthwhile;
         threads.for_each_index(parts_.size(), [&](std::size_t p, std::size_t) { copy_boxes(boxes, ids, parts_[p]); });
         return fill_result::complete;
     }
@@ -93,25 +93,27 @@ public:
     /// Number of boxes in the fullest group.
     [[nodiscard]] std::size_t fullest() const noexcept { return fullest_; }
 
-    /// The region of a group within the bounds of all groups. Boxes may extend beyond it into other groups.
+    /// The region of a group, a cell of the grid, within the bounds of all groups. Groups at the edge of the grid reach
+    /// to the bounds, since coordinates beyond the grid are clamped. Boxes may extend beyond it into other groups.
     [[nodiscard]] box region(std::uint32_t g, const box& within) const noexcept {
         box b = within;
-        const std::uint32_t at[2] = {g % plan_.across[0], g / plan_.across[0]};
+        const std::uint32_t cell[2] = {g % plan_.across[0], g / plan_.across[0]};
         for (std::size_t i = 0; i < 2; ++i) {
             const int k = plan_.axis_across(i);
             if (plan_.scale[k] <= 0) continue;
-            const float width = 65'536.0F / static_cast<float>(plan_.across[i]) / plan_.scale[k];
-            const auto border = [&](std::uint32_t i) {
-                return std::clamp(plan_.origin[k] + static_cast<float>(i) * width, within.min[k], within.max[k]);
+            const float cell_width = 65'536.0F / static_cast<float>(plan_.across[i]) / plan_.scale[k];
+            const auto border = [&](std::uint32_t c) {
+                return std::clamp(plan_.origin[k] + static_cast<float>(c) * cell_width, within.min[k], within.max[k]);
             };
-            if (at[i] > 0) b.min[k] = border(at[i]);
-            if (at[i] + 1 < plan_.across[i]) b.max[k] = border(at[i] + 1);
+            if (cell[i] > 0) b.min[k] = border(cell[i]);
+            if (cell[i] + 1 < plan_.across[i]) b.max[k] = border(cell[i] + 1);
         }
         return b;
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        std::size_t total = bytes_of(keys_, wide_, wide_first_, wide_last_, boxes_, ids_, starts_);
+        std::size_t total =
+            bytes_of(first_group_of_box_, spanning_boxes_, first_cells_, last_cells_, boxes_, ids_, starts_);
         for (const part& p : parts_) total += bytes_of(p.next, p.next_copy);
         return total;
     }
@@ -123,8 +125,8 @@ private:
     struct part {
         std::size_t begin;
         std::size_t end;
-        std::size_t wide_begin;  // the part's range in `wide_`, the boxes that overlap several groups
-        std::size_t wide_end;
+        std::size_t spanning_begin;  // the part's range in `spanning_boxes_`, the boxes that overlap several groups
+        std::size_t spanning_end;
         std::vector<std::size_t> next;       // by group: number of boxes that begin there, then the next one's index
         std::vector<std::size_t> next_copy;  // the same for copies
         std::size_t copies;
@@ -135,15 +137,15 @@ private:
     [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept { return 65'536 + 4 * boxes; }
 
     /// Quantizes the boxes of a part to find the first group of each and, of boxes in several groups, the last one.
-    /// Counts the boxes of each group, so that the prefix sums over the parts are the places to write to.
-    void find_groups(std::span<const box> boxes, std::size_t number) {
-        part& p = parts_[number];
+    /// Counts the part's boxes and copies by group, so that prefix sums over the parts yield the indices to write to.
+    void find_groups(std::span<const box> boxes, std::size_t part_index) {
+        part& p = parts_[part_index];
         const std::size_t length = (boxes.size() / parts_.size() + simd::width) / simd::width * simd::width;
-        p.begin = std::min(boxes.size(), number * length);
+        p.begin = std::min(boxes.size(), part_index * length);
         p.end = std::min(boxes.size(), p.begin + length);
         p.next.assign(plan_.columns(), 0);
         p.next_copy.assign(plan_.columns(), 0);
-        p.wide_begin = p.wide_end = p.begin + number * simd::width;
+        p.spanning_begin = p.spanning_end = p.begin + part_index * simd::width;
         p.copies = 0;
         const int u = plan_.axis_across(0);
         const int v = plan_.axis_across(1);
@@ -156,45 +158,43 @@ private:
                 simd::high_products(plan_.quantized(c[u], u) | plan_.quantized(c[v], v) << 16, across);
             const simd::words last =
                 simd::high_products(plan_.quantized(c[3 + u], u) | plan_.quantized(c[3 + v], v) << 16, across);
-            simd::store_low_halves(&keys_[p.begin + i], (first & 0xffffU) + (first >> 16) * plan_.across[0]);
-            const std::uint32_t wide = simd::bits(first != last) & present;
-            simd::compress_store(&wide_first_[p.wide_end], first, wide);
-            simd::compress_store(&wide_last_[p.wide_end], last, wide);
-            p.wide_end += simd::compress_store(&wide_[p.wide_end],
-                                               simd::places() + static_cast<std::uint32_t>(p.begin + i), wide);
+            simd::store_low_halves(&first_group_of_box_[p.begin + i],
+                                   (first & 0xffffU) + (first >> 16) * plan_.across[0]);
+            const std::uint32_t spanning = simd::bits(first != last) & present;
+            simd::compress_store(&first_cells_[p.spanning_end], first, spanning);
+            simd::compress_store(&last_cells_[p.spanning_end], last, spanning);
+            p.spanning_end += simd::compress_store(&spanning_boxes_[p.spanning_end],
+                                                   simd::places() + static_cast<std::uint32_t>(p.begin + i), spanning);
         });
         p.result = simd::bits(invalid) == 0 ? fill_result::complete : fill_result::invalid;
         if (p.result == fill_result::invalid) return;
         std::size_t* const counts = p.next.data();
-        for (const std::uint16_t key : std::span(keys_).subspan(p.begin, p.end - p.begin)) ++counts[key];
-        for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
-            for_each_later_group(w, [&](std::uint32_t group, std::uint32_t) {
+        for (const std::uint16_t key : std::span(first_group_of_box_).subspan(p.begin, p.end - p.begin)) ++counts[key];
+        for (std::size_t s = p.spanning_begin; s < p.spanning_end; ++s) {
+            for_each_later_group(s, [&](std::uint32_t group, std::uint32_t) {
                 ++p.next_copy[group];
                 ++p.copies;
             });
             if (p.copies > most_copies(boxes.size())) {
-                p.result = fill_result::crowded;
+                p.result = fill_result::not_worthwhile;
                 return;
             }
         }
     }
 
-    /// Turns counts into start indices by a prefix sum.
+    /// Turns the parts' counts into the indices where each part writes its boxes and copies of each group, by a prefix
+    /// sum over groups and within each over parts, and makes room for all boxes.
     /// @returns whether no group exceeds the limit
     [[nodiscard]] bool allocate_groups(std::size_t most_in_group) {
         const std::uint32_t groups = plan_.columns();
         starts_.resize(groups + 1);
         fullest_ = 0;
         std::size_t total = 0;
-        const auto place = [&](std::size_t& count) {
-            const std::size_t own = count;
-            count = total;
-            total += own;
-        };
+        const auto turn_into_start = [&](std::size_t& count) { total += std::exchange(count, total); };
         for (std::uint32_t g = 0; g < groups; ++g) {
             starts_[g] = total;
-            for (part& p : parts_) place(p.next[g]);
-            for (part& p : parts_) place(p.next_copy[g]);
+            for (part& p : parts_) turn_into_start(p.next[g]);
+            for (part& p : parts_) turn_into_start(p.next_copy[g]);
             fullest_ = std::max(fullest_, total - starts_[g]);
         }
         starts_[groups] = total;
@@ -214,37 +214,39 @@ private:
         return true;
     }
 
-    /// Reads each box once and writes it to all its groups.
+    /// Reads each box of a part once and writes it to all its groups, with marked ids to those after the first.
     void copy_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids, part& p) {
         std::size_t* const next = p.next.data();
         std::size_t* const next_copy = p.next_copy.data();
-        const std::uint16_t* const keys = keys_.data();
+        const std::uint16_t* const keys = first_group_of_box_.data();
         box* const to = boxes_.data();
         std::uint32_t* const to_ids = ids_.data();
-        const auto write = [&](std::size_t place, std::size_t i, std::uint32_t begins_earlier) {
+        const auto write = [&](std::size_t at, std::size_t i, std::uint32_t begins_earlier) {
             // Prefetch the next cache lines of the group: there are too many write streams for hardware prefetchers.
-            __builtin_prefetch(to + place + 8, 1);
-            __builtin_prefetch(to_ids + place + 16, 1);
-            to[place] = boxes[i];
-            to_ids[place] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | begins_earlier;
+            __builtin_prefetch(to + at + 8, 1);
+            __builtin_prefetch(to_ids + at + 16, 1);
+            to[at] = boxes[i];
+            to_ids[at] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | begins_earlier;
         };
         std::size_t i = p.begin;
-        for (std::size_t w = p.wide_begin; w < p.wide_end; ++w) {
-            for (; i <= wide_[w]; ++i) write(next[keys[i]]++, i, 0);
-            for_each_later_group(w, [&](std::uint32_t group, std::uint32_t begins_earlier) {
+        for (std::size_t s = p.spanning_begin; s < p.spanning_end; ++s) {
+            for (; i <= spanning_boxes_[s]; ++i) write(next[keys[i]]++, i, 0);
+            for_each_later_group(s, [&](std::uint32_t group, std::uint32_t begins_earlier) {
                 write(next_copy[group]++, i - 1, begins_earlier);
             });
         }
         for (; i < p.end; ++i) write(next[keys[i]]++, i, 0);
     }
 
-    /// Visits all groups of a wide box except the first.
+    /// Visits all groups of a box in several groups except its first, as `visit(group, bits)`: the bits mark the axes
+    /// on which the box begins in an earlier group, so that only one group reports a pair.
+    /// @param s index of the box in `spanning_boxes_`
     template <class Visit>
-    void for_each_later_group(std::size_t wide, Visit visit) const {
-        const std::uint32_t u0 = wide_first_[wide] & 0xffffU;
-        const std::uint32_t v0 = wide_first_[wide] >> 16;
-        const std::uint32_t u1 = wide_last_[wide] & 0xffffU;
-        const std::uint32_t v1 = wide_last_[wide] >> 16;
+    void for_each_later_group(std::size_t s, Visit visit) const {
+        const std::uint32_t u0 = first_cells_[s] & 0xffffU;
+        const std::uint32_t v0 = first_cells_[s] >> 16;
+        const std::uint32_t u1 = last_cells_[s] & 0xffffU;
+        const std::uint32_t v1 = last_cells_[s] >> 16;
         for (std::uint32_t v = v0; v <= v1; ++v)
             for (std::uint32_t u = u0; u <= u1; ++u)
                 if (u != u0 || v != v0)
@@ -254,10 +256,10 @@ private:
     }
 
     column_plan plan_;
-    large_vector<std::uint16_t> keys_;        // by box: its first group
-    large_vector<std::uint32_t> wide_;        // boxes that overlap several groups, ascending
-    large_vector<std::uint32_t> wide_first_;  // packed u16 columns: first axis across low, second axis high
-    large_vector<std::uint32_t> wide_last_;   // the same for the last column
+    large_vector<std::uint16_t> first_group_of_box_;  // by box: its first group
+    large_vector<std::uint32_t> spanning_boxes_;      // boxes that overlap several groups, ascending
+    large_vector<std::uint32_t> first_cells_;  // of these: u16 indices on the first axis across, low, and the second
+    large_vector<std::uint32_t> last_cells_;   // the same for the last group
     std::vector<part> parts_;
     large_vector<box> boxes_;  // group after group
     large_vector<std::uint32_t> ids_;

@@ -14,7 +14,7 @@ namespace aabb::simd::detail {
 
 using pairs = double __attribute__((vector_size(4 * width)));  // each lane holds two floats
 
-/// Pair `K` of each of `width / 2` rows of three pairs.
+/// Collects pair `K` (two floats) of each of `width / 2` rows of three pairs, which fill `a`, `b` and `c` in a row.
 template <std::size_t K>
 [[nodiscard, gnu::always_inline]] inline pairs every_third(pairs a, pairs b, pairs c) noexcept {
     constexpr std::size_t half = width / 2;
@@ -24,7 +24,8 @@ template <std::size_t K>
     return shuffled<pairs, of_all>(from_first_two, c, std::make_index_sequence<half>{});
 }
 
-/// Transposes columns 2 `K` and 2 `K` + 1 of `width` rows of six floats.
+/// Transposes columns 2 `K` and 2 `K` + 1 of `width` rows of six floats: collects the pairs of each half of the rows,
+/// then separates their first from their second floats.
 template <std::size_t K>
 [[gnu::always_inline]] inline void transpose_pair(const pairs (&rows)[6], floats* columns) noexcept {
     const auto low = __builtin_bit_cast(floats, every_third<K>(rows[0], rows[1], rows[2]));
@@ -61,27 +62,27 @@ export namespace aabb::simd {
     detail::transpose_pair<2>(rows, columns);
 }
 
-/// Transposes `width` rows of four u32 into columns.
+/// Transposes `width` rows of four u32 into columns, by shuffles of two vectors at a time.
 [[gnu::always_inline]] inline void load_rows_of_four(const std::uint32_t* from, words (&columns)[4]) noexcept {
-    words rows[4];
-    std::memcpy(rows, from, sizeof rows);
-    const auto column = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+    words vectors[4];
+    std::memcpy(vectors, from, sizeof vectors);
+    const auto collect_column = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
         constexpr auto of_two = [](std::size_t i) { return 4 * (i % (width / 2)) + K; };
         constexpr auto joined = [](std::size_t i) { return i < width / 2 ? i : width + i - width / 2; };
         const auto lanes = std::make_index_sequence<width>{};
-        const words low = shuffled<words, of_two>(rows[0], rows[1], lanes);
-        const words high = shuffled<words, of_two>(rows[2], rows[3], lanes);
+        const words low = shuffled<words, of_two>(vectors[0], vectors[1], lanes);
+        const words high = shuffled<words, of_two>(vectors[2], vectors[3], lanes);
         columns[K] = shuffled<words, joined>(low, high, lanes);
     };
-    column(std::integral_constant<std::size_t, 0>{});
-    column(std::integral_constant<std::size_t, 1>{});
-    column(std::integral_constant<std::size_t, 2>{});
-    column(std::integral_constant<std::size_t, 3>{});
+    collect_column(std::integral_constant<std::size_t, 0>{});
+    collect_column(std::integral_constant<std::size_t, 1>{});
+    collect_column(std::integral_constant<std::size_t, 2>{});
+    collect_column(std::integral_constant<std::size_t, 3>{});
 }
 
-/// The inverse of `load_rows_of_four`.
+/// Transposes four columns of u32 and stores them as `width` rows, the inverse of `load_rows_of_four`.
 [[gnu::always_inline]] inline void store_rows_of_four(std::uint32_t* to, const words (&&columns)[4]) noexcept {
-    const auto rows = [&]<std::size_t R>(std::integral_constant<std::size_t, R>) {
+    const auto store_vector = [&]<std::size_t R>(std::integral_constant<std::size_t, R>) {
         // Element j of these rows comes from row j / 4 and column j % 4; two columns are interleaved at a time.
         constexpr auto of_two = [](std::size_t i) { return R * width / 4 + i / 4 + (i % 2) * width; };
         constexpr auto joined = [](std::size_t i) { return i % 4 < 2 ? i : width + i; };
@@ -90,10 +91,10 @@ export namespace aabb::simd {
         const words high = shuffled<words, of_two>(columns[2], columns[3], lanes);
         store(to + R * width, shuffled<words, joined>(low, high, lanes));
     };
-    rows(std::integral_constant<std::size_t, 0>{});
-    rows(std::integral_constant<std::size_t, 1>{});
-    rows(std::integral_constant<std::size_t, 2>{});
-    rows(std::integral_constant<std::size_t, 3>{});
+    store_vector(std::integral_constant<std::size_t, 0>{});
+    store_vector(std::integral_constant<std::size_t, 1>{});
+    store_vector(std::integral_constant<std::size_t, 2>{});
+    store_vector(std::integral_constant<std::size_t, 3>{});
 }
 
 using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two u16 per u32 lane
@@ -113,7 +114,7 @@ using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two 
     std::memcpy(to, &lower, sizeof lower);
 }
 
-/// The high u16 of the product of each pair of u16.
+/// The high u16 of the product of each pair of u16: maps a, as a coordinate below 2^16, to one of b equal cells.
 [[nodiscard, gnu::always_inline]] inline words high_products(words a, words b) noexcept {
     using wide = std::uint32_t __attribute__((vector_size(8 * width)));
     const auto x = __builtin_convertvector(reinterpret_cast<halves>(a), wide);
@@ -140,7 +141,7 @@ using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two 
     return v;
 }
 
-/// The inclusive prefix sum over the lanes.
+/// The inclusive prefix sum over the lanes, in a logarithmic number of steps: each adds the vector shifted by 1, 2, 4…
 [[nodiscard, gnu::always_inline]] inline words prefix_sum(words v) noexcept {
     const words zero{};
     const auto shifted = [&]<std::size_t By, std::size_t... I>(std::integral_constant<std::size_t, By>,

@@ -12,9 +12,10 @@ export namespace aabb {
 /// several columns are recorded in the first pass, so that only those are visited again.
 class column_lists {
 public:
+    /// Puts boxes into the columns of the plan by a counting sort, and sorts each column if buckets do not suffice.
     /// @param ids by index in `boxes`; empty if the index is the id
     /// @param by_keys whether to sort by exact keys even if the sort policy would accept unsorted buckets
-    /// @param most_copies limit on the copies; beyond it the result is `crowded`
+    /// @param most_copies limit on the copies; beyond it the result is `not_worthwhile`
     /// @returns `complete`, or else there is nothing to sweep
     template <class Sort, CounterPolicy Counters>
     [[nodiscard]] fill_result fill(std::span<const box> boxes, std::span<const std::uint32_t> ids,
@@ -44,7 +45,7 @@ public:
 
 private:
     static constexpr std::uint32_t width = simd::width;
-    static constexpr std::size_t at_a_time = 1024;
+    static constexpr std::size_t boxes_at_a_time = 1024;
 
     /// A box as an entry of its first column.
     struct quantized_box {
@@ -59,25 +60,28 @@ private:
         std::uint32_t buckets;  ///< offset to the bucket in the first column
     };
 
-    /// Quantizes and counts boxes in blocks, so that quantized boxes are still in the L1 cache when they are counted.
+    /// Quantizes the boxes, counts them by bucket and lists their copies: some boxes at a time, so that these are still
+    /// in the L1 cache when they are counted.
     [[nodiscard]] fill_result count_boxes(std::size_t most_copies) {
         quantized_.resize(block_.boxes.size() + width);
         copies_.clear();
         ends_.clear();
         ends_.resize((std::size_t{plan_.columns()} << bucket_bits_) + width);
-        for (std::size_t begin = 0; begin < block_.boxes.size(); begin += at_a_time) {
-            const auto boxes = block_.boxes.subspan(begin, std::min(at_a_time, block_.boxes.size() - begin));
+        for (std::size_t begin = 0; begin < block_.boxes.size(); begin += boxes_at_a_time) {
+            const auto boxes = block_.boxes.subspan(begin, std::min(boxes_at_a_time, block_.boxes.size() - begin));
             const bool valid = plan_.axis == 0   ? quantize<0>(boxes, begin)
                                : plan_.axis == 1 ? quantize<1>(boxes, begin)
                                                  : quantize<2>(boxes, begin);
             if (!valid) return fill_result::invalid;
             for (const quantized_box& b : std::span(quantized_).subspan(begin, boxes.size())) ++ends_[b.bucket];
-            if (!add_copies(most_copies)) return fill_result::crowded;
+            if (!add_copies(most_copies)) return fill_result::not_worthwhile;
         }
         return fill_result::complete;
     }
 
-    /// Quantizes a block of boxes along columns of a constant axis, and lists those that overlap several columns.
+    /// Quantizes boxes to the entries of their first columns, and lists those that overlap several columns.
+    /// @tparam Axis the axis along which columns run
+    /// @param begin index of the first of these boxes
     /// @returns whether all boxes are valid
     template <int Axis>
     [[nodiscard]] bool quantize(std::span<const box> boxes, std::size_t begin) {
@@ -87,7 +91,7 @@ private:
         const std::uint32_t bits = bucket_bits_;
         const simd::words across = simd::broadcast(plan.across[0] | plan.across[1] << 16);
         simd::flags invalid{};
-        std::size_t wide = 0;
+        std::size_t spanning = 0;
         for_each_vector(boxes, [&](std::size_t i, const simd::floats(&c)[6], std::uint32_t present) {
             invalid |= are_invalid(c);
             const simd::words lower = plan.quantized(c[u], u) | plan.quantized(c[v], v) << 16;
@@ -98,10 +102,11 @@ private:
             simd::store_rows_of_four(&quantized_[begin + i].lower,
                                      {lower, upper, bucket + (plan.quantized(c[3 + Axis], Axis) >> (16 - bits)),
                                       bucket + (plan.quantized(c[Axis], Axis) >> (16 - bits))});
-            wide += simd::compress_store(&wide_[wide], simd::places() + static_cast<std::uint32_t>(begin + i),
-                                         simd::bits(first != last) & present);
+            spanning +=
+                simd::compress_store(&spanning_boxes_[spanning], simd::places() + static_cast<std::uint32_t>(begin + i),
+                                     simd::bits(first != last) & present);
         });
-        wide_boxes_ = wide;
+        spanning_count_ = spanning;
         return simd::bits(invalid) == 0;
     }
 
@@ -110,21 +115,23 @@ private:
     [[nodiscard]] bool add_copies(std::size_t most_copies) {
         const std::uint32_t begins_earlier[2] = {column_entry::begins_earlier(plan_.axis_across(0)),
                                                  column_entry::begins_earlier(plan_.axis_across(1))};
-        const std::uint32_t column = std::uint32_t{1} << bucket_bits_;
-        const std::uint32_t row = plan_.across[0] << bucket_bits_;
-        const auto further_columns = [&](const quantized_box& b, int shift, std::size_t k) {
-            return ((b.upper >> shift & 0xffffU) * plan_.across[k] >> 16) -
-                   ((b.lower >> shift & 0xffffU) * plan_.across[k] >> 16);
+        const std::uint32_t buckets_of_column = std::uint32_t{1} << bucket_bits_;
+        const std::uint32_t buckets_of_row = plan_.across[0] << bucket_bits_;
+        const auto further_columns = [&](const quantized_box& b, std::size_t k) {
+            const auto column_of = [&](std::uint32_t packed) {
+                return (packed >> 16 * k & 0xffffU) * plan_.across[k] >> 16;
+            };
+            return column_of(b.upper) - column_of(b.lower);
         };
         std::array<copy, 64> buffer;
         std::size_t n = 0;
         const auto flush = [&] { copies_.insert(copies_.end(), buffer.begin(), buffer.begin() + std::exchange(n, 0)); };
-        for (const std::uint32_t i : std::span(wide_).first(wide_boxes_)) {
+        for (const std::uint32_t i : std::span(spanning_boxes_).first(spanning_count_)) {
             const quantized_box b = quantized_[i];
-            const std::uint32_t nu = further_columns(b, 0, 0);
-            const std::uint32_t nv = further_columns(b, 16, 1);
+            const std::uint32_t nu = further_columns(b, 0);
+            const std::uint32_t nv = further_columns(b, 1);
             const auto add = [&](std::uint32_t u, std::uint32_t v, std::uint32_t times) {
-                const std::uint32_t buckets = u * column + v * row;
+                const std::uint32_t buckets = u * buckets_of_column + v * buckets_of_row;
                 buffer[n] = {i | (u ? begins_earlier[0] : 0) | (v ? begins_earlier[1] : 0), buckets};
                 n += times;
                 ends_[b.bucket + buckets * times] += times;
@@ -171,7 +178,8 @@ private:
         return next;
     }
 
-    /// Exclusive prefix sum over the buckets of a column.
+    /// Turns the counts of a column's buckets into start indices from `next` on, by an exclusive prefix sum.
+    /// @returns the end of the last bucket
     static std::uint32_t bucket_starts(std::uint32_t* counts, std::uint32_t buckets, std::uint32_t next) noexcept {
         for (std::uint32_t b = 0; b < buckets; b += width) {
             const simd::words own = simd::load(counts + b);
@@ -182,13 +190,14 @@ private:
         return next;
     }
 
-    /// Writes the entries; afterwards `ends_` holds the end of each bucket.
+    /// Writes all boxes and copies to their columns; the start of each bucket in `ends_` moves to its end.
     void write_entries() {
         if (block_.ids.empty())
             write_entries([](std::uint32_t) { return std::uint32_t{0}; });
         else
             write_entries([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_bits; });
     }
+    /// The same for any kind of ids.
     /// @param group_bits returns the bits of `begins_earlier` that box i has in its group
     template <class GroupBits>
     void write_entries(GroupBits group_bits) {
@@ -205,7 +214,8 @@ private:
         }
     }
 
-    /// Sorts each column by the sort policy; each entry gets a bucket of its own.
+    /// Sorts each column by exact keys with the sort policy. Each entry gets a bucket of its own, whose end is the
+    /// first entry that begins after it ends: a sweep stops there, as it does at the end of a shared bucket.
     template <class Sort, CounterPolicy Counters>
     void sort_columns(Sort& sort, Counters& counters) {
         column_ends_.clear();
@@ -239,9 +249,9 @@ private:
     column_block block_{};
     column_plan plan_;
     std::uint32_t bucket_bits_ = 0;
-    std::vector<quantized_box> quantized_;               // by box
-    std::array<std::uint32_t, at_a_time + width> wide_;  // boxes of the current block that overlap several columns
-    std::size_t wide_boxes_ = 0;                         // number of boxes in `wide_`
+    std::vector<quantized_box> quantized_;                               // by box
+    std::array<std::uint32_t, boxes_at_a_time + width> spanning_boxes_;  // those just quantized in several columns
+    std::size_t spanning_count_ = 0;
     std::vector<copy> copies_;
     std::vector<column_entry> entries_;
     std::vector<std::uint32_t> ends_;  // by bucket, plus one for padding

@@ -29,7 +29,7 @@ struct column_plan {
         return std::min(16U, static_cast<std::uint32_t>(std::bit_width(buckets - 1)));
     }
 
-    /// Sets the range of the quantization; on an axis without extent every coordinate becomes 0.
+    /// Sets the range that is quantized to u16; on an axis without extent every coordinate becomes 0.
     constexpr void fit(const box& bounds) noexcept {
         origin = bounds.min;
         for (int k = 0; k < 3; ++k) {
@@ -83,16 +83,16 @@ struct column_block {
     }
 };
 
-/// The result of distributing boxes: it fails if a box is invalid, or if there are too many copies or too many boxes in
-/// one place.
-enum class fill_result : std::uint8_t { complete, invalid, crowded };
+/// The result of distributing boxes to columns or groups: `invalid` if a box is, `not_worthwhile` if there are too many
+/// copies or too many boxes in one group.
+enum class fill_result : std::uint8_t { complete, invalid, not_worthwhile };
 
 inline constexpr box everywhere{
     {std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest()},
     {std::numeric_limits<float>::max(), std::numeric_limits<float>::max(), std::numeric_limits<float>::max()}};
 
-/// Calls `visit(index, coordinates, present)` for each vector of boxes, with the lower ends on three axes and then the
-/// upper ones. The last vector is padded with copies of the last box, whose bits in `present` are not set.
+/// Calls `visit(index, coordinates, present)` for each vector of boxes, from box `index` on, with the lower ends on
+/// three axes and then the upper ones. Copies of the last box pad the last vector; their bits in `present` are not set.
 template <class Visit>
 inline void for_each_vector(std::span<const box> boxes, Visit visit) {
     simd::floats coordinates[6];

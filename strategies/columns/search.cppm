@@ -11,6 +11,7 @@ export namespace aabb {
 /// at rest but other boxes move, exponential back-off keeps ever fewer frames, down to one in 64.
 class static_frame {
 public:
+    /// Compares a new frame with the kept one, or decides by a sample whether the new one is worth keeping.
     /// @returns whether no box has moved since the kept frame, so that `pairs` is still the result
     [[nodiscard]] bool is_still_valid(std::span<const box> boxes, const membership& objects) {
         const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;
@@ -22,11 +23,11 @@ public:
             boxes_.clear();
             pairs_.clear();
             backoff_ = std::min(2 * backoff_ + 1, 63U);
-            waited_ = 0;
+            skipped_frames_ = 0;
         }
         size_ = boxes.size();
         const auto sample = sample_of(boxes);
-        is_to_be_kept_ = same_objects && are_same(sample, sample_) && ++waited_ > backoff_;
+        is_to_be_kept_ = same_objects && are_same(sample, sample_) && ++skipped_frames_ > backoff_;
         sample_ = sample;
         return false;
     }
@@ -58,7 +59,7 @@ private:
     std::array<box, sample_size> sample_{};
     bool is_to_be_kept_ = false;
     unsigned backoff_ = 0;  // back-off: number of frames that are not kept although the sample is at rest
-    unsigned waited_ = 0;
+    unsigned skipped_frames_ = 0;
     std::vector<box> boxes_;  // boxes of all objects, including absent ones; empty if no frame is kept
     std::vector<index_pair> pairs_;
 };
@@ -66,6 +67,7 @@ private:
 /// Brute-force search for few boxes: testing all pairs by vectors is faster than sorting or cutting.
 class brute_force_batch {
 public:
+    /// Loads the boxes into vectors and validates them.
     /// @param group boxes in ascending order of ids
     /// @returns whether all boxes are valid; otherwise `search` must not be called.
     [[nodiscard]] bool fill(const column_group& group) {
@@ -127,6 +129,7 @@ private:
         std::uint32_t lanes;
     };
 
+    /// Appends the pairs of these rows, as ids, after one resize to the exact number of pairs.
     void append_pairs(std::span<const lane_overlaps> rows, std::vector<index_pair>& pairs) const {
         std::size_t next = pairs.size();
         std::size_t end = next;
@@ -138,8 +141,8 @@ private:
                                  id_of(row.first + static_cast<std::uint32_t>(std::countr_zero(lanes)))};
     }
 
-    [[nodiscard]] std::uint32_t id_of(std::uint32_t place) const noexcept {
-        return group_.ids.empty() ? place : group_.ids[place];
+    [[nodiscard]] std::uint32_t id_of(std::uint32_t index) const noexcept {
+        return group_.ids.empty() ? index : group_.ids[index];
     }
 
     column_group group_{};
@@ -165,6 +168,8 @@ public:
     column_search& operator=(column_search&&) = default;
     ~column_search() = default;
 
+    /// Starts a frame: reuses the pairs of a frame at rest, or prepares a brute-force search of few boxes, or cuts the
+    /// boxes under the kept plan or a new one.
     /// @throws input_error as `global_search::update`.
     void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
         boxes_ = boxes;
@@ -174,24 +179,23 @@ public:
         select_present(boxes, objects);
         const std::size_t n = present_.boxes.size();
         uses_brute_force_ = n <= partition_.brute_force_threshold();
+        const std::size_t planned_boxes = std::exchange(planned_boxes_, 0);
         if (uses_brute_force_) {
-            planned_ = 0;
             if (!batch_.fill(present_)) require_valid(boxes);
             return;
         }
         const box bounds = bounds_of_sample();
-        const bool is_new_plan = is_stale(n) || bounds_have_changed(bounds, planned_bounds_);
-        if (is_new_plan) planned_bounds_ = bounds;
-        planned_ = 0;
-        age_ = is_new_plan ? 0 : age_ + 1;
-        if (!cut_boxes(is_new_plan, counters)) require_valid(boxes);
-        planned_ = n;
+        const bool needs_plan = is_stale(n, planned_boxes) || bounds_have_changed(bounds, planned_bounds_);
+        if (needs_plan) planned_bounds_ = bounds;
+        plan_age_ = needs_plan ? 0 : plan_age_ + 1;
+        if (!cut_boxes(needs_plan, counters)) require_valid(boxes);
+        planned_boxes_ = n;
         collect_counters(counters);
     }
 
     /// Appends the overlapping pairs, by the way that `update` chose.
     void search(std::vector<index_pair>& pairs, Counters& counters) {
-        for (worker& w : workers_) w.own.times().clear();
+        for (worker& w : workers_) w.own.times.clear();
         if (is_static_) {
             pairs.insert(pairs.end(), static_frame_.pairs().begin(), static_frame_.pairs().end());
             return;
@@ -210,6 +214,7 @@ public:
     /// The plan of the last frame that was cut: the grid of groups if there are groups, else the columns.
     [[nodiscard]] const column_plan& plan() const noexcept { return is_in_groups() ? cut_.grid : cut_.columns.plan; }
     [[nodiscard]] bool is_in_groups() const noexcept { return groups_.size() > 0; }
+    /// The plan as a sentence, which `explain` prints.
     [[nodiscard]] std::vector<stage_plan> plans() const {
         constexpr std::string_view along[2][3]{
             {"{u} by {v} columns along the x axis", "{u} by {v} columns along the y axis",
@@ -231,8 +236,8 @@ public:
     }
     /// The share of the last search's time that belongs to the update: `search` also cuts and sorts the groups.
     [[nodiscard]] double share_of_update() const {
-        const double total = sum_of([](const worker& w) { return w.own.times().total(); });
-        return total > 0 ? sum_of([](const worker& w) { return w.own.times().cut(); }) / total : 0;
+        const double total = sum_of([](const worker& w) { return w.own.times.total(); });
+        return total > 0 ? sum_of([](const worker& w) { return w.own.times.cut(); }) / total : 0;
     }
     [[nodiscard]] std::size_t sort_bytes() const noexcept {
         return sum_of([](const worker& w) { return w.own.sort_bytes(); });
@@ -278,9 +283,10 @@ private:
         present_ = {present_boxes_, present_ids_};
     }
 
-    [[nodiscard]] bool is_stale(std::size_t n) const noexcept {
-        const std::size_t change = n > planned_ ? n - planned_ : planned_ - n;
-        return planned_ == 0 || age_ + 1 == frames_per_plan || 8 * change > planned_;
+    /// Whether there is no plan, or it is too old, or the number of boxes has changed by more than an eighth.
+    [[nodiscard]] bool is_stale(std::size_t n, std::size_t planned) const noexcept {
+        const std::size_t change = n > planned ? n - planned : planned - n;
+        return planned == 0 || plan_age_ + 1 == frames_per_plan || 8 * change > planned;
     }
 
     /// Bounds of a sample of boxes, which is the same in every frame with the same number of boxes.
@@ -308,24 +314,25 @@ private:
         return false;
     }
 
-    /// Puts the boxes into groups, or into columns if these make no groups.
+    /// Puts the boxes into groups, cache-sized regions of the scene that `search` cuts into columns one after the
+    /// other. If groups are not worthwhile, as for few boxes, cuts all boxes into columns at once.
     /// @returns whether all boxes are valid.
-    [[nodiscard]] bool cut_boxes(bool is_new_plan, Counters& counters) {
-        const auto plan = [&] {
-            age_ = 0;
+    [[nodiscard]] bool cut_boxes(bool needs_plan, Counters& counters) {
+        const auto make_plan = [&] {
+            plan_age_ = 0;
             kept_plan planned = workers_.front().own.make_plan(partition_, present_, everywhere);
             const std::size_t n = present_.boxes.size();
-            const double by_size = static_cast<double>(n) / static_cast<double>(partition_.group_size(n));
-            planned.plan.groups = std::max(planned.plan.groups, by_size);
+            const double groups_by_size = static_cast<double>(n) / static_cast<double>(partition_.group_size(n));
+            planned.plan.groups = std::max(planned.plan.groups, groups_by_size);
             return planned;
         };
-        if (is_new_plan) {
-            cut_.columns = plan();
+        if (needs_plan) {
+            cut_.columns = make_plan();
             cut_.in_groups = false;
         }
-        const fill_result result = put_into_groups(present_, cut_, plan, groups_, threads_);
+        const fill_result result = put_into_groups(present_, cut_, make_plan, groups_, threads_);
         if (result == fill_result::complete) counters.add(work::moves, groups_.copies());
-        if (result != fill_result::crowded) return result == fill_result::complete;
+        if (result != fill_result::not_worthwhile) return result == fill_result::complete;
         groups_.clear();
         auto& own = workers_.front().own;
         if (!own.fill(partition_, present_, everywhere, cut_.columns)) return false;
@@ -339,8 +346,8 @@ private:
             for (std::uint32_t g = 0; g < groups_.size(); ++g) search_group(g, workers_.front(), pairs);
             return;
         }
-        // The first worker takes groups in ascending order, so that it can append their pairs to the result; the other
-        // workers take groups in descending order.
+        // The first worker takes groups in ascending order, so that it can append their pairs to the result; the others
+        // take groups in descending order.
         for (worker& w : workers_) w.pairs.clear();
         group_pairs_.assign(groups_.size(), {});
         std::atomic<std::uint64_t> taken = 0;  // low u32: groups taken in ascending order; high u32: in descending
@@ -377,7 +384,7 @@ private:
         w.own.search(partition_, groups_.group(g), groups_.region(g, everywhere), cut_.groups[g], pairs);
     }
 
-    /// Moves the counts of the workers to the search's own.
+    /// Moves the workers' counts of work, which they keep apart while they run in parallel, to the search's counters.
     void collect_counters(Counters& counters) {
         if constexpr (Counters::enabled)
             for (worker& w : workers_) {
@@ -408,8 +415,8 @@ private:
     cut_plan cut_;
     column_groups groups_;
     std::vector<pairs_of_group> group_pairs_;  // by group
-    std::size_t planned_ = 0;                  // number of boxes in the previous frame; 0 without a plan
-    unsigned age_ = 0;                         // number of frames since the plan was made
+    std::size_t planned_boxes_ = 0;            // in the previous frame; 0 without a plan
+    unsigned plan_age_ = 0;                    // number of frames since the plan was made
     box planned_bounds_ = empty_box();
 };
 

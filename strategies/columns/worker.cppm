@@ -9,7 +9,7 @@ export namespace aabb {
 /// A plan that is kept between frames while its sweep stays cheap.
 struct kept_plan {
     column_plan plan;
-    bool by_keys = false;          ///< columns are sorted by exact keys, since buckets are too crowded
+    bool by_keys = false;          ///< columns are sorted by exact keys, since buckets have too many boxes
     std::uint64_t most_tests = 0;  ///< limit on vector tests for early stopping; 0 before the first sweep
 };
 
@@ -38,29 +38,31 @@ struct cut_plan {
     }
 };
 
-/// Puts boxes into groups if these are planned, and plans new ones if the kept grid no longer fits.
+/// Puts boxes into groups if these are planned, and plans new ones if the kept grid no longer fits: if a group has more
+/// than about twice the boxes of the fullest one at the time of planning.
 ///
 /// Groups are nested, so the recursion must terminate: each level must separate at least an eighth of all pairs of
 /// boxes. The work over all levels is then at most eight times that of brute force.
-/// @returns `crowded` if there are no groups
-template <class Plan>
-[[nodiscard]] fill_result put_into_groups(const column_group& boxes, cut_plan& kept, Plan plan, column_groups& groups,
-                                          worker_threads& threads) {
-    const auto distribute = [&](std::size_t most) {
-        return groups.distribute(boxes.boxes, boxes.ids, kept.grid, most, threads);
+/// @param make_plan returns a new plan for the boxes
+/// @returns `not_worthwhile` if there are no groups
+template <class MakePlan>
+[[nodiscard]] fill_result put_into_groups(const column_group& boxes, cut_plan& kept, MakePlan make_plan,
+                                          column_groups& groups, worker_threads& threads) {
+    const auto distribute = [&](std::size_t most_in_group) {
+        return groups.distribute(boxes.boxes, boxes.ids, kept.grid, most_in_group, threads);
     };
     if (kept.in_groups) {
         const fill_result result = distribute(2 * kept.fullest + 4096);
-        if (result != fill_result::crowded) return result;
+        if (result != fill_result::not_worthwhile) return result;
         kept.in_groups = false;
-        kept.columns = plan();
+        kept.columns = make_plan();
     }
-    if (kept.columns.plan.groups <= 1) return fill_result::crowded;
+    if (kept.columns.plan.groups <= 1) return fill_result::not_worthwhile;
     kept.grid = column_groups::group_grid(kept.columns.plan);
     fill_result result = distribute(std::numeric_limits<std::size_t>::max());
     if (result == fill_result::invalid) return result;
     const auto n = static_cast<double>(boxes.boxes.size());
-    if (result == fill_result::complete && 8 * groups.pairs() > 7 * n * n) result = fill_result::crowded;
+    if (result == fill_result::complete && 8 * groups.pairs() > 7 * n * n) result = fill_result::not_worthwhile;
     if (result == fill_result::complete)
         kept.begin_groups(groups.fullest());
     else
@@ -68,64 +70,67 @@ template <class Plan>
     return result;
 }
 
-/// Measures how long groups take to be cut and sorted, which counts as update, and to be swept. Reading a clock takes
-/// as long as processing a small group, so small groups are sampled and the result is extrapolated to the others.
+/// Measures how long groups take to be cut and sorted, which counts as update, and to be swept.
 class phase_times {
 public:
-    /// Calls both functions and may time them.
+    /// Cuts and sweeps a group. Reading a clock takes as long as processing a small group, so only one group per 1024
+    /// boxes is timed, and its time is extrapolated to the untimed groups before it, by their numbers of boxes.
     template <class Cut, class Sweep>
     void run(std::size_t boxes, const Cut& cut, const Sweep& sweep) {
-        untimed_ += boxes;
-        if (untimed_ < least_timed) return cut(), sweep();
+        untimed_boxes_ += boxes;
+        if (untimed_boxes_ < least_timed_boxes) return cut(), sweep();
         const auto begin = clock::now();
         cut();
         const auto between = clock::now();
         sweep();
-        const double groups = static_cast<double>(std::exchange(untimed_, 0)) / static_cast<double>(boxes);
-        cut_ += groups * std::chrono::duration<double>(between - begin).count();
-        sweep_ += groups * std::chrono::duration<double>(clock::now() - between).count();
+        const double factor = static_cast<double>(std::exchange(untimed_boxes_, 0)) / static_cast<double>(boxes);
+        cut_seconds_ += factor * std::chrono::duration<double>(between - begin).count();
+        sweep_seconds_ += factor * std::chrono::duration<double>(clock::now() - between).count();
     }
-    void clear() noexcept { cut_ = sweep_ = 0; }
-    [[nodiscard]] double cut() const noexcept { return cut_; }
-    [[nodiscard]] double total() const noexcept { return cut_ + sweep_; }
+    void clear() noexcept { cut_seconds_ = sweep_seconds_ = 0; }
+    [[nodiscard]] double cut() const noexcept { return cut_seconds_; }
+    [[nodiscard]] double total() const noexcept { return cut_seconds_ + sweep_seconds_; }
 
 private:
     using clock = std::chrono::steady_clock;
-    static constexpr std::size_t least_timed = 1024;
+    static constexpr std::size_t least_timed_boxes = 1024;
 
-    double cut_ = 0;  // in seconds
-    double sweep_ = 0;
-    std::size_t untimed_ = 0;  // number of boxes since the last timed group
+    double cut_seconds_ = 0;
+    double sweep_seconds_ = 0;
+    std::size_t untimed_boxes_ = 0;  // since the last timed group
 };
 
 /// Cuts a group of boxes into columns and sweeps them, with the state of one thread.
 ///
 /// A plan is estimated from a sample of an earlier frame and checked while it is used: if boxes have too many copies,
-/// or the sweep takes far more tests than the plan's first one, it stops early and a new plan is made. If the new plan
-/// is no better, columns are sorted by exact keys, which bounds the cost by about that of a sweep along one axis.
+/// or the sweep takes far more tests than the plan's first one, it stops early and a new plan is made.
 template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
 class column_worker {
 public:
+    phase_times times;
+
     column_worker(Sort sort, Sweep sweep) : sort_(std::move(sort)), sweep_(std::move(sweep)) {}
 
     /// A new plan for a group of boxes, clipped to the bounds.
     [[nodiscard]] static kept_plan make_plan(const Partition& partition, const column_group& group, const box& within) {
-        return {partition.plan(group.boxes, within), false, 0};
+        return {.plan = partition.plan(group.boxes, within)};
     }
 
-    /// Finds the pairs of a group of valid boxes, recursively if nested groups are planned.
+    /// Finds the pairs of a group of valid boxes, by cutting it into columns and sweeping these, or recursively if
+    /// nested groups are planned. The plan is kept for the next frame.
     void search(const Partition& partition, const column_group& group, const box& within, cut_plan& kept,
                 std::vector<index_pair>& pairs, std::size_t depth = 0) {
-        if (group.boxes.size() < 2) return count(1, group.boxes.size());
-        const auto plan = [&] { return make_plan(partition, group, within); };
-        if (!kept.is_planned()) kept.columns = plan();
+        if (group.boxes.size() < 2) return count(/*subsets=*/1, /*copies=*/group.boxes.size());
+        const auto new_plan = [&] { return make_plan(partition, group, within); };
+        if (!kept.is_planned()) kept.columns = new_plan();
         if (kept.in_groups || kept.columns.plan.groups > 1) {
             while (levels_.size() <= depth) levels_.emplace_back();
             column_groups& groups = levels_[depth];
             worker_threads single_thread(1);
             fill_result filled{};
-            times_.run(
-                group.boxes.size(), [&] { filled = put_into_groups(group, kept, plan, groups, single_thread); }, [] {});
+            times.run(
+                group.boxes.size(), [&] { filled = put_into_groups(group, kept, new_plan, groups, single_thread); },
+                /*sweep=*/[] {});
             if (filled == fill_result::complete) {
                 counters_.add(work::moves, groups.copies());
                 for (std::uint32_t g = 0; g < groups.size(); ++g)
@@ -133,12 +138,13 @@ public:
                 return;
             }
         }
-        times_.run(
+        times.run(
             group.boxes.size(), [&] { static_cast<void>(fill(partition, group, within, kept.columns)); },
             [&] { sweep(partition, group, within, kept.columns, pairs); });
-        count(0, copies());
+        count(/*subsets=*/0, copies());  // `fill` has counted the columns
     }
 
+    /// Puts a group into columns. If there are too many copies, makes a new plan, and if that has too many, one column.
     /// @returns whether all boxes are valid; otherwise there is nothing to sweep.
     [[nodiscard]] bool fill(const Partition& partition, const column_group& group, const box& within, kept_plan& kept) {
         is_filled_ = false;
@@ -157,7 +163,8 @@ public:
         return true;
     }
 
-    /// Sweeps the filled columns, and fills and sweeps again under a new plan if the sweep stops early.
+    /// Sweeps the filled columns, and fills and sweeps again if the sweep takes so many tests that it stops early:
+    /// under a new plan, and then by exact keys, which bounds the cost by about that of a sweep along one axis.
     void sweep(const Partition& partition, const column_group& group, const box& within, kept_plan& kept,
                std::vector<index_pair>& pairs) {
         const std::size_t before = pairs.size();
@@ -166,15 +173,15 @@ public:
             // The boxes were validated when the columns were first filled.
             if (!is_filled_) static_cast<void>(fill(partition, group, within, kept));
             const bool is_new = kept.most_tests == 0;
-            const std::uint64_t most = !is_new ? kept.most_tests : kept.by_keys ? unlimited : 64 * n + 4096;
-            const std::uint64_t tests = sweep_.sweep(columns_.block(), pairs, most, counters_);
-            if (tests <= most) {
+            const std::uint64_t most_tests = !is_new ? kept.most_tests : kept.by_keys ? unlimited : 64 * n + 4096;
+            const std::uint64_t tests = sweep_.sweep(columns_.block(), pairs, most_tests, counters_);
+            if (tests <= most_tests) {
                 if (is_new) kept.most_tests = 2 * tests + n + 1;
                 return;
             }
             pairs.resize(before);
             is_filled_ = false;
-            kept = is_new ? kept_plan{kept.plan, true, 0} : make_plan(partition, group, within);
+            kept = is_new ? kept_plan{.plan = kept.plan, .by_keys = true} : make_plan(partition, group, within);
         }
     }
 
@@ -184,8 +191,6 @@ public:
         counters_.add(work::subset_copies, copies);
     }
 
-    [[nodiscard]] phase_times& times() noexcept { return times_; }
-    [[nodiscard]] const phase_times& times() const noexcept { return times_; }
     /// The work since the last call.
     [[nodiscard]] auto take_counters() { return std::exchange(counters_, {}); }
 
@@ -210,7 +215,6 @@ private:
     [[no_unique_address]] Counters counters_;
     column_lists columns_;
     bool is_filled_ = false;
-    phase_times times_;
     std::deque<column_groups> levels_;  // nested groups, by depth
 };
 
