@@ -27,7 +27,7 @@ public:
         const std::size_t n = m.triangles.size();
         memory_.resize(2 * n);
         items_ = {std::span(memory_).first(n), std::span(memory_).last(n)};
-        bin_.resize(n);
+        bin_of_item_.resize(n);
         order_.triangles.resize(n);
         order_.bounds.resize((n + leaf_triangles - 1) / leaf_triangles);
     }
@@ -38,7 +38,7 @@ public:
         const std::size_t n = mesh_.triangles.size();
         std::vector<box> bounds((n + least_shared - 1) / least_shared);
         workers.for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
-            bounds[begin / least_shared] = read(begin, end).as_box();
+            bounds[begin / least_shared] = read_items(begin, end).as_box();
         });
         box root = empty_box();
         for (const box& b : bounds) root = merged(root, b);
@@ -52,9 +52,9 @@ public:
     }
 
 private:
-    /// Fills the items of a range of triangles.
+    /// Fills the items of a range of triangles: each gets the triangle's box in the form of one SIMD vector.
     /// @returns the box of the range
-    item_bounds read(std::size_t begin, std::size_t end) noexcept {
+    item_bounds read_items(std::size_t begin, std::size_t end) noexcept {
         item_bounds range;
         for (std::size_t t = begin; t < end; ++t) {
             const box b = bounds_of(mesh_.triangle(static_cast<std::uint32_t>(t)));
@@ -70,7 +70,7 @@ private:
         return range;
     }
 
-    /// Splits a part down to leaves; the recursion is no deeper than a number has bits.
+    /// Splits a part down to leaves and writes these to the order. Halving bounds the depth of the recursion.
     void split_to_leaves(const part& p) {
         if (p.size() > leaf_triangles) {
             for (const part& half : split(p, single_thread_)) split_to_leaves(half);
@@ -80,21 +80,23 @@ private:
         order_.bounds[p.begin / leaf_triangles] = p.bounds;
     }
 
-    /// Splits a part behind the greatest power of two below its number of items, and moves these to the other array.
+    /// Splits a part in two by the centres of its items, and moves all its items to the other array. The left half gets
+    /// the greatest power of two below the part's size: an implicit tree has no indices, so that all its subtrees but
+    /// the last are full.
     [[nodiscard]] std::array<part, 2> split(const part& p, worker_threads& workers) {
-        const std::size_t middle = p.begin + std::bit_ceil(p.size()) / 2;
+        const std::size_t left_count = std::bit_ceil(p.size()) / 2;
+        const std::size_t middle = p.begin + left_count;
         const std::span from = items_[p.in_second].subspan(p.begin, p.size());
         const std::span to = items_[!p.in_second].subspan(p.begin, p.size());
-        const std::size_t left = middle - p.begin;
         if (p.size() <= few_items::most)
-            split_few(from, to, p.bounds, left);
+            split_few(from, to, p.bounds, left_count);
         else
-            split_many(from, to, p.bounds, left, &bin_[p.begin], workers);
-        return {part{p.begin, middle, bounds_of_items(to.first(left), workers), !p.in_second},
-                part{middle, p.end, bounds_of_items(to.subspan(left), workers), !p.in_second}};
+            split_many(from, to, p.bounds, left_count, &bin_of_item_[p.begin], workers);
+        return {part{p.begin, middle, bounds_of_items(to.first(left_count), workers), !p.in_second},
+                part{middle, p.end, bounds_of_items(to.subspan(left_count), workers), !p.in_second}};
     }
 
-    /// Runs after the items were moved, when most are cached: merging each item while it is moved is slower.
+    /// Merges the boxes of items after they were moved, when most are cached: merging while they are moved is slower.
     [[nodiscard]] static box bounds_of_items(std::span<const balanced_item> items, worker_threads& workers) {
         item_bounds bounds;
         if (workers.count() == 1) {
@@ -109,44 +111,46 @@ private:
         return bounds.as_box();
     }
 
-    /// A split axis, and the result of `few_items::first` along it.
+    /// A split axis, and a mask of the items on the left.
     struct few_split {
         std::size_t axis;
-        std::uint64_t first;
+        std::uint64_t left_mask;
     };
 
-    /// Picks the axis of few items by the rule, with the exact cost of each split.
-    [[nodiscard]] few_split best_split(const few_items& items, const box& bounds, std::size_t left) const noexcept {
+    /// Splits few items along the longest axis, or if the rule is least area, along that with the least exact cost.
+    [[nodiscard]] few_split best_split(const few_items& items, const box& bounds,
+                                       std::size_t left_count) const noexcept {
         const auto longest = static_cast<std::size_t>(longest_axis(bounds));
-        few_split best{longest, items.first(longest, left)};
+        few_split best{longest, items.mask_of_first(left_count, longest)};
         if (rule_ == axis_rule::longest) return best;
-        double least = items.cost_of(best.first);
+        double least_cost = items.cost_of(best.left_mask);
         for (const std::size_t axis : {(longest + 1) % 3, (longest + 2) % 3}) {
-            const std::uint64_t first = items.first(axis, left);
-            if (const double cost = items.cost_of(first); cost < least) {
-                least = cost;
-                best = {axis, first};
+            const std::uint64_t left_mask = items.mask_of_first(left_count, axis);
+            if (const double cost = items.cost_of(left_mask); cost < least_cost) {
+                least_cost = cost;
+                best = {axis, left_mask};
             }
         }
         return best;
     }
 
-    /// Splits few items and keeps their order. The exact centres resolve ties, which make the first side too large.
+    /// Splits few items and keeps the order within each side. If ties, at 16 bits, make the left side too large, its
+    /// last items by their exact centres go to the right.
     void split_few(std::span<const balanced_item> from, std::span<balanced_item> to, const box& bounds,
-                   std::size_t left) const noexcept {
-        auto [axis, first] = best_split(few_items(from), bounds, left);
-        while (std::popcount(first) != static_cast<int>(left)) first &= ~last_item(from, first, axis);
-        std::size_t next_first = 0;
-        std::size_t next_other = left;
+                   std::size_t left_count) const noexcept {
+        auto [axis, left_mask] = best_split(few_items(from), bounds, left_count);
+        while (std::popcount(left_mask) != static_cast<int>(left_count)) left_mask &= ~last_item(from, left_mask, axis);
+        std::size_t next_left = 0;
+        std::size_t next_right = left_count;
         for (std::size_t i = 0; i < from.size(); ++i) {
-            const bool is_first = first >> i & 1;
-            to[is_first ? next_first : next_other] = from[i];
-            next_first += is_first;
-            next_other += !is_first;
+            const bool is_left = left_mask >> i & 1;
+            to[is_left ? next_left : next_right] = from[i];
+            next_left += is_left;
+            next_right += !is_left;
         }
     }
 
-    /// The bit of the last item in the mask, in the order of centres.
+    /// The bit of the last item in the mask, in the order of exact centres along the axis.
     [[nodiscard]] static std::uint64_t last_item(std::span<const balanced_item> items, std::uint64_t mask,
                                                  std::size_t axis) noexcept {
         auto last = static_cast<std::size_t>(std::countr_zero(mask));
@@ -157,13 +161,14 @@ private:
         return std::uint64_t{1} << last;
     }
 
-    /// Picks the axis of many items by the rule, with costs estimated from a sample.
+    /// The axis along which many items are split: the longest one, or if the rule is least area, that with the least
+    /// cost, estimated from a sample.
     [[nodiscard]] std::size_t best_axis(std::span<const balanced_item> items, const box& bounds,
-                                        std::size_t left) const noexcept {
+                                        std::size_t left_count) const noexcept {
         const auto longest = static_cast<std::size_t>(longest_axis(bounds));
         if (rule_ == axis_rule::longest) return longest;
         const std::size_t step = (items.size() + binned_items::most - 1) / binned_items::most;
-        const std::array<double, 3> costs = binned_items(items, step, bounds).costs(left / step);
+        const std::array<double, 3> costs = binned_items(items, step, bounds).costs(left_count / step);
         std::size_t best = longest;
         for (const std::size_t axis : {(longest + 1) % 3, (longest + 2) % 3})
             if (costs[axis] < costs[best]) best = axis;
@@ -178,33 +183,33 @@ private:
         std::array<std::size_t, 3> next{};  // output positions below, in and above the bin that is split
     };
 
-    /// Splits by a histogram of the centres, so that only the items of one bin must be sorted.
-    void split_many(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds, std::size_t left,
-                    std::uint8_t* bin, worker_threads& workers) const {
+    /// Splits many items by a histogram; several threads take shares of the items in turn.
+    /// @param bin_of_item room for the bin of each item
+    void split_many(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
+                    std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers) const {
         if (workers.count() == 1) {
-            share whole{0, from.size()};
-            return split_by_histogram(from, to, bounds, left, bin, workers, std::span(&whole, 1));
+            share all_items{0, from.size()};
+            return split_by_histogram(from, to, bounds, left_count, bin_of_item, workers, std::span(&all_items, 1));
         }
         std::vector<share> shares;
         for (std::size_t begin = 0; begin < from.size(); begin += least_shared)
             shares.push_back({begin, std::min(from.size(), begin + least_shared)});
-        split_by_histogram(from, to, bounds, left, bin, workers, shares);
+        split_by_histogram(from, to, bounds, left_count, bin_of_item, workers, shares);
     }
 
-    /// Assigns items to bins of equal width by their centres along the axis.
-    /// @param bin receives the bin of each item
+    /// Assigns items to bins of equal width by their centres along the axis, from `low` on, at `scale` bins per length.
+    /// @param bin_of_item receives the bin of each item
     /// @returns the histogram
     static std::array<std::uint32_t, bins> count_in_bins(std::span<const balanced_item> items, std::size_t axis,
-                                                         float low, float scale, std::uint8_t* bin) noexcept {
+                                                         float low, float scale, std::uint8_t* bin_of_item) noexcept {
         // Several histograms: adjacent items mostly share a bin, so that increments of a single one would stall.
         constexpr std::size_t turns = 4;
         std::array<std::array<std::uint32_t, bins>, turns> counts{};
         const auto take = [&](std::size_t i, std::size_t turn) {
             // NaN if all centres are equal.
-            const float place = (items[i].centre(axis) - low) * scale;
-            const auto own_bin = static_cast<std::uint8_t>(place > 0 ? std::min(place, float{bins - 1}) : 0);
-            bin[i] = own_bin;
-            ++counts[turn][own_bin];
+            const float at = (items[i].centre(axis) - low) * scale;
+            bin_of_item[i] = static_cast<std::uint8_t>(at > 0 ? std::min(at, float{bins - 1}) : 0);
+            ++counts[turn][bin_of_item[i]];
         };
         std::size_t i = 0;
         for (; i + turns <= items.size(); i += turns)
@@ -219,21 +224,22 @@ private:
     /// moved below, into or above that bin, and only the items of that bin are sorted. The order within each side is
     /// kept.
     void split_by_histogram(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
-                            std::size_t left, std::uint8_t* bin, worker_threads& workers,
+                            std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers,
                             std::span<share> shares) const {
-        const std::size_t axis = best_axis(from, bounds, left);
+        const std::size_t axis = best_axis(from, bounds, left_count);
         const float low = bounds.min[static_cast<int>(axis)];
         const float scale = bins / (bounds.max[static_cast<int>(axis)] - low);
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
             share& own = shares[s];
-            own.count = count_in_bins(from.subspan(own.begin, own.end - own.begin), axis, low, scale, bin + own.begin);
+            own.count =
+                count_in_bins(from.subspan(own.begin, own.end - own.begin), axis, low, scale, bin_of_item + own.begin);
         });
         std::array<std::uint32_t, bins> count{};
         for (const share& s : shares)
             for (std::size_t b = 0; b < bins; ++b) count[b] += s.count[b];
         std::size_t begin = 0;
         std::size_t split_bin = 0;
-        while (begin + count[split_bin] <= left) begin += count[split_bin++];
+        while (begin + count[split_bin] <= left_count) begin += count[split_bin++];
         const std::size_t end = begin + count[split_bin];
 
         std::array<std::size_t, 3> next{0, begin, end};
@@ -249,8 +255,8 @@ private:
             // Copied to registers, since loads of recently stored values stall.
             auto [below, within, above] = shares[s].next;
             for (std::size_t i = shares[s].begin; i < shares[s].end; ++i) {
-                const bool is_below = bin[i] < split_bin;
-                const bool is_above = bin[i] > split_bin;
+                const bool is_below = bin_of_item[i] < split_bin;
+                const bool is_above = bin_of_item[i] > split_bin;
                 to[is_below ? below : is_above ? above : within] = from[i];
                 below += is_below;
                 above += is_above;
@@ -261,13 +267,13 @@ private:
         const std::span between = to.subspan(begin, end - begin);
         const std::span original = from.subspan(begin, end - begin);
         std::ranges::copy(between, original.begin());
-        const auto middle = between.begin() + static_cast<std::ptrdiff_t>(left - begin);
+        const auto middle = between.begin() + static_cast<std::ptrdiff_t>(left_count - begin);
         std::ranges::nth_element(between, middle, centre_order{axis});
         const balanced_item first_of_right = *middle;
-        std::array<std::size_t, 2> place{begin, left};
+        std::array<std::size_t, 2> next_of_side{begin, left_count};
         for (const balanced_item& item : original) {
             const bool is_right = !centre_order{axis}(item, first_of_right);
-            to[place[is_right]++] = item;
+            to[next_of_side[is_right]++] = item;
         }
     }
 
@@ -275,7 +281,7 @@ private:
     axis_rule rule_;
     large_vector<balanced_item> memory_;
     std::array<std::span<balanced_item>, 2> items_;
-    large_vector<std::uint8_t> bin_;
+    large_vector<std::uint8_t> bin_of_item_;
     balanced_order order_;
     worker_threads single_thread_{1};
 };

@@ -34,10 +34,10 @@ inline constexpr std::size_t most_shared_levels = 64;
 /// @param finish completes a part
 template <class Part, class Split, class Finish>
 void split_recursively(worker_threads& workers, const Part& whole, const Split& split, const Finish& finish) {
-    const std::size_t enough =
+    const std::size_t size_to_finish =
         workers.count() > 1 ? std::max(least_shared, whole.size() / (std::size_t{16} * workers.count())) : whole.size();
     const auto split_part = [&](const auto& self, const Part& p, std::size_t levels) -> void {
-        if (p.size() <= enough || levels == 0) return finish(p);
+        if (p.size() <= size_to_finish || levels == 0) return finish(p);
         const auto halves = split(p);
         workers.both([&] { self(self, halves[0], levels - 1); }, [&] { self(self, halves[1], levels - 1); });
     };

@@ -44,7 +44,7 @@ class item_bounds {
 public:
     inline void take(const balanced_item& item) noexcept { at_ = lesser(item); }
     inline void take(const item_bounds& other) noexcept { at_ = other.at_ < at_ ? other.at_ : at_; }
-    /// Uses two accumulators to halve the chain of dependent minima.
+    /// Merges the boxes of all items. Two accumulators halve the chain of dependent minima.
     inline void take(std::span<const balanced_item> items) noexcept {
         item_bounds odd;
         std::size_t i = 0;
@@ -77,7 +77,7 @@ public:
     /// The sample size; trees built from larger samples are not faster to query.
     static constexpr std::size_t most = 256;
 
-    /// Takes every `step`-th of `items`, which must outlive the sample.
+    /// Puts the centre of every `step`-th of `items`, which must outlive the sample, into a bin along each axis.
     /// @param bounds the box of all items
     binned_items(std::span<const balanced_item> items, std::size_t step, const box& bounds) noexcept
         : items_(items), step_(step) {
@@ -91,23 +91,25 @@ public:
         for (std::size_t i = 0; i < items.size(); i += step, ++count_) {
             const simd::eight_bytes bin = simd::whole_bytes((items[i].centres() - low) * scale);
             for (std::size_t k = 0; k < 3; ++k) {
-                bin_[k][count_] = bin[k];
-                ++in_bin_[k][bin[k]];
+                bin_of_item_[k][count_] = bin[k];
+                ++count_in_bin_[k][bin[k]];
             }
         }
     }
 
-    /// For each axis, the sum over both sides of area times number of items, with about `left` items on the left.
-    [[nodiscard]] std::array<double, 3> costs(std::size_t left) const noexcept {
+    /// For each axis, the surface-area cost of a split at the border between bins that leaves about `left_count`
+    /// sampled items on the left: the sum over both sides of area times number of items.
+    [[nodiscard]] std::array<double, 3> costs(std::size_t left_count) const noexcept {
         std::array<std::size_t, 3> end{};
         std::array<std::size_t, 3> in_left{};
         for (std::size_t k = 0; k < 3; ++k)
-            while (end[k] < bins && in_left[k] + in_bin_[k][end[k]] / 2U < left) in_left[k] += in_bin_[k][end[k]++];
+            while (end[k] < bins && in_left[k] + count_in_bin_[k][end[k]] / 2U < left_count)
+                in_left[k] += count_in_bin_[k][end[k]++];
         std::array<item_bounds, 3> left_sides;
         std::array<item_bounds, 3> right_sides;
         for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
-                const bool is_left = bin_[k][i] < end[k];
+                const bool is_left = bin_of_item_[k][i] < end[k];
                 left_sides[k].take_if(is_left, items_[step_ * i]);
                 right_sides[k].take_if(!is_left, items_[step_ * i]);
             }
@@ -127,8 +129,8 @@ private:
     std::span<const balanced_item> items_;
     std::size_t step_;
     std::size_t count_ = 0;
-    std::array<std::array<std::uint8_t, most>, 3> bin_;
-    std::array<std::array<std::uint16_t, bins>, 3> in_bin_{};
+    std::array<std::array<std::uint8_t, most>, 3> bin_of_item_;
+    std::array<std::array<std::uint16_t, bins>, 3> count_in_bin_{};
 };
 
 /// Up to 64 items as a structure of arrays.
@@ -136,13 +138,13 @@ class few_items {
 public:
     static constexpr std::size_t most = 64;
 
+    /// Copies the bounds of the items to rows, padded to full vectors with the last item, and quantises their centres.
     explicit few_items(std::span<const balanced_item> items) noexcept : count_(items.size()) {
         for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = items[i].lower[k];
                 negated_upper_[k][i] = items[i].negated_upper[k];
             }
-        // Pads full vectors with the last item.
         const std::size_t filled = std::max(std::bit_ceil(count_), lanes);
         for (std::size_t i = count_; i < filled; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
@@ -152,13 +154,13 @@ public:
         for (std::size_t k = 0; k < 3; ++k) quantize_centres(k, filled / lanes);
     }
 
-    /// Sets bit i for each item i with fewer than `left` items before it along the axis, to a precision of 16 bits: the
-    /// first `left` items, and possibly ties behind them.
-    [[nodiscard]] inline std::uint64_t first(std::size_t axis, std::size_t left) const noexcept {
-        return first_in<1>(axis, static_cast<std::int16_t>(left));
+    /// Sets bit i for each item i with fewer than `number` items before it along the axis, to a precision of 16 bits:
+    /// the first `number` items, and possibly more whose centres are equal at that precision.
+    [[nodiscard]] inline std::uint64_t mask_of_first(std::size_t number, std::size_t axis) const noexcept {
+        return mask_by_vectors<1>(static_cast<std::int16_t>(number), axis);
     }
 
-    /// The cost of a split into the items in the mask and the others: the sum over both of area times number.
+    /// The surface-area cost of a split into the items in the mask and the others: the sum of area times number.
     [[nodiscard]] inline double cost_of(std::uint64_t mask) const noexcept {
         // Padding goes to the side of the last item.
         const std::uint64_t fill = count_ < most && (mask >> (count_ - 1) & 1) != 0 ? ~std::uint64_t{0} << count_ : 0;
@@ -187,7 +189,7 @@ private:
     static constexpr float half_range = 32500;  // of 16-bit integers
     using row = std::array<float, most>;
 
-    /// Quantises the centres to 16 bits between the least and the greatest.
+    /// Quantises the centres to 16 bits between the least and the greatest, so that one vector compares twice as many.
     inline void quantize_centres(std::size_t axis, std::size_t vectors) noexcept {
         std::array<simd::sixteen_floats, most / lanes> centre;
         simd::sixteen_floats least = simd::sixteen_floats{} + std::numeric_limits<float>::infinity();
@@ -211,11 +213,12 @@ private:
         }
     }
 
-    /// Selects by counting, which moves no items. The number of vectors is a constant so that they stay in registers.
+    /// Finds the first items by counting the items before each, which moves none and has no branches. The number of
+    /// vectors, which doubles until all items fit, is a constant so that they stay in registers.
     template <std::size_t Vectors>
-    [[nodiscard]] inline std::uint64_t first_in(std::size_t axis, std::int16_t left) const noexcept {
+    [[nodiscard]] inline std::uint64_t mask_by_vectors(std::int16_t number, std::size_t axis) const noexcept {
         if constexpr (Vectors * lanes < most)
-            if (count_ > Vectors * lanes) return first_in<2 * Vectors>(axis, left);
+            if (count_ > Vectors * lanes) return mask_by_vectors<2 * Vectors>(number, axis);
         std::array<simd::sixteen_halves, Vectors> centre;
         std::array<simd::sixteen_halves, Vectors> before{};
         std::memcpy(centre.data(), centre_[axis].data(), sizeof centre);
@@ -223,7 +226,7 @@ private:
             for (std::size_t v = 0; v < Vectors; ++v) before[v] -= centre_[axis][i] < centre[v];
         std::uint64_t mask = 0;
         for (std::size_t v = 0; v < Vectors; ++v)
-            mask |= std::uint64_t{simd::bits_of_sixteen(before[v] < left)} << v * lanes;
+            mask |= std::uint64_t{simd::bits_of_sixteen(before[v] < number)} << v * lanes;
         return mask & ~std::uint64_t{0} >> (most - count_);
     }
 

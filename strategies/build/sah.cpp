@@ -28,8 +28,10 @@ private:
     double scale_;
 };
 
-/// Updates `best` if a split along the axis costs less, the sum over both sides of area times triangles.
-void try_sah_axis(std::span<const build_element> range, int axis, const box& centroids, double& least,
+/// Updates `best` and its cost if a split between two bins along the axis costs less: the surface-area heuristic, the
+/// sum over both sides of area times number of triangles.
+/// @param centroids the box of all centroids, which the bins divide
+void try_sah_axis(std::span<const build_element> range, int axis, const box& centroids, double& least_cost,
                   split_choice& best) noexcept {
     const sah_binning bin_of(centroids.min[axis], centroids.max[axis]);
     std::array<sah_bin, sah_bins> bins{};
@@ -38,22 +40,21 @@ void try_sah_axis(std::span<const build_element> range, int axis, const box& cen
         bin.bounds = merged(bin.bounds, e.bounds);
         ++bin.count;
     }
-    // right[i] is the cost of bins i and above.
-    std::array<double, sah_bins> right{};
+    std::array<double, sah_bins> cost_from{};  // of bins i and above
     sah_bin side;
     for (std::size_t i = sah_bins; i-- > 1;) {
         side.bounds = merged(side.bounds, bins[i].bounds);
         side.count += bins[i].count;
-        right[i] = side.count == 0 ? 0 : surface_area(side.bounds) * static_cast<double>(side.count);
+        cost_from[i] = side.count == 0 ? 0 : surface_area(side.bounds) * static_cast<double>(side.count);
     }
     side = {};
     for (std::size_t i = 0; i + 1 < sah_bins; ++i) {
         side.bounds = merged(side.bounds, bins[i].bounds);
         side.count += bins[i].count;
         if (side.count == 0 || side.count == range.size()) continue;
-        const double cost = surface_area(side.bounds) * static_cast<double>(side.count) + right[i + 1];
-        if (cost < least) {
-            least = cost;
+        const double cost = surface_area(side.bounds) * static_cast<double>(side.count) + cost_from[i + 1];
+        if (cost < least_cost) {
+            least_cost = cost;
             best = {axis, side.count};
         }
     }
@@ -61,14 +62,15 @@ void try_sah_axis(std::span<const build_element> range, int axis, const box& cen
 
 }  // namespace
 
-/// Tries the planes between bins on each axis along which centroids differ; the median split is the fallback.
+/// Finds the cheapest split by the binned surface-area heuristic (Wald 2007): tries the planes between bins on each
+/// axis along which centroids differ; the median split is the fallback.
 split_choice sah_split(std::span<const build_element> range, const box& bounds) {
     box centroids = empty_box();
     for (const build_element& e : range) centroids = merged(centroids, bounds_of(e.centroid));
     split_choice best = median_split(range, bounds);
-    double least = std::numeric_limits<double>::infinity();
+    double least_cost = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
-        if (centroids.min[axis] < centroids.max[axis]) try_sah_axis(range, axis, centroids, least, best);
+        if (centroids.min[axis] < centroids.max[axis]) try_sah_axis(range, axis, centroids, least_cost, best);
     return best;
 }
 

@@ -6,7 +6,7 @@ namespace aabb {
 
 namespace {
 
-/// The triangle with its box and its rounded centroid.
+/// The triangle with its box and its centroid, rounded to float: what a split rule sees.
 build_element element_of_triangle(const mesh& m, std::uint32_t triangle) {
     const triangle3f t = m.triangle(triangle);
     build_element e{bounds_of(t), {}, triangle};
@@ -64,7 +64,8 @@ private:
         return std::span(elements_).subspan(t.begin, t.size());
     }
 
-    /// Writes the node of a range and partitions the range by the rule.
+    /// Writes the node of a range and partitions the range by the rule. Nodes are in preorder: the left child follows
+    /// its parent, and the right child the 2 n - 1 nodes of the left subtree of n triangles.
     [[nodiscard]] std::array<task, 2> split_task(const task& t) {
         const std::span range = range_of(t);
         const box bounds = bounds_of(range);
@@ -74,7 +75,6 @@ private:
         if (chosen.axis != split_choice::in_current_order)
             std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
                                      centroid_order{chosen.axis});
-        // The left child has 2 left - 1 nodes.
         const auto right = static_cast<std::uint32_t>(t.node + 2 * left);
         nodes_[t.node] = {bounds, right, range[0].triangle};
         return {task{t.begin, t.begin + left, t.node + 1}, task{t.begin + left, t.end, right}};
