@@ -27,17 +27,17 @@ class bvtt_front {
 public:
     /// The pair of triangles that the last first-pair query reported.
     std::optional<index_pair> hit;
-    /// Whether the front was reused since the last replacement scan.
-    bool is_used = false;
+    /// Whether the front was reused since the cache last looked for one to replace.
+    bool is_recently_used = false;
 
-    /// Resets the front and reuses its memory.
-    void begin(const model_pair& models) noexcept {
-        numbers_ = models.numbers;
+    /// Drops the front and all history for another pair of models, and keeps the memory of its pairs.
+    void reset(const model_pair& models) noexcept {
+        model_numbers_ = models.numbers;
         last_states_ = {};
-        margin_ = -1;
-        near_queries_ = failures_ = backoff_ = 0;
+        margin_ = no_front;
+        near_queries_ = failures_ = queries_to_wait_ = 0;
         hit.reset();
-        is_used = false;
+        is_recently_used = false;
     }
 
     [[nodiscard]] std::span<const front_pair> pairs() const noexcept { return pairs_; }
@@ -45,13 +45,13 @@ public:
     /// Whether the pairs include all intersecting ones at this pose.
     /// @param bounds the box of B's vertices, in B's frame
     [[nodiscard]] bool is_valid(const model_pair& models, const box_motion& motion, const box& bounds) const noexcept {
-        return margin_ >= 0 && front_states_ == models.states &&
+        return has_front() && front_states_ == models.states &&
                displacement_bound(front_motion_, motion, bounds) <= margin_;
     }
     /// Whether the last query had the same models at a nearby pose.
     [[nodiscard]] bool is_near(const model_pair& models, const box_motion& motion, const box& bounds,
                                double near) const noexcept {
-        return numbers_ == models.numbers && displacement_bound(last_motion_, motion, bounds) <= near;
+        return model_numbers_ == models.numbers && displacement_bound(last_motion_, motion, bounds) <= near;
     }
 
     struct decision {
@@ -60,38 +60,40 @@ public:
     };
     /// Records a query. A front that is not valid for it is dropped. A new one is worth its cost if the last two such
     /// queries moved B little and changed neither mesh, unless earlier fronts were of no use. A larger margin lasts
-    /// longer but has more pairs, so that the margin grows with the square root of the step.
-    /// @param size the edge length of a leaf
+    /// longer but has more pairs, so that the margin grows with the square root of the step, B's motion since then.
+    /// @param leaf_size the edge length of a leaf
     [[nodiscard]] decision record_query(const model_pair& models, const box_motion& motion, const box& bounds,
-                                        double size) noexcept {
+                                        double leaf_size) noexcept {
         const bool same_states = last_states_ == models.states;
         const box_motion before = std::exchange(last_motion_, motion);
         last_states_ = models.states;
         if (is_valid(models, motion, bounds)) {
-            ++served_;
-            return {true, std::nullopt};
+            ++served_queries_;
+            return {.is_valid = true, .margin = std::nullopt};
         }
         const double step =
             same_states ? displacement_bound(before, motion, bounds) : std::numeric_limits<double>::infinity();
-        near_queries_ = step <= most_step * size ? near_queries_ + 1 : 0;
-        if (margin_ >= 0) update_backoff();
-        if (backoff_ > 0) {
-            --backoff_;
-            return {false, std::nullopt};
+        near_queries_ = step <= most_step * leaf_size ? near_queries_ + 1 : 0;
+        if (has_front()) drop_front();
+        constexpr decision walk_from_roots{.is_valid = false, .margin = std::nullopt};
+        if (queries_to_wait_ > 0) {
+            --queries_to_wait_;
+            return walk_from_roots;
         }
-        if (near_queries_ < least_near_queries) return {false, std::nullopt};
-        return {false, std::sqrt(step * size / 5)};
+        if (near_queries_ < least_near_queries) return walk_from_roots;
+        return {.is_valid = false, .margin = std::sqrt(step * leaf_size / 5)};
     }
 
-    /// Builds a new front.
+    /// Builds a new front, which serves queries at poses within the margin of this one. If there are too many pairs, it
+    /// counts as one that served none, so that it is not soon tried again.
     /// @param fill called as `fill(pairs)` with an empty list; returns false if there are too many pairs
     /// @returns whether the front is kept
     template <class Fill>
     bool build(const model_pair& models, const box_motion& motion, double margin, const Fill& fill) {
         pairs_.clear();
-        served_ = 0;
+        served_queries_ = 0;
         if (!fill(pairs_)) {
-            update_backoff();
+            drop_front();
             return false;
         }
         front_states_ = models.states;
@@ -110,25 +112,27 @@ private:
     static constexpr std::uint32_t least_near_queries = 2;
     static constexpr std::uint32_t least_served = 2;  // fewer do not repay the front
     static constexpr std::uint32_t most_failures = 6;
+    static constexpr double no_front = -1;
 
+    [[nodiscard]] bool has_front() const noexcept { return margin_ >= 0; }
     /// Ends the front. After fronts in a row that served too few queries, ever more queries follow without one.
-    void update_backoff() noexcept {
-        failures_ = served_ < least_served ? std::min(failures_ + 1, most_failures) : 0;
-        backoff_ = (1U << failures_) - 1;
-        margin_ = -1;
+    void drop_front() noexcept {
+        failures_ = served_queries_ < least_served ? std::min(failures_ + 1, most_failures) : 0;
+        queries_to_wait_ = (1U << failures_) - 1;
+        margin_ = no_front;
     }
 
-    std::array<std::uint64_t, 2> numbers_{};
+    std::array<std::uint64_t, 2> model_numbers_{};
     std::array<std::uint64_t, 2> last_states_{};  // of the last query; initially of no model
     box_motion last_motion_{};
     std::array<std::uint64_t, 2> front_states_{};
     box_motion front_motion_{};
-    double margin_ = -1;  // negative without a front
+    double margin_ = no_front;
     std::vector<front_pair> pairs_;
-    std::uint32_t near_queries_ = 0;  // in a row
-    std::uint32_t served_ = 0;        // queries since the front was built
-    std::uint32_t failures_ = 0;      // in a row
-    std::uint32_t backoff_ = 0;       // queries left without a front
+    std::uint32_t near_queries_ = 0;    // in a row
+    std::uint32_t served_queries_ = 0;  // since the front was built
+    std::uint32_t failures_ = 0;        // in a row
+    std::uint32_t queries_to_wait_ = 0;
 };
 
 /// Caches the fronts of many pairs of objects. Queries carry no object ids: a front is recognised by its models and
@@ -144,10 +148,9 @@ public:
     /// @returns the cached front, or a new, empty one
     [[nodiscard]] bvtt_front& find(const model_pair& models, const box_motion& motion, const box& bounds, double near) {
         const std::array<float, 3> centre = centre_of(motion, bounds);
-        const std::size_t place = place_of(models, motion, bounds, near, centre);
-        for (std::size_t k = 0; k < 3; ++k) centres_[place / width][k][place % width] = centre[k];
-        last_ = place;
-        return fronts_[place];
+        last_ = index_of(models, motion, bounds, near, centre);
+        for (std::size_t k = 0; k < 3; ++k) centres_[last_ / width][k][last_ % width] = centre[k];
+        return fronts_[last_];
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
@@ -160,7 +163,8 @@ private:
     static constexpr std::size_t width = 8;
     using row = std::array<float, width>;
 
-    /// The centre of B in A's frame, which moves no further than the furthest point of B.
+    /// The centre of B's box in A's frame. It moves no further than the furthest point of B, so that a front whose
+    /// centre is not near need not be compared.
     [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& motion, const box& bounds) noexcept {
         vec3d centre = motion.shift;
         for (int j = 0; j < 3; ++j)
@@ -170,55 +174,55 @@ private:
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])};
     }
 
-    /// Finds the front of a query, or adds one. Centres are compared eight at a time, and near fronts in full.
-    [[nodiscard]] std::size_t place_of(const model_pair& models, const box_motion& motion, const box& bounds,
+    /// Finds the front of a query, first behind the last one and then in the whole cache, or adds one. B's centres are
+    /// compared eight at a time; only fronts whose centre was near are compared in full.
+    [[nodiscard]] std::size_t index_of(const model_pair& models, const box_motion& motion, const box& bounds,
                                        double near, const std::array<float, 3>& centre) {
-        const auto matches = [&](std::size_t place) {
-            return fronts_[place].is_valid(models, motion, bounds) ||
-                   fronts_[place].is_near(models, motion, bounds, near);
+        const auto matches = [&](std::size_t i) {
+            return fronts_[i].is_valid(models, motion, bounds) || fronts_[i].is_near(models, motion, bounds, near);
         };
         const std::size_t next = last_ + 1 < fronts_.size() ? last_ + 1 : 0;
         if (next < fronts_.size() && matches(next)) return mark_used(next);
-        for (std::size_t group = 0; group < centres_.size(); ++group) {
+        for (std::size_t eight = 0; eight < centres_.size(); ++eight) {
             simd::eight_floats furthest{};
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto away = __builtin_elementwise_abs(
-                    simd::load_eight<simd::eight_floats>(centres_[group][k].data()) - centre[k]);
+                    simd::load_eight<simd::eight_floats>(centres_[eight][k].data()) - centre[k]);
                 furthest = away > furthest ? away : furthest;
             }
             for (std::uint32_t near_fronts = simd::bits_of_eight(furthest <= static_cast<float>(near));
                  near_fronts != 0; near_fronts &= near_fronts - 1) {
-                const std::size_t place = group * width + static_cast<std::size_t>(std::countr_zero(near_fronts));
-                if (place < fronts_.size() && matches(place)) return mark_used(place);
+                const std::size_t i = eight * width + static_cast<std::size_t>(std::countr_zero(near_fronts));
+                if (i < fronts_.size() && matches(i)) return mark_used(i);
             }
         }
         return add_front(models);
     }
 
-    [[nodiscard]] std::size_t mark_used(std::size_t place) noexcept {
-        fronts_[place].is_used = true;
-        return place;
+    [[nodiscard]] std::size_t mark_used(std::size_t front) noexcept {
+        fronts_[front].is_recently_used = true;
+        return front;
     }
 
     /// Adds a front. If the cache is full, it evicts one that was not reused lately, by the clock algorithm.
     [[nodiscard]] std::size_t add_front(const model_pair& models) {
-        std::size_t place = fronts_.size();
-        if (place < most) {
-            if (place == centres_.size() * width) centres_.emplace_back();
+        std::size_t added = fronts_.size();
+        if (added < most) {
+            if (added == centres_.size() * width) centres_.emplace_back();
             fronts_.emplace_back();
         } else {
-            while (std::exchange(fronts_[hand_].is_used, false)) hand_ = (hand_ + 1) % most;
-            place = hand_;
-            hand_ = (hand_ + 1) % most;
+            while (std::exchange(fronts_[clock_hand_].is_recently_used, false)) clock_hand_ = (clock_hand_ + 1) % most;
+            added = clock_hand_;
+            clock_hand_ = (clock_hand_ + 1) % most;
         }
-        fronts_[place].begin(models);
-        return place;
+        fronts_[added].reset(models);
+        return added;
     }
 
     std::vector<bvtt_front> fronts_;
     std::vector<std::array<row, 3>> centres_;  // of B in the fronts' last queries, in groups of eight
     std::size_t last_ = 0;                     // the front found last
-    std::size_t hand_ = 0;                     // the clock's hand
+    std::size_t clock_hand_ = 0;               // the front to evict next, unless it was reused
 };
 
 }  // namespace aabb

@@ -12,16 +12,18 @@ import aabb.std;
 namespace aabb::simd::detail {
 
 #if defined(__AVX512VBMI2__)
+/// Stores the positions of the set bits, in order: compresses the bytes 0 to 63 by the set.
 [[gnu::always_inline]] inline void store_set_bits_of_sixty_four(std::uint64_t set, void* to) noexcept {
     static constexpr auto identity = [] {
-        std::array<std::uint8_t, 64> places{};
-        for (std::uint8_t i = 0; i < 64; ++i) places[i] = i;
-        return places;
+        std::array<std::uint8_t, 64> positions{};
+        for (std::uint8_t i = 0; i < 64; ++i) positions[i] = i;
+        return positions;
     }();
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi8(set, _mm512_loadu_si512(&identity)));
 }
 #endif
 #if defined(__AVX512VBMI__)
+/// Unpacks `count` numbers of 1 to 4 bytes each to u32, padded to sixteen with the first, by one permutation of bytes.
 [[gnu::always_inline]] inline void unpack_sixteen_numbers(void* to, const void* from, std::size_t bytes,
                                                           std::uint32_t count) noexcept {
     // Byte b < bytes of number i is at bytes * i + b.
@@ -44,14 +46,15 @@ namespace aabb::simd::detail {
 }
 #endif
 #if defined(__AVX512F__)
-using eight_floats_taken = float __attribute__((vector_size(32)));
-[[nodiscard, gnu::always_inline]] inline eight_floats_taken gather_sixteen_lanes(const void* from,
-                                                                                 const void* places) noexcept {
-    const __m512i at = _mm512_castsi256_si512(_mm256_loadu_si256(static_cast<const __m256i*>(places)));
+using eight_selected_floats = float __attribute__((vector_size(32)));
+[[nodiscard, gnu::always_inline]] inline eight_selected_floats select_of_sixteen_lanes(const void* from,
+                                                                                       const void* indices) noexcept {
+    const __m512i at = _mm512_castsi256_si512(_mm256_loadu_si256(static_cast<const __m256i*>(indices)));
     return _mm512_castps512_ps256(_mm512_permutexvar_ps(at, _mm512_loadu_ps(from)));
 }
 
-/// Compares two copies of each row of `a` with two numbers of `b`, each broadcast to eight lanes.
+/// Sets bit 8 j + i where column i of `a` and column j of `b`, of three rows of eight, share a number. Each comparison
+/// is of two copies of a row of `a` with two numbers of `b`, each broadcast to eight lanes.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t columns_with_shared_number(const void* a,
                                                                                   const void* b) noexcept {
     const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
@@ -68,7 +71,8 @@ using eight_floats_taken = float __attribute__((vector_size(32)));
     }
     return shared;
 }
-/// Compares two copies of the boxes of `a` with two boxes of `b`, each broadcast to eight lanes.
+/// Sets bit 8 j + i where box i of `a` overlaps box j of `b` (three rows of lower bounds, then three of upper bounds).
+/// Each comparison is of two copies of the boxes of `a` with two boxes of `b`, each broadcast to eight lanes.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t overlapping_pairs(const float* a, const float* b) noexcept {
     const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
     const auto twice = [](const float* row) {
@@ -98,8 +102,8 @@ using eight_floats_taken = float __attribute__((vector_size(32)));
 }
 #endif
 #if defined(__AVX2__)
-[[gnu::always_inline]] inline void take_eight(const float* from, const void* places, void* to) noexcept {
-    const __m256i at = _mm256_loadu_si256(static_cast<const __m256i*>(places));
+[[gnu::always_inline]] inline void permute_eight(const float* from, const void* indices, void* to) noexcept {
+    const __m256i at = _mm256_loadu_si256(static_cast<const __m256i*>(indices));
     _mm256_storeu_ps(static_cast<float*>(to), _mm256_permutevar8x32_ps(_mm256_loadu_ps(from), at));
 }
 #endif
@@ -119,7 +123,7 @@ using two_points_of_four = float __attribute__((vector_size(32)));
 
 export namespace aabb::simd {
 
-/// Transposes eight points: returns their x, y and z as three vectors.
+/// Transposes eight points to a structure of arrays: returns their x, y and z as three vectors.
 [[nodiscard, gnu::always_inline]] inline std::array<eight_floats, 3> transpose_eight_points(
     const float* const* points) noexcept {
     const auto row = [&](int i) { return detail::two_points(points[i], points[i + 4]); };
@@ -141,13 +145,13 @@ export namespace aabb::simd {
             first_halves(high(row(0), row(1)), high(row(2), row(3)))};
 }
 
-/// Permutes eight numbers; only the lowest three bits of each place are used.
-[[nodiscard, gnu::always_inline]] inline eight_floats permuted(const float* from, eight_words places) noexcept {
+/// Permutes eight numbers; only the lowest three bits of each index are used.
+[[nodiscard, gnu::always_inline]] inline eight_floats permuted(const float* from, eight_words indices) noexcept {
     eight_floats v;
 #if defined(__AVX2__)
-    detail::take_eight(from, &places, &v);
+    detail::permute_eight(from, &indices, &v);
 #else
-    for (int i = 0; i < 8; ++i) v[i] = from[places[i] & 7U];
+    for (int i = 0; i < 8; ++i) v[i] = from[indices[i] & 7U];
 #endif
     return v;
 }
@@ -157,18 +161,18 @@ export namespace aabb::simd {
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
-/// Gathers eight of sixteen numbers, by places of 4 bits each.
-[[nodiscard, gnu::always_inline]] inline eight_floats gather_of_sixteen(const sixteen_floats& from,
-                                                                        std::uint32_t places) noexcept {
+/// Selects eight of sixteen numbers, which are in registers, by a permutation: index i is in bits 4 i to 4 i + 3.
+[[nodiscard, gnu::always_inline]] inline eight_floats select_eight_of_sixteen(const sixteen_floats& from,
+                                                                              std::uint32_t packed_indices) noexcept {
     constexpr eight_words shift{0, 4, 8, 12, 16, 20, 24, 28};
-    const eight_words at = (eight_words{} + places) >> shift;
+    const eight_words at = (eight_words{} + packed_indices) >> shift;  // higher bits are ignored
 #if defined(__AVX512F__)
-    return detail::gather_sixteen_lanes(&from, &at);
+    return detail::select_of_sixteen_lanes(&from, &at);
 #else
-    std::array<float, 16> halves;
-    std::memcpy(halves.data(), &from, sizeof from);
-    const eight_floats low = permuted(halves.data(), at);
-    const eight_floats high = permuted(halves.data() + 8, at);
+    std::array<float, 16> numbers;
+    std::memcpy(numbers.data(), &from, sizeof from);
+    const eight_floats low = permuted(numbers.data(), at);
+    const eight_floats high = permuted(numbers.data() + 8, at);
     return (at & 8U) != 0 ? high : low;
 #endif
 }
@@ -179,7 +183,7 @@ export namespace aabb::simd {
     return v[0] + v[1];
 }
 
-/// Bit 8 j + i is set where number i of `a` is at most number j of `b`.
+/// Compares all 64 pairs of eight numbers and eight: sets bit 8 j + i where number i of `a` is at most number j of `b`.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t pairs_no_greater(const std::uint8_t* a, eight_bytes b) noexcept {
     using bytes = std::uint8_t __attribute__((vector_size(64)));
     using signed_bytes = std::int8_t __attribute__((vector_size(64)));
@@ -243,7 +247,8 @@ export namespace aabb::simd {
 #endif
 }
 
-/// The same test for boxes in 16-bit integers.
+/// Tests all 64 pairs of eight boxes and eight in 16-bit integers: sets bit 8 j + i where box i of `a` overlaps box j
+/// of `b`. Each side has six rows of eight numbers: three of lower bounds, then three of upper bounds.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t overlapping_pairs(const std::int16_t* a,
                                                                          const std::int16_t* b) noexcept {
     using eight_halves = std::int16_t __attribute__((vector_size(16)));

@@ -67,7 +67,7 @@ private:
             // Joined in a register, since a wide load from two narrower stores stalls.
             const simd::sixteen_floats points = simd::joined(low[k], high[k]);
             for (std::size_t c = 0; c < 3; ++c)
-                simd::store_eight(corner[c][k].data(), simd::gather_of_sixteen(points, list.places[c]));
+                simd::store_eight(corner[c][k].data(), simd::select_eight_of_sixteen(points, list.places[c]));
         }
     }
 

@@ -222,7 +222,7 @@ TEST_CASE("a front is planned after two near queries, and less often after those
     const model_pair of{{1, 2}, {3, 4}};
     const auto at = [&](double x) { return relative_pose({}, shifted({x, 0, 0}), reach).to_boxes(); };
     bvtt_front front;
-    front.begin(of);
+    front.reset(of);
     const auto is_planned = [&](double x) { return front.record_query(of, at(x), reach, 1).margin.has_value(); };
     CHECK_FALSE(is_planned(0));
     CHECK_FALSE(is_planned(0.01));
@@ -238,7 +238,7 @@ TEST_CASE("a front is planned after two near queries, and less often after those
         CHECK(front.record_query({{1, 2}, {3, 5}}, at(6), reach, 1).margin.has_value() == planned);
 
     // Each front is left behind at once.
-    front.begin(of);
+    front.reset(of);
     std::vector<int> planned;
     for (int i = 0; i < 100; ++i)
         if (is_planned(0.03 * i)) {
@@ -247,7 +247,7 @@ TEST_CASE("a front is planned after two near queries, and less often after those
         }
     CHECK(planned == std::vector{2, 4, 8, 16, 32, 64});
     // One that holds too much is not kept.
-    front.begin(of);
+    front.reset(of);
     static_cast<void>(is_planned(0));
     static_cast<void>(is_planned(0));
     CHECK(is_planned(0));
