@@ -15,6 +15,12 @@ export namespace aabb {
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
+    static void require_ready(const model<Tree>& a, const model<Tree>& b) {
+        require_ieee_arithmetic();
+        a.require_fit();
+        b.require_fit();
+    }
+
     /// Passes intersecting pairs of triangles (a of A, b of B) to `emit`, in batches, until `emit` returns true.
     template <class Emit>
     void find_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
@@ -30,22 +36,22 @@ public:
     }
 
     /// Appends the BVTT front: pairs of leaves with triangles within a margin, less rounding (`rounding_bound`).
-    /// @returns false if there are more than `most`, where it stops
+    /// @returns false if there are more than `most_pairs`, where it stops
     [[nodiscard]] bool collect_front(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
-                                     double margin, std::size_t most, std::vector<front_pair>& pairs) {
-        leaf_pairs_.begin(a, b, to_a, false, false,
+                                     double margin, std::size_t most_pairs, std::vector<front_pair>& pairs) {
+        leaf_pairs_.begin(a, b, to_a, {},
                           std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
         const auto collect = [&](std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b) {
             const auto append = [&](std::size_t p, std::uint64_t mask) {
                 pairs.push_back({leaves_a[p], leaves_b[p], mask});
-                return pairs.size() > most;
+                return pairs.size() > most_pairs;
             };
             return leaf_pairs_.for_each_within_margin(a, b, to_a, leaves_a, leaves_b, counters_, append);
         };
         return !descend_to_leaves(a, b, to_a, query_kind::two_meshes, margin, collect);
     }
 
-    /// The same as `find_pairs`, restricted to the pairs of leaves of a front.
+    /// Passes intersecting pairs of triangles to `emit` as `find_pairs`, but tests only the pairs of leaves of a front.
     template <class Emit>
     void find_pairs_in_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
                              const relative_pose& to_a, std::span<const front_pair> pairs, front_leaves<Tree>& leaves,
@@ -58,7 +64,7 @@ public:
             return (any_pair || queue_.is_full()) && queue_.test_queued(test, any_pair, triangles_at, emit);
         };
         if (!leaves.for_each_pair(a, b, to_a, pairs, leaf_pairs_.reader(), test_pair))
-            static_cast<void>(queue_.test_queued(test, true, triangles_at, emit));
+            static_cast<void>(queue_.test_queued(test, /*flush=*/true, triangles_at, emit));
     }
 
     [[nodiscard]] Counters& counters() noexcept { return counters_; }
@@ -93,7 +99,8 @@ private:
         }
     };
 
-    /// Finds all pairs. The caches of leaves are reset only if the descent comes to leaves.
+    /// Passes all intersecting pairs of triangles to `emit`, or until it returns true: tests the pairs of leaves to
+    /// which the descent comes, in batches. The caches of leaves are reset only if it comes to any.
     template <class Emit>
     void find_all_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                         query_kind kind, const Emit& emit) {
@@ -101,15 +108,18 @@ private:
         queue_.clear();
         bool reached_leaves = false;
         const auto test_batch = [&](std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b) {
-            if (!reached_leaves) leaf_pairs_.begin(a, b, to_a, kind == query_kind::one_mesh, !is_filtered, 0);
+            if (!reached_leaves)
+                leaf_pairs_.begin(
+                    a, b, to_a,
+                    {.shares_corners = kind == query_kind::one_mesh, .rejects_by_exact_boxes = !is_filtered});
             reached_leaves = true;
             return test_leaves(test, a, b, to_a, kind, leaves_a, leaves_b, triangles_at, emit);
         };
-        if (!descend_to_leaves(a, b, to_a, kind, 0, test_batch))
-            static_cast<void>(queue_.test_queued(test, true, triangles_at, emit));
+        if (!descend_to_leaves(a, b, to_a, kind, /*margin=*/0, test_batch))
+            static_cast<void>(queue_.test_queued(test, /*flush=*/true, triangles_at, emit));
     }
 
-    /// Finds any one pair: tests each pair of leaves before it reads the next.
+    /// Finds any one pair: tests each pair of leaves, nearest ones first, before it reads the next.
     template <class Emit>
     void find_first_pair(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                          const Emit& emit) {
@@ -119,11 +129,12 @@ private:
         bool reached_leaves = false;
         nearest_.for_each_leaf_pair(a, b, to_a, counters_,
                                     [&](const std::uint32_t& leaf_a, const std::uint32_t& leaf_b) {
-                                        if (!reached_leaves) leaf_pairs_.begin(a, b, to_a, false, !is_filtered, 0);
+                                        if (!reached_leaves)
+                                            leaf_pairs_.begin(a, b, to_a, {.rejects_by_exact_boxes = !is_filtered});
                                         reached_leaves = true;
                                         return test_leaves(test, a, b, to_a, query_kind::two_meshes, {&leaf_a, 1},
                                                            {&leaf_b, 1}, triangles_at, emit) ||
-                                               queue_.test_queued(test, true, triangles_at, emit);
+                                               queue_.test_queued(test, /*flush=*/true, triangles_at, emit);
                                     });
     }
 
@@ -157,12 +168,6 @@ private:
             if (at_leaves(std::span(from.a).subspan(begin, end - begin), std::span(from.b).subspan(begin, end - begin)))
                 return true;
         }
-    }
-
-    static void require_ready(const model<Tree>& a, const model<Tree>& b) {
-        require_ieee_arithmetic();
-        a.require_fit();
-        b.require_fit();
     }
 
     /// Starts a query with one pending pair, the roots.
@@ -203,7 +208,7 @@ private:
             const std::uint64_t to_open = steps_.pairs_to_open(step, mask);
             const std::uint32_t first_a = opens_a ? children * node_a : node_a;
             const std::uint32_t first_b = opens_b ? children * node_b : node_b;
-            alignas(64) std::array<std::uint8_t, most_children_of_pair> bits{};  // 8 j + i
+            alignas(64) std::array<std::uint8_t, most_children_of_pair> bits{};  // 8 j + i: children i of A and j of B
             simd::store_set_bits(bits.data(), to_open);
             const auto count = static_cast<std::size_t>(std::popcount(to_open));
             std::size_t p = 0;
@@ -234,7 +239,7 @@ private:
                 if (mask == 0) return false;
             }
             queue_pairs(a.tree(), b.tree(), {leaves_a[p], leaves_b[p], mask}, leaf_a.block, leaf_b.block);
-            return queue_.is_full() && queue_.test_queued(test, false, triangles_at, emit);
+            return queue_.is_full() && queue_.test_queued(test, /*flush=*/false, triangles_at, emit);
         };
         return leaf_pairs_.for_each_meeting(a, b, to_a, leaves_a, leaves_b, counters_, test_pair);
     }

@@ -70,18 +70,18 @@ public:
         first_ = first;
         images_.begin(motion);
         if (boxes_.size() < most && boxes_.size() < nodes) boxes_.resize(std::min(most, std::bit_ceil(nodes)));
-        cached_.fill(no_node);
+        cached_nodes_.fill(no_node);
     }
 
-    /// The boxes of the node's children in the other frame.
+    /// The boxes of the node's children in the other frame, from the cache or transformed now.
     [[nodiscard]] inline const eight_boxes& of(const wide_node& n) {
         const auto number = static_cast<std::uint32_t>(&n - first_);
-        const std::size_t place = number & (boxes_.size() - 1);
-        if (cached_[place] != number) {
-            images_.store(n, boxes_[place]);
-            cached_[place] = number;
+        const std::size_t slot = number & (boxes_.size() - 1);
+        if (cached_nodes_[slot] != number) {
+            images_.store(n, boxes_[slot]);
+            cached_nodes_[slot] = number;
         }
-        return boxes_[place];
+        return boxes_[slot];
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(boxes_); }
@@ -92,7 +92,7 @@ private:
 
     const wide_node* first_ = nullptr;
     box_images images_;
-    std::array<std::uint32_t, most> cached_{};
+    std::array<std::uint32_t, most> cached_nodes_{};
     std::vector<eight_boxes> boxes_;
 };
 

@@ -8,7 +8,7 @@ export import aabb.wide_tree.kernels;
 
 export namespace aabb {
 
-/// Up to eight boxes as a structure of arrays: three rows of lower bounds, then three of upper bounds. Places from
+/// Up to eight boxes as a structure of arrays: three rows of lower bounds, then three of upper bounds. Boxes from
 /// `count` on have no meaning.
 struct eight_boxes {
     static constexpr std::size_t most = 8;
@@ -43,7 +43,7 @@ struct code_grid {
     std::array<float, 3> offset;
 };
 
-/// Up to eight boxes in one byte per plane. Empty places have codes 255, which overlap nothing.
+/// Up to eight boxes in one byte per plane. Those that are missing have codes 255, which overlap nothing.
 struct quantized_aabbs {
     static constexpr std::uint8_t no_box = 255;
 
@@ -51,7 +51,8 @@ struct quantized_aabbs {
     std::array<row, 3> lower;
     std::array<row, 3> upper;  ///< 255 minus the plane's code, so that both need the same comparison
 
-    /// Tests 64 pairs at once: sets bit 8 j + i where box i of these may overlap box j of `others`.
+    /// Tests 64 pairs at once: sets bit 8 j + i where box i of these may overlap box j of `others`. The others are
+    /// rounded to this grid by a monotone map, so that no overlap is missed.
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {
         const auto on_grid = [&](std::size_t k, const eight_boxes::row& x) {
             return simd::load_eight<simd::eight_floats>(x.data()) * grid.scale[k] - grid.offset[k];
@@ -63,7 +64,7 @@ struct quantized_aabbs {
         return mask;
     }
 
-    /// Empties the places from `count` on.
+    /// Empties the boxes from `count` on.
     inline void keep_first(std::size_t count) noexcept {
         for (std::size_t i = count; i < eight_boxes::most; ++i)
             for (std::size_t k = 0; k < 3; ++k) lower[k][i] = upper[k][i] = no_box;
@@ -74,6 +75,7 @@ struct quantized_aabbs {
 /// clamped outside. The number of x is monotone in x, as on a `code_grid`.
 class leaf_grid {
 public:
+    /// Spans the grid over the intersection of the meshes' boxes: triangles beyond it meet none of the other mesh.
     /// @param a,b boxes of the meshes, in A's frame
     void begin(const box& a, const box& b) noexcept {
         rows scale{};
@@ -89,9 +91,9 @@ public:
             scale[k] = scale[3 + k] = simd::eight_floats{} + steps;
             offset[k] = offset[3 + k] = simd::eight_floats{} + (low * steps + half_range);
         }
-        for (std::size_t two = 0; two < 3; ++two) {
-            scale_[two] = simd::joined(scale[2 * two], scale[2 * two + 1]);
-            offset_[two] = simd::joined(offset[2 * two], offset[2 * two + 1]);
+        for (std::size_t i = 0; i < 3; ++i) {
+            scale_[i] = simd::joined(scale[2 * i], scale[2 * i + 1]);
+            offset_[i] = simd::joined(offset[2 * i], offset[2 * i + 1]);
         }
     }
 
@@ -117,8 +119,9 @@ private:
 /// some two steps apart, or arise where 16 bits are too coarse (`are_coarse`).
 class leaf_boxes {
 public:
+    /// Stores the boxes as 16-bit integers on the grid, so that a comparison takes half as many vectors as in float.
     /// @param rows lower bounds along each axis, then upper bounds
-    /// @param count the number of boxes; places beyond overlap nothing
+    /// @param count the number of boxes; those beyond are set to overlap nothing
     inline void quantize(const leaf_grid& grid, const std::array<simd::eight_floats, 6>& rows,
                          std::size_t count) noexcept {
         for (std::size_t i = 0; i < 3; ++i) {

@@ -41,19 +41,17 @@ private:
     template <class Emit>
     void find_pairs_with_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
                                const relative_pose& to_a, walk_goal goal, const Emit& emit) {
-        require_ieee_arithmetic();
-        a.require_fit();
-        b.require_fit();
+        batched_walk<Tree, Triangle, Counters>::require_ready(a, b);
         const model_pair models{{a.number(), b.number()}, {a.state(), b.state()}};
         const box_motion motion = to_a.to_boxes();
-        const double size = std::sqrt(std::min(area_of_leaf(a), area_of_leaf(b)));
-        const double near = bvtt_front::most_step * size;
+        const double leaf_size = std::sqrt(std::min(area_of_leaf(a), area_of_leaf(b)));
+        const double near = bvtt_front::most_step * leaf_size;
         // If rounding alone moves B further than that, a front is not worth its cost.
         if (!(2 * rounding_bound(motion) <= near)) return walk_.find_pairs(test, a, b, to_a, goal, emit);
 
         if (!fronts_) fronts_ = std::make_unique<front_cache>();
         bvtt_front& front = fronts_->find(models, motion, b.bounds(), near);
-        const bvtt_front::decision decision = front.record_query(models, motion, b.bounds(), size);
+        const bvtt_front::decision decision = front.record_query(models, motion, b.bounds(), leaf_size);
         const auto builds_front = [&] {
             return decision.margin &&
                    front.build(models, motion, *decision.margin, [&](std::vector<front_pair>& pairs) {

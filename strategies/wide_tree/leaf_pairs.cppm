@@ -21,23 +21,23 @@ struct read_leaf_of_b : read_leaf {
 template <WideTreePolicy Tree>
 class leaf_pairs {
 public:
-    /// Starts a query.
-    /// @param one_mesh whether A and B are the same mesh, so that triangles may share corners
-    /// @param reject_by_exact_boxes whether to reject pairs whose boxes overlap only because the grid rounds them; for
-    /// inexact tests, whose result for such pairs would otherwise depend on the grid
+    struct query_options {
+        bool shares_corners = false;          ///< whether A and B are one mesh, so that triangles may share corners
+        bool rejects_by_exact_boxes = false;  ///< whether to reject pairs whose boxes overlap only because the grid
+                                              ///< rounds them; for inexact tests, whose result must not depend on it
+    };
+    /// Starts a query: fits the grid to both meshes and empties the caches.
     /// @param margin the distance up to which triangles count as close
-    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, bool one_mesh,
-               bool reject_by_exact_boxes, float margin) {
+    void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, query_options options,
+               float margin = 0) {
         grid_.begin(a.bounds(), to_a(b.bounds()));
-        reject_by_exact_boxes_ = reject_by_exact_boxes;
+        options_ = options;
         margin_ = margin;
         cache_a_.begin(leaves_of(a));
         cache_b_.begin(leaves_of(b));
-        if (one_mesh) {
-            corners_of_a_.resize(cache_a_.places());
-            corners_of_b_.resize(cache_b_.places());
-        }
-        one_mesh_ = one_mesh;
+        if (!options.shares_corners) return;
+        corners_of_a_.resize(cache_a_.slots());
+        corners_of_b_.resize(cache_b_.slots());
     }
 
     /// Passes on, in order, the pairs of leaves whose triangles may intersect: their boxes overlap, and triangles of A
@@ -68,7 +68,10 @@ public:
             });
     }
 
-    /// Passes on, in the same way, the pairs of triangles that may lie within the margin of each other.
+    /// Passes on, in order, the pairs of leaves with triangles that may lie within the margin of each other: their
+    /// boxes do, and each triangle enters the inflated slab of the other's leaf.
+    /// @param take called with the index of a pair and a mask of pairs of triangles (bit 8 j + i); returns whether to
+    /// stop
     template <class Counters, class Take>
     [[nodiscard]] bool for_each_within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                               std::span<const std::uint32_t> leaves_a,
@@ -95,7 +98,7 @@ public:
     /// Sets bit 8 j + i where triangle i of A's leaf and j of B's share a corner; for one mesh only.
     [[nodiscard]] inline std::uint64_t pairs_sharing_corners(std::uint32_t leaf_a,
                                                              std::uint32_t leaf_b) const noexcept {
-        return corners_of_a_[cache_a_.place(leaf_a)].pairs_sharing_corners(corners_of_b_[cache_b_.place(leaf_b)]);
+        return corners_of_a_[cache_a_.slot_of(leaf_a)].pairs_sharing_corners(corners_of_b_[cache_b_.slot_of(leaf_b)]);
     }
 
     [[nodiscard]] leaf_reader<Tree>& reader() noexcept { return reader_; }
@@ -124,7 +127,7 @@ private:
             if (OfB && margin_ > 0) grow(bounds);
             leaf.boxes.quantize(grid_, bounds, leaf.block.triangles);
             if constexpr (requires { leaf.slab; }) leaf.has_slab = false;
-            if (one_mesh_) corners[cache.place(number)].load(m.triangles(), m.tree(), number);
+            if (options_.shares_corners) corners[cache.slot_of(number)].load(m.triangles(), m.tree(), number);
         };
     }
 
@@ -173,7 +176,8 @@ private:
         return false;
     }
 
-    /// Finds the pairs of leaves, from `begin` to `end`, with overlapping triangle boxes.
+    /// Finds the pairs of leaves, from `begin` to `end`, with overlapping triangle boxes: on the 16-bit grid, and where
+    /// that is too coarse or must not decide, in float.
     template <class Counters>
     [[nodiscard]] inline std::span<const overlap> find_overlaps(std::span<const std::uint32_t> leaves_a,
                                                                 std::span<const std::uint32_t> leaves_b,
@@ -185,7 +189,8 @@ private:
             const read_leaf& leaf_b = cache_b_[leaves_b[begin]];
             counters.add(work::box_tests, std::uint64_t{leaf_a.block.triangles} * leaf_b.block.triangles);
             std::uint64_t mask = leaf_a.boxes.overlaps(leaf_b.boxes);
-            if (reject_by_exact_boxes_ || std::popcount(mask) > many_overlaps) mask &= float_overlaps(leaf_a, leaf_b);
+            if (options_.rejects_by_exact_boxes || std::popcount(mask) > many_overlaps)
+                mask &= float_overlaps(leaf_a, leaf_b);
             overlapping_[count] = {begin, mask};
             count += mask != 0;
         }
@@ -209,11 +214,11 @@ private:
     }
 
     /// Sets bit 8 j + i where the float boxes of triangle i of A's leaf and j of B's overlap or lie within the margin.
-    /// Sets all bits where 16 bits are precise enough.
+    /// Sets all bits, without a test, where 16 bits are precise enough.
     [[nodiscard, gnu::noinline]] std::uint64_t float_overlaps(const read_leaf& leaf_a,
                                                               const read_leaf& leaf_b) const noexcept {
         const bool are_coarse = leaf_a.boxes.are_coarse() && leaf_b.boxes.are_coarse();
-        if (!are_coarse && !reject_by_exact_boxes_) return ~std::uint64_t{0};
+        if (!are_coarse && !options_.rejects_by_exact_boxes) return ~std::uint64_t{0};
         eight_boxes boxes_a;
         eight_boxes boxes_b;
         auto bounds_b = leaf_b.block.bounds();
@@ -236,8 +241,7 @@ private:
     }
 
     leaf_grid grid_;
-    bool one_mesh_ = false;
-    bool reject_by_exact_boxes_ = false;
+    query_options options_;
     float margin_ = 0;
     leaf_cache<read_leaf> cache_a_;
     leaf_cache<read_leaf_of_b> cache_b_;

@@ -9,36 +9,37 @@ export namespace aabb {
 inline constexpr std::size_t most_claims = 128;  ///< pairs per group
 
 /// A direct-mapped cache of leaves, by number. A group first claims all leaves that it needs, then reads the missing
-/// ones, so that their memory accesses overlap. A leaf stays valid until another leaf is read into its place.
+/// ones, so that their memory accesses overlap. A leaf stays valid until another leaf is read into its slot.
 template <class Leaf>
 class leaf_cache {
 public:
-    /// Invalidates the cache, and grows it if the tree has many leaves.
-    void begin(std::size_t numbers) {
-        if (leaves_.size() < most_places && 2 * leaves_.size() <= numbers)
-            leaves_.resize(std::min(most_places, std::bit_floor(numbers)));
+    /// Invalidates the cache, by a new epoch, and grows it if the tree has many leaves.
+    void begin(std::size_t leaves_of_tree) {
+        if (leaves_.size() < most_slots && 2 * leaves_.size() <= leaves_of_tree)
+            leaves_.resize(std::min(most_slots, std::bit_floor(leaves_of_tree)));
         if (++epoch_ != 0) return;
         // The 32-bit epoch wrapped around: entries of old epochs must not become valid again.
-        keys_.fill(0);
+        keys_of_slots_.fill(0);
         epoch_ = 1;
     }
 
-    void release_claims() noexcept { ++claim_; }
+    void release_claims() noexcept { ++group_; }
 
-    /// Reserves the leaf's place for the current group, and lists the leaf as missing if it is not cached.
-    /// @returns false if another claimed leaf occupies the place
-    [[nodiscard]] inline bool claim(std::uint32_t number) noexcept {
-        const std::size_t at = place(number);
-        const std::uint64_t key = std::uint64_t{epoch_} << 32U | number;
-        const bool is_missing = keys_[at] != key;
+    /// Reserves the leaf's slot for the current group of pairs, whose leaves must all stay cached until it is tested,
+    /// and lists the leaf as missing if it is not cached.
+    /// @returns false if another leaf of the group occupies the slot
+    [[nodiscard]] inline bool claim(std::uint32_t leaf) noexcept {
+        const std::size_t slot = slot_of(leaf);
+        const std::uint64_t key = std::uint64_t{epoch_} << 32U | leaf;
+        const bool is_missing = keys_of_slots_[slot] != key;
         // One condition is mostly false, the other is hard to predict. Marked as unpredictable, the conjunction stays a
         // single branch; otherwise the compiler makes two.
-        if (__builtin_unpredictable(static_cast<int>(is_missing) & static_cast<int>(claims_[at] == claim_)))
+        if (__builtin_unpredictable(static_cast<int>(is_missing) & static_cast<int>(claimants_[slot] == group_)))
             return false;
-        missing_[missing_count_] = number;
+        missing_[missing_count_] = leaf;
         missing_count_ += is_missing;
-        keys_[at] = key;
-        claims_[at] = claim_;
+        keys_of_slots_[slot] = key;
+        claimants_[slot] = group_;
         return true;
     }
 
@@ -47,22 +48,20 @@ public:
         return std::span(missing_).first(std::exchange(missing_count_, 0));
     }
 
-    [[nodiscard]] inline Leaf& operator[](std::uint32_t number) noexcept { return leaves_[place(number)]; }
+    [[nodiscard]] inline Leaf& operator[](std::uint32_t leaf) noexcept { return leaves_[slot_of(leaf)]; }
 
-    [[nodiscard]] std::size_t places() const noexcept { return leaves_.size(); }
-    [[nodiscard]] inline std::size_t place(std::uint32_t number) const noexcept {
-        return number & (leaves_.size() - 1);
-    }
+    [[nodiscard]] std::size_t slots() const noexcept { return leaves_.size(); }
+    [[nodiscard]] inline std::size_t slot_of(std::uint32_t leaf) const noexcept { return leaf & (leaves_.size() - 1); }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(leaves_); }
 
 private:
-    static constexpr std::size_t most_places = 256;
+    static constexpr std::size_t most_slots = 256;
 
-    std::array<std::uint64_t, most_places> keys_{};  // epoch, then the leaf's number
-    std::uint32_t epoch_ = 0;                        // the epoch; 0 marks an empty place
-    std::array<std::uint64_t, most_places> claims_{};
-    std::uint64_t claim_ = 1;
+    std::array<std::uint64_t, most_slots> keys_of_slots_{};  // epoch, then the leaf's number
+    std::uint32_t epoch_ = 0;                                // the epoch; 0 marks an empty slot
+    std::array<std::uint64_t, most_slots> claimants_{};      // by slot: the last group that claimed it
+    std::uint64_t group_ = 1;
     std::array<std::uint32_t, most_claims + 1> missing_{};
     std::size_t missing_count_ = 0;
     std::vector<Leaf> leaves_;
@@ -114,7 +113,8 @@ public:
 private:
     static constexpr std::size_t ahead = 10;  // leaves; most of their vertices are cached already
 
-    /// Reads the vertex lists of the missing leaves and takes the steps, the first of which reads vertices.
+    /// Reads the vertex lists of the missing leaves and takes the steps, the first of which reads vertices: those of
+    /// some leaves ahead are prefetched meanwhile.
     template <class Leaf, class First, class... Others>
     inline void read_missing(const model<Tree>& m, std::span<const std::uint32_t> missing, leaf_cache<Leaf>& cache,
                              const First& first, const Others&... others) {
@@ -143,6 +143,7 @@ private:
 template <WideTreePolicy Tree>
 class front_leaves {
 public:
+    /// Passes on the pairs of a front in order, a group of pairs at a time whose leaves fit into the caches.
     /// @param reader a reader, which others may share
     /// @param take called with a pair and the triangles of both leaves; returns whether to stop
     template <class Take>

@@ -11,7 +11,8 @@ export namespace aabb {
 /// it is much thinner than their boxes. A triangle outside intersects none of them.
 class leaf_slab {
 public:
-    /// Fits the slab to a leaf; it stays infinite if arithmetic could overflow.
+    /// Fits the slab to a leaf, inflated by the rounding error of its own and of others' heights; it stays infinite if
+    /// arithmetic could overflow.
     /// @param edges extents of a box around the leaf's vertices and all that are compared with the slab
     void fit(const triangle_block& block, const std::array<float, 3>& edges) noexcept {
         set_normal(block);
@@ -23,10 +24,10 @@ public:
         low_ = -std::numeric_limits<float>::infinity();
         high_ = std::numeric_limits<float>::infinity();
         if (!(magnitude < most_magnitude)) return;
-        const heights own(*this, block);
+        const heights own_heights(*this, block);
         const float error = error_of(magnitude);
-        low_ = simd::least(own.low) - 2 * error;
-        high_ = -simd::least(-own.high) + 2 * error;
+        low_ = simd::least(own_heights.low) - 2 * error;
+        high_ = -simd::least(-own_heights.high) + 2 * error;
     }
 
     /// Sets bit j if triangle j of the other block may intersect the slab.
@@ -49,11 +50,11 @@ private:
         return (std::abs(normal_[0]) + std::abs(normal_[1]) + std::abs(normal_[2])) * (1 + 0x1p-20F);
     }
 
-    /// The range of each triangle's corners along the normal, relative to the origin.
     struct heights {
         simd::eight_floats low;
         simd::eight_floats high;
 
+        /// The range of each triangle's corners along the slab's normal, relative to its origin.
         inline heights(const leaf_slab& slab, const triangle_block& block) noexcept {
 #pragma clang fp contract(fast)
             for (std::size_t c = 0; c < 3; ++c) {
@@ -67,7 +68,7 @@ private:
         }
     };
 
-    /// Sums the cross products of the triangles' edges, which weights each normal by its triangle's area.
+    /// Sets the mean normal: the sum of the cross products of edges, which weights each normal by its triangle's area.
     void set_normal(const triangle_block& block) noexcept {
 #pragma clang fp contract(fast)
         std::array<simd::eight_floats, 3> p;

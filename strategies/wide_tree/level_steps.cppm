@@ -17,7 +17,8 @@ public:
         friend bool operator==(const heights&, const heights&) = default;
     };
 
-    /// Computes the steps from these roots, unless they are those of the last query.
+    /// Computes the steps from these roots, unless they are those of the last query: each opens the higher node, or
+    /// both.
     void begin(heights roots) {
         if (!steps_.empty() && steps_.front() == roots) return;
         // Reserves first, so that a failed allocation leaves the old steps intact.

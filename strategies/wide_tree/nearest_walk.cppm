@@ -16,8 +16,8 @@ struct nearest_places {
     std::uint32_t second;  ///< equal to `first` if there is only one
 };
 
-/// Picks the two nearest of the pairs in the mask (bit 8 j + i for child i and box j), which must not be empty. It
-/// computes all 64 distances, so that they do not depend on the mask.
+/// Picks the two nearest pairs, by their centres, in the mask (bit 8 j + i for child i and box j), which must not be
+/// empty. Computes all 64 distances without branches; the sort key of a pair is its distance, then its number 8 j + i.
 [[nodiscard]] inline nearest_places find_two_nearest(std::uint64_t mask, const wide_node& node,
                                                      const eight_boxes& boxes) noexcept {
     // Rounding may decide which of two equally near pairs comes first; no result depends on that.
@@ -36,7 +36,7 @@ struct nearest_places {
                                                      simd::load_eight<simd::eight_floats>(boxes.upper[k].data()));
     }
     // Non-negative floats compare like their bits; the last six hold the pair. NaN compares greater than any number.
-    constexpr simd::eight_words places{0, 1, 2, 3, 4, 5, 6, 7};
+    constexpr simd::eight_words indices{0, 1, 2, 3, 4, 5, 6, 7};
     constexpr simd::eight_words none = ~simd::eight_words{};
     simd::eight_words least = none;  // of each column
     simd::eight_words next = none;
@@ -46,7 +46,7 @@ struct nearest_places {
             const simd::eight_floats difference = node_centres[k] - box_centres[k][j];
             distance += difference * difference;
         }
-        const simd::eight_words key = (__builtin_bit_cast(simd::eight_words, distance) & ~63U) | places | 8 * j;
+        const simd::eight_words key = (__builtin_bit_cast(simd::eight_words, distance) & ~63U) | indices | 8 * j;
         const simd::eight_words candidate = key | ~simd::flags_of_eight(static_cast<std::uint8_t>(mask >> (8 * j)));
         next = __builtin_elementwise_min(next, __builtin_elementwise_max(least, candidate));
         least = __builtin_elementwise_min(least, candidate);
@@ -62,7 +62,8 @@ struct nearest_places {
 template <WideTreePolicy Tree>
 class nearest_walk {
 public:
-    /// @param at_leaves called with a leaf of A and one of B whose boxes may overlap; returns whether to stop
+    /// Visits pairs of leaves whose boxes may overlap, those first that most likely intersect.
+    /// @param at_leaves called with a leaf of A and one of B; returns whether to stop
     template <class Counters, class AtLeaves>
     void for_each_leaf_pair(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, Counters& counters,
                             const AtLeaves& at_leaves) {
@@ -100,7 +101,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t children = wide_node::most_children;
+    static constexpr std::uint32_t children = wide_node::most_children;
     static constexpr std::size_t least_back = 2;  // levels
 
     struct node_pair {
@@ -131,7 +132,8 @@ private:
         images_.begin(b.level(0), nodes_of(b), to_a.to_boxes());
     }
 
-    /// Descends to the nearest pair of children and postpones the others.
+    /// Descends from a pair of nodes to the pair of their children with the nearest centres, which most likely
+    /// intersects, and postpones the other overlapping pairs.
     /// @returns whether any pair overlaps
     template <class Counters>
     [[nodiscard]] inline bool descend_to_nearest(const Tree& a, const Tree& b, std::size_t step, node_pair& nodes,
@@ -145,20 +147,18 @@ private:
         const auto [first, second] = find_two_nearest(mask, node_a, boxes);
         const bool opens_a = steps_.opens_a(step);
         const bool opens_b = steps_.opens_b(step);
-        const std::uint32_t opened = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
-        const node_pair first_children{opens_a ? first_child(nodes.a) : nodes.a,
-                                       opens_b ? first_child(nodes.b) : nodes.b};
-        nodes = pair_of(first_children, first & opened);
-        const std::uint64_t others = steps_.pairs_to_open(step, mask) & ~bit(first & opened);
-        if (others != 0) postpone(step + 1, first_children, others, second & opened);
+        // Of a node that is not opened, the pair 8 j + i keeps only the other node's child.
+        const std::uint32_t opened_bits = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
+        const node_pair first_children{opens_a ? children * nodes.a : nodes.a, opens_b ? children * nodes.b : nodes.b};
+        nodes = pair_of(first_children, first & opened_bits);
+        const std::uint64_t others = steps_.pairs_to_open(step, mask) & ~bit(first & opened_bits);
+        if (others != 0) postpone(step + 1, first_children, others, second & opened_bits);
         return true;
     }
 
-    [[nodiscard]] static constexpr std::uint32_t first_child(std::uint32_t node) noexcept {
-        return static_cast<std::uint32_t>(children) * node;
-    }
-    [[nodiscard]] static constexpr node_pair pair_of(const node_pair& first, std::uint32_t place) noexcept {
-        return {first.a + (place & 7U), first.b + (place >> 3U)};
+    /// The pair 8 j + i of the children that begin with the first pair.
+    [[nodiscard]] static constexpr node_pair pair_of(const node_pair& first, std::uint32_t pair) noexcept {
+        return {first.a + (pair & 7U), first.b + (pair >> 3U)};
     }
 
     /// Pushes the pairs of children in the mask onto the step's stack.
@@ -173,7 +173,7 @@ private:
         postponed_steps_ |= bit(step);
     }
 
-    /// Pops the next pair of the step's most recent entry.
+    /// Pops the next pair of the step's most recent entry, and drops the entry if it has no other.
     [[nodiscard]] inline node_pair pop(std::size_t step) noexcept {
         postponed_stack& stack = stacks_[step];
         postponed_children& entry = stack.entries[stack.size - 1];
@@ -186,7 +186,7 @@ private:
         return popped;
     }
 
-    [[nodiscard]] static constexpr std::uint64_t bit(std::size_t place) noexcept { return std::uint64_t{1} << place; }
+    [[nodiscard]] static constexpr std::uint64_t bit(std::size_t index) noexcept { return std::uint64_t{1} << index; }
     [[nodiscard]] static constexpr std::uint32_t last_of(std::uint64_t mask) noexcept {
         return static_cast<std::uint32_t>(std::bit_width(mask)) - 1;
     }

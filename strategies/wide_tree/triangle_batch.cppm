@@ -14,7 +14,8 @@ public:
     void clear() noexcept { pairs_ = leaf_pairs_ = 0; }
     [[nodiscard]] bool is_full() const noexcept { return pairs_ + most_per_leaf_pair > capacity; }
 
-    /// Adds the pairs in the mask (bit 8 j + i for triangle i of `a` and j of `b`), not zero. `is_full` must not hold.
+    /// Adds the pairs in the mask (bit 8 j + i for triangle i of `a` and j of `b`), not zero: copies their corners to
+    /// the rows of the queue, eight pairs at a time, by permutations. `is_full` must not hold.
     inline void add(std::uint64_t mask, std::uint32_t leaf_a, const triangle_block& a, std::uint32_t leaf_b,
                     const triangle_block& b) noexcept {
         alignas(64) std::array<std::uint8_t, most_per_leaf_pair> bits{};
@@ -40,7 +41,7 @@ public:
 
     /// Tests the queued pairs and passes those that intersect to `emit`, in one call.
     /// @param flush whether to test all pairs, instead of full vectors only
-    /// @param triangles_at maps places in two leaves to triangles of the meshes, as `(leaf_a, i, leaf_b, j)`
+    /// @param triangles_at maps triangles i and j of two leaves to those of the meshes, as `(leaf_a, i, leaf_b, j)`
     /// @returns what `emit` returned: whether to stop
     template <class TrianglesAt, class Emit>
     [[nodiscard]] bool test_queued(const Triangle& test, bool flush, const TrianglesAt& triangles_at,
@@ -70,7 +71,7 @@ private:
     static constexpr std::size_t rows = 9;
     static constexpr std::size_t most_per_leaf_pair = 64;
     static constexpr std::size_t capacity = 144;
-    static constexpr unsigned pair_bits = 6;  // of the place 8 j + i within a leaf pair
+    static constexpr unsigned pair_bits = 6;  // of the number 8 j + i within a leaf pair
     using corners = std::array<std::array<float, capacity + triangle_block::width>, rows>;
 
     [[nodiscard]] inline filtered_pairs filter(std::size_t first) const noexcept {

@@ -19,7 +19,7 @@ struct triangle_block {
         load(m, tree, leaf, list, [](auto&) {});
     }
 
-    /// Loads the triangles in A's frame.
+    /// Loads the triangles in A's frame: transformed in double and rounded to float.
     template <WideTreePolicy Tree>
     void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
               const relative_pose& to_a) noexcept {
@@ -48,6 +48,8 @@ struct triangle_block {
 private:
     using columns = std::array<simd::eight_floats, 3>;
 
+    /// Loads the triangles' corners: reads the distinct vertices of the leaf, sixteen at most, transforms each once,
+    /// and distributes them to the corners by permutations.
     /// @param change transforms eight points, given as three vectors of coordinates
     template <class Tree, class Change>
     inline void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
@@ -67,7 +69,7 @@ private:
             // Joined in a register, since a wide load from two narrower stores stalls.
             const simd::sixteen_floats points = simd::joined(low[k], high[k]);
             for (std::size_t c = 0; c < 3; ++c)
-                simd::store_eight(corner[c][k].data(), simd::select_eight_of_sixteen(points, list.places[c]));
+                simd::store_eight(corner[c][k].data(), simd::select_eight_of_sixteen(points, list.positions[c]));
         }
     }
 
@@ -97,8 +99,8 @@ struct corner_indices {
     void load(const mesh& m, const Tree& tree, std::uint32_t leaf) noexcept {
         const std::size_t last = m.triangles.size() - 1;
         for (std::size_t i = 0; i < width; ++i) {
-            const auto place = static_cast<std::uint32_t>(std::min(width * leaf + i, last));
-            for (std::size_t c = 0; c < 3; ++c) vertex[c][i] = m.triangles[tree.triangle_at(place)][c];
+            const auto in_order = static_cast<std::uint32_t>(std::min(width * leaf + i, last));
+            for (std::size_t c = 0; c < 3; ++c) vertex[c][i] = m.triangles[tree.triangle_at(in_order)][c];
         }
     }
 

@@ -22,6 +22,9 @@ struct filtered_pairs {
 /// Z or 1. After an overflow all comparisons are false, so that the pair stays undecided.
 class triangle_filter {
 public:
+    /// Decides pairs of triangles in float by the signs of eight orientations: the corners of each triangle against the
+    /// plane of the other, and two edges against each other. Pairs with a sign that rounding could change stay
+    /// undecided.
     /// @param a,b the first of nine rows at a distance of `stride`: row 3 c + k has axis k of corner c
     [[nodiscard]] static inline filtered_pairs decide(const float* a, const float* b, std::size_t stride) noexcept {
 #pragma clang fp contract(fast)
@@ -125,7 +128,7 @@ private:
         return any;
     }
 
-    /// The extent of both triangles on axis k.
+    /// The extent of both triangles together on axis k, which bounds the differences of their coordinates.
     [[nodiscard, gnu::always_inline]] static inline simd::floats extent_of(const corners& s, const corners& t,
                                                                            std::size_t k) noexcept {
         const auto lesser = [](simd::floats p, simd::floats q) { return p < q ? p : q; };
@@ -147,7 +150,7 @@ private:
         q = select(mask, before, q);
     }
 
-    /// Rotates the triangle until corner 0 is alone on its side of the other's plane.
+    /// Rotates the triangle until corner 0, its apex, is alone on its side of the other's plane.
     /// @returns whether it is above
     [[nodiscard, gnu::always_inline]] static inline simd::flags rotate_to_apex(
         corners& t, const std::array<simd::flags, 3>& above) noexcept {

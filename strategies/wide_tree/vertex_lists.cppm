@@ -11,7 +11,7 @@ struct vertex_list {
     static constexpr std::size_t most = 16;
 
     alignas(64) std::array<std::uint32_t, most> vertices;  ///< ascending, padded with the first
-    std::array<std::uint32_t, 3> places;                   ///< by corner: 4 bits per triangle, padded with the last
+    std::array<std::uint32_t, 3> positions;                ///< by corner: 4 bits per triangle, padded with the last
     std::uint32_t count;                                   ///< 0 if the vertices must be read from the mesh
 
     /// Prefetches every second vertex, since neighbours mostly share a cache line.
@@ -24,29 +24,29 @@ struct vertex_list {
 /// The distinct vertices of each leaf of eight triangles. Adjacent triangles share most of their corners, so that a
 /// leaf reads some ten vertices instead of 24, transforms sixteen, and does not read the mesh's triangles at all.
 ///
-/// A list is one byte for the number of vertices; for each corner, the places of eight triangles in the list, in 4 bits
-/// each; and the indices of the vertices, each in as many bytes as the largest index needs, ascending, so that accesses
-/// to adjacent memory follow each other. Few leaves, of scattered triangles, have more than sixteen vertices: their
-/// lists are empty, and they are read from the mesh.
+/// A list is one byte for the number of vertices; for each corner, the positions of eight triangles in the list, in 4
+/// bits each; and the indices of the vertices, each in as many bytes as the largest index needs, ascending, so that
+/// accesses to adjacent memory follow each other. Few leaves, of scattered triangles, have more than sixteen vertices:
+/// their lists are empty, and they are read from the mesh.
 class vertex_lists {
 public:
     static constexpr std::size_t triangles = balanced_order::leaf_triangles;
 
     vertex_lists() = default;
+    /// Writes the list of each leaf, in parallel, to parts that are concatenated afterwards: lists differ in length.
     /// @param order the mesh's triangles in the order of the leaves
     vertex_lists(const mesh& m, std::span<const std::uint32_t> order, worker_threads& workers) {
-        while (width_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * width_) ++width_;
+        while (index_bytes_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * index_bytes_) ++index_bytes_;
         begins_.resize((order.size() + triangles - 1) / triangles);
-        // Each thread writes one part at a time, which has room for the longest lists.
-        const std::size_t room = least_shared * (header + width_ * vertex_list::most);
+        const std::size_t most_bytes_of_part = least_shared * (header + index_bytes_ * vertex_list::most);
         std::vector<std::size_t> sizes((begins_.size() + least_shared - 1) / least_shared);
-        large_vector<std::byte> parts(sizes.size() * room);
+        large_vector<std::byte> parts(sizes.size() * most_bytes_of_part);
         const auto triangles_of = [&](std::size_t leaf) {
             const std::size_t begin = std::min(leaf * triangles, order.size());
             return order.subspan(begin, std::min(triangles, order.size() - begin));
         };
         workers.for_each_index(sizes.size(), [&](std::size_t p, std::size_t) {
-            std::byte* const begin = &parts[p * room];
+            std::byte* const begin = &parts[p * most_bytes_of_part];
             std::byte* end = begin;
             for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l) {
                 for (const std::uint32_t t : triangles_of(l + ahead)) __builtin_prefetch(&m.triangles[t]);
@@ -66,7 +66,7 @@ public:
         lists_.resize(total + read_beyond);
         std::fill(lists_.end() - read_beyond, lists_.end(), std::byte{});
         workers.for_each_index(sizes.size(), [&](std::size_t p, std::size_t) {
-            std::memcpy(&lists_[offsets[p]], &parts[p * room], sizes[p]);
+            std::memcpy(&lists_[offsets[p]], &parts[p * most_bytes_of_part], sizes[p]);
             for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l)
                 begins_[l] += static_cast<std::uint32_t>(offsets[p]);
         });
@@ -79,11 +79,11 @@ public:
         const std::byte* at = &lists_[begins_[leaf]];
         to.count = static_cast<std::uint32_t>(*at);
         if (to.count == 0) return;
-        std::memcpy(to.places.data(), at + 1, sizeof to.places);
-        simd::unpack_sixteen(to.vertices.data(), at + header, width_, to.count);
+        std::memcpy(to.positions.data(), at + 1, sizeof to.positions);
+        simd::unpack_sixteen(to.vertices.data(), at + header, index_bytes_, to.count);
     }
 
-    /// Whether the list still has the corners of the leaf's triangles.
+    /// Whether the list still has the corners of the leaf's triangles: a mesh may renumber its vertices.
     [[nodiscard]] bool matches(const mesh& m, std::uint32_t leaf,
                                std::span<const std::uint32_t> of_leaf) const noexcept {
         vertex_list list;
@@ -92,20 +92,21 @@ public:
         if (list.count == 0) return same;
         for (std::size_t i = 0; i < of_leaf.size(); ++i)
             for (std::size_t c = 0; c < 3; ++c)
-                same &= list.vertices[list.places[c] >> 4 * i & 15U] == m.triangles[of_leaf[i]][c];
+                same &= list.vertices[list.positions[c] >> 4 * i & 15U] == m.triangles[of_leaf[i]][c];
         return same;
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(begins_, lists_); }
 
 private:
-    static constexpr std::size_t header = 1 + sizeof vertex_list::places;
+    static constexpr std::size_t header = 1 + sizeof vertex_list::positions;
     static constexpr std::size_t read_beyond = 64;
     static constexpr std::size_t most_bytes = 0xffffffff;
     static constexpr std::size_t ahead = 4;            // leaves whose triangles are prefetched
     static constexpr std::size_t least_shared = 1024;  // leaves that repay another thread
 
-    /// Writes the list of one leaf at `to`.
+    /// Writes the list of one leaf at `to`: the number of vertices, the position of each corner in the list, and the
+    /// indices of the vertices, ascending. More than sixteen vertices make an empty list.
     /// @returns the end of the list
     std::byte* write_list(const mesh& m, std::span<const std::uint32_t> of_leaf, std::byte* to) const {
         constexpr std::size_t corners = 3 * triangles;
@@ -118,7 +119,7 @@ private:
                 bits |= simd::bits_of_eight(compare(simd::load_eight<simd::eight_words>(&vertices[eight]), v)) << eight;
             return bits;
         };
-        // Finds all first occurrences before any place, so that no iteration depends on the previous one.
+        // Finds all first occurrences before any position, so that no iteration depends on the previous one.
         std::array<std::uint8_t, corners> first;
         std::uint32_t is_new = 0;
         for (std::size_t at = 0; at < corners; ++at) {
@@ -129,22 +130,22 @@ private:
         const auto count = static_cast<std::size_t>(std::popcount(is_new));
         *to = static_cast<std::byte>(count > vertex_list::most ? 0 : count);
         if (count > vertex_list::most) return to + 1;
-        std::array<std::uint32_t, corners> place;  // of first occurrences
+        std::array<std::uint32_t, corners> position;  // of first occurrences
         for (std::uint32_t left = is_new; left != 0; left &= left - 1) {
             const auto at = static_cast<std::size_t>(std::countr_zero(left));
             const std::uint32_t less = bits_where([](auto x, std::uint32_t v) { return x < v; }, vertices[at]);
-            place[at] = static_cast<std::uint32_t>(std::popcount(less & is_new));
-            std::memcpy(to + header + width_ * place[at], &vertices[at], width_);
+            position[at] = static_cast<std::uint32_t>(std::popcount(less & is_new));
+            std::memcpy(to + header + index_bytes_ * position[at], &vertices[at], index_bytes_);
         }
-        std::array<std::uint32_t, 3> places{};
-        for (std::size_t at = 0; at < corners; ++at) places[at % 3] |= place[first[at]] << 4 * (at / 3);
-        std::memcpy(to + 1, places.data(), sizeof places);
-        return to + header + width_ * count;
+        std::array<std::uint32_t, 3> positions{};
+        for (std::size_t at = 0; at < corners; ++at) positions[at % 3] |= position[first[at]] << 4 * (at / 3);
+        std::memcpy(to + 1, positions.data(), sizeof positions);
+        return to + header + index_bytes_ * count;
     }
 
     large_vector<std::uint32_t> begins_;  // by leaf
     large_vector<std::byte> lists_;
-    std::size_t width_ = 1;  // bytes of an index
+    std::size_t index_bytes_ = 1;
 };
 
 }  // namespace aabb

@@ -29,7 +29,8 @@ struct wide_node {
 
     [[nodiscard]] inline double step(std::size_t axis) const noexcept { return power_of_two(exponent[axis]); }
 
-    /// Planes are exact on this grid and rounding is monotone, so that no coordinate is rounded past a plane.
+    /// The factors that map coordinates to codes of this node. Planes are exact on this grid and rounding is monotone,
+    /// so that no coordinate is rounded past a plane.
     [[nodiscard]] inline code_grid grid() const noexcept {
         code_grid g;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -62,7 +63,7 @@ private:
         return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52U);
     }
 
-    /// Encodes axis k with the finest grid on which all planes have codes.
+    /// Encodes axis k with the finest grid, by powers of two, on which all planes have codes, rounded outward.
     void encode_axis(std::span<const box> boxes, int k) noexcept {
         // In double, products with powers of 2 are exact, and so are their integer parts.
         simd::eight_doubles least = simd::eight_doubles{} + boxes[0].min[k];
@@ -88,8 +89,8 @@ private:
         store_codes(planes.upper[axis], last_code - (__builtin_elementwise_ceil(most * steps) - first));
     }
 
-    static inline void store_codes(quantized_aabbs::row& to, simd::eight_doubles whole) noexcept {
-        simd::store_eight(to.data(), simd::whole_bytes(__builtin_convertvector(whole, simd::eight_floats)));
+    static inline void store_codes(quantized_aabbs::row& to, simd::eight_doubles codes) noexcept {
+        simd::store_eight(to.data(), simd::whole_bytes(__builtin_convertvector(codes, simd::eight_floats)));
     }
 
     [[nodiscard]] inline float plane(std::size_t axis, int code) const noexcept {
@@ -101,10 +102,10 @@ private:
 static_assert(sizeof(wide_node) == 64);
 
 /// A tree with eight children per node, stored level by level, for `batched_walk`. Child i of node n on level l is node
-/// 8 n + i of level l - 1. On level 0 it is leaf 8 n + i, which has no node of its own and holds the triangles at
-/// places 8 (8 n + i) to 8 (8 n + i) + 7, as far as they exist. The highest level has one node. All nodes are in one
-/// array, level 0 first. A leaf's vertices come from the tree's vertex lists, if it has any. A tree that keeps fronts
-/// keeps pairs of leaves from query to query (`bvtt_front`).
+/// 8 n + i of level l - 1. On level 0 it is leaf 8 n + i, which has no node of its own and holds the triangles
+/// 8 (8 n + i) to 8 (8 n + i) + 7 of the order, as far as they exist. The highest level has one node. All nodes are in
+/// one array, level 0 first. A leaf's vertices come from the tree's vertex lists, if it has any. A tree that keeps
+/// fronts keeps pairs of leaves from query to query (`bvtt_front`).
 template <class T>
 concept WideTreePolicy =
     TreePolicy<T> && requires(const T built, std::size_t level, std::uint32_t index, vertex_list& list) {

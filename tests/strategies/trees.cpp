@@ -131,7 +131,7 @@ bool same_nodes(const implicit_tree& one, const implicit_tree& other) {
 }
 
 std::tuple<std::uint32_t, std::array<std::uint32_t, 3>, std::vector<std::uint32_t>> parts_of(const vertex_list& list) {
-    return {list.count, list.places, {list.vertices.begin(), list.vertices.begin() + list.count}};
+    return {list.count, list.positions, {list.vertices.begin(), list.vertices.begin() + list.count}};
 }
 
 }  // namespace
@@ -358,7 +358,7 @@ TEST_CASE("an implicit tree is packed alike by any number of threads, and anew")
             for (std::size_t i = 1; i < list.count; ++i) REQUIRE(list.vertices[i - 1] < list.vertices[i]);
             for (std::uint32_t i = 0; i < std::min(8U, m.triangle_count() - 8 * leaf); ++i)
                 for (std::size_t c = 0; c < 3; ++c)
-                    REQUIRE(list.vertices[list.places[c] >> 4 * i & 15U] ==
+                    REQUIRE(list.vertices[list.positions[c] >> 4 * i & 15U] ==
                             m.triangles[order.triangles[8 * leaf + i]][c]);
         }
         packed.pack(m, file_order_build().order(m));
