@@ -19,7 +19,8 @@ public:
 
     using leafless_layout::leafless_layout;
 
-    /// Lays out the nodes with planes, then those above two leaves, and encodes the planes of each two siblings.
+    /// Lays out the nodes with planes, then those above two leaves, which need none, and encodes the planes of each two
+    /// siblings as those that they do not inherit from their parent.
     void pack(std::span<const build_node> nodes) {
         const auto holds_leaves_only = [&](std::size_t i) {
             return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();

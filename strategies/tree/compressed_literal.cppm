@@ -17,11 +17,11 @@ public:
 
     using leafless_layout::leafless_layout;
 
-    /// Lays out the internal nodes, links children, and encodes each box relative to its parent's.
+    /// Lays out the internal nodes, the children of a node side by side behind it, links them, and encodes each box
+    /// relative to its parent's.
     void pack(std::span<const build_node> nodes) {
         nodes_.assign(nodes.size() / 2, {});
         symbols_.assign(nodes_.size(), 0);
-        // The internal children of a node are adjacent and stored behind it.
         std::vector<std::uint32_t> packed(nodes.size());
         std::uint32_t next = 1;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -105,7 +105,8 @@ private:
                 if (!holds_leaf(i, side)) encode_child(nodes_[i].child[side], exact[i], exact[nodes_[i].child[side]]);
     }
 
-    /// Picks the planes that make the smallest box.
+    /// Encodes a node: of its six planes, keeps the three that make the smallest box; the rest are its parent's.
+    /// @param bounds the exact box, which the decoded one replaces
     void encode_child(std::size_t at, const box& parent, box& bounds) noexcept {
         double least = std::numeric_limits<double>::infinity();
         box best = parent;

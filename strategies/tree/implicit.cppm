@@ -12,9 +12,9 @@ export namespace aabb {
 /// triangles keep the order of the mesh (`file_order`). Each leaf has a list of its vertices, which takes more memory
 /// than the rest and saves a tenth of the query time, or a third for large meshes. Nodes are walked in batches
 /// (`batched_walk`), or with `front=kept` not at all while the front of an earlier query is valid (`bvtt_front`). As a
-/// binary tree, node (height, index) has the triangles at places index * 2^height to (index + 1) * 2^height - 1; nodes
-/// below leaves have the leaf's box. A build chooses axes, not the number of triangles per side (`balanced_order`).
-/// When to use: for the fastest queries.
+/// binary tree, node (height, index) has the triangles index * 2^height to (index + 1) * 2^height - 1 of the order;
+/// nodes below leaves have the leaf's box. A build chooses axes, not the number of triangles per side
+/// (`balanced_order`). When to use: for the fastest queries.
 class implicit_tree {
 public:
     static constexpr std::string_view name = "implicit";
@@ -48,11 +48,11 @@ public:
     template <class Triangle, class Counters>
     using walk = front_walk<implicit_tree, Triangle, Counters>;
 
-    /// Vertices are fetched if there are few queries and the meshes are not large. Vertex lists take about half as long
-    /// to write as `sah` takes longer than `median`. They speed up a query by a tenth if the two meshes have 150,000
-    /// triangles, whose vertices exceed the L2 cache, by less for fewer triangles, and hardly if these fit into it.
-    /// Fronts are kept over several frames, unless a frame has more pairs of objects than fronts: these would evict
-    /// each other.
+    /// Chooses how vertices are read and whether fronts are kept. Vertices are fetched if there are few queries and the
+    /// meshes are not large. Vertex lists take about half as long to write as `sah` takes longer than `median`. They
+    /// speed up a query by a tenth if the two meshes have 150,000 triangles, whose vertices exceed the L2 cache, and by
+    /// less for fewer. Fronts are kept over several frames, unless a frame has more pairs of objects than fronts: these
+    /// would evict each other.
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         constexpr double most_fetched_of_two = 200'000;
         constexpr std::size_t least_of_front = least_leaves_of_front * balanced_order::leaf_triangles;
@@ -87,12 +87,12 @@ public:
     void pack(const mesh& m, balanced_order order) {
         worker_threads workers(order.threads);
         triangles_ = static_cast<std::uint32_t>(order.triangles.size());
-        bits_ = 0;
-        places_.clear();
+        index_bits_ = 0;
+        packed_indices_.clear();
         if (!std::ranges::is_sorted(order.triangles)) {
-            bits_ = std::bit_width(triangles_ - 1);
-            places_.resize((std::size_t{triangles_} * bits_ + 7) / 8 + read_beyond);
-            std::fill(places_.end() - read_beyond, places_.end(), std::byte{});
+            index_bits_ = std::bit_width(triangles_ - 1);
+            packed_indices_.resize((std::size_t{triangles_} * index_bits_ + 7) / 8 + read_beyond);
+            std::fill(packed_indices_.end() - read_beyond, packed_indices_.end(), std::byte{});
             workers.for_each_range(triangles_, least_shared_triangles, [&](std::size_t begin, std::size_t end) {
                 pack_triangle_indices(order.triangles, begin, end);
             });
@@ -125,7 +125,7 @@ public:
         worker_threads single_thread(1);
         if (!same) {  // the mesh's vertices were renumbered
             std::vector<std::uint32_t> order(triangles_);
-            for (std::uint32_t place = 0; place < triangles_; ++place) order[place] = triangle_at(place);
+            for (std::uint32_t i = 0; i < triangles_; ++i) order[i] = triangle_at(i);
             vertices_ = vertex_lists(m, order, single_thread);
         }
         encode_nodes(merge_in_eights(boxes), single_thread);
@@ -141,12 +141,13 @@ public:
         return {skip_single_children({at.height - 1, 2 * at.index}),
                 skip_single_children({at.height - 1, 2 * at.index + 1})};
     }
-    /// Merges the boxes of the children, in the nearest level of wide nodes, that the binary node consists of.
+    /// The box of a binary node, which is not stored: merges those children of a wide node that the binary node
+    /// consists of. Wide nodes are every third level of the binary tree.
     [[nodiscard]] inline box bounds(const cursor& at) const noexcept {
         const std::uint32_t height = std::max(at.height, leaf_height) - leaf_height;  // above the leaves
         const std::uint32_t index = at.height < leaf_height ? at.index >> (leaf_height - at.height) : at.index;
         const std::size_t level = std::min<std::size_t>(height / 3, levels() - 1);
-        const auto above = static_cast<std::uint32_t>(height - 3 * level);  // the node is 2^above children
+        const auto above = static_cast<std::uint32_t>(height - 3 * level);  // the node consists of 2^above children
         const std::uint32_t first = index << above;
         const wide_node& n = nodes_[begins_[level] + first / wide_node::most_children];
         const std::uint32_t begin = first % wide_node::most_children;
@@ -157,17 +158,18 @@ public:
     }
     [[nodiscard]] inline std::uint32_t triangle(const cursor& at) const noexcept { return triangle_at(at.index); }
     [[nodiscard]] tree_bytes bytes() const noexcept {
-        return {bytes_of(nodes_), bytes_of(places_) + vertices_.bytes()};
+        return {bytes_of(nodes_), bytes_of(packed_indices_) + vertices_.bytes()};
     }
 
     [[nodiscard]] inline std::size_t levels() const noexcept { return levels_; }
     [[nodiscard]] inline const wide_node* level(std::size_t l) const noexcept { return &nodes_[begins_[l]]; }
-    [[nodiscard]] inline std::uint32_t triangle_at(std::uint32_t place) const noexcept {
-        if (bits_ == 0) return place;
-        const std::size_t bit = std::size_t{place} * bits_;
+    /// The index in the mesh of the triangle that comes at `i` in the order of the leaves.
+    [[nodiscard]] inline std::uint32_t triangle_at(std::uint32_t i) const noexcept {
+        if (index_bits_ == 0) return i;
+        const std::size_t bit = std::size_t{i} * index_bits_;
         std::uint64_t word = 0;
-        std::memcpy(&word, &places_[bit / 8], sizeof word);
-        return static_cast<std::uint32_t>(word >> bit % 8 & ((std::uint64_t{1} << bits_) - 1));
+        std::memcpy(&word, &packed_indices_[bit / 8], sizeof word);
+        return static_cast<std::uint32_t>(word >> bit % 8 & ((std::uint64_t{1} << index_bits_) - 1));
     }
 
     [[nodiscard]] inline bool keeps_fronts() const noexcept { return config_.front == front_choice::kept; }
@@ -177,7 +179,7 @@ public:
     }
     /// Prefetches the indices of the leaf's triangles.
     inline void prefetch_triangles(std::uint32_t leaf) const noexcept {
-        if (bits_ != 0) __builtin_prefetch(&places_[std::size_t{leaf} * bits_]);
+        if (index_bits_ != 0) __builtin_prefetch(&packed_indices_[std::size_t{leaf} * index_bits_]);
     }
     inline void read_vertices(std::uint32_t leaf, vertex_list& list) const noexcept {
         list.count = 0;
@@ -196,20 +198,21 @@ private:
         return (count + wide_node::most_children - 1) / wide_node::most_children;
     }
 
-    /// Eight indices fill whole bytes, so that threads write disjoint bytes.
+    /// Writes a range of triangle indices in as many bits each as the largest needs. Ranges begin at multiples of eight
+    /// indices, which fill whole bytes, so that threads write disjoint bytes.
     void pack_triangle_indices(std::span<const std::uint32_t> order, std::size_t begin, std::size_t end) noexcept {
-        std::byte* to = &places_[begin * bits_ / 8];
+        std::byte* to = &packed_indices_[begin * index_bits_ / 8];
         std::uint64_t unwritten = 0;
         std::size_t bits = 0;
-        const auto write = [&] {
+        const auto write_byte = [&] {
             *to++ = static_cast<std::byte>(unwritten);
             unwritten >>= 8U;
         };
-        for (std::size_t place = begin; place < end; ++place) {
-            unwritten |= std::uint64_t{order[place]} << bits;
-            for (bits += bits_; bits >= 8; bits -= 8) write();
+        for (const std::uint32_t triangle : order.subspan(begin, end - begin)) {
+            unwritten |= std::uint64_t{triangle} << bits;
+            for (bits += index_bits_; bits >= 8; bits -= 8) write_byte();
         }
-        if (bits > 0) write();
+        if (bits > 0) write_byte();
     }
 
     /// Replaces a node with one child by that child.
@@ -252,10 +255,10 @@ private:
 
     config config_;
     std::uint32_t triangles_ = 0;
-    std::size_t bits_ = 0;  // per triangle index; 0 if the index is the place
+    std::size_t index_bits_ = 0;  // per triangle index; 0 if the order of the leaves is that of the mesh
     large_vector<wide_node> nodes_;
-    large_vector<std::byte> places_;  // the triangle index at each place
-    vertex_lists vertices_;           // empty if vertices are fetched
+    large_vector<std::byte> packed_indices_;  // of the triangles, in the order of the leaves
+    vertex_lists vertices_;                   // empty if vertices are fetched
     std::size_t levels_ = 0;
     std::array<std::size_t, most_levels> begins_{};
 };

@@ -31,7 +31,8 @@ public:
     quantized_tree() = default;
     explicit quantized_tree(const config& c) : leafless_layout(c), planes_(c.bits) {}
 
-    /// Lays out the nodes in one pass, and encodes them in a second one, parents first.
+    /// Lays out the nodes in one pass, and encodes them in a second one, parents first, since the codes of children are
+    /// relative to the decoded box of their parent.
     /// @throws input_error if the nodes take more than 2 GiB
     void pack(std::span<const build_node> nodes) {
         const auto holds_leaves_only = [&](std::size_t i) {
@@ -63,8 +64,8 @@ public:
                 continue;
             }
             set_word(at, packed[nodes[left].is_leaf() ? left : right]);
-            bytes_[at + symbol_place] = static_cast<std::byte>((nodes[left].is_leaf() ? leaf_flag(0) : 0) |
-                                                               (nodes[right].is_leaf() ? leaf_flag(1) : 0));
+            bytes_[at + symbol_offset] = static_cast<std::byte>((nodes[left].is_leaf() ? leaf_flag(0) : 0) |
+                                                                (nodes[right].is_leaf() ? leaf_flag(1) : 0));
             const auto boxes = encode(at, decoded[i], nodes[left].bounds, nodes[right].bounds);
             decoded[left] = boxes[0];
             decoded[right] = boxes[1];
@@ -74,13 +75,13 @@ public:
     /// Recomputes all boxes bottom-up, and encodes them again from the root down, since codes are relative to parents.
     void refit(const mesh& m, std::vector<box>& boxes) {
         const auto bounds_at = [&](const child& c) {
-            return c.is_leaf ? bounds_of(m.triangle(c.index)) : boxes[place(c.index)];
+            return c.is_leaf ? bounds_of(m.triangle(c.index)) : boxes[box_index(c.index)];
         };
-        // The reverse pass is bottom-up, but cannot see where nodes of different sizes begin: a node's place holds its
-        // offset until it holds its box.
-        boxes.assign(place(bytes_.size()) + 1, empty_box());
+        // The reverse pass is bottom-up, but cannot see where nodes of different sizes begin: a node's box holds the
+        // offset of its first byte until it is computed.
+        boxes.assign(box_index(bytes_.size()) + 1, empty_box());
         for (std::size_t at = 0; at < bytes_.size(); at += size_at(at))
-            boxes[place(at)].min[0] = static_cast<float>(at % pair_bytes);
+            boxes[box_index(at)].min[0] = static_cast<float>(at % pair_bytes);
         for (std::size_t i = boxes.size(); i-- > 0;) {
             if (boxes[i] == empty_box()) continue;
             const auto [left, right] = children_at(i * pair_bytes + static_cast<std::size_t>(boxes[i].min[0]));
@@ -91,9 +92,9 @@ public:
         for (std::size_t at = 0; at < bytes_.size(); at += size_at(at)) {
             if (is_pair(at)) continue;
             const auto [left, right] = children_at(at);
-            const auto decoded = encode(at, boxes[place(at)], bounds_at(left), bounds_at(right));
-            if (!left.is_leaf) boxes[place(left.index)] = decoded[0];
-            if (!right.is_leaf) boxes[place(right.index)] = decoded[1];
+            const auto decoded = encode(at, boxes[box_index(at)], bounds_at(left), bounds_at(right));
+            if (!left.is_leaf) boxes[box_index(left.index)] = decoded[0];
+            if (!right.is_leaf) boxes[box_index(right.index)] = decoded[1];
         }
     }
 
@@ -117,8 +118,8 @@ private:
     static constexpr std::uint32_t pair_bit = 0x80000000;
     static constexpr std::size_t word_bytes = 4;
     static constexpr std::size_t pair_bytes = 2 * word_bytes;
-    static constexpr std::size_t symbol_place = word_bytes;
-    static constexpr std::size_t codes_place = symbol_place + 1;
+    static constexpr std::size_t symbol_offset = word_bytes;
+    static constexpr std::size_t codes_offset = symbol_offset + 1;
     static_assert(quantized_planes::read_beyond <= pair_bytes);
 
     struct child {
@@ -126,7 +127,7 @@ private:
         bool is_leaf;
     };
 
-    [[nodiscard]] inline std::size_t record_bytes() const noexcept { return codes_place + planes_.bytes(); }
+    [[nodiscard]] inline std::size_t record_bytes() const noexcept { return codes_offset + planes_.bytes(); }
     [[nodiscard]] inline std::uint32_t word(std::size_t at) const noexcept {
         std::uint32_t value = 0;
         std::memcpy(&value, &bytes_[at], sizeof value);
@@ -138,33 +139,38 @@ private:
         return is_pair(at) ? pair_bytes : record_bytes();
     }
     [[nodiscard]] inline unsigned symbol_at(std::size_t at) const noexcept {
-        return std::to_integer<unsigned>(bytes_[at + symbol_place]);
+        return std::to_integer<unsigned>(bytes_[at + symbol_offset]);
     }
-    /// Nodes have at least 8 bytes, so that no two begin in the same group of eight.
-    [[nodiscard]] static std::size_t place(std::size_t at) noexcept { return at / pair_bytes; }
+    /// The index of a node's box in a refit: nodes have at least 8 bytes, so that no two begin in the same eight.
+    [[nodiscard]] static std::size_t box_index(std::size_t at) noexcept { return at / pair_bytes; }
 
-    /// The children of the node at a byte: the left one follows it, unless it is a leaf.
+    /// The children of the node at a byte, which stores one index: of the right child, or of the left one if that is a
+    /// leaf. The other child follows the node, or, above two leaves, its index is the second word.
     [[nodiscard]] inline std::array<child, 2> children_at(std::size_t at) const noexcept {
         const std::uint32_t first = word(at);
-        if (first & pair_bit) return {child{first & ~pair_bit, true}, child{word(at + word_bytes), true}};
+        if (first & pair_bit)
+            return {child{.index = first & ~pair_bit, .is_leaf = true},
+                    child{.index = word(at + word_bytes), .is_leaf = true}};
         const auto next = static_cast<std::uint32_t>(at + record_bytes());
         const unsigned symbol = symbol_at(at);
-        if (symbol & leaf_flag(0)) return {child{first, true}, child{next, false}};
-        return {child{next, false}, child{first, (symbol & leaf_flag(1)) != 0}};
+        if (symbol & leaf_flag(0))
+            return {child{.index = first, .is_leaf = true}, child{.index = next, .is_leaf = false}};
+        return {child{.index = next, .is_leaf = false}, child{.index = first, .is_leaf = (symbol & leaf_flag(1)) != 0}};
     }
 
-    /// Decodes the children's boxes.
+    /// Decodes the children's boxes from their parent's.
     [[nodiscard]] inline std::array<box, 2> decode(std::size_t at, const box& parent) const noexcept {
-        return decode_siblings(parent, planes_.decode(parent, &bytes_[at + codes_place]), symbol_at(at));
+        return decode_siblings(parent, planes_.decode(parent, &bytes_[at + codes_offset]), symbol_at(at));
     }
 
-    /// Writes the planes and the symbol, except its leaf flags. @return the children's decoded boxes.
+    /// Writes the planes of a node's children and their symbol, except its leaf flags.
+    /// @returns the children's decoded boxes, which are slightly larger
     std::array<box, 2> encode(std::size_t at, const box& parent, const box& left, const box& right) noexcept {
         sibling_planes planes{};
         auto symbol = static_cast<std::uint8_t>(symbol_at(at));
         encode_siblings(left, right, planes, symbol);
-        bytes_[at + symbol_place] = static_cast<std::byte>(symbol);
-        planes_.encode(parent, planes, &bytes_[at + codes_place]);
+        bytes_[at + symbol_offset] = static_cast<std::byte>(symbol);
+        planes_.encode(parent, planes, &bytes_[at + codes_offset]);
         return decode(at, parent);
     }
 

@@ -30,6 +30,7 @@ public:
     /// The size of six codes.
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
+    /// Packs the codes of the six planes, each the greatest number of steps inward that does not cut a child.
     /// @param parent the decoded box of the parent, which contains both children
     void encode(const box& parent, const sibling_planes& planes, std::byte* codes) const noexcept {
         std::array<std::uint64_t, 2> words{};
@@ -37,8 +38,9 @@ public:
             const float step = step_on(parent, k);
             const float low = planes.own[static_cast<std::size_t>(k)];
             const float high = planes.own[static_cast<std::size_t>(k + 3)];
-            words[0] |= greatest([&](unsigned q) { return decoded(parent.min[k], q, step) <= low; }) << k * bits_;
-            words[1] |= greatest([&](unsigned q) { return decoded(parent.max[k], q, -step) >= high; }) << k * bits_;
+            words[0] |= greatest_code([&](unsigned q) { return decoded(parent.min[k], q, step) <= low; }) << k * bits_;
+            words[1] |= greatest_code([&](unsigned q) { return decoded(parent.max[k], q, -step) >= high; })
+                        << k * bits_;
         }
         // The codes of the upper planes follow those of the lower planes, possibly within a byte.
         std::array<std::byte, 2 * sizeof(std::uint64_t)> packed{};
@@ -81,7 +83,7 @@ private:
 
     /// Bisects for the greatest code that fits; 0 fits, and so does every code below one that fits.
     template <class Fits>
-    [[nodiscard]] std::uint64_t greatest(Fits fits) const noexcept {
+    [[nodiscard]] std::uint64_t greatest_code(Fits fits) const noexcept {
         unsigned code = 0;
         for (unsigned bit = 1U << (bits_ - 1); bit != 0; bit >>= 1)
             if (fits(code | bit)) code |= bit;
