@@ -62,6 +62,7 @@ template <class Make>
 /// A statically composed broad phase behind the interface of a stage.
 template <class... Parts>
 struct global_search_of {
+    /// Makes the stage from one choice per part, in order, with counters of work or without.
     [[nodiscard]] static std::unique_ptr<global_stage> make(std::span<const strategy_choice> choices,
                                                             instrumentation wanted) {
         return with_counters(wanted, [&]<class Counters>(Counters) -> std::unique_ptr<global_stage> {
@@ -79,6 +80,7 @@ using global_search_rows = std::vector<
 /// A statically composed narrow phase, whose tree builder is chosen separately.
 template <class... Parts>
 struct local_detection_of {
+    /// Makes the stage from one choice per part, in order, with counters of work or without.
     [[nodiscard]] static std::unique_ptr<local_stage> make(std::span<const strategy_choice> choices,
                                                            tree_builder builder, instrumentation wanted) {
         return with_counters(wanted, [&]<class Counters>(Counters) -> std::unique_ptr<local_stage> {
@@ -92,7 +94,7 @@ struct local_detection_of {
 using local_detection_rows = std::vector<row<std::unique_ptr<local_stage> (*)(
     std::span<const strategy_choice> choices, tree_builder builder, instrumentation wanted)>>;
 
-/// A row for every combination of one strategy per list.
+/// A table row for every combination of one strategy per list, also for those that a strategy rejects.
 /// @tparam Stage `Stage<Parts...>::make` makes the stage from these strategies
 template <class Rows, template <class... Parts> class Stage, class... Lists>
 [[nodiscard]] Rows rows_of(Lists... lists) {
@@ -106,7 +108,7 @@ template <class Rows, template <class... Parts> class Stage, class... Lists>
     return rows;
 }
 
-/// Concatenates the rows of these functions.
+/// Concatenates the rows of these functions, one per generated unit.
 template <class Rows>
 [[nodiscard]] Rows joined(std::initializer_list<Rows (*)()> functions) {
     Rows rows;
@@ -117,7 +119,7 @@ template <class Rows>
     return rows;
 }
 
-/// The result of `make` for the named strategy with its settings.
+/// The result of `make` for the strategy with the name and settings of the choice, or an empty one.
 template <class Result, class... Strategies, class Make>
 [[nodiscard]] Result make_named(type_list<Strategies...>, const strategy_choice& choice, Make make) {
     Result result{};

@@ -45,7 +45,7 @@ void require_known(const composition& c, stage of) {
 /// The choices of the kinds that are compiled together, in their order.
 std::vector<strategy_choice> choices_of(const composition& c, stage of) {
     std::vector<strategy_choice> choices;
-    for (const strategy_kind kind : kinds_of(of, false)) choices.push_back(c[kind]);
+    for (const strategy_kind kind : kinds_of(of, /*apart=*/false)) choices.push_back(c[kind]);
     return choices;
 }
 
@@ -64,17 +64,18 @@ const auto& accepted_row(const Rows& rows, const composition& c, stage of) {
     return row;
 }
 
+/// All accepted combinations of the strategies that are compiled together; those compiled alone vary one at a time.
 template <class Rows>
 std::vector<composition> every_composition(const Rows& rows, stage of) {
     std::vector<composition> compositions;
-    const std::vector<strategy_kind> kinds = kinds_of(of, false);
+    const std::vector<strategy_kind> kinds = kinds_of(of, /*apart=*/false);
     for (const auto& row : rows) {
         if (!row.make) continue;
         composition& c = compositions.emplace_back();
         for (std::size_t i = 0; i < kinds.size(); ++i) c[kinds[i]] = {std::string(row.names[i]), {}};
     }
     // Strategies that are compiled alone are combined with the default and with the first strategies of other kinds.
-    for (const strategy_kind kind : kinds_of(of, true))
+    for (const strategy_kind kind : kinds_of(of, /*apart=*/true))
         for (const strategy_info& info : strategies(kind)) {
             if (info.name == info_of(kind).fallback) continue;
             composition c;
@@ -124,6 +125,7 @@ std::vector<std::string> strategy_names(strategy_kind kind) {
     return names;
 }
 
+/// Rejects an unknown name, naming the kind to which it belongs, a parameter given twice, and invalid settings.
 void require_known(strategy_kind kind, const strategy_choice& choice) {
     const std::vector<std::string> names = strategy_names(kind);
     if (std::ranges::find(names, choice.name) == names.end()) {
@@ -145,6 +147,8 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
     strategy_of(kind, choice).check(choice);
 }
 
+/// Completes the named strategies of each stage: if any of them is compiled together with others, with the strategies
+/// usual beside named ones (`default_with`) if the stage accepts these; else with the defaults (`fallback`).
 composition::composition(const named_strategies& named) {
     const auto complete = [&](stage of, std::string_view strategy_kind_info::* usual) {
         for (const strategy_kind kind : kinds_of(of))
@@ -152,15 +156,16 @@ composition::composition(const named_strategies& named) {
     };
     for (const stage of : {stage::global_search, stage::local_detection}) {
         complete(of, &strategy_kind_info::default_with);
-        const bool any =
-            std::ranges::any_of(kinds_of(of, false), [&](strategy_kind kind) { return named[kind].has_value(); });
-        if (any && rejection_of(*this, of).empty()) continue;
-        const composition plain = *this;
+        const bool any_named = std::ranges::any_of(kinds_of(of, /*apart=*/false),
+                                                   [&](strategy_kind kind) { return named[kind].has_value(); });
+        if (any_named && rejection_of(*this, of).empty()) continue;
+        const composition with_usual = *this;
         complete(of, &strategy_kind_info::fallback);
-        if (any && !rejection_of(*this, of).empty()) *this = plain;
+        if (any_named && !rejection_of(*this, of).empty()) *this = with_usual;
     }
 }
 
+/// The strategies joined by " + ", without the defaults of kinds that are compiled alone.
 std::string text_in_line(const by_kind<std::string>& choices, std::span<const strategy_kind> kinds) {
     std::string text;
     for (const strategy_kind kind : kinds) {

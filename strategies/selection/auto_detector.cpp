@@ -4,6 +4,7 @@ namespace aabb {
 
 namespace {
 
+/// The kind of this name; throws input_error with the nearest name if there is none.
 strategy_kind kind_named(std::string_view name) {
     std::vector<std::string> names;
     for (const strategy_kind kind : strategy_kinds) {
@@ -13,7 +14,7 @@ strategy_kind kind_named(std::string_view name) {
     throw input_error(unknown_name("kind of strategy", name, names));
 }
 
-/// Parses KIND=NAME:parameter=value,… for each text.
+/// Parses KIND=NAME:parameter=value,… for each text, and rejects a kind that is named twice.
 named_strategies parse_choices(const std::vector<std::string>& texts) {
     named_strategies named;
     for (const std::string& text : texts) {

@@ -10,7 +10,8 @@ struct fitting {
     scene_fit fit;
 };
 
-/// Considers all strategies of a kind that is compiled alone; otherwise only the one in the composition.
+/// Finds the first strategy of a kind that states to serve the scene. Of kinds that are compiled together, considers
+/// only the strategy in the composition, since another might be rejected beside the others.
 fitting fitting_of(strategy_kind kind, const composition& completed, const scene_traits& scene) {
     fitting last;
     for (const strategy_info& info : strategies(kind)) {
@@ -28,7 +29,7 @@ fitting fitting_of(strategy_kind kind, const composition& completed, const scene
 /// usual beside the named ones are tried, and then the first accepted combination.
 composition completed(const named_strategies& named) {
     const composition usual(named);
-    composition whole;
+    composition result;
     composition fastest;
     if (const std::optional<strategy_choice>& sort = named[strategy_kind::sort];
         sort && sort->name != fastest[strategy_kind::sort].name)
@@ -36,14 +37,14 @@ composition completed(const named_strategies& named) {
     for (const stage of : {stage::global_search, stage::local_detection}) {
         const auto take = [&](const composition& others) {
             for (const strategy_kind kind : kinds_of(of))
-                if (named[kind] || !info_of(kind).apart) whole[kind] = named[kind].value_or(others[kind]);
-            return rejection_of(whole, of).empty();
+                if (named[kind] || !info_of(kind).apart) result[kind] = named[kind].value_or(others[kind]);
+            return rejection_of(result, of).empty();
         };
         if (take(fastest) || take(usual) || std::ranges::any_of(every_composition(of), take)) continue;
         // The named strategies are rejected in any combination.
         take(usual);
     }
-    return whole;
+    return result;
 }
 
 /// The rule for a strategy that does not depend on the scene, followed by its summary.
@@ -71,6 +72,8 @@ composition complete_composition(const named_strategies& named) {
     return any ? completed(named) : composition();
 }
 
+/// Selects the strategy, of each kind that is not named and depends on the scene, that serves the scene, or the
+/// default.
 void select_for_scene(composition& completed, const named_strategies& named, const scene_traits& scene) {
     scene_traits traits = scene;
     for (const strategy_kind kind : strategy_kinds) {
@@ -86,22 +89,24 @@ void select_for_scene(composition& completed, const named_strategies& named, con
 }
 
 composition select_composition(const named_strategies& named, const scene_traits& scene) {
-    composition whole = complete_composition(named);
-    select_for_scene(whole, named, scene);
-    return whole;
+    composition selected = complete_composition(named);
+    select_for_scene(selected, named, scene);
+    return selected;
 }
 
+/// Selects the composition for the scene, and states for each kind the rule that led to its strategy.
 std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_traits& scene) {
-    const composition whole = select_composition(named, scene);
+    const composition selected_composition = select_composition(named, scene);
     scene_traits traits = scene;
-    traits.exact_triangles = is_exact(whole, stage::local_detection);
+    traits.exact_triangles = is_exact(selected_composition, stage::local_detection);
     std::vector<selected_strategy> selected;
     for (const strategy_kind kind : strategy_kinds) {
         std::string rule;
-        for (const statement& reason : fitting_of(kind, whole, traits).fit.because)
+        for (const statement& reason : fitting_of(kind, selected_composition, traits).fit.because)
             rule += (rule.empty() ? "" : "; ") + to_text(reason);
-        if (rule.empty()) rule = usual_rule(kind, whole[kind]);
-        selected.push_back({kind, whole[kind], named[kind] ? "as named" : rule});
+        const strategy_choice& choice = selected_composition[kind];
+        if (rule.empty()) rule = usual_rule(kind, choice);
+        selected.push_back({kind, choice, named[kind] ? "as named" : rule});
     }
     return selected;
 }

@@ -7,15 +7,15 @@ namespace aabb {
 
 namespace {
 
-constexpr std::uint32_t whole = 0xffffffff;
+constexpr std::uint32_t no_part = 0xffffffff;
 
 struct part {
-    mesh own;
-    std::vector<std::uint32_t> vertices;   // the mesh's vertices, by the part's vertex
+    mesh own_mesh;
+    std::vector<std::uint32_t> vertices;   // of the scene's mesh, by vertex of the part
     std::vector<std::uint32_t> triangles;  // the same for triangles
 };
 
-/// Copies triangles of a mesh, with the vertices that they use in the same order.
+/// Copies triangles of a mesh, with the vertices that they use in the same order, to a mesh of their own.
 part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
     assert(!triangles.empty());
     part result;
@@ -25,15 +25,15 @@ part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
     const auto repeated = std::ranges::unique(result.vertices);
     result.vertices.erase(repeated.begin(), repeated.end());
     result.vertices.shrink_to_fit();
-    const auto own_number = [&](std::uint32_t vertex) {
+    const auto own_index = [&](std::uint32_t vertex) {
         return static_cast<std::uint32_t>(std::ranges::lower_bound(result.vertices, vertex) - result.vertices.begin());
     };
-    result.own.vertices.reserve(result.vertices.size());
-    for (const std::uint32_t v : result.vertices) result.own.vertices.push_back(m.vertices[v]);
-    result.own.triangles.reserve(triangles.size());
+    result.own_mesh.vertices.reserve(result.vertices.size());
+    for (const std::uint32_t v : result.vertices) result.own_mesh.vertices.push_back(m.vertices[v]);
+    result.own_mesh.triangles.reserve(triangles.size());
     for (const std::uint32_t t : triangles) {
         const auto& [a, b, c] = m.triangles[t];
-        result.own.triangles.push_back({own_number(a), own_number(b), own_number(c)});
+        result.own_mesh.triangles.push_back({own_index(a), own_index(b), own_index(c)});
     }
     result.triangles = std::move(triangles);
     return result;
@@ -41,6 +41,8 @@ part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
 
 class divided_scene final : public scene_parts {
 public:
+    /// Makes a model of each part, or of the mesh if it is not divided, and a piece of each model of an object's mesh:
+    /// pieces are the objects of the broad phase.
     divided_scene(const mesh_scene& scene, mesh_division division) : scene_(scene) {
         division.resize(scene.meshes.size());
         std::size_t parts = 0;
@@ -48,15 +50,16 @@ public:
         parts_.reserve(parts);  // models keep pointers to them
         std::vector<std::uint32_t> first_model;
         for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-            triangles_.push_back(scene.meshes[m].triangles.size());
+            triangle_counts_.push_back(scene.meshes[m].triangles.size());
             first_model.push_back(models());
             if (division[m].size() < 2) {
-                models_.push_back({m, whole, bounds_of(scene.meshes[m])});
+                models_.push_back({m, no_part, bounds_of(scene.meshes[m])});
                 continue;
             }
             for (std::vector<std::uint32_t>& triangles : division[m]) {
                 parts_.push_back(part_of(scene.meshes[m], std::move(triangles)));
-                models_.push_back({m, static_cast<std::uint32_t>(parts_.size() - 1), bounds_of(parts_.back().own)});
+                models_.push_back(
+                    {m, static_cast<std::uint32_t>(parts_.size() - 1), bounds_of(parts_.back().own_mesh)});
             }
         }
         first_model.push_back(models());
@@ -75,20 +78,21 @@ public:
     [[nodiscard]] std::uint32_t models() const noexcept override { return static_cast<std::uint32_t>(models_.size()); }
     [[nodiscard]] const mesh& mesh_of(std::uint32_t model) const noexcept override {
         const auto& [source, part, bounds] = models_[model];
-        return part == whole ? scene_.meshes[source] : parts_[part].own;
+        return part == no_part ? scene_.meshes[source] : parts_[part].own_mesh;
     }
     [[nodiscard]] bool deforms(std::uint32_t model) const override { return scene_.deforms(models_[model].source); }
+    /// Copies the vertices of deforming meshes to their parts, and recomputes the bounds.
     void follow() override {
         for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m)
-            if (scene_.deforms(m)) require_still_valid(scene_.meshes[m], triangles_[m]);
-        for (auto& [source, number, bounds] : models_) {
+            if (scene_.deforms(m)) require_still_valid(scene_.meshes[m], triangle_counts_[m]);
+        for (auto& [source, part_index, bounds] : models_) {
             if (!scene_.deforms(source)) continue;
-            if (number != whole) {
-                part& own = parts_[number];
-                for (std::size_t v = 0; v < own.vertices.size(); ++v)
-                    own.own.vertices[v] = scene_.meshes[source].vertices[own.vertices[v]];
+            if (part_index != no_part) {
+                part& p = parts_[part_index];
+                for (std::size_t v = 0; v < p.vertices.size(); ++v)
+                    p.own_mesh.vertices[v] = scene_.meshes[source].vertices[p.vertices[v]];
             }
-            bounds = bounds_of(number == whole ? scene_.meshes[source] : parts_[number].own);
+            bounds = bounds_of(part_index == no_part ? scene_.meshes[source] : parts_[part_index].own_mesh);
         }
     }
     void place(std::span<const pose> poses) override {
@@ -112,15 +116,16 @@ public:
         }
     }
     [[nodiscard]] std::size_t bytes() const noexcept override {
-        std::size_t total = bytes_of(triangles_, parts_, models_, pieces_, boxes_);
-        for (const part& p : parts_) total += bytes_of(p.own.vertices, p.own.triangles, p.vertices, p.triangles);
+        std::size_t total = bytes_of(triangle_counts_, parts_, models_, pieces_, boxes_);
+        for (const part& p : parts_)
+            total += bytes_of(p.own_mesh.vertices, p.own_mesh.triangles, p.vertices, p.triangles);
         return total;
     }
 
 private:
     struct model {
         std::uint32_t source;  // mesh of the scene
-        std::uint32_t part;    // or `whole`
+        std::uint32_t part;    // or `no_part`
         box bounds;
     };
     struct piece {
@@ -131,11 +136,11 @@ private:
     /// Maps a triangle of the model to the scene's mesh.
     [[nodiscard]] std::uint32_t triangle_of(std::uint32_t model, std::uint32_t triangle) const noexcept {
         const std::uint32_t part = models_[model].part;
-        return part == whole ? triangle : parts_[part].triangles[triangle];
+        return part == no_part ? triangle : parts_[part].triangles[triangle];
     }
 
     const mesh_scene& scene_;
-    std::vector<std::size_t> triangles_;  // how many, by mesh of the scene
+    std::vector<std::size_t> triangle_counts_;  // by mesh of the scene
     std::vector<part> parts_;
     std::vector<model> models_;
     std::vector<piece> pieces_;
