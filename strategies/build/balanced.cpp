@@ -80,9 +80,8 @@ private:
         order_.bounds[p.begin / leaf_triangles] = p.bounds;
     }
 
-    /// Splits a part in two by the centres of its items, and moves all its items to the other array. The left half gets
-    /// the greatest power of two below the part's size: an implicit tree has no indices, so that all its subtrees but
-    /// the last are full.
+    /// Splits a part by the centres of its items, and moves these to the other array. The left side gets the greatest
+    /// power of two below the part's size, since a tree without indices must have full subtrees except the last.
     [[nodiscard]] std::array<part, 2> split(const part& p, worker_threads& workers) {
         const std::size_t left_count = std::bit_ceil(p.size()) / 2;
         const std::size_t middle = p.begin + left_count;
@@ -134,8 +133,8 @@ private:
         return best;
     }
 
-    /// Splits few items and keeps the order within each side. If ties, at 16 bits, make the left side too large, its
-    /// last items by their exact centres go to the right.
+    /// Splits few items and keeps the order within each side. Exact centres resolve ties, which make the left too
+    /// large.
     void split_few(std::span<const balanced_item> from, std::span<balanced_item> to, const box& bounds,
                    std::size_t left_count) const noexcept {
         auto [axis, left_mask] = best_split(few_items(from), bounds, left_count);
@@ -161,8 +160,7 @@ private:
         return std::uint64_t{1} << last;
     }
 
-    /// The axis along which many items are split: the longest one, or if the rule is least area, that with the least
-    /// cost, estimated from a sample.
+    /// The axis along which to split many items: the longest, or by the other rule that with the least estimated cost.
     [[nodiscard]] std::size_t best_axis(std::span<const balanced_item> items, const box& bounds,
                                         std::size_t left_count) const noexcept {
         const auto longest = static_cast<std::size_t>(longest_axis(bounds));
@@ -221,8 +219,7 @@ private:
     }
 
     /// Splits in two passes over the items: the histogram yields the bin in which the split lies, then each item is
-    /// moved below, into or above that bin, and only the items of that bin are sorted. The order within each side is
-    /// kept.
+    /// moved below, into or above that bin, and only that bin is sorted. The order within each side is kept.
     void split_by_histogram(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
                             std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers,
                             std::span<share> shares) const {

@@ -17,8 +17,7 @@ struct sah_build : top_down_build<sah_split, axis_rule::least_area> {
     static constexpr std::string_view name = "sah";
     static constexpr std::string_view summary = "splits by the surface-area heuristic, with 16 bins per axis";
 
-    /// Serves scenes with so many queries that a better tree repays its slower build: queries visit a twelfth fewer
-    /// nodes than in trees by `median`.
+    /// Serves scenes whose queries repay the slower build: they visit a twelfth fewer nodes than in trees by `median`.
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         if (scene.triangles == 0) return {.because = {{"no meshes: nothing is built"}}};
         const std::size_t repaid =

@@ -182,8 +182,7 @@ private:
         }
     }
 
-    /// Turns the parts' counts into the indices where each part writes its boxes and copies of each group, by a prefix
-    /// sum over groups and within each over parts, and makes room for all boxes.
+    /// Turns the parts' counts by group into the indices where each part writes, by a prefix sum, and makes room.
     /// @returns whether no group exceeds the limit
     [[nodiscard]] bool allocate_groups(std::size_t most_in_group) {
         const std::uint32_t groups = plan_.columns();
@@ -238,9 +237,8 @@ private:
         for (; i < p.end; ++i) write(next[keys[i]]++, i, 0);
     }
 
-    /// Visits all groups of a box in several groups except its first, as `visit(group, bits)`: the bits mark the axes
-    /// on which the box begins in an earlier group, so that only one group reports a pair.
-    /// @param s index of the box in `spanning_boxes_`
+    /// Visits the groups of box `s` of `spanning_boxes_` except its first, as `visit(group, bits)`: the bits mark the
+    /// axes on which the box begins in an earlier group, so that only one group reports a pair.
     template <class Visit>
     void for_each_later_group(std::size_t s, Visit visit) const {
         const std::uint32_t u0 = first_cells_[s] & 0xffffU;

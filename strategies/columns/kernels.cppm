@@ -24,8 +24,7 @@ template <std::size_t K>
     return shuffled<pairs, of_all>(from_first_two, c, std::make_index_sequence<half>{});
 }
 
-/// Transposes columns 2 `K` and 2 `K` + 1 of `width` rows of six floats: collects the pairs of each half of the rows,
-/// then separates their first from their second floats.
+/// Transposes columns 2 `K` and 2 `K` + 1 of `width` rows of six floats: collects their pairs, then separates these.
 template <std::size_t K>
 [[gnu::always_inline]] inline void transpose_pair(const pairs (&rows)[6], floats* columns) noexcept {
     const auto low = __builtin_bit_cast(floats, every_third<K>(rows[0], rows[1], rows[2]));

@@ -7,9 +7,8 @@ export namespace aabb {
 
 /// Cuts boxes into columns and sorts each column, for one sweep.
 ///
-/// Each box is quantized once. Its quantized coordinates yield its column and its bucket, and a counting sort of one
-/// counting and one writing pass places it behind the boxes of its column that begin earlier. Boxes that overlap
-/// several columns are recorded in the first pass, so that only those are visited again.
+/// Each box is quantized once. Its quantized coordinates yield its column and its bucket, and a counting sort puts it
+/// behind the boxes of its column that begin earlier.
 class column_lists {
 public:
     /// Puts boxes into the columns of the plan by a counting sort, and sorts each column if buckets do not suffice.
@@ -60,8 +59,7 @@ private:
         std::uint32_t buckets;  ///< offset to the bucket in the first column
     };
 
-    /// Quantizes the boxes, counts them by bucket and lists their copies: some boxes at a time, so that these are still
-    /// in the L1 cache when they are counted.
+    /// Quantizes the boxes, counts them by bucket and lists copies, in blocks that stay in the L1 cache meanwhile.
     [[nodiscard]] fill_result count_boxes(std::size_t most_copies) {
         quantized_.resize(block_.boxes.size() + width);
         copies_.clear();
@@ -178,8 +176,8 @@ private:
         return next;
     }
 
-    /// Turns the counts of a column's buckets into start indices from `next` on, by an exclusive prefix sum.
-    /// @returns the end of the last bucket
+    /// Turns the counts of a column's buckets into start indices from `next` on, and returns the end of the last
+    /// bucket.
     static std::uint32_t bucket_starts(std::uint32_t* counts, std::uint32_t buckets, std::uint32_t next) noexcept {
         for (std::uint32_t b = 0; b < buckets; b += width) {
             const simd::words own = simd::load(counts + b);
@@ -197,7 +195,6 @@ private:
         else
             write_entries([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_bits; });
     }
-    /// The same for any kind of ids.
     /// @param group_bits returns the bits of `begins_earlier` that box i has in its group
     template <class GroupBits>
     void write_entries(GroupBits group_bits) {

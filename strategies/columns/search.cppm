@@ -168,8 +168,8 @@ public:
     column_search& operator=(column_search&&) = default;
     ~column_search() = default;
 
-    /// Starts a frame: reuses the pairs of a frame at rest, or prepares a brute-force search of few boxes, or cuts the
-    /// boxes under the kept plan or a new one.
+    /// Starts a frame: keeps the pairs if nothing moved, prepares brute force for few boxes, or cuts the boxes by a
+    /// plan.
     /// @throws input_error as `global_search::update`.
     void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
         boxes_ = boxes;
@@ -346,8 +346,7 @@ private:
             for (std::uint32_t g = 0; g < groups_.size(); ++g) search_group(g, workers_.front(), pairs);
             return;
         }
-        // The first worker takes groups in ascending order, so that it can append their pairs to the result; the others
-        // take groups in descending order.
+        // The first worker takes groups in ascending order, to append their pairs to the result; the others descending.
         for (worker& w : workers_) w.pairs.clear();
         group_pairs_.assign(groups_.size(), {});
         std::atomic<std::uint64_t> taken = 0;  // low u32: groups taken in ascending order; high u32: in descending

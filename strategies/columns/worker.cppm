@@ -116,8 +116,7 @@ public:
         return {.plan = partition.plan(group.boxes, within)};
     }
 
-    /// Finds the pairs of a group of valid boxes, by cutting it into columns and sweeping these, or recursively if
-    /// nested groups are planned. The plan is kept for the next frame.
+    /// Finds the pairs of a group of valid boxes: cuts it into columns and sweeps these, or into nested groups first.
     void search(const Partition& partition, const column_group& group, const box& within, cut_plan& kept,
                 std::vector<index_pair>& pairs, std::size_t depth = 0) {
         if (group.boxes.size() < 2) return count(/*subsets=*/1, /*copies=*/group.boxes.size());

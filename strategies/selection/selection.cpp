@@ -72,8 +72,7 @@ composition complete_composition(const named_strategies& named) {
     return any ? completed(named) : composition();
 }
 
-/// Selects the strategy, of each kind that is not named and depends on the scene, that serves the scene, or the
-/// default.
+/// Selects, for each kind that depends on the scene and is not named, the strategy that serves it, or the default.
 void select_for_scene(composition& completed, const named_strategies& named, const scene_traits& scene) {
     scene_traits traits = scene;
     for (const strategy_kind kind : strategy_kinds) {

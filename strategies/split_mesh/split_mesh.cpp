@@ -41,8 +41,8 @@ part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
 
 class divided_scene final : public scene_parts {
 public:
-    /// Makes a model of each part, or of the mesh if it is not divided, and a piece of each model of an object's mesh:
-    /// pieces are the objects of the broad phase.
+    /// Makes a model of each part and each undivided mesh, and a piece, which the broad phase sees, per object and
+    /// model.
     divided_scene(const mesh_scene& scene, mesh_division division) : scene_(scene) {
         division.resize(scene.meshes.size());
         std::size_t parts = 0;

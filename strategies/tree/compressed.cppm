@@ -19,8 +19,7 @@ public:
 
     using leafless_layout::leafless_layout;
 
-    /// Lays out the nodes with planes, then those above two leaves, which need none, and encodes the planes of each two
-    /// siblings as those that they do not inherit from their parent.
+    /// Lays out the nodes with planes, then those above two leaves, which need none, and encodes the planes.
     void pack(std::span<const build_node> nodes) {
         const auto holds_leaves_only = [&](std::size_t i) {
             return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();
@@ -37,7 +36,8 @@ public:
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             if (nodes[i].is_leaf()) continue;
             const std::size_t right = nodes[i].right;
-            child_pair& child = packed[i] < with_planes ? nodes_[packed[i]].child : pair_at(packed[i]);
+            child_pair& child =
+                packed[i] < with_planes ? nodes_[packed[i]].child : leaf_pairs_[packed[i] - with_planes];
             child = {packed[i + 1], packed[right]};
             if (packed[i] >= with_planes) continue;
             encode_siblings(nodes[i + 1].bounds, nodes[right].bounds, nodes_[packed[i]].planes, symbols_[packed[i]]);
@@ -96,8 +96,6 @@ private:
         child_pair child;
     };
     static_assert(sizeof(node) == 32);
-
-    [[nodiscard]] child_pair& pair_at(std::size_t index) noexcept { return leaf_pairs_[index - nodes_.size()]; }
 
     box root_{};
     std::vector<node> nodes_;  // depth first

@@ -17,8 +17,7 @@ public:
 
     using leafless_layout::leafless_layout;
 
-    /// Lays out the internal nodes, the children of a node side by side behind it, links them, and encodes each box
-    /// relative to its parent's.
+    /// Lays out the internal nodes, siblings side by side behind their parent, and encodes each box relative to that's.
     void pack(std::span<const build_node> nodes) {
         nodes_.assign(nodes.size() / 2, {});
         symbols_.assign(nodes_.size(), 0);

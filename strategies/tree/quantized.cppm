@@ -31,8 +31,8 @@ public:
     quantized_tree() = default;
     explicit quantized_tree(const config& c) : leafless_layout(c), planes_(c.bits) {}
 
-    /// Lays out the nodes in one pass, and encodes them in a second one, parents first, since the codes of children are
-    /// relative to the decoded box of their parent.
+    /// Lays out the nodes in one pass, and encodes them in a second one, parents first, to whose boxes codes are
+    /// relative.
     /// @throws input_error if the nodes take more than 2 GiB
     void pack(std::span<const build_node> nodes) {
         const auto holds_leaves_only = [&](std::size_t i) {
@@ -163,8 +163,7 @@ private:
         return decode_siblings(parent, planes_.decode(parent, &bytes_[at + codes_offset]), symbol_at(at));
     }
 
-    /// Writes the planes of a node's children and their symbol, except its leaf flags.
-    /// @returns the children's decoded boxes, which are slightly larger
+    /// Writes the planes of a node's children and the symbol, except its leaf flags. @returns their decoded boxes.
     std::array<box, 2> encode(std::size_t at, const box& parent, const box& left, const box& right) noexcept {
         sibling_planes planes{};
         auto symbol = static_cast<std::uint8_t>(symbol_at(at));

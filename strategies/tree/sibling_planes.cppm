@@ -32,8 +32,8 @@ inline constexpr std::uint8_t plane_bits = 0b11'1111;
     return static_cast<std::uint8_t>(64U << side);
 }
 
-/// Encodes two siblings' boxes: of each plane of their parent's box, which one of them inherits, stores the other's own
-/// plane, and in the symbol whose it is. Leaves the symbol's leaf flags.
+/// Encodes two siblings: one of them inherits each plane of their parent's box. Stores the other's plane, and in the
+/// symbol whose it is. Leaves the symbol's leaf flags.
 /// @param left,right boxes whose union is the parent's box.
 constexpr void encode_siblings(const box& left, const box& right, sibling_planes& planes,
                                std::uint8_t& symbol) noexcept {
@@ -47,8 +47,7 @@ constexpr void encode_siblings(const box& left, const box& right, sibling_planes
     }
 }
 
-/// Decodes the boxes of the left and the right child: of each plane, one child inherits the parent's, the other has its
-/// own.
+/// Decodes the boxes of the left and the right child: one inherits each plane of the parent, the other has its own.
 [[nodiscard]] constexpr std::array<box, 2> decode_siblings(const box& parent, const sibling_planes& planes,
                                                            unsigned symbol) noexcept {
     std::array<box, 2> boxes{};

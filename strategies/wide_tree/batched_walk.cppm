@@ -99,8 +99,7 @@ private:
         }
     };
 
-    /// Passes all intersecting pairs of triangles to `emit`, or until it returns true: tests the pairs of leaves to
-    /// which the descent comes, in batches. The caches of leaves are reset only if it comes to any.
+    /// Descends to the leaves and tests all pairs. The caches of leaves are reset only if the descent comes to leaves.
     template <class Emit>
     void find_all_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                         query_kind kind, const Emit& emit) {

@@ -84,8 +84,7 @@ public:
         return {.is_valid = false, .margin = std::sqrt(step * leaf_size / 5)};
     }
 
-    /// Builds a new front, which serves queries at poses within the margin of this one. If there are too many pairs, it
-    /// counts as one that served none, so that it is not soon tried again.
+    /// Builds a new front. If there are too many pairs, it counts as one that served no query, to be tried again later.
     /// @param fill called as `fill(pairs)` with an empty list; returns false if there are too many pairs
     /// @returns whether the front is kept
     template <class Fill>
@@ -136,8 +135,7 @@ private:
 };
 
 /// Caches the fronts of many pairs of objects. Queries carry no object ids: a front is recognised by its models and
-/// their last pose, or because its pairs are still valid. The front behind the last one is tried first, since objects
-/// are mostly queried in the same order.
+/// their last pose, or because its pairs are still valid.
 class front_cache {
 public:
     static constexpr std::size_t most = 1024;
@@ -163,8 +161,7 @@ private:
     static constexpr std::size_t width = 8;
     using row = std::array<float, width>;
 
-    /// The centre of B's box in A's frame. It moves no further than the furthest point of B, so that a front whose
-    /// centre is not near need not be compared.
+    /// The centre of B's box in A's frame, which moves no further than the furthest point of B.
     [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& motion, const box& bounds) noexcept {
         vec3d centre = motion.shift;
         for (int j = 0; j < 3; ++j)
@@ -174,8 +171,8 @@ private:
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])};
     }
 
-    /// Finds the front of a query, first behind the last one and then in the whole cache, or adds one. B's centres are
-    /// compared eight at a time; only fronts whose centre was near are compared in full.
+    /// Finds the front of a query, or adds one. The front behind the last one is tried first, since objects are mostly
+    /// queried in the same order. Of the others, B's centres are compared eight at a time, and near fronts in full.
     [[nodiscard]] std::size_t index_of(const model_pair& models, const box_motion& motion, const box& bounds,
                                        double near, const std::array<float, 3>& centre) {
         const auto matches = [&](std::size_t i) {

@@ -8,15 +8,14 @@ export import aabb.wide_tree.kernels;
 
 export namespace aabb {
 
-/// Up to eight boxes as a structure of arrays: three rows of lower bounds, then three of upper bounds. Boxes from
-/// `count` on have no meaning.
+/// Up to eight boxes as a structure of arrays: three rows of lower bounds, then three of upper bounds.
 struct eight_boxes {
     static constexpr std::size_t most = 8;
     using row = std::array<float, most>;
 
     alignas(32) std::array<row, 3> lower;
     alignas(32) std::array<row, 3> upper;
-    std::uint32_t count;
+    std::uint32_t count;  ///< of boxes; further columns have no meaning
 
     /// @param rows in the order of the members
     inline void set(const std::array<simd::eight_floats, 6>& rows, std::size_t boxes) noexcept {
@@ -51,8 +50,8 @@ struct quantized_aabbs {
     std::array<row, 3> lower;
     std::array<row, 3> upper;  ///< 255 minus the plane's code, so that both need the same comparison
 
-    /// Tests 64 pairs at once: sets bit 8 j + i where box i of these may overlap box j of `others`. The others are
-    /// rounded to this grid by a monotone map, so that no overlap is missed.
+    /// Tests 64 pairs at once: sets bit 8 j + i where box i of these may overlap box j of `others`, rounded to the
+    /// grid.
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {
         const auto on_grid = [&](std::size_t k, const eight_boxes::row& x) {
             return simd::load_eight<simd::eight_floats>(x.data()) * grid.scale[k] - grid.offset[k];

@@ -68,10 +68,8 @@ public:
             });
     }
 
-    /// Passes on, in order, the pairs of leaves with triangles that may lie within the margin of each other: their
-    /// boxes do, and each triangle enters the inflated slab of the other's leaf.
-    /// @param take called with the index of a pair and a mask of pairs of triangles (bit 8 j + i); returns whether to
-    /// stop
+    /// Passes on, in order, the pairs of leaves whose triangles may lie within the margin of each other: by their boxes
+    /// and by the slabs of both leaves. `take` gets the index of a pair and a mask (bit 8 j + i).
     template <class Counters, class Take>
     [[nodiscard]] bool for_each_within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                               std::span<const std::uint32_t> leaves_a,
@@ -163,10 +161,10 @@ private:
         std::size_t begin = 0;
         std::size_t end = claim(begin);
         while (begin < end) {
-            reader_.read_missing_of_a(a, cache_a_, triangle_loader<read_leaf>(a),
-                                      box_builder<false>(a, cache_a_, corners_of_a_));
-            reader_.read_missing_of_b(b, cache_b_, triangle_loader<read_leaf_of_b>(b, to_a),
-                                      box_builder<true>(b, cache_b_, corners_of_b_));
+            reader_.read_missing(a, cache_a_, triangle_loader<read_leaf>(a),
+                                 box_builder<false>(a, cache_a_, corners_of_a_));
+            reader_.read_missing(b, cache_b_, triangle_loader<read_leaf_of_b>(b, to_a),
+                                 box_builder<true>(b, cache_b_, corners_of_b_));
             const std::size_t next = claim(end);
             for (const overlap& o : filter(find_overlaps(leaves_a, leaves_b, begin, end, counters)))
                 if (take(o)) return true;
@@ -176,8 +174,8 @@ private:
         return false;
     }
 
-    /// Finds the pairs of leaves, from `begin` to `end`, with overlapping triangle boxes: on the 16-bit grid, and where
-    /// that is too coarse or must not decide, in float.
+    /// Finds the pairs of leaves, from `begin` to `end`, whose triangles' boxes overlap on the grid and, if needed, in
+    /// float.
     template <class Counters>
     [[nodiscard]] inline std::span<const overlap> find_overlaps(std::span<const std::uint32_t> leaves_a,
                                                                 std::span<const std::uint32_t> leaves_b,

@@ -23,10 +23,10 @@ public:
         epoch_ = 1;
     }
 
-    void release_claims() noexcept { ++group_; }
+    /// Releases all claims. The missing leaves of the previous group must have been read.
+    void begin_group() noexcept { ++group_, missing_count_ = 0; }
 
-    /// Reserves the leaf's slot for the current group of pairs, whose leaves must all stay cached until it is tested,
-    /// and lists the leaf as missing if it is not cached.
+    /// Reserves the leaf's slot for the current group of pairs, and lists the leaf as missing if it is not cached.
     /// @returns false if another leaf of the group occupies the slot
     [[nodiscard]] inline bool claim(std::uint32_t leaf) noexcept {
         const std::size_t slot = slot_of(leaf);
@@ -43,16 +43,13 @@ public:
         return true;
     }
 
-    /// The claimed leaves that are not cached; the caller must read them before the next claim, or call `begin`.
-    [[nodiscard]] inline std::span<const std::uint32_t> take_missing() noexcept {
-        return std::span(missing_).first(std::exchange(missing_count_, 0));
+    /// The leaves that the group claimed and that are not cached.
+    [[nodiscard]] inline std::span<const std::uint32_t> missing() const noexcept {
+        return std::span(missing_).first(missing_count_);
     }
-
     [[nodiscard]] inline Leaf& operator[](std::uint32_t leaf) noexcept { return leaves_[slot_of(leaf)]; }
-
     [[nodiscard]] std::size_t slots() const noexcept { return leaves_.size(); }
     [[nodiscard]] inline std::size_t slot_of(std::uint32_t leaf) const noexcept { return leaf & (leaves_.size() - 1); }
-
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(leaves_); }
 
 private:
@@ -68,8 +65,7 @@ private:
 };
 
 /// Reads the leaves of pairs in groups that fit into two caches. It prefetches a group's vertex lists while the
-/// previous group is tested, and vertices a few leaves ahead. Not all at once: processors drop prefetches beyond some
-/// twenty in flight.
+/// previous group is tested, and vertices a few leaves ahead: processors drop prefetches beyond some twenty in flight.
 template <WideTreePolicy Tree>
 class leaf_reader {
 public:
@@ -84,40 +80,25 @@ public:
                                            leaf_cache<LeafOfB>& cache_b, std::size_t begin, std::size_t end,
                                            const PairAt& pair_at) {
         end = std::min(end, begin + most_claims);
-        cache_a.release_claims();
-        cache_b.release_claims();
+        cache_a.begin_group();
+        cache_b.begin_group();
         for (; begin < end; ++begin) {
             const auto [leaf_a, leaf_b] = pair_at(begin);
             if (!cache_a.claim(leaf_a) || !cache_b.claim(leaf_b)) break;
         }
-        missing_a_ = cache_a.take_missing();
-        missing_b_ = cache_b.take_missing();
-        for (const std::uint32_t number : missing_a_) a.tree().prefetch_vertices(number);
-        for (const std::uint32_t number : missing_b_) b.tree().prefetch_vertices(number);
+        for (const std::uint32_t number : cache_a.missing()) a.tree().prefetch_vertices(number);
+        for (const std::uint32_t number : cache_b.missing()) b.tree().prefetch_vertices(number);
         return begin;
     }
 
-    /// Reads the leaves of the group that are missing in A's cache.
-    /// @param steps called as `step(leaf, number, vertices)`; each step runs over all leaves before the next one
+    /// Reads the leaves of the group that are missing in the cache of a model: their vertex lists, and then by steps.
+    /// The first step reads vertices, which are prefetched some leaves ahead.
+    /// @param first,others called as `step(leaf, number, vertices)`; each step runs over all leaves before the next one
     /// starts, so that no leaf stalls on its own previous step
-    template <class Leaf, class... Steps>
-    inline void read_missing_of_a(const model<Tree>& a, leaf_cache<Leaf>& cache, const Steps&... steps) {
-        read_missing(a, missing_a_, cache, steps...);
-    }
-    /// The same for B.
-    template <class Leaf, class... Steps>
-    inline void read_missing_of_b(const model<Tree>& b, leaf_cache<Leaf>& cache, const Steps&... steps) {
-        read_missing(b, missing_b_, cache, steps...);
-    }
-
-private:
-    static constexpr std::size_t ahead = 10;  // leaves; most of their vertices are cached already
-
-    /// Reads the vertex lists of the missing leaves and takes the steps, the first of which reads vertices: those of
-    /// some leaves ahead are prefetched meanwhile.
     template <class Leaf, class First, class... Others>
-    inline void read_missing(const model<Tree>& m, std::span<const std::uint32_t> missing, leaf_cache<Leaf>& cache,
-                             const First& first, const Others&... others) {
+    inline void read_missing(const model<Tree>& m, leaf_cache<Leaf>& cache, const First& first,
+                             const Others&... others) {
+        const std::span<const std::uint32_t> missing = cache.missing();
         const auto prefetch = [&](std::size_t i) {
             m.tree().read_vertices(missing[i], lists_[i]);
             lists_[i].prefetch(m.triangles());
@@ -134,8 +115,9 @@ private:
         (do_step_for_all(others), ...);
     }
 
-    std::span<const std::uint32_t> missing_a_;
-    std::span<const std::uint32_t> missing_b_;
+private:
+    static constexpr std::size_t ahead = 10;  // leaves; most of their vertices are cached already
+
     std::array<vertex_list, most_claims + 1> lists_{};
 };
 
@@ -158,14 +140,14 @@ public:
         std::size_t begin = 0;
         std::size_t end = claim(begin);
         while (begin < end) {
-            reader.read_missing_of_a(a, cache_a_,
-                                     [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
-                                         leaf.load(a.triangles(), a.tree(), number, vertices);
-                                     });
-            reader.read_missing_of_b(b, cache_b_,
-                                     [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
-                                         leaf.load(b.triangles(), b.tree(), number, vertices, to_a);
-                                     });
+            reader.read_missing(a, cache_a_,
+                                [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+                                    leaf.load(a.triangles(), a.tree(), number, vertices);
+                                });
+            reader.read_missing(b, cache_b_,
+                                [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
+                                    leaf.load(b.triangles(), b.tree(), number, vertices, to_a);
+                                });
             const std::size_t next = claim(end);
             for (const front_pair& p : pairs.subspan(begin, end - begin))
                 if (take(p, cache_a_[p.leaf_a], cache_b_[p.leaf_b])) return true;

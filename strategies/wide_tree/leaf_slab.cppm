@@ -11,8 +11,7 @@ export namespace aabb {
 /// it is much thinner than their boxes. A triangle outside intersects none of them.
 class leaf_slab {
 public:
-    /// Fits the slab to a leaf, inflated by the rounding error of its own and of others' heights; it stays infinite if
-    /// arithmetic could overflow.
+    /// Fits the slab to a leaf, inflated by the errors of all heights; it stays infinite if arithmetic could overflow.
     /// @param edges extents of a box around the leaf's vertices and all that are compared with the slab
     void fit(const triangle_block& block, const std::array<float, 3>& edges) noexcept {
         set_normal(block);

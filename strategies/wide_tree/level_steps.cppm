@@ -17,8 +17,7 @@ public:
         friend bool operator==(const heights&, const heights&) = default;
     };
 
-    /// Computes the steps from these roots, unless they are those of the last query: each opens the higher node, or
-    /// both.
+    /// Computes the steps from these roots, which open the higher node or both, unless the last query had them.
     void begin(heights roots) {
         if (!steps_.empty() && steps_.front() == roots) return;
         // Reserves first, so that a failed allocation leaves the old steps intact.

@@ -132,8 +132,7 @@ private:
         images_.begin(b.level(0), nodes_of(b), to_a.to_boxes());
     }
 
-    /// Descends from a pair of nodes to the pair of their children with the nearest centres, which most likely
-    /// intersects, and postpones the other overlapping pairs.
+    /// Descends to the pair of children with the nearest centres, and postpones the other overlapping pairs.
     /// @returns whether any pair overlaps
     template <class Counters>
     [[nodiscard]] inline bool descend_to_nearest(const Tree& a, const Tree& b, std::size_t step, node_pair& nodes,

@@ -48,8 +48,7 @@ struct triangle_block {
 private:
     using columns = std::array<simd::eight_floats, 3>;
 
-    /// Loads the triangles' corners: reads the distinct vertices of the leaf, sixteen at most, transforms each once,
-    /// and distributes them to the corners by permutations.
+    /// Reads the leaf's vertices, transforms each once, and distributes them to the triangles' corners by permutations.
     /// @param change transforms eight points, given as three vectors of coordinates
     template <class Tree, class Change>
     inline void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,

@@ -22,9 +22,8 @@ struct filtered_pairs {
 /// Z or 1. After an overflow all comparisons are false, so that the pair stays undecided.
 class triangle_filter {
 public:
-    /// Decides pairs of triangles in float by the signs of eight orientations: the corners of each triangle against the
-    /// plane of the other, and two edges against each other. Pairs with a sign that rounding could change stay
-    /// undecided.
+    /// Decides pairs by the signs of eight orientations: the corners of each triangle against the plane of the other,
+    /// and two pairs of edges. Pairs with a sign that rounding could change stay undecided.
     /// @param a,b the first of nine rows at a distance of `stride`: row 3 c + k has axis k of corner c
     [[nodiscard]] static inline filtered_pairs decide(const float* a, const float* b, std::size_t stride) noexcept {
 #pragma clang fp contract(fast)

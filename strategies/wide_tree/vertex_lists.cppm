@@ -57,10 +57,7 @@ public:
         });
         std::vector<std::size_t> offsets;
         std::size_t total = 0;
-        for (const std::size_t size : sizes) {
-            offsets.push_back(total);
-            total += size;
-        }
+        for (const std::size_t size : sizes) offsets.push_back(std::exchange(total, total + size));
         if (total > most_bytes)
             throw input_error("vertex lists take at most 4 GiB; this mesh needs implicit:vertices=fetched");
         lists_.resize(total + read_beyond);

@@ -29,8 +29,7 @@ struct wide_node {
 
     [[nodiscard]] inline double step(std::size_t axis) const noexcept { return power_of_two(exponent[axis]); }
 
-    /// The factors that map coordinates to codes of this node. Planes are exact on this grid and rounding is monotone,
-    /// so that no coordinate is rounded past a plane.
+    /// Maps coordinates to codes. Planes are exact and rounding is monotone: no coordinate is rounded past a plane.
     [[nodiscard]] inline code_grid grid() const noexcept {
         code_grid g;
         for (std::size_t k = 0; k < 3; ++k) {
