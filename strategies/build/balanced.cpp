@@ -133,8 +133,7 @@ private:
         return best;
     }
 
-    /// Splits few items and keeps the order within each side. Exact centres resolve ties, which make the left too
-    /// large.
+    /// Splits few items, in their order within each side. Exact centres resolve ties, which make the left too large.
     void split_few(std::span<const balanced_item> from, std::span<balanced_item> to, const box& bounds,
                    std::size_t left_count) const noexcept {
         auto [axis, left_mask] = best_split(few_items(from), bounds, left_count);
@@ -182,7 +181,7 @@ private:
     };
 
     /// Splits many items by a histogram; several threads take shares of the items in turn.
-    /// @param bin_of_item room for the bin of each item
+
     void split_many(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
                     std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers) const {
         if (workers.count() == 1) {

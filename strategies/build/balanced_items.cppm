@@ -213,8 +213,8 @@ private:
         }
     }
 
-    /// Finds the first items by counting the items before each, which moves none and has no branches. The number of
-    /// vectors, which doubles until all items fit, is a constant so that they stay in registers.
+    /// Counts the items before each, which moves none. `Vectors`, enough for all, is a constant to keep them in
+    /// registers.
     template <std::size_t Vectors>
     [[nodiscard]] inline std::uint64_t mask_by_vectors(std::int16_t number, std::size_t axis) const noexcept {
         if constexpr (Vectors * lanes < most)

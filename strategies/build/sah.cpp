@@ -28,9 +28,8 @@ private:
     double scale_;
 };
 
-/// Updates `best` and its cost if a split between two bins along the axis costs less: the surface-area heuristic, the
-/// sum over both sides of area times number of triangles.
-/// @param centroids the box of all centroids, which the bins divide
+/// Updates `best` and its cost if a split between two bins of centroids along the axis costs less: the sum over both
+/// sides of area times number of triangles (surface-area heuristic).
 void try_sah_axis(std::span<const build_element> range, int axis, const box& centroids, double& least_cost,
                   split_choice& best) noexcept {
     const sah_binning bin_of(centroids.min[axis], centroids.max[axis]);

@@ -60,14 +60,10 @@ public:
     }
 
 private:
-    [[nodiscard]] std::span<build_element> range_of(const task& t) noexcept {
-        return std::span(elements_).subspan(t.begin, t.size());
-    }
-
     /// Writes the node of a range and partitions the range by the rule. Nodes are in preorder: the left child follows
     /// its parent, and the right child the 2 n - 1 nodes of the left subtree of n triangles.
     [[nodiscard]] std::array<task, 2> split_task(const task& t) {
-        const std::span range = range_of(t);
+        const std::span range = std::span(elements_).subspan(t.begin, t.size());
         const box bounds = bounds_of(range);
         const split_choice chosen = split_(range, bounds);
         const std::size_t left =

@@ -98,18 +98,18 @@ export namespace aabb::simd {
 
 using halves = std::uint16_t __attribute__((vector_size(4 * width)));  ///< two u16 per u32 lane
 
+using narrow_halves = std::uint16_t __attribute__((vector_size(2 * width)));
+
 /// Loads u16 and zero-extends them to u32.
 [[nodiscard, gnu::always_inline]] inline words load_halves(const std::uint16_t* from) noexcept {
-    using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
-    narrow v;
+    narrow_halves v;
     std::memcpy(&v, from, sizeof v);
     return __builtin_convertvector(v, words);
 }
 
 /// Stores the low u16 of each u32.
 [[gnu::always_inline]] inline void store_low_halves(std::uint16_t* to, words v) noexcept {
-    using narrow = std::uint16_t __attribute__((vector_size(2 * width)));
-    const auto lower = __builtin_convertvector(v, narrow);
+    const auto lower = __builtin_convertvector(v, narrow_halves);
     std::memcpy(to, &lower, sizeof lower);
 }
 

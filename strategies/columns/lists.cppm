@@ -37,7 +37,6 @@ public:
     /// Total number of boxes over all columns.
     [[nodiscard]] std::size_t copies() const noexcept { return block_.boxes.size() + copies_.size(); }
     [[nodiscard]] const column_block& block() const noexcept { return block_; }
-
     [[nodiscard]] std::size_t bytes() const noexcept {
         return bytes_of(quantized_, copies_, entries_, ends_, list_, moved_, column_ends_);
     }
@@ -77,8 +76,8 @@ private:
         return fill_result::complete;
     }
 
-    /// Quantizes boxes to the entries of their first columns, and lists those that overlap several columns.
-    /// @tparam Axis the axis along which columns run
+    /// Quantizes boxes to the entries of their first columns, which run along `Axis`, and lists those in several
+    /// columns.
     /// @param begin index of the first of these boxes
     /// @returns whether all boxes are valid
     template <int Axis>
@@ -176,8 +175,7 @@ private:
         return next;
     }
 
-    /// Turns the counts of a column's buckets into start indices from `next` on, and returns the end of the last
-    /// bucket.
+    /// Turns the counts of a column's buckets into start indices from `next` on. @returns the end of the last bucket.
     static std::uint32_t bucket_starts(std::uint32_t* counts, std::uint32_t buckets, std::uint32_t next) noexcept {
         for (std::uint32_t b = 0; b < buckets; b += width) {
             const simd::words own = simd::load(counts + b);
@@ -215,16 +213,14 @@ private:
     /// first entry that begins after it ends: a sweep stops there, as it does at the end of a shared bucket.
     template <class Sort, CounterPolicy Counters>
     void sort_columns(Sort& sort, Counters& counters) {
-        column_ends_.clear();
-        for (std::uint32_t c = 0; c < plan_.columns(); ++c) column_ends_.push_back(ends_[c]);
+        column_ends_.assign(ends_.begin(), ends_.begin() + plan_.columns());
         ends_.resize(entries_.size() + width);
         std::uint32_t begin = 0;
         for (const std::uint32_t end : column_ends_) {
             list_.clear();
             for (std::uint32_t i = begin; i < end; ++i) list_.push_back({box_of(entries_[i]).min[plan_.axis], i});
             sort.sort(std::span(list_), counters);
-            moved_.clear();
-            for (std::uint32_t i = begin; i < end; ++i) moved_.push_back(entries_[i]);
+            moved_.assign(entries_.begin() + begin, entries_.begin() + end);
             for (std::uint32_t i = begin; i < end; ++i) {
                 entries_[i] = moved_[list_[i - begin].id - begin];
                 entries_[i].end_bucket = i;

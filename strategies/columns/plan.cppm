@@ -22,7 +22,6 @@ struct column_plan {
         return (axis + 1 + static_cast<int>(i)) % 3;
     }
     [[nodiscard]] constexpr std::uint32_t columns() const noexcept { return across[0] * across[1]; }
-
     /// Binary logarithm of the number of buckets per column: about one bucket per box, and at least a vector of them.
     [[nodiscard]] constexpr std::uint32_t bucket_bits(std::size_t boxes) const noexcept {
         const auto buckets = static_cast<std::uint32_t>(std::max<std::size_t>(simd::width, boxes / columns()));

@@ -168,8 +168,7 @@ public:
     column_search& operator=(column_search&&) = default;
     ~column_search() = default;
 
-    /// Starts a frame: keeps the pairs if nothing moved, prepares brute force for few boxes, or cuts the boxes by a
-    /// plan.
+    /// Starts a frame: keeps the pairs if nothing moved, prepares brute force for few boxes, or cuts the boxes.
     /// @throws input_error as `global_search::update`.
     void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
         boxes_ = boxes;

@@ -22,7 +22,6 @@ struct cut_plan {
     std::vector<cut_plan> groups;
 
     [[nodiscard]] bool is_planned() const noexcept { return in_groups || columns.most_tests > 0; }
-
     /// Discards the plans of earlier groups.
     void begin_groups(std::size_t in_fullest) {
         if (groups.size() < grid.columns()) groups.resize(grid.columns());
@@ -38,12 +37,10 @@ struct cut_plan {
     }
 };
 
-/// Puts boxes into groups if these are planned, and plans new ones if the kept grid no longer fits: if a group has more
-/// than about twice the boxes of the fullest one at the time of planning.
+/// Puts boxes into groups if these are planned, and plans new ones if the fullest group has outgrown the kept grid.
 ///
 /// Groups are nested, so the recursion must terminate: each level must separate at least an eighth of all pairs of
 /// boxes. The work over all levels is then at most eight times that of brute force.
-/// @param make_plan returns a new plan for the boxes
 /// @returns `not_worthwhile` if there are no groups
 template <class MakePlan>
 [[nodiscard]] fill_result put_into_groups(const column_group& boxes, cut_plan& kept, MakePlan make_plan,
@@ -192,7 +189,6 @@ public:
 
     /// The work since the last call.
     [[nodiscard]] auto take_counters() { return std::exchange(counters_, {}); }
-
     [[nodiscard]] std::size_t sort_bytes() const noexcept { return bytes_of(sort_); }
     [[nodiscard]] std::size_t column_bytes() const noexcept {
         std::size_t sum = bytes_of(columns_);

@@ -64,7 +64,7 @@ const auto& accepted_row(const Rows& rows, const composition& c, stage of) {
     return row;
 }
 
-/// All accepted combinations of the strategies that are compiled together; those compiled alone vary one at a time.
+/// All accepted combinations. Strategies compiled alone vary one by one, beside the defaults and the first of others.
 template <class Rows>
 std::vector<composition> every_composition(const Rows& rows, stage of) {
     std::vector<composition> compositions;
@@ -74,7 +74,7 @@ std::vector<composition> every_composition(const Rows& rows, stage of) {
         composition& c = compositions.emplace_back();
         for (std::size_t i = 0; i < kinds.size(); ++i) c[kinds[i]] = {std::string(row.names[i]), {}};
     }
-    // Strategies that are compiled alone are combined with the default and with the first strategies of other kinds.
+
     for (const strategy_kind kind : kinds_of(of, /*apart=*/true))
         for (const strategy_info& info : strategies(kind)) {
             if (info.name == info_of(kind).fallback) continue;

@@ -23,16 +23,10 @@ public:
     static constexpr std::array leaves_out{absence::triangle_boxes, absence::node_indices};
     static constexpr bool has_leaf_boxes = true;
 
-    /// How a query reads the vertices of a leaf.
-    enum class vertex_choice : std::uint8_t {
-        listed,  ///< from the leaf's own list
-        fetched  ///< through the mesh's triangles
-    };
-    /// Whether queries use BVTT front tracking.
-    enum class front_choice : std::uint8_t {
-        forgotten,  ///< no: each query starts at the roots
-        kept        ///< yes: pairs of leaves within a margin serve later queries while B moves little
-    };
+    /// How a query reads the vertices of a leaf: from the leaf's own list, or through the mesh's triangles.
+    enum class vertex_choice : std::uint8_t { listed, fetched };
+    /// Where a query starts: at the roots, or at pairs of leaves kept from earlier queries (BVTT front tracking).
+    enum class front_choice : std::uint8_t { forgotten, kept };
     struct config {
         vertex_choice vertices = vertex_choice::listed;
         front_choice front = front_choice::forgotten;

@@ -29,7 +29,6 @@ public:
 
     leafless_layout() = default;
     explicit leafless_layout(const config& c) : leaf_test_(c.leaf_test) {}
-
     [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
     [[nodiscard]] static inline const box& bounds(const cursor& at) noexcept { return at.bounds; }
     [[nodiscard]] static inline std::uint32_t triangle(const cursor& at) noexcept { return at.leaf(); }

@@ -73,7 +73,6 @@ private:
 
     [[nodiscard]] inline std::size_t upper_byte() const noexcept { return 3 * bits_ / 8; }
     [[nodiscard]] inline unsigned upper_shift() const noexcept { return 3 * bits_ % 8; }
-
     [[nodiscard]] inline float step_on(const box& parent, int k) const noexcept {
         return parent.max[k] * scale_ - parent.min[k] * scale_;
     }

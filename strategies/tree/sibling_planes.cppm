@@ -32,9 +32,8 @@ inline constexpr std::uint8_t plane_bits = 0b11'1111;
     return static_cast<std::uint8_t>(64U << side);
 }
 
-/// Encodes two siblings: one of them inherits each plane of their parent's box. Stores the other's plane, and in the
-/// symbol whose it is. Leaves the symbol's leaf flags.
-/// @param left,right boxes whose union is the parent's box.
+/// Encodes the boxes of two siblings, whose union is the parent's: one of them inherits each plane of the parent's box.
+/// Stores the other's plane, and in the symbol whose it is; the symbol's leaf flags stay.
 constexpr void encode_siblings(const box& left, const box& right, sibling_planes& planes,
                                std::uint8_t& symbol) noexcept {
     symbol &= static_cast<std::uint8_t>(~plane_bits);

@@ -10,8 +10,7 @@ export namespace aabb {
 
 /// Traverses two trees simultaneously, level by level. Each step opens a batch of node pairs of the lowest level that
 /// has any, so that the pairs of a batch do not depend on each other and few pairs are pending. Leaves are read and
-/// transformed once for consecutive pairs, and their triangles are tested in batches. Queries for the first pair use
-/// `nearest_walk`.
+/// transformed once for consecutive pairs, and their triangles are tested in batches.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
@@ -107,18 +106,17 @@ private:
         queue_.clear();
         bool reached_leaves = false;
         const auto test_batch = [&](std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b) {
-            if (!reached_leaves)
+            if (!std::exchange(reached_leaves, true))
                 leaf_pairs_.begin(
                     a, b, to_a,
                     {.shares_corners = kind == query_kind::one_mesh, .rejects_by_exact_boxes = !is_filtered});
-            reached_leaves = true;
             return test_leaves(test, a, b, to_a, kind, leaves_a, leaves_b, triangles_at, emit);
         };
         if (!descend_to_leaves(a, b, to_a, kind, /*margin=*/0, test_batch))
             static_cast<void>(queue_.test_queued(test, /*flush=*/true, triangles_at, emit));
     }
 
-    /// Finds any one pair: tests each pair of leaves, nearest ones first, before it reads the next.
+    /// Finds any one pair: tests each pair of leaves, nearest ones first (`nearest_walk`), before it reads the next.
     template <class Emit>
     void find_first_pair(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                          const Emit& emit) {
@@ -128,9 +126,8 @@ private:
         bool reached_leaves = false;
         nearest_.for_each_leaf_pair(a, b, to_a, counters_,
                                     [&](const std::uint32_t& leaf_a, const std::uint32_t& leaf_b) {
-                                        if (!reached_leaves)
+                                        if (!std::exchange(reached_leaves, true))
                                             leaf_pairs_.begin(a, b, to_a, {.rejects_by_exact_boxes = !is_filtered});
-                                        reached_leaves = true;
                                         return test_leaves(test, a, b, to_a, query_kind::two_meshes, {&leaf_a, 1},
                                                            {&leaf_b, 1}, triangles_at, emit) ||
                                                queue_.test_queued(test, /*flush=*/true, triangles_at, emit);

@@ -75,12 +75,9 @@ public:
             same_states ? displacement_bound(before, motion, bounds) : std::numeric_limits<double>::infinity();
         near_queries_ = step <= most_step * leaf_size ? near_queries_ + 1 : 0;
         if (has_front()) drop_front();
-        constexpr decision walk_from_roots{.is_valid = false, .margin = std::nullopt};
-        if (queries_to_wait_ > 0) {
-            --queries_to_wait_;
-            return walk_from_roots;
-        }
-        if (near_queries_ < least_near_queries) return walk_from_roots;
+        const bool must_wait = queries_to_wait_ > 0;
+        queries_to_wait_ -= must_wait;
+        if (must_wait || near_queries_ < least_near_queries) return {.is_valid = false, .margin = std::nullopt};
         return {.is_valid = false, .margin = std::sqrt(step * leaf_size / 5)};
     }
 

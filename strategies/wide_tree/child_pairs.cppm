@@ -44,7 +44,7 @@ public:
         for (std::size_t p = 0; p < a.size(); ++p) {
             const wide_node& node_a = nodes_a[a[p]];
             const wide_node& node_b = nodes_b[b[p]];
-            tests += child_pair_count(node_a, node_b);
+            tests += std::uint64_t{node_a.children} * node_b.children;
             const std::uint64_t mask = node_a.planes.overlaps(node_a.grid(), images_in_a_.of(node_b));
             in_a_[count] = {p, mask};
             count += mask != 0;
@@ -55,7 +55,7 @@ public:
             for (const auto& [p, mask_in_a] : overlapping) {
                 const wide_node& node_a = nodes_a[a[p]];
                 const wide_node& node_b = nodes_b[b[p]];
-                tests += child_pair_count(node_a, node_b);
+                tests += std::uint64_t{node_a.children} * node_b.children;
                 const std::uint64_t mask =
                     mask_in_a & transposed(node_b.planes.overlaps(node_b.grid(), images_in_b_.of(node_a)));
                 in_both_[count] = {p, mask};
@@ -76,9 +76,6 @@ private:
     [[nodiscard]] static box_motion grown(box_motion motion, double margin) noexcept {
         for (int k = 0; k < 3; ++k) motion.margin[k] += margin * (1 + 0x1p-16);
         return motion;
-    }
-    [[nodiscard]] static inline std::uint64_t child_pair_count(const wide_node& a, const wide_node& b) noexcept {
-        return std::uint64_t{a.children} * b.children;
     }
 
     /// Transposes the 8 by 8 bits by swapping off-diagonal blocks of 1, 2 and 4 bits: bit 8 i + j becomes bit 8 j + i.

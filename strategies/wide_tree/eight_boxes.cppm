@@ -50,8 +50,7 @@ struct quantized_aabbs {
     std::array<row, 3> lower;
     std::array<row, 3> upper;  ///< 255 minus the plane's code, so that both need the same comparison
 
-    /// Tests 64 pairs at once: sets bit 8 j + i where box i of these may overlap box j of `others`, rounded to the
-    /// grid.
+    /// Tests 64 pairs at once: sets bit 8 j + i where box i may overlap box j of `others`, rounded to the grid.
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {
         const auto on_grid = [&](std::size_t k, const eight_boxes::row& x) {
             return simd::load_eight<simd::eight_floats>(x.data()) * grid.scale[k] - grid.offset[k];
@@ -98,7 +97,6 @@ public:
 
     /// The extents of a box around all vertices of both meshes.
     [[nodiscard]] const std::array<float, 3>& edges() const noexcept { return edges_; }
-
     /// Quantises rows 2 i and 2 i + 1 of boxes.
     [[nodiscard]] inline simd::sixteen_halves numbers(std::size_t i, simd::sixteen_floats two_rows) const noexcept {
         return simd::whole_halves(two_rows * scale_[i] - offset_[i]);

@@ -22,9 +22,8 @@ template <WideTreePolicy Tree>
 class leaf_pairs {
 public:
     struct query_options {
-        bool shares_corners = false;          ///< whether A and B are one mesh, so that triangles may share corners
-        bool rejects_by_exact_boxes = false;  ///< whether to reject pairs whose boxes overlap only because the grid
-                                              ///< rounds them; for inexact tests, whose result must not depend on it
+        bool shares_corners = false;          ///< A and B are one mesh, so that triangles may share corners
+        bool rejects_by_exact_boxes = false;  ///< for inexact tests: results must not depend on the grid's rounding
     };
     /// Starts a query: fits the grid to both meshes and empties the caches.
     /// @param margin the distance up to which triangles count as close
@@ -174,7 +173,7 @@ private:
         return false;
     }
 
-    /// Finds the pairs of leaves, from `begin` to `end`, whose triangles' boxes overlap on the grid and, if needed, in
+    /// Finds the pairs of leaves, from `begin` to `end`, with overlapping triangle boxes: on the grid, or also in
     /// float.
     template <class Counters>
     [[nodiscard]] inline std::span<const overlap> find_overlaps(std::span<const std::uint32_t> leaves_a,

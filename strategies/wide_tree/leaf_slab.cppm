@@ -43,7 +43,6 @@ private:
     /// Bounds the error of a sum of three products of differences: rounding adds up to 6 times 2^-24 of the magnitude
     /// of the terms, or half the smallest denormal.
     [[nodiscard]] static inline float error_of(float magnitude) noexcept { return magnitude * 0x1p-20F + 0x1p-140F; }
-
     /// An upper bound of the normal's length.
     [[nodiscard]] inline float length() const noexcept {
         return (std::abs(normal_[0]) + std::abs(normal_[1]) + std::abs(normal_[2])) * (1 + 0x1p-20F);

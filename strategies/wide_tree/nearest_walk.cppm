@@ -17,7 +17,7 @@ struct nearest_places {
 };
 
 /// Picks the two nearest pairs, by their centres, in the mask (bit 8 j + i for child i and box j), which must not be
-/// empty. Computes all 64 distances without branches; the sort key of a pair is its distance, then its number 8 j + i.
+/// empty. It computes all 64 distances, so that they do not depend on the mask.
 [[nodiscard]] inline nearest_places find_two_nearest(std::uint64_t mask, const wide_node& node,
                                                      const eight_boxes& boxes) noexcept {
     // Rounding may decide which of two equally near pairs comes first; no result depends on that.

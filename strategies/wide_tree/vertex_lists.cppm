@@ -24,10 +24,8 @@ struct vertex_list {
 /// The distinct vertices of each leaf of eight triangles. Adjacent triangles share most of their corners, so that a
 /// leaf reads some ten vertices instead of 24, transforms sixteen, and does not read the mesh's triangles at all.
 ///
-/// A list is one byte for the number of vertices; for each corner, the positions of eight triangles in the list, in 4
-/// bits each; and the indices of the vertices, each in as many bytes as the largest index needs, ascending, so that
-/// accesses to adjacent memory follow each other. Few leaves, of scattered triangles, have more than sixteen vertices:
-/// their lists are empty, and they are read from the mesh.
+/// Vertices ascend, so that accesses to adjacent memory follow each other. Few leaves, of scattered triangles, have
+/// more than sixteen vertices: their lists are empty, and they are read from the mesh.
 class vertex_lists {
 public:
     static constexpr std::size_t triangles = balanced_order::leaf_triangles;
@@ -70,7 +68,6 @@ public:
     }
 
     [[nodiscard]] inline bool empty() const noexcept { return begins_.empty(); }
-
     inline void prefetch(std::uint32_t leaf) const noexcept { __builtin_prefetch(&lists_[begins_[leaf]]); }
     inline void read(std::uint32_t leaf, vertex_list& to) const noexcept {
         const std::byte* at = &lists_[begins_[leaf]];
@@ -102,8 +99,8 @@ private:
     static constexpr std::size_t ahead = 4;            // leaves whose triangles are prefetched
     static constexpr std::size_t least_shared = 1024;  // leaves that repay another thread
 
-    /// Writes the list of one leaf at `to`: the number of vertices, the position of each corner in the list, and the
-    /// indices of the vertices, ascending. More than sixteen vertices make an empty list.
+    /// Writes the list of one leaf: one byte for the number of vertices, 0 if there are more than sixteen; for each
+    /// corner, the positions of eight triangles in the list, in 4 bits each; and the indices of the vertices.
     /// @returns the end of the list
     std::byte* write_list(const mesh& m, std::span<const std::uint32_t> of_leaf, std::byte* to) const {
         constexpr std::size_t corners = 3 * triangles;

@@ -28,7 +28,6 @@ struct wide_node {
     }
 
     [[nodiscard]] inline double step(std::size_t axis) const noexcept { return power_of_two(exponent[axis]); }
-
     /// Maps coordinates to codes. Planes are exact and rounding is monotone: no coordinate is rounded past a plane.
     [[nodiscard]] inline code_grid grid() const noexcept {
         code_grid g;
@@ -94,8 +93,7 @@ private:
 
     [[nodiscard]] inline float plane(std::size_t axis, int code) const noexcept {
         constexpr double most = std::numeric_limits<float>::max();
-        const double at = (origin[axis] + code) * step(axis);
-        return static_cast<float>(std::clamp(at, -most, most));
+        return static_cast<float>(std::clamp((origin[axis] + code) * step(axis), -most, most));
     }
 };
 static_assert(sizeof(wide_node) == 64);
