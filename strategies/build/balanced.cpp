@@ -181,7 +181,6 @@ private:
     };
 
     /// Splits many items by a histogram; several threads take shares of the items in turn.
-
     void split_many(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
                     std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers) const {
         if (workers.count() == 1) {

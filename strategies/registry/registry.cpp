@@ -74,7 +74,6 @@ std::vector<composition> every_composition(const Rows& rows, stage of) {
         composition& c = compositions.emplace_back();
         for (std::size_t i = 0; i < kinds.size(); ++i) c[kinds[i]] = {std::string(row.names[i]), {}};
     }
-
     for (const strategy_kind kind : kinds_of(of, /*apart=*/true))
         for (const strategy_info& info : strategies(kind)) {
             if (info.name == info_of(kind).fallback) continue;

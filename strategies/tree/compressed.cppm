@@ -90,7 +90,6 @@ public:
 
 private:
     using child_pair = std::array<std::uint32_t, 2>;
-
     struct node {
         sibling_planes planes;
         child_pair child;

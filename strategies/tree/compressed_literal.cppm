@@ -71,7 +71,6 @@ public:
 
 private:
     using three_planes = std::array<float, 3>;
-
     struct node {
         three_planes planes;
         std::array<std::uint32_t, 2> child;

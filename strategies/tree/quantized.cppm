@@ -101,6 +101,7 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return bytes_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
+    /// Decodes the boxes of the children from the box of their parent; nodes above two leaves have none.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto [left, right] = children_at(at.index);
         const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, m); };
