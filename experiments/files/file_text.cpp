@@ -33,6 +33,7 @@ void require_memory(const std::string& work, double bytes) {
     throw aabb::input_error(work + " would take " + needed + " of memory, but this machine has " + available);
 }
 
+/// The size of a regular file in bytes; the message for anything else says what it is instead.
 std::size_t size_of_file(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
@@ -49,31 +50,31 @@ std::string system_error_text() {
     return std::error_code(errno, std::generic_category()).message();
 }
 
-whole_file::whole_file(const std::filesystem::path& file, std::size_t size)
+input_file::input_file(const std::filesystem::path& file, std::size_t size)
     : name_(file), size_(size), file_(std::fopen(file.c_str(), "rb")) {
     if (!file_) reject(file, "cannot be read: " + system_error_text());
 }
 
-bool whole_file::try_read(void* to, std::size_t bytes) {
+bool input_file::try_read(void* to, std::size_t bytes) {
     const std::size_t count = std::fread(to, 1, bytes, file_.get());
     done_ += count;
     return count == bytes;
 }
 
-void whole_file::read(void* to, std::size_t bytes) {
+void input_file::read(void* to, std::size_t bytes) {
     if (!try_read(to, bytes))
         reject(name_, "cannot be read beyond byte " + std::to_string(done_) + " of " + std::to_string(size_));
 }
 
-file_text read_whole(const std::filesystem::path& file, std::size_t size, double memory_factor) {
+file_text read_file(const std::filesystem::path& file, std::size_t size, double memory_factor) {
     require_memory(file.string() + ": reading it", memory_factor * static_cast<double>(size));
     file_text content{file.string(), std::string(size, '\0')};
-    whole_file(file, size).read(content.text.data(), size);
+    input_file(file, size).read(content.text.data(), size);
     return content;
 }
 
 std::string bytes_of_file(const std::filesystem::path& file) {
-    return read_whole(file, size_of_file(file), 1).text;
+    return read_file(file, size_of_file(file), /*memory_factor=*/1).text;
 }
 
 std::string text_of_file(const std::filesystem::path& file) {

@@ -35,9 +35,6 @@ struct file_text {
 /// Formats two sizes in bytes, each in a suitable unit, or in bytes if they would round to the same text.
 [[nodiscard]] std::array<std::string, 2> different_sizes(double a, double b);
 
-/// Rejects anything but a regular file.
-/// @return its size in bytes
-/// @throws aabb::input_error that says what the file is instead.
 [[nodiscard]] std::size_t size_of_file(const std::filesystem::path& file);
 
 /// Like `size_of_file`, but also rejects empty files.
@@ -55,14 +52,11 @@ using file_handle = std::unique_ptr<std::FILE, close_file>;
 [[nodiscard]] std::string system_error_text();
 
 /// A regular file that is read sequentially from its beginning.
-class whole_file {
+class input_file {
 public:
-    /// @param size as returned by `require_file`
-    /// @throws aabb::input_error if the file cannot be opened.
-    whole_file(const std::filesystem::path& file, std::size_t size);
+    input_file(const std::filesystem::path& file, std::size_t size);
     /// @returns false if fewer bytes are left
     [[nodiscard]] bool try_read(void* to, std::size_t bytes);
-    /// @throws aabb::input_error if fewer bytes are left.
     void read(void* to, std::size_t bytes);
 
 private:
@@ -75,11 +69,9 @@ private:
 /// Reads a whole file.
 /// @param size as returned by `require_file`
 /// @param memory_factor the maximum memory of the text and everything parsed from it, as a multiple of the file size
-/// @throws aabb::input_error if the file cannot be read or does not fit into memory.
-[[nodiscard]] file_text read_whole(const std::filesystem::path& file, std::size_t size, double memory_factor);
+[[nodiscard]] file_text read_file(const std::filesystem::path& file, std::size_t size, double memory_factor);
 
-/// Decodes the bytes of a file with `text_decoder`.
-/// @throws aabb::input_error if they are not text.
+/// Decodes the bytes of a file with `text_decoder`, and rejects what is not text.
 [[nodiscard]] inline file_text as_text(file_text file) {
     decoded_text text = decoded(std::move(file.text));
     if (!text.problem.empty()) file.fail(text.problem);

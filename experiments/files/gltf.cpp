@@ -15,6 +15,7 @@ namespace {
 /// The topology of a primitive, by its code in the format.
 enum class gltf_mode : std::uint8_t { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
 
+/// The product of two affine transforms, which applies `child` first.
 gltf_matrix combined(const gltf_matrix& parent, const gltf_matrix& child) {
     gltf_matrix transform;
     for (int column = 0; column < 4; ++column)
@@ -34,13 +35,13 @@ public:
         : file_(file),
           asset_(std::move(asset)),
           mesh_(file.name),
-          places_(asset_.nodes.size()),
-          is_shown_(asset_.meshes.size()) {}
+          world_transforms_(asset_.nodes.size()),
+          is_mesh_shown_(asset_.meshes.size()) {}
 
     [[nodiscard]] loaded_mesh read() {
         for (const std::size_t node : placed_nodes()) add_node(asset_.nodes[node]);
-        mesh_.ignore(asset_.animations, static_cast<std::size_t>(std::ranges::count(is_shown_, false)));
-        return mesh_.finish(0, file_.name + ": face ", 0);
+        mesh_.ignore(asset_.animations, static_cast<std::size_t>(std::ranges::count(is_mesh_shown_, false)));
+        return mesh_.finish(/*rounded_coordinates=*/0, file_.name + ": face ");
     }
 
 private:
@@ -55,32 +56,32 @@ private:
     [[nodiscard]] std::vector<std::size_t> placed_nodes() {
         struct waiting_node {
             std::size_t node;
-            gltf_matrix parent;
+            gltf_matrix parent;  // world transform of its parent
         };
-        std::vector<waiting_node> waiting;  // a stack
-        const auto add = [&](const std::vector<std::size_t>& nodes, const gltf_matrix& parent) {
-            for (std::size_t i = nodes.size(); i-- > 0;) waiting.push_back({nodes[i], parent});
+        std::vector<waiting_node> stack;
+        const auto push = [&](const std::vector<std::size_t>& nodes, const gltf_matrix& parent) {
+            for (std::size_t i = nodes.size(); i-- > 0;) stack.push_back({nodes[i], parent});
         };
         std::vector<std::size_t> nodes;
-        add(asset_.roots, gltf_matrix::Identity());
-        while (!waiting.empty()) {
-            const waiting_node top = waiting.back();
-            waiting.pop_back();
+        push(asset_.roots, gltf_matrix::Identity());
+        while (!stack.empty()) {
+            const waiting_node top = stack.back();
+            stack.pop_back();
             const gltf_node& next = node(top.node);
-            std::optional<gltf_matrix>& place = places_[top.node];
-            if (place) file_.fail(gltf_place("nodes", top.node) + " occurs more than once in the scene");
+            std::optional<gltf_matrix>& transform = world_transforms_[top.node];
+            if (transform) file_.fail(gltf_path("nodes", top.node) + " occurs more than once in the scene");
             if (!next.extension.empty())
-                file_.fail(fmt::format("{} has the extension {}, which is not supported", gltf_place("nodes", top.node),
+                file_.fail(fmt::format("{} has the extension {}, which is not supported", gltf_path("nodes", top.node),
                                        in_quotes(next.extension)));
-            place = combined(top.parent, next.place);
+            transform = combined(top.parent, next.transform);
             nodes.push_back(top.node);
-            add(next.children, *place);
+            push(next.children, *transform);
         }
         return nodes;
     }
 
     [[noreturn]] void fail_accessor(std::size_t index, const std::string& expected) const {
-        file_.fail(gltf_place("accessors", index) + " must be " + expected);
+        file_.fail(gltf_path("accessors", index) + " must be " + expected);
     }
     [[nodiscard]] std::vector<double> numbers(std::size_t index, bool no_view_means_zeros = false) const {
         return gltf_numbers(asset_, file_, index, no_view_means_zeros);
@@ -89,12 +90,13 @@ private:
     /// Positions, or position offsets of a morph target; integers need the extension KHR_mesh_quantization.
     [[nodiscard]] std::vector<double> positions(std::size_t index, bool no_view_means_zeros) const {
         const gltf_accessor& a = accessor(index);
-        const bool is_whole = a.component != gltf_component::f32 && a.component != gltf_component::u32;
-        if (a.type != "VEC3" || !(a.component == gltf_component::f32 || (is_whole && asset_.has_quantized_positions)))
+        const bool is_integer = a.component != gltf_component::f32 && a.component != gltf_component::u32;
+        if (a.type != "VEC3" || !(a.component == gltf_component::f32 || (is_integer && asset_.has_quantized_positions)))
             fail_accessor(index, "of floats and VEC3, as it has positions");
         return numbers(index, no_view_means_zeros);
     }
 
+    /// The vertex indices of a primitive; the format allows only unsigned integers.
     [[nodiscard]] std::vector<std::uint32_t> indices(std::size_t index) const {
         const gltf_accessor& a = accessor(index);
         if (a.type != "SCALAR" || (a.component != gltf_component::u8 && a.component != gltf_component::u16 &&
@@ -107,7 +109,7 @@ private:
     /// The skinning matrices: each maps a vertex from the bind pose to the current pose of a joint.
     [[nodiscard]] std::vector<gltf_matrix> joint_matrices(std::size_t index) const {
         const gltf_skin& skin = gltf_element(file_, asset_.skins, "skins", index);
-        const std::string name = gltf_place("skins", index);
+        const std::string name = gltf_path("skins", index);
         std::vector<double> bind;
         if (skin.inverse_bind_matrices) {
             const gltf_accessor& a = accessor(*skin.inverse_bind_matrices);
@@ -122,16 +124,16 @@ private:
         for (std::size_t joint = 0; joint < skin.joints.size(); ++joint) {
             const std::size_t index_of_node = skin.joints[joint];
             static_cast<void>(node(index_of_node));  // rejects an index out of range
-            const std::optional<gltf_matrix>& place = places_[index_of_node];
-            if (!place)
-                file_.fail(gltf_place("nodes", index_of_node) + " is a joint of " + name + ", but not in the scene");
-            matrices.push_back(*place);
-            if (bind.empty()) continue;
+            const std::optional<gltf_matrix>& transform = world_transforms_[index_of_node];
+            if (!transform)
+                file_.fail(gltf_path("nodes", index_of_node) + " is a joint of " + name + ", but not in the scene");
+            matrices.push_back(*transform);
+            if (bind.empty()) continue;  // all inverse bind matrices are identities
             const Eigen::Map<const Eigen::Matrix4d> inverse(&bind[16 * joint]);
             // The tolerance is for exporters that invert the matrix in single precision.
             if (!((inverse.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().array() <= 1e-6).all())
                 file_.fail(name + " has an inverse bind matrix whose last row is not 0 0 0 1");
-            matrices.back() = combined(*place, inverse.topRows<3>());
+            matrices.back() = combined(*transform, inverse.topRows<3>());
         }
         return matrices;
     }
@@ -146,7 +148,7 @@ private:
                                    counted(weights.size(), "weight")));
         for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
             if (!primitive.targets[t] || weights[t] == 0) continue;
-            const std::vector<double> offsets = positions(*primitive.targets[t], true);
+            const std::vector<double> offsets = positions(*primitive.targets[t], /*no_view_means_zeros=*/true);
             if (offsets.size() != points.size())
                 file_.fail(fmt::format("{} has a morph target for a number of vertices other than its own: {}, not {}",
                                        mesh, offsets.size() / 3, points.size() / 3));
@@ -159,7 +161,7 @@ private:
         std::vector<double> joints;
         std::vector<double> weights;
     };
-    /// The bindings in all sets of a primitive: JOINTS_0 with WEIGHTS_0, and so on.
+    /// Which joints move each vertex of a primitive, by which weights: four in each set, JOINTS_n with WEIGHTS_n.
     [[nodiscard]] std::vector<bindings> bindings_of(const gltf_primitive& primitive, std::size_t vertices,
                                                     const std::string& mesh) const {
         if (primitive.joints.empty() || primitive.joints.size() != primitive.weights.size())
@@ -209,11 +211,10 @@ private:
         return sum / weights;
     }
 
-    /// Adds the vertices of a primitive in world coordinates, after morphing and skinning.
-    /// @returns their number
+    /// Adds the vertices of a primitive in world coordinates, after morphing and skinning. Returns their number.
     std::size_t add_vertices(const gltf_primitive& primitive, const gltf_node& node,
                              const std::vector<gltf_matrix>& joints, const std::string& mesh_name) {
-        std::vector<double> points = positions(*primitive.positions, false);
+        std::vector<double> points = positions(*primitive.positions, /*no_view_means_zeros=*/false);
         const std::size_t count = points.size() / 3;
         if (count > std::numeric_limits<std::uint32_t>::max() - mesh_.vertices())
             file_.fail("its scene has more than 2^32 - 1 vertices");
@@ -224,23 +225,23 @@ private:
         const gltf_mesh& mesh = asset_.meshes[*node.mesh];
         morph(points, primitive, node.weights.value_or(mesh.weights.value_or(std::vector<double>())), mesh_name);
         const auto sets = node.skin ? bindings_of(primitive, count, mesh_name) : std::vector<bindings>();
-        const gltf_matrix& place = *places_[static_cast<std::size_t>(&node - asset_.nodes.data())];
+        const gltf_matrix& transform = *world_transforms_[static_cast<std::size_t>(&node - asset_.nodes.data())];
         for (std::size_t v = 0; v < count; ++v) {
             const Eigen::Vector3d p(&points[3 * v]);
             // Joints place a skinned mesh; the format ignores the transform of its node.
-            mesh_.add_vertex(in_float(node.skin ? skinned(p, v, sets, joints, mesh_name) : moved(place, p)));
+            mesh_.add_vertex(in_float(node.skin ? skinned(p, v, sets, joints, mesh_name) : moved(transform, p)));
         }
         return count;
     }
 
+    /// Adds the mesh of a node of the scene: the vertices and triangles of its primitives.
     void add_node(const gltf_node& node) {
         if (!node.mesh) return;
-        const std::vector<gltf_primitive>& primitives =
-            gltf_element(file_, asset_.meshes, "meshes", *node.mesh).primitives;
-        is_shown_[*node.mesh] = true;
-        const std::string mesh = gltf_place("meshes", *node.mesh);
+        const gltf_mesh& shown = gltf_element(file_, asset_.meshes, "meshes", *node.mesh);
+        is_mesh_shown_[*node.mesh] = true;
+        const std::string mesh = gltf_path("meshes", *node.mesh);
         const auto joints = node.skin ? joint_matrices(*node.skin) : std::vector<gltf_matrix>();
-        for (const gltf_primitive& primitive : primitives) {
+        for (const gltf_primitive& primitive : shown.primitives) {
             if (!primitive.positions) file_.fail(mesh + " has a primitive without positions");
             if (primitive.mode > static_cast<std::size_t>(gltf_mode::triangle_fan))
                 file_.fail(mesh + " has a primitive of mode " + std::to_string(primitive.mode) + "; modes are 0 to 6");
@@ -266,26 +267,23 @@ private:
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
             mesh_.add_face({{corners[a], corners[b], corners[c]}}, faces_++);
         };
-        const auto drop = [&](std::size_t faces) {
-            for (std::size_t i = 0; i < faces; ++i) mesh_.drop();
-        };
         switch (mode) {
             case gltf_mode::points:
-            case gltf_mode::line_loop: drop(count); break;
-            case gltf_mode::lines: drop(count / 2); break;
-            case gltf_mode::line_strip: drop(count > 0 ? count - 1 : 0); break;
+            case gltf_mode::line_loop: mesh_.drop_faces(count); break;
+            case gltf_mode::lines: mesh_.drop_faces(count / 2); break;
+            case gltf_mode::line_strip: mesh_.drop_faces(count > 0 ? count - 1 : 0); break;
             case gltf_mode::triangles:
                 for (std::size_t i = 2; i < count; i += 3) add(i - 2, i - 1, i);
-                drop(count % 3 == 0 ? 0 : 1);
+                mesh_.drop_faces(count % 3 == 0 ? 0 : 1);
                 break;
             case gltf_mode::triangle_strip:  // every other one is reversed for consistent winding
                 for (std::size_t i = 2; i < count; ++i)
                     mesh_.add_strip_triangle({corners[i - 2], corners[i - (i + 1) % 2], corners[i - i % 2]}, faces_++);
-                drop(count == 1 || count == 2 ? 1 : 0);
+                mesh_.drop_faces(count == 1 || count == 2 ? 1 : 0);
                 break;
             case gltf_mode::triangle_fan:
                 for (std::size_t i = 2; i < count; ++i) add(0, i - 1, i);
-                drop(count == 1 || count == 2 ? 1 : 0);
+                mesh_.drop_faces(count == 1 || count == 2 ? 1 : 0);
                 break;
         }
     }
@@ -293,8 +291,8 @@ private:
     const file_text& file_;
     gltf_asset asset_;
     mesh_builder mesh_;
-    std::vector<std::optional<gltf_matrix>> places_;  // world transforms of the scene's nodes
-    std::vector<bool> is_shown_;                      // by mesh
+    std::vector<std::optional<gltf_matrix>> world_transforms_;  // of the scene's nodes
+    std::vector<bool> is_mesh_shown_;
     std::size_t faces_ = 0;
 };
 

@@ -64,7 +64,7 @@ struct gltf_skin {
 using gltf_matrix = Eigen::Matrix<double, 3, 4>;
 
 struct gltf_node {
-    gltf_matrix place;  ///< relative to its parent
+    gltf_matrix transform;  ///< relative to its parent
     std::optional<std::size_t> mesh;
     std::optional<std::size_t> skin;
     std::optional<std::vector<double>> weights;  ///< override those of its mesh
@@ -91,39 +91,29 @@ struct gltf_asset {
 };
 
 /// The path of a list element in messages: "accessors[3]".
-[[nodiscard]] inline std::string gltf_place(std::string_view list, std::size_t index) {
+[[nodiscard]] inline std::string gltf_path(std::string_view list, std::size_t index) {
     return std::string(list) + "[" + std::to_string(index) + "]";
 }
 
-/// @throws aabb::input_error if the index is out of range.
 template <class Element>
 [[nodiscard]] inline const Element& gltf_element(const file_text& file, const std::vector<Element>& list,
                                                  std::string_view name, std::size_t index) {
-    if (index >= list.size()) file.fail(gltf_place(name, index) + " is used, but does not exist");
+    if (index >= list.size()) file.fail(gltf_path(name, index) + " is used, but does not exist");
     return list[index];
 }
 
 /// The components of an accessor in order; normalized ones are mapped to [-1, 1] or [0, 1].
 /// @param no_view_means_zeros as the format specifies; but an accessor whose data only an extension has looks the same
-/// @throws aabb::input_error on a missing element or a range beyond the end of its bytes.
 [[nodiscard]] std::vector<double> gltf_numbers(const gltf_asset& asset, const file_text& file, std::size_t accessor,
                                                bool no_view_means_zeros);
 
-/// The two parts of a .glb file; a .gltf file is all JSON.
 struct gltf_parts {
     std::string_view json;
     std::optional<std::string_view> binary;
     bool is_text = false;
 };
-/// @throws aabb::input_error on a truncated chunk or an unsupported version.
 [[nodiscard]] gltf_parts gltf_parts_of(const file_text& file);
-
-/// Parses everything but the bytes of the buffers.
-/// @throws aabb::input_error on malformed JSON, or a member that is missing or has the wrong type.
 [[nodiscard]] gltf_asset parse_gltf(const file_text& file, const gltf_parts& parts);
-
-/// Loads the buffers from the binary chunk, from data: URIs and from files next to this one.
-/// @throws aabb::input_error if a buffer is missing or shorter than announced.
 void load_gltf_buffers(gltf_asset& asset, const file_text& file, std::optional<std::string_view> binary);
 
 }  // namespace aabblab

@@ -15,11 +15,11 @@ constexpr std::size_t chunk_header_bytes = 8;
 constexpr std::uint32_t json_chunk = 0x4e4f534a;    // "JSON"
 constexpr std::uint32_t binary_chunk = 0x004e4942;  // "BIN"
 
-/// A chunk of a .glb file: its length and type, 4 bytes each, then its bytes. `take_chunk` removes the first one.
 struct chunk {
     std::uint32_t type = 0;
     std::string_view bytes;
 };
+/// Removes the first chunk from the rest of a .glb file: its length and type, 4 bytes each, then its bytes.
 chunk take_chunk(const file_text& file, std::string_view& rest) {
     const std::string offset = std::to_string(file.text.size() - rest.size());
     if (rest.size() < chunk_header_bytes)
@@ -42,62 +42,67 @@ int digit_of(char c) {
     return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-/// Decodes base64; nullopt if the text is malformed.
-std::optional<std::string> decoded(std::string_view text) {
+/// Decodes base64, in which each character holds six bits; nullopt if the text is malformed.
+std::optional<std::string> decoded_base64(std::string_view text) {
     for (int i = 0; i < 2 && text.ends_with('='); ++i) text.remove_suffix(1);
     std::string bytes;
     bytes.reserve(text.size() / 4 * 3 + 2);
     std::uint32_t bits = 0;
-    int count = 0;
+    int pending = 0;  // how many of the bits are in no byte yet
     for (const char c : text) {
         const int digit = digit_of(c);
         if (digit < 0) return {};
         bits = bits << 6U | static_cast<std::uint32_t>(digit);
-        count += 6;
-        if (count < 8) continue;
-        count -= 8;
-        bytes += static_cast<char>(bits >> static_cast<unsigned>(count) & 0xffU);
+        pending += 6;
+        if (pending < 8) continue;
+        pending -= 8;
+        bytes += static_cast<char>(bits >> static_cast<unsigned>(pending) & 0xffU);
     }
-    return count < 6 ? std::optional(bytes) : std::nullopt;
+    return pending < 6 ? std::optional(bytes) : std::nullopt;
 }
 
-/// Decodes the percent-encoding of a URI.
+/// Decodes the percent-encoding of a URI, as the name of a file may have blanks. A '%' before other characters stays.
 std::string unescaped(std::string_view uri) {
     const auto hex = [](char c) { return std::string_view("0123456789abcdef").find(static_cast<char>(c | 0x20)); };
     std::string text;
     for (std::size_t i = 0; i < uri.size(); ++i) {
-        const bool escaped = uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) < 16 && hex(uri[i + 2]) < 16;
-        text += escaped ? static_cast<char>(hex(uri[i + 1]) * 16 + hex(uri[i + 2])) : uri[i];
-        i += escaped ? 2 : 0;
+        const bool is_escaped = uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) < 16 && hex(uri[i + 2]) < 16;
+        text += is_escaped ? static_cast<char>(hex(uri[i + 1]) * 16 + hex(uri[i + 2])) : uri[i];
+        i += is_escaped ? 2 : 0;
     }
     return text;
 }
 
-std::string bytes_of_data(std::string_view uri) {
+/// The bytes that a data: URI holds itself, in base64.
+std::string bytes_of_data_uri(std::string_view uri) {
     constexpr std::string_view mark = ";base64,";
     const std::size_t begin = uri.find(mark);
     if (begin == std::string_view::npos) throw aabb::input_error("is a data: URI without ;base64,");
-    std::optional<std::string> bytes = decoded(uri.substr(begin + mark.size()));
+    std::optional<std::string> bytes = decoded_base64(uri.substr(begin + mark.size()));
     if (!bytes) throw aabb::input_error("is a data: URI that is not base64");
     return *std::move(bytes);
 }
 
-/// The bytes of a buffer: in the .glb file, in a data: URI or in a file next to this one.
+/// The bytes of a buffer: in the binary chunk of the .glb file, in a data: URI or in a file in the folder of this one.
 /// @param loaded total bytes of the previous buffers, for the memory limit, as many buffers may name one file
-std::string bytes_of(const gltf_buffer& buffer, const file_text& file, std::optional<std::string_view> binary,
-                     std::size_t loaded) {
+std::string bytes_of_buffer(const gltf_buffer& buffer, const file_text& file, std::optional<std::string_view> binary,
+                            std::size_t loaded) {
     if (!buffer.uri) {
         if (!binary) throw aabb::input_error("has neither a uri nor the binary chunk of a .glb file");
         return std::string(*binary);
     }
-    if (buffer.uri->starts_with("data:")) return bytes_of_data(*buffer.uri);
+    if (buffer.uri->starts_with("data:")) return bytes_of_data_uri(*buffer.uri);
     if (buffer.uri->find("://") != std::string::npos)
         throw aabb::input_error("is at " + in_quotes(*buffer.uri) + ", but only files and data: URIs are read");
-    const std::filesystem::path beside = std::filesystem::path(file.name).replace_filename(unescaped(*buffer.uri));
-    const std::size_t size = require_file(beside);
+    const std::filesystem::path neighbour = std::filesystem::path(file.name).replace_filename(unescaped(*buffer.uri));
+    const std::size_t size = require_file(neighbour);
     require_memory(file.name + ": its buffers", static_cast<double>(loaded) + static_cast<double>(size));
-    return read_whole(beside, size, 1).text;
+    return read_file(neighbour, size, /*memory_factor=*/1).text;
 }
+
+constexpr std::pair<gltf_component, scalar> scalars[] = {
+    {gltf_component::i8, scalar::i8},   {gltf_component::u8, scalar::u8},   {gltf_component::i16, scalar::i16},
+    {gltf_component::u16, scalar::u16}, {gltf_component::u32, scalar::u32}, {gltf_component::f32, scalar::f32}};
 
 /// Strided elements whose range has been checked.
 struct elements {
@@ -113,9 +118,10 @@ public:
     number_reader(const gltf_asset& asset, const file_text& file, std::size_t accessor)
         : asset_(asset),
           file_(file),
-          name_(gltf_place("accessors", accessor)),
+          name_(gltf_path("accessors", accessor)),
           accessor_(gltf_element(file, asset.accessors, "accessors", accessor)) {}
 
+    /// Reads the accessor: its elements in a buffer view, or zeros, some of which sparse elements then replace.
     [[nodiscard]] std::vector<double> read(bool no_view_means_zeros) const {
         const gltf_accessor& a = accessor_;
         if (!a.view && !a.sparse && !no_view_means_zeros)
@@ -139,26 +145,21 @@ private:
             if (type == name) return static_cast<std::size_t>(width);
         file_.fail(name_ + " has the type " + in_quotes(type) + ", which is not read");
     }
+    /// The type with the code that the file gives, which may be none of the format.
     [[nodiscard]] scalar scalar_of(gltf_component component) const {
-        switch (component) {
-            case gltf_component::i8: return scalar::i8;
-            case gltf_component::u8: return scalar::u8;
-            case gltf_component::i16: return scalar::i16;
-            case gltf_component::u16: return scalar::u16;
-            case gltf_component::u32: return scalar::u32;
-            case gltf_component::f32: return scalar::f32;
-        }
+        for (const auto& [code, type] : scalars)
+            if (code == component) return type;
         file_.fail(fmt::format("{} has the unknown componentType {}", name_, static_cast<std::size_t>(component)));
     }
 
     /// The elements at an offset of a buffer view, if they lie within the view and the view within its buffer.
     [[nodiscard]] elements elements_of(std::size_t index, std::size_t offset, std::size_t count,
                                        std::size_t bytes) const {
-        const std::string view_name = gltf_place("bufferViews", index);
+        const std::string view_name = gltf_path("bufferViews", index);
         const gltf_view& view = gltf_element(file_, asset_.views, "bufferViews", index);
         const std::string& buffer = gltf_element(file_, asset_.buffers, "buffers", view.buffer).bytes;
         if (view.offset > buffer.size() || view.length > buffer.size() - view.offset)
-            file_.fail(view_name + " reaches beyond the end of " + gltf_place("buffers", view.buffer));
+            file_.fail(view_name + " reaches beyond the end of " + gltf_path("buffers", view.buffer));
         const std::size_t stride = view.stride.value_or(bytes);
         if (stride < bytes)
             file_.fail(view_name + " has a byteStride below the " + std::to_string(bytes) + " bytes of one");
@@ -177,6 +178,7 @@ private:
         }
     }
 
+    /// Replaces elements by those of a sparse accessor, which lists their indices and values.
     void replace(const gltf_sparse& sparse, scalar type, std::size_t width, std::vector<double>& numbers) const {
         if (sparse.index_component == gltf_component::f32)
             file_.fail(name_ + ".sparse.indices must be of whole numbers, as it has indices");
@@ -203,9 +205,10 @@ private:
 
 }  // namespace
 
+/// Splits a binary file (.glb) into its JSON and its binary chunk; a file without the binary header is all JSON.
 gltf_parts gltf_parts_of(const file_text& file) {
     std::string_view rest = file.text;
-    if (!rest.starts_with("glTF")) return {rest, {}, true};
+    if (!rest.starts_with("glTF")) return {.json = rest, .binary = {}, .is_text = true};
     if (rest.size() < header_bytes) file.fail("is not a glTF file: it ends in the header of 12 bytes");
     if (const std::uint32_t version = u32_at(rest, 4); version != 2)
         file.fail("is glTF of version " + std::to_string(version) + "; only version 2 is read");
@@ -223,19 +226,20 @@ gltf_parts gltf_parts_of(const file_text& file) {
     return parts;
 }
 
+/// Loads the bytes of all buffers. `binary` is the binary chunk of a .glb file.
 void load_gltf_buffers(gltf_asset& asset, const file_text& file, std::optional<std::string_view> binary) {
     std::size_t loaded = 0;
     for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
         gltf_buffer& buffer = asset.buffers[i];
         try {
             // Only the first buffer can refer to the binary chunk.
-            buffer.bytes = bytes_of(buffer, file, i == 0 ? binary : std::nullopt, loaded);
+            buffer.bytes = bytes_of_buffer(buffer, file, i == 0 ? binary : std::nullopt, loaded);
             loaded += buffer.bytes.size();
             if (buffer.bytes.size() < buffer.length)
                 throw aabb::input_error(
                     fmt::format("announces {} bytes, but has {}", buffer.length, buffer.bytes.size()));
         } catch (const aabb::input_error& error) {
-            file.fail(gltf_place("buffers", i) + ": " + error.what());
+            file.fail(gltf_path("buffers", i) + ": " + error.what());
         }
     }
 }

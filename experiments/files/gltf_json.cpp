@@ -24,8 +24,8 @@ void require_no_extension(const object& root) {
 }
 
 /// The transform of a node relative to its parent: a matrix, or translation, rotation and scale.
-gltf_matrix place_of(const object& node) {
-    gltf_matrix place;
+gltf_matrix transform_of(const object& node) {
+    gltf_matrix transform;
     if (!node.has("matrix")) {
         const auto rotation = node.numbers<4>("rotation", {0, 0, 0, 1});
         const double square = std::inner_product(rotation.begin(), rotation.end(), rotation.begin(), 0.0);
@@ -33,8 +33,8 @@ gltf_matrix place_of(const object& node) {
         const auto translation = node.numbers<3>("translation", {});
         const auto scale = node.numbers<3>("scale", {1, 1, 1});
         const Eigen::Matrix3d turned = Eigen::Quaterniond(rotation.data()).toRotationMatrix();
-        place << turned * Eigen::Vector3d(scale.data()).asDiagonal(), Eigen::Vector3d(translation.data());
-        return place;
+        transform << turned * Eigen::Vector3d(scale.data()).asDiagonal(), Eigen::Vector3d(translation.data());
+        return transform;
     }
     const auto m = node.numbers<16>("matrix", {});
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) node.fail("has a matrix whose last row is not 0 0 0 1");
@@ -45,6 +45,7 @@ gltf_sparse::part part_of(const object& part) {
     return {part.needed_index("bufferView"), part.index("byteOffset").value_or(0)};
 }
 
+/// Parses an accessor, which describes numbers in a buffer; a sparse one also lists elements that it replaces.
 gltf_accessor accessor_of(const object& accessor) {
     gltf_accessor parsed{.view = accessor.index("bufferView"),
                          .offset = accessor.index("byteOffset").value_or(0),
@@ -69,6 +70,7 @@ std::vector<std::size_t> numbered_attributes(const object& attributes, const std
     return accessors;
 }
 
+/// Parses a primitive, the part of a mesh with one material: what determines its surface, as indices of accessors.
 gltf_primitive primitive_of(const object& primitive) {
     gltf_primitive parsed;
     if (const auto attributes = primitive.member("attributes")) {
@@ -97,10 +99,11 @@ std::string surface_extension_of(const object& node) {
 }
 
 gltf_node node_of(const object& node) {
-    return {place_of(node),          node.index("mesh"),       node.index("skin"),
+    return {transform_of(node),      node.index("mesh"),       node.index("skin"),
             node.numbers("weights"), node.indices("children"), surface_extension_of(node)};
 }
 
+/// The root nodes of the scene that the file says to show; the first scene if it says nothing.
 std::vector<std::size_t> roots_of(const object& root) {
     const std::vector<object> scenes = root.objects("scenes");
     if (scenes.empty()) root.fail("has no scene");
@@ -112,6 +115,7 @@ std::vector<std::size_t> roots_of(const object& root) {
 
 }  // namespace
 
+/// Parses the JSON part of glTF 2.0 into plain data. Indices are checked later, where they are used.
 gltf_asset parse_gltf(const file_text& file, const gltf_parts& parts) {
     const object root(file.name, parts.json, "is not a glTF file",
                       parts.is_text ? object::position::line : object::position::byte);

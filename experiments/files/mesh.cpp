@@ -41,6 +41,7 @@ std::vector<std::string> mesh_endings() {
     return endings;
 }
 
+/// The part of the report about what was left out, which a message also quotes when no triangles are left.
 std::string mesh_report::left_out() const {
     std::string line;
     if (dropped) add(line, counted(dropped, "face") + " of fewer than three corners dropped");
@@ -55,6 +56,7 @@ std::string mesh_report::left_out() const {
     return line;
 }
 
+/// What reading changed or left out, in one line for the user; empty for most files.
 std::string mesh_report::text() const {
     std::string line;
     if (polygons > concave) add(line, counted(polygons - concave, "polygon") + " fan-triangulated");
@@ -65,6 +67,7 @@ std::string mesh_report::text() const {
     return line;
 }
 
+/// Reads a mesh in the format that the file's extension names; only text is decoded, whatever program wrote it.
 loaded_mesh read_mesh(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     const std::string ending = mesh_ending_of(file);
@@ -73,32 +76,30 @@ loaded_mesh read_mesh(const std::filesystem::path& file) {
     if (ending == ".stl")
         if (std::optional<loaded_mesh> binary = read_binary_stl(file, size)) return *std::move(binary);
     // The mesh takes about as much memory as its text.
-    file_text content = read_whole(file, size, 2);
+    file_text content = read_file(file, size, /*memory_factor=*/2);
     if (reader->is_text(content.text)) content = as_text(std::move(content));
     return reader->read(content);
 }
 
+/// Writes OFF in blocks, as the text of a large mesh need not be in memory at once.
 void write_off(const aabb::mesh& mesh, const std::filesystem::path& file) {
     output_file out(file);
     std::string text =
         "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.triangles.size()) + " 0\n";
-    const auto flush = [&](std::size_t least) {
-        if (text.size() < least) return;
+    const auto write_full_block = [&] {
+        if (text.size() < 1U << 16) return;
         out.write(text);
         text.clear();
     };
     for (const aabb::vec3f& p : mesh.vertices) {
-        for (int k = 0; k < 3; ++k) {
-            text += aabb::shortest(p[k]);
-            text += k < 2 ? ' ' : '\n';
-        }
-        flush(1U << 16);
+        text += aabb::shortest(p[0]) + ' ' + aabb::shortest(p[1]) + ' ' + aabb::shortest(p[2]) + '\n';
+        write_full_block();
     }
     for (const auto& [a, b, c] : mesh.triangles) {
         text += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
-        flush(1U << 16);
+        write_full_block();
     }
-    flush(0);
+    out.write(text);
     out.commit();
 }
 

@@ -32,15 +32,15 @@ public:
     }
 
     /// Polygons are triangulated by `finish`, as their vertices may follow; below three corners they are dropped.
-    /// @param place the line or the number of the face, for messages
-    void add_face(std::span<const std::uint32_t> corners, std::size_t place) {
-        for (const std::uint32_t corner : corners) use(corner, place);
-        if (corners.size() < 3) return drop();
-        if (corners.size() > 3) polygons_.push_back({loaded_.mesh.triangles.size(), corners.size(), place});
+    /// @param location the line or the number of the face, for messages
+    void add_face(std::span<const std::uint32_t> corners, std::size_t location) {
+        for (const std::uint32_t corner : corners) require_vertex(corner, location);
+        if (corners.size() < 3) return drop_faces(1);
+        if (corners.size() > 3) polygons_.push_back({loaded_.mesh.triangles.size(), corners.size(), location});
         for (std::size_t i = 2; i < corners.size(); ++i)
             loaded_.mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
     }
-    void drop() { ++loaded_.report.dropped; }
+    void drop_faces(std::size_t count) { loaded_.report.dropped += count; }
     /// Reports what is ignored: only the visible meshes of a scene are read, in their initial pose.
     void ignore(std::size_t animations, std::size_t hidden_meshes) {
         loaded_.report.animations = animations;
@@ -48,22 +48,22 @@ public:
     }
 
     /// Requires that the vertex exists when the mesh is finished.
-    void use(std::uint32_t corner, std::size_t place) {
-        if (corner < greatest_) return;
-        greatest_ = std::size_t{corner} + 1;
-        greatest_at_ = place;
+    void require_vertex(std::uint32_t corner, std::size_t location) {
+        if (corner < needed_vertices_) return;
+        needed_vertices_ = std::size_t{corner} + 1;
+        needed_at_ = location;
     }
 
     /// Adds a triangle of a strip. A triangle that repeats a corner only joins two parts of the strip and is skipped.
-    void add_strip_triangle(const std::array<std::uint32_t, 3>& corners, std::size_t place) {
+    void add_strip_triangle(const std::array<std::uint32_t, 3>& corners, std::size_t location) {
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
             ++loaded_.report.stitches;
         else
-            add_face(corners, place);
+            add_face(corners, location);
     }
 
-    /// Counts parts of the file that are not read, by their name in the file.
-    void skip(std::string_view kind, std::string_view name, std::size_t count) {
+    /// Counts statements or elements that are not read, as they may describe surface. The report names only a few.
+    void report_skipped(std::string_view kind, std::string_view name, std::size_t count) {
         constexpr std::size_t most_names = 8;
         auto& skipped = loaded_.report.skipped;
         const auto part = std::ranges::find(skipped, name, &skipped_parts::name);
@@ -75,46 +75,46 @@ public:
             loaded_.report.skipped_others += count;
     }
 
-    /// Validates and returns the mesh.
-    /// @param before "FILE:" or "FILE: face ", the prefix of a face's place in messages
-    /// @param first the index of the first vertex in this format: 0 or 1
-    /// @throws aabb::input_error if there are no triangles, an index is out of range, or a polygon bounds no surface.
-    [[nodiscard]] loaded_mesh finish(std::size_t rounded, std::string_view before, std::size_t first) {
+    /// Validates the mesh, now that all vertices are known, triangulates its polygons and returns it.
+    /// @param location_prefix "FILE:" or "FILE: face ", which precedes a face's location in messages
+    /// @param first_index of a vertex in this format: 0 or 1
+    [[nodiscard]] loaded_mesh finish(std::size_t rounded_coordinates, std::string_view location_prefix,
+                                     std::size_t first_index = 0) {
         aabb::mesh& m = loaded_.mesh;
-        if (greatest_ > m.vertices.size())
-            reject(std::string(before) + std::to_string(greatest_at_),
-                   "a face uses vertex " + std::to_string(greatest_ - 1 + first) + ", but there are " +
-                       std::to_string(m.vertices.size()) + " vertices, counted from " + std::to_string(first));
-        settle_vertices(first);
+        if (needed_vertices_ > m.vertices.size())
+            reject(std::string(location_prefix) + std::to_string(needed_at_),
+                   "a face uses vertex " + std::to_string(needed_vertices_ - 1 + first_index) + ", but there are " +
+                       std::to_string(m.vertices.size()) + " vertices, counted from " + std::to_string(first_index));
+        move_unused_vertices(first_index);
         try {
             aabb::require_valid(m);
         } catch (const aabb::input_error& error) {
             const std::string left_out = loaded_.report.left_out();
             reject(file_, error.what() + (left_out.empty() ? "" : " (" + left_out + ")"));
         }
-        cut_polygons(before);
+        cut_polygons(location_prefix);
         m.vertices.shrink_to_fit();
         m.triangles.shrink_to_fit();
-        loaded_.report.rounded = rounded;
+        loaded_.report.rounded = rounded_coordinates;
         for (std::uint32_t t = 0; t < m.triangle_count(); ++t) loaded_.report.zero_area += has_zero_area(m.triangle(t));
         return std::move(loaded_);
     }
 
 private:
     struct polygon {
-        std::size_t first;  // first triangle of its fan
+        std::size_t first_triangle;  // of its fan
         std::size_t corners;
-        std::size_t place;
+        std::size_t location;
     };
 
-    /// Triangulates the polygons, which have fans so far.
-    void cut_polygons(std::string_view before) {
+    /// Triangulates the polygons: `add_face` made fans before vertices were known, which fit only convex ones.
+    void cut_polygons(std::string_view location_prefix) {
         polygon_cutter cutter;
         for (const polygon& p : polygons_) {
-            const polygon_shape shape =
-                cutter.cut(loaded_.mesh.vertices, std::span(loaded_.mesh.triangles).subspan(p.first, p.corners - 2));
+            const std::span fan = std::span(loaded_.mesh.triangles).subspan(p.first_triangle, p.corners - 2);
+            const polygon_shape shape = cutter.cut(loaded_.mesh.vertices, fan);
             const auto fail = [&](const std::string& sentence) {
-                reject(std::string(before) + std::to_string(p.place),
+                reject(std::string(location_prefix) + std::to_string(p.location),
                        "the boundary of a face of " + std::to_string(p.corners) + " corners " + sentence);
             };
             if (shape == polygon_shape::no_normal) fail("has no normal, as its signed area is zero");
@@ -129,8 +129,8 @@ private:
         std::size_t line;
     };
 
-    /// Moves unused vertices that are not finite onto a used one, so that the indices of the others stay the same.
-    void settle_vertices(std::size_t first) {
+    /// Moves unused vertices that are not finite onto a used one, as removing them would change the indices of others.
+    void move_unused_vertices(std::size_t first_index) {
         if (not_finite_.empty()) return;
         aabb::mesh& m = loaded_.mesh;
         std::vector<bool> is_used(m.vertices.size());
@@ -139,7 +139,7 @@ private:
         for (const auto& [index, line] : not_finite_) {
             if (is_used[index])
                 reject(file_ + (line == 0 ? "" : ":" + std::to_string(line)),
-                       "vertex " + std::to_string(index + first) +
+                       "vertex " + std::to_string(index + first_index) +
                            " has a coordinate that is not finite, and a face uses it");
             if (!m.triangles.empty()) m.vertices[index] = m.vertices[m.triangles[0][0]];
         }
@@ -150,8 +150,8 @@ private:
     loaded_mesh loaded_;
     std::vector<polygon> polygons_;  // with more than three corners
     std::vector<located_vertex> not_finite_;
-    std::size_t greatest_ = 0;  // one more than the greatest corner index so far
-    std::size_t greatest_at_ = 0;
+    std::size_t needed_vertices_ = 0;  // one more than the greatest corner index so far
+    std::size_t needed_at_ = 0;        // the location of the face with that corner
 };
 
 // One reader per format. Text files are decoded by `as_text` before.
@@ -159,11 +159,8 @@ private:
 [[nodiscard]] loaded_mesh read_obj(const file_text& file);
 [[nodiscard]] loaded_mesh read_ply(const file_text& file);
 [[nodiscard]] loaded_mesh read_stl(const file_text& file);
-/// Returns nullopt if the file size contradicts the count in a binary header; then the file may be text.
 [[nodiscard]] std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, std::size_t size);
-/// Reads glTF 2.0, text or binary, with embedded or external buffers.
 [[nodiscard]] loaded_mesh read_gltf(const file_text& file);
-
 [[nodiscard]] bool is_text_ply(std::string_view bytes);
 [[nodiscard]] bool is_text_stl(std::string_view bytes);
 

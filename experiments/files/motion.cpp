@@ -14,6 +14,7 @@ struct step {
     aabb::pose pose;
 };
 
+/// Reads the rest of a line: twelve numbers, the rows of [R t]. Rejects a matrix R that is no rotation.
 aabb::pose read_pose(text_scanner& in) {
     aabb::pose p;
     for (std::size_t row = 0; row < 3; ++row) {
@@ -21,7 +22,7 @@ aabb::pose read_pose(text_scanner& in) {
             p.rotation[3 * row + column] = in.number("twelve numbers, the rows of [R t]");
         p.translation[static_cast<int>(row)] = in.number("twelve numbers, the rows of [R t]");
     }
-    if (in.more()) in.expected("the end of the line after frame, object and twelve numbers", in.word());
+    if (in.has_word()) in.fail_expected("the end of the line after frame, object and twelve numbers", in.word());
     try {
         aabb::require_rigid(p);
     } catch (const aabb::input_error& error) {
@@ -32,17 +33,18 @@ aabb::pose read_pose(text_scanner& in) {
 
 class motion_reader {
 public:
-    explicit motion_reader(const file_text& file) : in_(file, '#') {}
+    explicit motion_reader(const file_text& file) : in_(file, /*comment=*/'#') {}
 
+    /// Reads all lines, "frame object" and a pose each, in the order of the file, which is that of frames.
     [[nodiscard]] std::vector<step> read() {
         while (in_.next_line()) {
-            const auto frame = in_.whole<std::uint32_t>("the number of a frame");
-            const auto object = in_.whole<std::uint32_t>("the number of an object");
-            begin(frame);
-            place(object);
+            const auto frame = in_.integer<std::uint32_t>("the number of a frame");
+            const auto object = in_.integer<std::uint32_t>("the number of an object");
+            advance_to_frame(frame);
+            require_first_pose(object);
             steps_.push_back({frame, object, read_pose(in_)});
         }
-        if (steps_.empty()) in_.ends("before the first pose");
+        if (steps_.empty()) in_.fail_at_end("before the first pose");
         if (frame_ == 0) require_all_objects();
         return std::move(steps_);
     }
@@ -52,7 +54,7 @@ public:
 
 private:
     /// Advances to the frame of a line; frames must be in order.
-    void begin(std::uint32_t frame) {
+    void advance_to_frame(std::uint32_t frame) {
         if (frame == frame_) return;
         if (frame < frame_) in_.fail(fmt::format("frame {} follows frame {}; frames must be in order", frame, frame_));
         if (frame >= most) in_.fail(fmt::format("a frame is a number below {}, not {}", most, frame));
@@ -67,8 +69,8 @@ private:
         objects_ = placed_.size();
     }
 
-    /// Notes that an object has a pose in the current frame, which must be its only one.
-    void place(std::uint32_t object) {
+    /// Notes that an object has a pose in the current frame, which must be its first one there.
+    void require_first_pose(std::uint32_t object) {
         if (object >= most) in_.fail(fmt::format("an object is a number below {}, not {}", most, object));
         if (frame_ == 0 && object >= placed_.size()) placed_.resize(object + 1, 0);
         if (object >= placed_.size()) in_.fail("frame 0 has no pose of object " + std::to_string(object));
@@ -87,8 +89,9 @@ private:
 
 class motion_scene final : public aabb::mesh_scene {
 public:
+    /// Reads the whole file; object i has mesh i modulo their number.
     motion_scene(const std::filesystem::path& file, std::vector<aabb::mesh> scene_meshes) {
-        const file_text text = as_text(read_whole(file, require_file(file), 8));
+        const file_text text = as_text(read_file(file, require_file(file), /*memory_factor=*/8));
         motion_reader reader(text);
         steps_ = reader.read();
         meshes = std::move(scene_meshes);
@@ -101,10 +104,11 @@ public:
 
     [[nodiscard]] std::size_t frames() const override { return std::size_t{steps_.back().frame} + 1; }
 
+    /// Gives the poses of the next frame; false after the last. Objects without a line in it stay where they are.
     bool next(std::vector<aabb::pose>& poses) override {
         if (frame_ == frames()) return false;
-        for (; next_ < steps_.size() && steps_[next_].frame == frame_; ++next_)
-            poses_[steps_[next_].object] = steps_[next_].pose;
+        for (; next_step_ < steps_.size() && steps_[next_step_].frame == frame_; ++next_step_)
+            poses_[steps_[next_step_].object] = steps_[next_step_].pose;
         ++frame_;
         poses = poses_;
         return true;
@@ -112,7 +116,7 @@ public:
 
 private:
     std::vector<step> steps_;
-    std::size_t next_ = 0;  // step
+    std::size_t next_step_ = 0;
     std::size_t frame_ = 0;
     std::vector<aabb::pose> poses_;  // current, by object
 };
@@ -123,6 +127,7 @@ std::unique_ptr<aabb::mesh_scene> open_motion(const std::filesystem::path& file,
     return std::make_unique<motion_scene>(file, std::move(meshes));
 }
 
+/// Appends a frame: a line "frame object", then the rows of [R t], for each object.
 void motion_file::add(std::span<const aabb::pose> poses) {
     std::string text;
     const auto append = [&](double number) { text += ' ' + aabb::shortest(number); };

@@ -7,8 +7,7 @@ namespace aabblab {
 
 namespace {
 
-/// How numbers are arranged in lines. An arbitrary number of colour values may follow a vertex or a face, so that only
-/// the end of the line shows where they end.
+/// How numbers are arranged in lines. Any number of colour values may follow a vertex or a face up to its line's end.
 enum class arrangement : std::uint8_t {
     lines,       ///< each vertex and each face has its own line, and extra values at its end are skipped
     face_lines,  ///< line ends are insignificant, except that each face begins a line and colours may follow it
@@ -18,50 +17,50 @@ enum class arrangement : std::uint8_t {
 /// Reads "OFF" with any prefix of ST, C, N: texture coordinates, colours and normals follow positions and are skipped.
 /// @returns the number of values to skip per vertex
 std::size_t read_keyword(text_scanner& in) {
-    if (!in.next_line()) in.ends("before the keyword OFF");
+    if (!in.next_line()) in.fail_at_end("before the keyword OFF");
     const std::string_view keyword = in.word();
-    const std::size_t prefix = keyword.find("OFF");
-    if (prefix == std::string_view::npos) in.expected("the keyword OFF", keyword);
-    std::string_view before = keyword.substr(0, prefix);
-    std::size_t numbers = 0;
-    for (const auto& [mark, length] : {std::pair<std::string_view, std::size_t>{"ST", 2}, {"C", 4}, {"N", 3}})
-        if (before.starts_with(mark)) {
-            before.remove_prefix(mark.size());
-            numbers += length;
+    const std::size_t off = keyword.find("OFF");
+    if (off == std::string_view::npos) in.fail_expected("the keyword OFF", keyword);
+    std::string_view prefix = keyword.substr(0, off);
+    std::size_t skipped_values = 0;
+    for (const auto& [mark, values] : {std::pair<std::string_view, std::size_t>{"ST", 2}, {"C", 4}, {"N", 3}})
+        if (prefix.starts_with(mark)) {
+            prefix.remove_prefix(mark.size());
+            skipped_values += values;
         }
-    if (before == "4" || before == "n" || before == "4n") in.fail("only OFF in three dimensions is read");
-    if (!before.empty()) in.expected("the keyword OFF", keyword);
+    if (prefix == "4" || prefix == "n" || prefix == "4n") in.fail("only OFF in three dimensions is read");
+    if (!prefix.empty()) in.fail_expected("the keyword OFF", keyword);
     // Some writers omit the blank between the keyword and the first count.
-    in.back_to(keyword.substr(prefix + 3));
-    return numbers;
+    in.back_to(keyword.substr(off + 3));
+    return skipped_values;
 }
 
 class off_reader {
 public:
-    off_reader(const file_text& file, arrangement expected)
-        : in_(file, '#'), name_(file.name), arrangement_(expected), mesh_(file.name) {}
+    off_reader(const file_text& file, arrangement tried)
+        : in_(file, /*comment=*/'#'), name_(file.name), arrangement_(tried), mesh_(file.name) {}
 
-    /// @throws aabb::input_error with file and line if the file does not have this arrangement.
+    /// Reads the whole file; throws an input_error if its numbers are not arranged in lines as assumed.
     [[nodiscard]] loaded_mesh read() {
-        const std::size_t skipped = read_keyword(in_);
+        const std::size_t skipped_values = read_keyword(in_);
         const auto before_counts = [] { return std::string("before the numbers of vertices and faces"); };
-        advance(before_counts);
-        const auto vertices = in_.whole<std::uint64_t>("the number of vertices");
-        if (arrangement_ != arrangement::lines) advance(before_counts);
-        const auto faces = in_.whole<std::uint64_t>("the number of faces");
+        advance_to_word(before_counts);
+        const auto vertices = in_.integer<std::uint64_t>("the number of vertices");
+        if (arrangement_ != arrangement::lines) advance_to_word(before_counts);
+        const auto faces = in_.integer<std::uint64_t>("the number of faces");
         if (arrangement_ != arrangement::lines) {
-            advance([] { return std::string("before the number of edges"); });
-            static_cast<void>(in_.whole<std::uint64_t>("the number of edges"));
+            advance_to_word([] { return std::string("before the number of edges"); });
+            static_cast<void>(in_.integer<std::uint64_t>("the number of edges"));
         }
-        for (std::uint64_t v = 0; v < vertices; ++v) read_vertex(v, vertices, skipped);
-        if (arrangement_ == arrangement::face_lines && in_.more())
-            in_.expected("the end of the line after the last vertex", in_.word());
+        for (std::uint64_t v = 0; v < vertices; ++v) read_vertex(v, vertices, skipped_values);
+        if (arrangement_ == arrangement::face_lines && in_.has_word())
+            in_.fail_expected("the end of the line after the last vertex", in_.word());
         for (std::uint64_t f = 0; f < faces; ++f) read_face(f, faces);
-        if ((arrangement_ == arrangement::words && in_.more()) || in_.next_line())
+        if ((arrangement_ == arrangement::words && in_.has_word()) || in_.next_line())
             in_.fail("expected the end of the file after " + counted(vertices, "vertex", "vertices") + " and " +
                      counted(faces, "face") + ", found " + in_quotes(in_.word()));
         reached_end_ = true;
-        return mesh_.finish(in_.rounded(), name_ + ":", 0);
+        return mesh_.finish(in_.rounded_coordinates(), name_ + ":");
     }
 
     [[nodiscard]] bool has_vertex() const { return mesh_.vertices() > 0; }
@@ -69,44 +68,43 @@ public:
     [[nodiscard]] bool reached_end() const { return reached_end_; }
 
 private:
-    /// Advances to the next word, over line ends.
-    void advance(auto where) {
-        if (!in_.more() && !in_.next_line()) in_.ends(where());
+    /// Advances to the next word, over line ends. `where` says, for a message, what the end of the file interrupts.
+    void advance_to_word(auto where) {
+        if (!in_.has_word() && !in_.next_line()) in_.fail_at_end(where());
     }
 
-    /// @param skipped the number of values after the position
-    void read_vertex(std::uint64_t index, std::uint64_t count, std::size_t skipped) {
-        const auto where = [&] {
-            return "after " + std::to_string(index) + " of " + std::to_string(count) + " vertices";
-        };
-        if (arrangement_ == arrangement::lines && !in_.next_line()) in_.ends(where());
+    /// Reads vertex v of `count`, and skips what follows its position: the rest of its line, or values without a line.
+    void read_vertex(std::uint64_t v, std::uint64_t count, std::size_t skipped_values) {
+        const bool has_line = arrangement_ == arrangement::lines;
+        const auto where = [&] { return "after " + std::to_string(v) + " of " + std::to_string(count) + " vertices"; };
+        if (has_line && !in_.next_line()) in_.fail_at_end(where());
         aabb::vec3f p{};
         for (int k = 0; k < 3; ++k) {
-            if (arrangement_ != arrangement::lines) advance(where);
+            if (!has_line) advance_to_word(where);
             p[k] = in_.coordinate(in_.word());
         }
-        if (arrangement_ != arrangement::lines)
-            for (std::size_t i = 0; i < skipped; ++i) {
-                advance(where);
-                static_cast<void>(in_.word());
-            }
+        for (std::size_t i = 0; !has_line && i < skipped_values; ++i) {
+            advance_to_word(where);
+            static_cast<void>(in_.word());
+        }
         mesh_.add_vertex(p, in_.line());
     }
 
+    /// Reads face `index` of `count`. Where faces have lines, the rest of the line is skipped, as a colour may follow.
     void read_face(std::uint64_t index, std::uint64_t count) {
         const auto where = [&] { return "after " + std::to_string(index) + " of " + std::to_string(count) + " faces"; };
         if (arrangement_ == arrangement::words)
-            advance(where);
+            advance_to_word(where);
         else if (!in_.next_line())
-            in_.ends(where());
+            in_.fail_at_end(where());
         const std::size_t line = in_.line();
-        const auto corners = in_.whole<std::uint32_t>("the number of corners of a face");
+        const auto corners = in_.integer<std::uint32_t>("the number of corners of a face");
         // A missing or extra number would shift all that follow, and accepting smaller faces would hide that.
         if (arrangement_ != arrangement::lines && corners < 3) in_.fail("expected at least three corners of a face");
         corners_.clear();
         for (std::uint32_t i = 0; i < corners; ++i) {
-            if (arrangement_ != arrangement::lines) advance(where);
-            corners_.push_back(in_.whole<std::uint32_t>("a face of " + std::to_string(corners) + " corners"));
+            if (arrangement_ != arrangement::lines) advance_to_word(where);
+            corners_.push_back(in_.integer<std::uint32_t>("a face of " + std::to_string(corners) + " corners"));
         }
         mesh_.add_face(corners_, line);
     }
@@ -125,10 +123,11 @@ struct read_attempt {
     bool has_vertex = false;
     bool reached_end = false;
 };
-read_attempt read_as(const file_text& file, arrangement expected) {
-    off_reader reader(file, expected);
+/// Reads the file as if its numbers had this arrangement in lines. A rejection is returned, as another may fit.
+read_attempt read_as(const file_text& file, arrangement tried) {
+    off_reader reader(file, tried);
     try {
-        return {reader.read(), {}, true, true};
+        return {.loaded = reader.read(), .rejection = {}};
     } catch (const aabb::input_error& error) {
         return {{}, error.what(), reader.has_vertex(), reader.reached_end()};
     }
@@ -136,8 +135,8 @@ read_attempt read_as(const file_text& file, arrangement expected) {
 
 }  // namespace
 
-// The format ignores line ends (Geomview's manual, "OFF Files"), but writers nearly always put each vertex and face on
-// its own line. The other arrangements are tried only if that one fails.
+/// Reads OFF. The format ignores line ends (Geomview's manual, "OFF Files"), but writers nearly always put each vertex
+/// and face on its own line. Other arrangements are tried if that fails; a message is of one that reached the end.
 loaded_mesh read_off(const file_text& file) {
     read_attempt lines = read_as(file, arrangement::lines);
     if (lines.loaded) return *std::move(lines.loaded);

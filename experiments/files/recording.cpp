@@ -33,7 +33,7 @@ box_record packed(const aabb::box& b) {
 
 class recording final : public aabb::box_scene {
 public:
-    recording(std::string name, whole_file file, const header& h)
+    recording(std::string name, input_file file, const header& h)
         : name_(std::move(name)),
           file_(std::move(file)),
           records_(static_cast<std::size_t>(h.objects)),
@@ -42,6 +42,7 @@ public:
     [[nodiscard]] std::size_t objects() const override { return records_.size(); }
     [[nodiscard]] std::size_t frames() const override { return frames_; }
 
+    /// Reads and validates the boxes of the next frame; false after the last.
     bool next(std::vector<aabb::box>& boxes) override {
         if (frame_ == frames_) return false;
         const std::string place = "frame " + std::to_string(frame_);
@@ -59,7 +60,7 @@ public:
 
 private:
     std::string name_;
-    whole_file file_;
+    input_file file_;
     std::vector<box_record> records_;
     std::size_t frames_;
     std::size_t frame_ = 0;
@@ -81,12 +82,13 @@ std::array<char, 128> field(const std::string& text, const std::string& otherwis
 
 }  // namespace
 
+/// Opens a recording, whose frames are read one at a time, and checks its header against the size of the file.
 std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     if (size < sizeof(header))
         reject(file,
                fmt::format("is not a recording: its header takes {} bytes, but the file has {}", sizeof(header), size));
-    whole_file opened(file, size);
+    input_file opened(file, size);
     header h{};
     if (!opened.try_read(&h, sizeof h)) reject(file, "cannot be read");
     if (h.name.back() != 0 || h.type.back() != 0 || h.zero != std::array<std::int32_t, 2>{})
@@ -109,6 +111,7 @@ std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& fil
     return std::make_unique<recording>(file.string(), std::move(opened), h);
 }
 
+/// Writes all frames of a scene, then the header again, as the box that holds all boxes is known only at the end.
 void write_recording(aabb::box_scene& scene, const std::string& name, const std::string& type,
                      const std::filesystem::path& file, const std::function<void(std::size_t)>& progress) {
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
@@ -117,12 +120,9 @@ void write_recording(aabb::box_scene& scene, const std::string& name, const std:
                fmt::format("a recording holds at most 2^31 - 1 objects and from 1 to 2^31 - 1 frames, not {} and {}",
                            scene.objects(), scene.frames()));
     require_few_empty_frames(file, scene.objects(), scene.frames());
-    header h{field(name, "scene"),
-             field(type, "boxes"),
-             static_cast<std::int32_t>(scene.objects()),
-             static_cast<std::int32_t>(scene.frames() - 1),
-             {},
-             {}};
+    const auto objects = static_cast<std::int32_t>(scene.objects());
+    const auto last_frame = static_cast<std::int32_t>(scene.frames() - 1);
+    header h{field(name, "scene"), field(type, "boxes"), objects, last_frame, /*zero=*/{}, /*world=*/{}};
     output_file out(file);
     out.require_space(sizeof h +
                       sizeof(box_record) * static_cast<double>(scene.objects()) * static_cast<double>(scene.frames()));

@@ -7,7 +7,7 @@ namespace aabblab {
 
 enum class scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
 
-[[nodiscard]] constexpr bool is_whole(scalar type) noexcept {
+[[nodiscard]] constexpr bool is_integer(scalar type) noexcept {
     return type != scalar::f32 && type != scalar::f64;
 }
 
@@ -27,7 +27,7 @@ enum class scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
     return number;
 }
 
-/// Reads the number at `bytes`. Every scalar type converts to double exactly.
+/// Reads the number of this type at `bytes`, as a double, to which every type converts exactly.
 [[nodiscard]] inline double number_at(const char* bytes, scalar type, bool is_big_endian = false) noexcept {
     const auto as = [&]<class Value>(Value) {
         std::array<char, sizeof(Value)> raw{};

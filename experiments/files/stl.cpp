@@ -15,25 +15,26 @@ class vertex_merger {
 public:
     /// @param triangles the approximate number, which sizes the table: a closed mesh has half as many vertices
     vertex_merger(mesh_builder& mesh, std::size_t triangles)
-        : mesh_(mesh), numbers_(std::bit_ceil(std::max<std::size_t>(triangles, 16)), none) {}
+        : mesh_(mesh), slots_(std::bit_ceil(std::max<std::size_t>(triangles, 16)), none) {}
 
     /// Prefetches the slot of the vertex, so that it is in the cache when `index_of` needs it.
     /// @returns the hash for `index_of`
     [[nodiscard]] std::size_t prefetch(const aabb::vec3f& p) const noexcept {
         const std::size_t hash = hash_of(bits_of(p));
-        __builtin_prefetch(&numbers_[hash & (numbers_.size() - 1)]);
+        __builtin_prefetch(&slots_[hash & (slots_.size() - 1)]);
         return hash;
     }
+    /// The index of the vertex with these coordinates, which is added if the mesh has none yet.
     [[nodiscard]] std::uint32_t index_of(const aabb::vec3f& p, std::size_t hash) {
         const auto bits = bits_of(p);
-        std::size_t place = hash & (numbers_.size() - 1);
-        for (; numbers_[place] != none; place = next(place))
-            if (bits_of(mesh_.vertex(numbers_[place])) == bits) return numbers_[place];
-        const auto number = static_cast<std::uint32_t>(mesh_.vertices());
+        std::size_t slot = hash & (slots_.size() - 1);
+        for (; slots_[slot] != none; slot = next_slot(slot))
+            if (bits_of(mesh_.vertex(slots_[slot])) == bits) return slots_[slot];
+        const auto added = static_cast<std::uint32_t>(mesh_.vertices());
         mesh_.add_vertex(p);
-        numbers_[place] = number;
-        if (2 * mesh_.vertices() > numbers_.size()) grow();
-        return number;
+        slots_[slot] = added;
+        if (2 * mesh_.vertices() > slots_.size()) double_slots();
+        return added;
     }
     [[nodiscard]] std::uint32_t index_of(const aabb::vec3f& p) { return index_of(p, prefetch(p)); }
 
@@ -51,24 +52,26 @@ private:
         hash = (hash ^ hash >> 32U ^ bits[2]) * odd;
         return hash ^ hash >> 32U;
     }
-    [[nodiscard]] std::size_t next(std::size_t place) const noexcept { return (place + 1) & (numbers_.size() - 1); }
+    [[nodiscard]] std::size_t next_slot(std::size_t slot) const noexcept { return (slot + 1) & (slots_.size() - 1); }
 
-    void grow() {
-        numbers_.assign(2 * numbers_.size(), none);
-        for (std::uint32_t number = 0; number < mesh_.vertices(); ++number) {
-            std::size_t place = hash_of(bits_of(mesh_.vertex(number))) & (numbers_.size() - 1);
-            while (numbers_[place] != none) place = next(place);
-            numbers_[place] = number;
+    /// Doubles the hash table and inserts all vertices again: once it is more than half full, probing takes long.
+    void double_slots() {
+        slots_.assign(2 * slots_.size(), none);
+        for (std::uint32_t vertex = 0; vertex < mesh_.vertices(); ++vertex) {
+            std::size_t slot = hash_of(bits_of(mesh_.vertex(vertex))) & (slots_.size() - 1);
+            while (slots_[slot] != none) slot = next_slot(slot);
+            slots_[slot] = vertex;
         }
     }
 
     mesh_builder& mesh_;
-    std::vector<std::uint32_t> numbers_;  // a power of two of slots, at most half full
+    std::vector<std::uint32_t> slots_;  // vertex indices or none; a power of two, at most half full
 };
 
 constexpr std::size_t header_bytes = 84;
 constexpr std::size_t count_offset = 80;  // of the number of triangles in the header
-constexpr std::size_t triangle_bytes = 50;
+constexpr std::size_t normal_bytes = 12;
+constexpr std::size_t triangle_bytes = normal_bytes + 3 * sizeof(aabb::vec3f) + 2;  // and two bytes of attributes
 
 /// Compares without case, as writers disagree about the case of keywords.
 bool is_keyword(std::string_view word, std::string_view keyword) {
@@ -77,15 +80,15 @@ bool is_keyword(std::string_view word, std::string_view keyword) {
 
 /// Reads the text format: solid … facet … outer loop, three vertices, endloop, endfacet … endsolid.
 loaded_mesh read_text(const file_text& file) {
-    text_scanner in(file, '\0');
+    text_scanner in(file, no_comments);
     mesh_builder mesh(file.name);
-    vertex_merger merger(mesh, 0);
+    vertex_merger merger(mesh, /*triangles=*/0);  // unknown
     std::array<std::uint32_t, 3> corners{};
-    std::size_t count = 0;
+    std::size_t count = 0;  // of the corners of the current facet
     bool in_solid = false;
     bool in_facet = false;
     const auto require_end_of_line = [&] {
-        if (in.more()) in.expected("the end of the line", in.word());
+        if (in.has_word()) in.fail_expected("the end of the line", in.word());
     };
     while (in.next_line()) {
         const std::string_view word = in.word();
@@ -115,11 +118,11 @@ loaded_mesh read_text(const file_text& file) {
             if (is_keyword(word, "outer")) static_cast<void>(in.word());
             require_end_of_line();
         } else {
-            in.expected(in_facet ? "a vertex or endfacet" : in_solid ? "facet or endsolid" : "solid", word);
+            in.fail_expected(in_facet ? "a vertex or endfacet" : in_solid ? "facet or endsolid" : "solid", word);
         }
     }
-    if (in_solid) in.ends(in_facet ? "inside a facet" : "without endsolid");
-    return mesh.finish(in.rounded(), file.name + ":", 0);
+    if (in_solid) in.fail_at_end(in_facet ? "inside a facet" : "without endsolid");
+    return mesh.finish(in.rounded_coordinates(), file.name + ":");
 }
 
 /// The size of a binary file with this number of triangles.
@@ -127,17 +130,15 @@ std::uint64_t bytes_of_binary(std::uint64_t triangles) {
     return header_bytes + triangle_bytes * triangles;
 }
 
-bool is_space(char c) {
-    return c == ' ' || (c >= '\t' && c <= '\r');
-}
+constexpr auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
 
 }  // namespace
 
-// Binary files may begin with "solid" too, so the size decides. The file is several times as large as its mesh and is
-// read in blocks, as touching fresh memory would take most of the time.
+/// Reads binary STL; nullopt if the size contradicts the header, as for text: binary files may begin with "solid" too.
+/// The file is several times as large as its mesh and is read in blocks, as touching fresh memory takes most time.
 std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, std::size_t size) {
     if (size < header_bytes) return {};
-    whole_file opened(file, size);
+    input_file opened(file, size);
     std::array<char, header_bytes> header{};
     opened.read(header.data(), header.size());
     const std::uint32_t count = u32_at({header.data(), header.size()}, count_offset);
@@ -154,8 +155,8 @@ std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, st
         const std::uint32_t triangles = std::min(most_at_once, count - first);
         opened.read(bytes.data(), triangle_bytes * triangles);
         for (std::size_t t = 0; t < triangles; ++t)
-            // A record is a normal, three vertices and two bytes of attributes.
-            std::memcpy(&points[3 * t], bytes.data() + triangle_bytes * t + 12, 3 * sizeof points[0]);
+            std::memcpy(&points[3 * t], bytes.data() + triangle_bytes * t + normal_bytes, 3 * sizeof points[0]);
+        // All hashes of a block come first, so that the slots are in the cache when they are searched.
         for (std::size_t i = 0; i < 3 * triangles; ++i) {
             if (!aabb::is_finite(points[i]))
                 reject(file, "triangle " + std::to_string(first + i / 3) + " has a coordinate that is not finite");
@@ -167,20 +168,22 @@ std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, st
             mesh.add_face(corners, first + t);
         }
     }
-    return mesh.finish(0, file.string() + ": triangle ", 0);
+    return mesh.finish(/*rounded_coordinates=*/0, file.string() + ": triangle ");
 }
 
-// Ignores what text_decoder drops before and after a text. A truncated binary file must not count as text.
+/// Whether the bytes are text STL: UTF-16, or UTF-8 with "solid" and no control characters but those that the decoder
+/// drops at both ends. A truncated binary file, which may begin with "solid" too, must not count as text.
 bool is_text_stl(std::string_view bytes) {
     if (text_encoding_of(bytes) != text_encoding::utf8) return true;
     if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
-    const auto is_end = [](char c) { return is_space(c) || c == '\0' || c == '\x1a'; };
+    const auto is_padding = [](char c) { return is_space(c) || c == '\0' || c == '\x1a'; };
     while (!bytes.empty() && is_space(bytes.front())) bytes.remove_prefix(1);
-    while (!bytes.empty() && is_end(bytes.back())) bytes.remove_suffix(1);
+    while (!bytes.empty() && is_padding(bytes.back())) bytes.remove_suffix(1);
     return is_keyword(bytes.substr(0, 5), "solid") &&
            std::ranges::all_of(bytes, [](char c) { return is_space(c) || static_cast<unsigned char>(c) > ' '; });
 }
 
+/// Reads text STL. A binary file reaches this only if its size contradicts its header, which the message states.
 loaded_mesh read_stl(const file_text& file) {
     if (is_text_stl(file.text)) return read_text(file);
     const std::size_t size = file.text.size();

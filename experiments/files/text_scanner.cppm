@@ -7,11 +7,10 @@ import :file_text;
 
 namespace aabblab {
 
-/// A number parsed from a text.
 template <class Number>
 struct read_number {
+    /// Parses the text by std::from_chars, which takes no plus sign.
     explicit read_number(std::string_view text) {
-        // from_chars takes no plus sign.
         const bool has_plus = std::floating_point<Number> && text.starts_with('+') && !text.starts_with("+-");
         const char* const end = text.data() + text.size();
         const auto [stopped, error] = std::from_chars(text.data() + has_plus, end, value);
@@ -29,9 +28,11 @@ struct read_number {
     bool out_of_range = false;
 };
 
+inline constexpr char no_comments = '\0';
+
 class text_scanner {
 public:
-    /// @param comment the character that begins a comment up to the end of the line; '\0' for none
+    /// @param comment the character that begins a comment up to the end of the line, or `no_comments`
     text_scanner(const file_text& file, char comment) : file_(file.name), rest_(file.text), comment_(comment) {}
 
     /// Advances to the next line that has a word; false at the end of the file.
@@ -42,7 +43,7 @@ public:
             rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
             ++number_;
             line_ = line_without_return(line_, [this](const std::string& sentence) { fail(sentence); });
-            if (comment_ != '\0') line_ = without_comment(line_, comment_);
+            if (comment_ != no_comments) line_ = without_comment(line_, comment_);
             skip_blanks();
             if (!line_.empty()) return true;
         }
@@ -60,7 +61,7 @@ public:
     }
 
     /// Whether words are left on the line.
-    [[nodiscard]] bool more() {
+    [[nodiscard]] bool has_word() {
         skip_blanks();
         return !line_.empty();
     }
@@ -74,18 +75,18 @@ public:
     [[noreturn]] void fail(const std::string& sentence) const {
         reject(file_ + ":" + std::to_string(number_), sentence);
     }
-    [[noreturn]] void expected(const std::string& noun, std::string_view actual) const {
+    [[noreturn]] void fail_expected(const std::string& noun, std::string_view actual) const {
         fail("expected " + noun + ", found " + (actual.empty() ? "the end of the line" : in_quotes(actual)));
     }
-    /// Reports a file that ends too early.
-    [[noreturn]] void ends(const std::string& where) const { reject(file_, "ends " + where); }
+    /// Rejects a file that ends too early.
+    [[noreturn]] void fail_at_end(const std::string& where) const { reject(file_, "ends " + where); }
 
     /// Parses an integer in the range of its type.
-    template <std::integral Whole>
-    [[nodiscard]] Whole whole(const std::string& noun) {
+    template <std::integral Integer>
+    [[nodiscard]] Integer integer(const std::string& noun) {
         const std::string_view text = word();
-        const read_number<Whole> number(text);
-        if (!number.is_number || number.out_of_range) expected(noun, text);
+        const read_number<Integer> number(text);
+        if (!number.is_number || number.out_of_range) fail_expected(noun, text);
         return number.value;
     }
 
@@ -93,24 +94,23 @@ public:
     [[nodiscard]] double number(const std::string& noun) {
         const std::string_view text = word();
         const read_number<double> number(text);
-        if (!number.is_number) expected(noun, text);
+        if (!number.is_number) fail_expected(noun, text);
         if (!std::isfinite(number.value)) fail(in_quotes(text) + " is not a finite number");
         return number.value;
     }
 
-    /// Parses a coordinate, correctly rounded to float. It is NaN or infinite only if the text is.
+    /// Parses a coordinate, correctly rounded to float. It is NaN or infinite only if the text is. Counts those that
+    /// rounding changes, which the report of the mesh states: the text denotes a double that differs from the float.
     [[nodiscard]] float coordinate(std::string_view text) {
         const read_number<float> number(text);
-        if (!number.is_number) expected("three coordinates", text);
+        if (!number.is_number) fail_expected("three coordinates", text);
         if (number.out_of_range && std::isinf(number.value))
             fail("the coordinate " + in_quotes(text) + " is too large for a float");
-        if (std::isfinite(number.value))
-            rounded_ += number.out_of_range || read_number<double>(text).value != double{number.value};
+        const bool is_changed = number.out_of_range || read_number<double>(text).value != double{number.value};
+        if (std::isfinite(number.value) && is_changed) ++rounded_coordinates_;
         return number.value;
     }
-
-    /// The number of coordinates so far whose text denotes a double that differs from the float.
-    [[nodiscard]] std::size_t rounded() const noexcept { return rounded_; }
+    [[nodiscard]] std::size_t rounded_coordinates() const noexcept { return rounded_coordinates_; }
 
 private:
     [[nodiscard]] static bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
@@ -124,7 +124,7 @@ private:
     std::string_view rest_;
     std::string_view line_;
     std::size_t number_ = 0;
-    std::size_t rounded_ = 0;
+    std::size_t rounded_coordinates_ = 0;
     char comment_;
 };
 
