@@ -10,17 +10,15 @@ export import :loaded_mesh;
 export namespace aabblab {
 
 /// Reads OFF, OBJ, PLY, STL (text or binary) or glTF; the file's extension selects the format.
-/// @throws aabb::input_error if the file is missing, empty, malformed, truncated or without triangles, has NaN or
-/// infinity in a vertex that a face uses, or an index out of range.
+/// @throws aabb::input_error if the file is missing, malformed or without triangles, or a face has an invalid vertex.
 [[nodiscard]] loaded_mesh read_mesh(const std::filesystem::path& file);
 
 /// The contents of a regular file, which may be empty.
 /// @throws aabb::input_error if it is not a regular file or cannot be read.
 [[nodiscard]] std::string bytes_of_file(const std::filesystem::path& file);
 
-/// The text of a file. Every text reader accepts what programs on many systems write: a byte order mark is dropped,
-/// UTF-16 with a mark is converted, carriage returns become line feeds if lines end in them alone, and trailing NULs
-/// and Ctrl-Z are dropped.
+/// The text of a file. Every text reader accepts what programs on many systems write: byte order marks and trailing
+/// NULs and Ctrl-Z are dropped, UTF-16 with a mark is converted, and carriage returns alone become line feeds.
 /// @throws aabb::input_error like `bytes_of_file`, and if the file is not such text.
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file);
 
@@ -29,7 +27,6 @@ export namespace aabblab {
 [[nodiscard]] std::string text_of_file(const std::filesystem::path& file, std::size_t most);
 
 /// Streams the lines of a file, a pipe, a device or standard input, decoded as by `text_of_file`, with bounded memory.
-/// Every member that reads throws aabb::input_error.
 class line_stream {
 public:
     /// @param name replaces the file's name in messages
@@ -73,8 +70,7 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
 /// Opens a motion file that moves these meshes: object i has mesh i modulo their number. Each line holds a frame, an
 /// object and twelve numbers, the rows of its pose [R t]; `#` begins a comment. Frames count from 0 in ascending order;
 /// frame 0 places every object, later frames list only objects that moved, and frames without motion may be omitted.
-/// @throws aabb::input_error with file and line on malformed lines, a pose that is not rigid, or more meshes than
-/// objects.
+/// @throws aabb::input_error on malformed lines, a pose that is not rigid, or more meshes than objects.
 [[nodiscard]] std::unique_ptr<aabb::mesh_scene> open_motion(const std::filesystem::path& file,
                                                             std::vector<aabb::mesh> meshes);
 
@@ -88,9 +84,8 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
 void write_recording(aabb::box_scene& scene, const std::string& name, const std::string& type,
                      const std::filesystem::path& file, const std::function<void(std::size_t)>& progress);
 
-/// An atomically written file: it appears under its name only on `commit`. Until then it is unnamed, or has a temporary
-/// name if the file system requires one, so that an interrupted process leaves nothing behind. Targets that are not
-/// regular files, such as /dev/stdout, are written directly. Every member throws aabb::input_error on failure.
+/// An atomically written file: it appears under its name only on `commit`, so an interrupted process leaves nothing
+/// behind. Pipes and devices, such as /dev/stdout, are written directly. Every member throws aabb::input_error.
 class output_file {
 public:
     explicit output_file(const std::filesystem::path& file);

@@ -22,10 +22,8 @@ constexpr std::size_t longest_line = std::size_t{1} << 24U;
 /// Streams the bytes of a file, a pipe or a device.
 class byte_source {
 public:
-    /// Opens the file for reading.
+    /// Opens a file, a device or a pipe; rejects a named pipe that has no writer within a few seconds.
     /// @param name replaces the file's name in messages
-    /// @throws aabb::input_error if the file cannot be opened, is a folder, or is a named pipe that has no writer
-    /// within a few seconds.
     explicit byte_source(const std::filesystem::path& file, const std::string& name = {})
         : name_(name.empty() ? file.string() : name),
           descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK)) {
@@ -55,9 +53,7 @@ public:
     /// The size in bytes; 0 if it is unknown.
     [[nodiscard]] std::uintmax_t size() const noexcept { return size_; }
 
-    /// Appends the available bytes, at most `most`; blocks until there are any.
-    /// @returns false at the end
-    /// @throws aabb::input_error if reading fails.
+    /// Appends the available bytes, at most `most`, and waits until a pipe has some. Returns false at the end.
     bool read(std::size_t most, std::string& bytes) {
         if (!ahead_.empty()) {
             bytes += ahead_;
@@ -76,7 +72,8 @@ public:
     }
 
 private:
-    /// Anonymous pipes, such as those of <(command), had a writer from the start, so their end is not awaited.
+    /// Waits a few seconds until a program opens the pipe for writing, which reads as ended until then. Anonymous
+    /// pipes, such as those of <(command), had a writer from the start, so their end is not awaited.
     void wait_for_writer() {
         struct statfs system{};
         if (fstatfs(descriptor_, &system) == 0 && system.f_type == PIPEFS_MAGIC) return;
@@ -103,28 +100,27 @@ private:
 struct line_stream::state {
     byte_source source;
     text_decoder decoder;
-    std::string bytes;
-    std::string text;    // the decoded text that is not consumed yet
-    std::size_t at = 0;  // the offset of the next line in it
-    bool ended = false;
-    std::uintmax_t read = 0;
+    std::string block;
+    std::string text;           // decoded; from next_line on not consumed yet
+    std::size_t next_line = 0;  // its offset in the text
+    bool has_ended = false;
+    std::uintmax_t bytes_read = 0;
     std::string_view line;
-    std::size_t number = 0;
+    std::size_t line_number = 0;
 
     state() = default;
     state(const std::filesystem::path& file, const std::string& name) : source(file, name) {}
 
-    /// Reads and decodes another block, and detects the end.
+    /// Reads another block and appends it to the text, and detects the end. What is not text ends the stream too.
     void read_block() {
-        bytes.clear();
-        if (source.read(most_at_once, bytes))
-            decoder.add(bytes, text);
-        else {
-            ended = true;
+        block.clear();
+        has_ended = !source.read(most_at_once, block);
+        if (has_ended)
             decoder.finish(text);
-        }
-        read += bytes.size();
-        ended |= !decoder.problem().empty();
+        else
+            decoder.add(block, text);
+        bytes_read += block.size();
+        has_ended |= !decoder.problem().empty();
     }
 };
 
@@ -134,27 +130,28 @@ line_stream::line_stream(const std::filesystem::path& file, const std::string& n
 line_stream::~line_stream() = default;
 line_stream::line_stream(line_stream&&) noexcept = default;
 
+/// Advances to the next line, and reads blocks until the text has its end. Earlier text is discarded to bound memory.
 bool line_stream::next() {
     state& s = *state_;
-    ++s.number;
-    const std::uintmax_t read_before = s.read;
+    ++s.line_number;
+    const std::uintmax_t read_before = s.bytes_read;
     std::size_t end = 0;
-    std::size_t searched = s.at;
-    while ((end = s.text.find('\n', searched)) == std::string::npos && !s.ended) {
-        if (s.read - read_before > longest_line)
+    std::size_t searched = s.next_line;
+    while ((end = s.text.find('\n', searched)) == std::string::npos && !s.has_ended) {
+        if (s.bytes_read - read_before > longest_line)
             fail("the line is longer than " + std::to_string(longest_line) + " bytes; expected text of short lines");
-        s.text.erase(0, s.at);
-        s.at = 0;
+        s.text.erase(0, s.next_line);
+        s.next_line = 0;
         searched = s.text.size();
         s.read_block();
     }
     // Valid lines before malformed text are returned first.
     if (end == std::string::npos && !s.decoder.problem().empty()) reject(s.source.name(), s.decoder.problem());
-    if (end == std::string::npos && s.at == s.text.size()) return false;
-    const std::size_t length = end == std::string::npos ? std::string::npos : end - s.at;
-    s.line = line_without_return(std::string_view(s.text).substr(s.at, length),
+    if (end == std::string::npos && s.next_line == s.text.size()) return false;
+    end = std::min(end, s.text.size());
+    s.line = line_without_return(std::string_view(s.text).substr(s.next_line, end - s.next_line),
                                  [this](const std::string& sentence) { fail(sentence); });
-    s.at = end == std::string::npos ? s.text.size() : end + 1;
+    s.next_line = std::min(end + 1, s.text.size());
     return true;
 }
 
@@ -162,17 +159,17 @@ std::string_view line_stream::line() const noexcept {
     return state_->line;
 }
 std::size_t line_stream::number() const noexcept {
-    return state_->number;
+    return state_->line_number;
 }
 std::uintmax_t line_stream::bytes_read() const noexcept {
-    return state_->read;
+    return state_->bytes_read;
 }
 std::uintmax_t line_stream::size() const noexcept {
     return state_->source.size();
 }
 
 void line_stream::fail(const std::string& sentence) const {
-    reject(state_->source.name() + ":" + std::to_string(state_->number), sentence);
+    reject(state_->source.name() + ":" + std::to_string(state_->line_number), sentence);
 }
 
 std::string text_of_file(const std::filesystem::path& file, std::size_t most) {

@@ -33,8 +33,8 @@ struct output_file::state {
         return target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
     }
 
-    /// Calls `make` with names that are unique to this process and file until it succeeds. `make` must fail with EEXIST
-    /// on an existing file. The names are short, as the target's name may have the maximum length already.
+    /// Makes a temporary file: calls `make`, which must fail with EEXIST on an existing file, with names unique to this
+    /// process until it succeeds. They are short, as the target's name may have the maximum length.
     [[nodiscard]] bool make_part(auto make) {
         for (int attempt = 0; attempt < 100; ++attempt) {
             part = ".aabblab." + std::to_string(getpid()) + "." + std::to_string(attempt) + ".part";
@@ -55,6 +55,7 @@ struct output_file::state {
     [[nodiscard]] static std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
 };
 
+/// Opens an unnamed or temporary file in the target's folder, to be renamed on `commit`; or the pipe or device itself.
 output_file::output_file(const std::filesystem::path& file) : state_(std::make_unique<state>()) {
     if (file.empty()) throw aabb::input_error("the file to write has no name");
     state_->target = file;
@@ -88,6 +89,7 @@ output_file::output_file(const std::filesystem::path& file) : state_(std::make_u
 
 output_file::~output_file() = default;
 
+/// Rejects output for which the disk has no space before anything is written. Pipes and devices need none.
 void output_file::require_space(double bytes) const {
     std::error_code error;
     const std::filesystem::space_info space = std::filesystem::space(state_->folder_path(), error);
@@ -109,6 +111,7 @@ void output_file::overwrite(std::uint64_t offset, const void* data, std::size_t 
     if (fseeko(file, 0, SEEK_END) != 0) state_->fail();
 }
 
+/// Gives the file its name, in one step that replaces an existing target, so that no reader sees a partial file.
 void output_file::commit() {
     std::FILE* const file = state_->file.get();
     if (std::fflush(file) != 0) state_->fail();

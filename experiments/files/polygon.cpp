@@ -11,13 +11,11 @@ namespace {
 
 using aabb::vec3d;
 
-int sign_of(double x) noexcept {
-    return static_cast<int>(x > 0) - static_cast<int>(x < 0);
-}
+constexpr auto sign_of = [](double x) { return static_cast<int>(x > 0) - static_cast<int>(x < 0); };
 
-/// The start of the least rotation of a cycle (Shiloach, "Fast canonization of circular strings", 1981).
+/// The start of the least rotation of a cycle of keys (Shiloach, "Fast canonization of circular strings", 1981).
 std::size_t least_rotation(std::size_t count, auto key) {
-    std::size_t i = 0;
+    std::size_t i = 0;  // two candidates, which agree in `equal` keys so far
     std::size_t j = 1;
     std::size_t equal = 0;
     while (i < count && j < count && equal < count) {
@@ -36,13 +34,14 @@ std::size_t least_rotation(std::size_t count, auto key) {
 
 }  // namespace
 
+/// Adds a double exactly (Shewchuk's grow-expansion): the rounding error of each sum becomes a part of its own.
 void exact_sum::add(double x) {
     std::size_t kept = 0;
     for (const double part : parts_) {
         const double sum = x + part;
         const double of_part = sum - x;
-        const double rest = (x - (sum - of_part)) + (part - of_part);
-        if (rest != 0) parts_[kept++] = rest;
+        const double error = (x - (sum - of_part)) + (part - of_part);
+        if (error != 0) parts_[kept++] = error;
         x = sum;
     }
     parts_.resize(kept);
@@ -59,6 +58,7 @@ void exact_sum::set_difference_of_magnitudes(const exact_sum& a, const exact_sum
     for (const double part : b.parts_) add(-b.sign() * part);
 }
 
+/// Replaces the fan of a concave polygon by an ear-clipping triangulation; the fan of a convex one is valid and stays.
 polygon_shape polygon_cutter::cut(std::span<const aabb::vec3f> vertices,
                                   std::span<std::array<std::uint32_t, 3>> triangles) {
     corners_.clear();
@@ -88,8 +88,8 @@ std::size_t polygon_cutter::distinct_corners() const noexcept {
     return count;
 }
 
+/// Chooses the axis of projection, along which Newell's normal of the polygon is longest; returns its sign there.
 int polygon_cutter::project() {
-    // The product of two floats is exact in double.
     for (exact_sum& component : normal_) component.clear();
     const vec3d* p = &corners_.back().p;
     for (const corner& c : corners_) {
@@ -97,6 +97,7 @@ int polygon_cutter::project() {
         for (int k = 0; k < 3; ++k) {
             const int x = (k + 1) % 3;
             const int y = (k + 2) % 3;
+            // The product of two floats is exact in double.
             normal_[static_cast<std::size_t>(k)].add((*p)[x] * q[y]);
             normal_[static_cast<std::size_t>(k)].add(-(*p)[y] * q[x]);
         }
@@ -111,8 +112,9 @@ int polygon_cutter::project() {
     return normal_[dominant].sign();
 }
 
+/// Whether the boundary turns to one side only and winds around once: the order of the projected points along it then
+/// changes between ascending and descending exactly twice. `orientation` is the sign of the normal.
 bool polygon_cutter::is_convex(int orientation) const noexcept {
-    // Edges of zero length are skipped.
     const auto coincide = [&](const vec3d& a, const vec3d& b) { return !precedes(a, b) && !precedes(b, a); };
     const std::size_t n = corners_.size();
     std::size_t last = n - 1;
@@ -130,17 +132,18 @@ bool polygon_cutter::is_convex(int orientation) const noexcept {
         a = b;
         b = &c;
     }
-    return returns == 2;  // the boundary winds around once
+    return returns == 2;
 }
 
 void polygon_cutter::begin_at_least_corner() {
-    const std::size_t first = least_rotation(corners_.size(), [&](std::size_t i) {
+    const auto key = [&](std::size_t i) {
         const corner& c = corners_[i];
         return std::tuple(c.p[0], c.p[1], c.p[2], c.vertex);
-    });
-    std::ranges::rotate(corners_, corners_.begin() + static_cast<std::ptrdiff_t>(first));
+    };
+    std::ranges::rotate(corners_, corners_.begin() + static_cast<std::ptrdiff_t>(least_rotation(corners_.size(), key)));
 }
 
+/// The exact sign of the area of the projected triangle: 1 if the path a, b, c turns left.
 int polygon_cutter::turn(const vec3d& a, const vec3d& b, const vec3d& c) const noexcept {
     const int x = (axis_ + 1) % 3;
     const int y = (axis_ + 2) % 3;
@@ -159,7 +162,7 @@ bool polygon_cutter::precedes(const vec3d& a, const vec3d& b) const noexcept {
     return a[x] < b[x] || (a[x] == b[x] && a[y] < b[y]);
 }
 
-void polygon_cutter::link() noexcept {
+void polygon_cutter::link_neighbours() noexcept {
     const auto n = static_cast<std::uint32_t>(corners_.size());
     for (std::uint32_t i = 0; i < n; ++i) {
         corners_[i].before = i > 0 ? i - 1 : n - 1;
@@ -178,6 +181,8 @@ bool polygon_cutter::is_needle(const corner& b) const noexcept {
     return !goes_on && turn(a, b.p, c) == 0;
 }
 
+/// Classifies a corner b that turns left. It is an ear if no edge of the boundary enters its triangle and the boundary
+/// winds around the triangle once. Edges that lie beside the bounding box of the triangle, or above it, are skipped.
 polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
     const int x = (axis_ + 1) % 3;
     const int y = (axis_ + 2) % 3;
@@ -230,8 +235,10 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
     return winding == 1 ? kind : ear::none;
 }
 
+/// Cuts one corner after another off the polygon, each with a triangle that lies inside it, until three are left.
+/// @returns false if the boundary crosses itself, as then no corner can be cut
 bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles) {
-    link();
+    link_neighbours();
     std::size_t remaining = corners_.size();
     const auto cut_corner = [&](std::uint32_t i) {
         const corner& b = corners_[i];

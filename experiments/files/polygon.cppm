@@ -32,13 +32,12 @@ enum class polygon_shape : std::uint8_t {
 /// with its neighbours lies inside the remaining polygon. The result depends on the cycle of corners, not on which is
 /// first; the reversed polygon yields the same triangles, reversed.
 ///
-/// An ear is a corner that turns left (in counter-clockwise order) whose triangle has winding number 1 and no edge of
-/// the boundary in its interior, so that the winding number is 1 throughout. Cutting the ear makes it 0 there and
-/// changes it nowhere else. Ears that no other corner touches are preferred: a simple polygon always has one.
-/// Therefore triangles never overlap, and once all corners are cut, each point of the plane had winding number 0 or 1,
-/// which proves that the boundary does not cross itself. It may touch itself or run back along itself, as does the
-/// bridge to a hole (Meisters, "Polygons have ears", 1975; Held, "FIST: fast
-/// industrial-strength triangulation of polygons", 2001).
+/// An ear is a corner that turns left, in counter-clockwise order, whose triangle has winding number 1 and no edge of
+/// the boundary in its interior, so that the number is 1 throughout. Cutting the ear makes it 0 there and changes it
+/// nowhere else. Ears that no other corner touches are preferred: a simple polygon always has one. Therefore triangles
+/// never overlap, and once all corners are cut, each point had winding number 0 or 1, which proves that the boundary
+/// does not cross itself. It may touch itself or run back along itself, as does the bridge to a hole (Meisters,
+/// "Polygons have ears", 1975; Held, "FIST: fast industrial-strength triangulation of polygons", 2001).
 class polygon_cutter {
 public:
     /// @param triangles the fan of the polygon from its first corner, n - 2 triangles; replaced if it is concave
@@ -61,26 +60,20 @@ private:
     };
 
     [[nodiscard]] std::size_t distinct_corners() const noexcept;
-    /// Sets the axis of projection.
-    /// @returns the sign of the normal along it
     [[nodiscard]] int project();
-    /// @param orientation the sign of the normal
     [[nodiscard]] bool is_convex(int orientation) const noexcept;
     /// Rotates the cycle to start at a canonical corner, so that the result does not depend on the first one.
     void begin_at_least_corner();
 
-    /// The sign of the area of the projected triangle: 1 if the path a, b, c turns left.
     [[nodiscard]] int turn(const aabb::vec3d& a, const aabb::vec3d& b, const aabb::vec3d& c) const noexcept;
     /// Lexicographic order of the projected points.
     [[nodiscard]] bool precedes(const aabb::vec3d& a, const aabb::vec3d& b) const noexcept;
 
-    /// @returns false if the boundary crosses itself
     [[nodiscard]] bool cut_ears(std::span<std::array<std::uint32_t, 3>> triangles);
-    void link() noexcept;
+    void link_neighbours() noexcept;
     [[nodiscard]] int turn_at(const corner& b) const noexcept;
     /// Whether the boundary stops or reverses at the corner, so that its triangle has no area.
     [[nodiscard]] bool is_needle(const corner& b) const noexcept;
-    /// Classifies a corner that turns left, by all edges of the boundary that reach the bounding box of its triangle.
     [[nodiscard]] ear kind_of(const corner& b) const noexcept;
 
     std::vector<corner> corners_;

@@ -22,12 +22,12 @@ std::filesystem::path make_temporary_folder() {
     return name;
 }
 
-/// The place of an entry below `top`. Rejects absolute paths and "..", which could leave the folder.
-std::filesystem::path place_of(const std::string& name, const std::string& top, const std::string& archive) {
+/// The path of an entry relative to the folder `top`. Rejects absolute paths and "..", which could leave the folder.
+std::filesystem::path path_below(const std::string& top, const std::string& name, const std::string& archive) {
     const std::filesystem::path path(name);
-    const bool detours = std::ranges::any_of(
+    const bool has_detour = std::ranges::any_of(
         path, [](const std::filesystem::path& part) { return part.empty() || part == "." || part == ".."; });
-    if (path.empty() || path.is_absolute() || detours || *path.begin() != top)
+    if (path.empty() || path.is_absolute() || has_detour || *path.begin() != top)
         throw aabb::input_error(archive + " is not an archive of " + top + ": it has the entry '" + name + "'");
     return path.lexically_relative(top);
 }
@@ -39,6 +39,7 @@ struct deleter {
 
 class reader {
 public:
+    /// Opens an archive of the only kind that `writer` makes: tar compressed by xz.
     reader(const std::filesystem::path& file, const archive_limits& limits)
         : file_(file.string()), limits_(limits), archive_(archive_read_new()) {
         archive_read_support_filter_xz(archive_.get());
@@ -50,9 +51,9 @@ public:
             fail_reading();
     }
 
-    /// Unpacks the files below `top`, and rejects anything that results do not contain.
+    /// Unpacks the files below the folder `top`. Anyone may have made the archive, so it is not trusted.
     void unpack(const std::string& top, const std::filesystem::path& into) {
-        std::set<std::filesystem::path> places;
+        std::set<std::filesystem::path> paths;
         std::size_t folders = 0;
         archive_entry* entry = nullptr;
         while (advance(entry)) {
@@ -60,20 +61,20 @@ public:
             const auto type = archive_entry_filetype(entry);
             std::string name = pathname ? pathname : "";
             if (type == AE_IFDIR && name.ends_with('/')) name.pop_back();
-            const std::filesystem::path place = place_of(name, top, file_);
+            const std::filesystem::path path = path_below(top, name, file_);
             if (archive_entry_hardlink(entry) || (type != AE_IFREG && type != AE_IFDIR))
-                fail("has an entry that is neither a file nor a folder: '" + place.string() + "'");
+                fail("has an entry that is neither a file nor a folder: '" + path.string() + "'");
             if (type == AE_IFDIR) {
                 if (++folders > limits_.files)
                     fail("has more than " + std::to_string(limits_.files) + " folders, the limit for results");
                 continue;
             }
-            if (!places.insert(place).second) fail("has the file '" + place.string() + "' twice");
-            if (places.size() > limits_.files)
+            if (!paths.insert(path).second) fail("has the file '" + path.string() + "' twice");
+            if (paths.size() > limits_.files)
                 fail("has more than " + std::to_string(limits_.files) + " files, the limit for results");
-            write_entry(into / place);
+            write_entry(into / path);
         }
-        if (places.empty()) fail("is empty");
+        if (paths.empty()) fail("is empty");
     }
 
 private:
@@ -82,10 +83,11 @@ private:
         const int result = archive_read_next_header(archive_.get(), &entry);
         if (result == ARCHIVE_EOF) return false;
         if (result != ARCHIVE_OK) fail_reading();
-        begun_ = true;
+        has_entry_ = true;
         return true;
     }
 
+    /// Writes the contents of the current entry to a file.
     void write_entry(const std::filesystem::path& file) {
         std::error_code error;
         std::filesystem::create_directories(file.parent_path(), error);
@@ -107,7 +109,7 @@ private:
 
     [[noreturn]] void fail_reading() const {
         const char* reason = archive_error_string(archive_.get());
-        if (!begun_) fail("is not an archive of results, which is tar compressed by xz");
+        if (!has_entry_) fail("is not an archive of results, which is tar compressed by xz");
         fail(std::string("is damaged or cut off: ") + (reason ? reason : "it cannot be read to its end"));
     }
     [[noreturn]] void fail(const std::string& sentence) const { throw aabb::input_error(file_ + " " + sentence); }
@@ -116,44 +118,20 @@ private:
     archive_limits limits_;
     std::unique_ptr<archive, deleter> archive_;
     std::uint64_t bytes_ = 0;
-    bool begun_ = false;
-};
-
-/// Adapts an output file to libarchive's C callbacks, through which no exception may pass: it is rethrown later.
-class sink {
-public:
-    explicit sink(const std::filesystem::path& file) : out_(file) {}
-
-    static la_ssize_t write(archive*, void* client, const void* bytes, std::size_t size) {
-        auto& self = *static_cast<sink*>(client);
-        try {
-            self.out_.write(bytes, size);
-            return static_cast<la_ssize_t>(size);
-        } catch (...) {
-            self.failure_ = std::current_exception();
-            return -1;
-        }
-    }
-    void rethrow() const {
-        if (failure_) std::rethrow_exception(failure_);
-    }
-    void commit() { out_.commit(); }
-
-private:
-    output_file out_;
-    std::exception_ptr failure_;
+    bool has_entry_ = false;
 };
 
 class writer {
 public:
-    explicit writer(const std::filesystem::path& file) : file_(file), sink_(file), archive_(archive_write_new()) {
+    explicit writer(const std::filesystem::path& file) : file_(file), out_(file), archive_(archive_write_new()) {
         require(archive_write_add_filter_xz(archive_.get()));
         require(archive_write_set_format_pax_restricted(archive_.get()));
         // Omits the padding of the last block, which only tapes need.
         require(archive_write_set_bytes_in_last_block(archive_.get(), 1));
-        require(archive_write_open(archive_.get(), &sink_, nullptr, &sink::write, nullptr));
+        require(archive_write_open(archive_.get(), this, nullptr, &writer::write_bytes, nullptr));
     }
 
+    /// Adds a file without owner and time, so that the same files give the same archive.
     void add(const std::string& name, const std::string& bytes) {
         const std::unique_ptr<archive_entry, deleter> entry(archive_entry_new());
         archive_entry_set_pathname(entry.get(), name.c_str());
@@ -168,19 +146,31 @@ public:
 
     void finish() {
         require(archive_write_close(archive_.get()));
-        sink_.commit();
+        out_.commit();
     }
 
 private:
+    /// The callback with which libarchive writes. No exception may pass through its C code, so `require` rethrows it.
+    static la_ssize_t write_bytes(archive*, void* self, const void* bytes, std::size_t size) {
+        auto& to = *static_cast<writer*>(self);
+        try {
+            to.out_.write(bytes, size);
+            return static_cast<la_ssize_t>(size);
+        } catch (...) {
+            to.failure_ = std::current_exception();
+            return -1;
+        }
+    }
     void require(int result) const {
         if (result == ARCHIVE_OK) return;
-        sink_.rethrow();
+        if (failure_) std::rethrow_exception(failure_);
         const char* why = archive_error_string(archive_.get());
         throw aabb::input_error(file_.string() + " cannot be written: " + (why ? why : "an error of the archive"));
     }
 
     std::filesystem::path file_;
-    sink sink_;
+    output_file out_;
+    std::exception_ptr failure_;
     std::unique_ptr<archive, deleter> archive_;
 };
 

@@ -6,8 +6,7 @@ import aabblab.processes;
 
 export namespace aabblab {
 
-/// Packs files of a folder into an archive, below the folder `top`. The archive is reproducible: it has no owner, host
-/// or time, so the same files give the same bytes.
+/// Packs files of a folder into an archive, below the folder `top`. The same files give the same bytes.
 /// @param files relative to the folder, such as "c1/results.csv"
 /// @throws aabb::input_error if a file cannot be read or written.
 void write_archive(const std::filesystem::path& archive, const std::string& top, const std::filesystem::path& folder,

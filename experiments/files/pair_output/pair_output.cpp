@@ -26,12 +26,11 @@ struct digit {
     [[nodiscard]] std::size_t value_in(const auto& row) const { return words_of(row)[word] >> shift & mask; }
 };
 
-/// The digits that cover all bits in which the rows differ, most significant first.
+/// The digits that cover all bits in which the rows differ, most significant first; sorting by others would be in vain.
 template <class Row>
 std::vector<digit> digits_of(std::span<const Row> rows) {
-    auto differing = words_of(rows[0]);
-    differing.fill(0);
     const auto first = words_of(rows[0]);
+    decltype(words_of(rows[0])) differing{};  // a bit is set if rows differ in it
     for (const Row& row : rows) {
         const auto words = words_of(row);
         for (std::size_t i = 0; i < words.size(); ++i) differing[i] |= words[i] ^ first[i];
@@ -48,7 +47,7 @@ std::vector<digit> digits_of(std::span<const Row> rows) {
     return digits;
 }
 
-/// Sorts rows that differ only in these digits.
+/// Sorts rows that differ only in these digits, in place, by American flag sort: first into buckets by the first digit.
 template <class Row>
 void sort_by(std::span<const digit> digits, std::span<Row> rows) {
     // For fewer rows a comparison sort is faster than a histogram of the digit.
@@ -104,6 +103,7 @@ std::string to_text(const aabb::triangle_intersection& common) {
     return text;
 }
 
+/// The intersection of two triangles as cells of a CSV row: kind, corners, error per axis, coordinates of six corners.
 std::string to_cells(const aabb::triangle_intersection& common) {
     std::string cells = std::string(name_of(common.kind)) + ',' + std::to_string(common.size);
     append(cells, ',', common.error);

@@ -13,8 +13,7 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Sorts pairs or contacts in ascending order, as digests and files require, by an in-place MSD radix sort (American
-/// flag sort; McIlroy, Bostic and McIlroy, Engineering Radix Sort, 1993).
+/// Sorts in ascending order, as digests and files require, in place (McIlroy et al., Engineering Radix Sort, 1993).
 void sort_rows(std::span<aabb::index_pair> pairs);
 void sort_rows(std::span<aabb::contact> contacts);
 
