@@ -6,11 +6,11 @@ import aabblab.output;
 
 namespace aabblab {
 
+/// Parses a finite number. A float is parsed as such, since rounding a double again may miss the nearest float.
 template <class Real>
 Real parse_number(const std::string& text) {
     char* end = nullptr;
     Real value;
-    // strtof and strtod round correctly; rounding a double again to float may miss the nearest float.
     if constexpr (std::same_as<Real, float>)
         value = std::strtof(text.c_str(), &end);
     else
@@ -21,6 +21,7 @@ Real parse_number(const std::string& text) {
     throw aabb::input_error("'" + text + "' is " + (too_large ? "too large" : "not finite"));
 }
 
+/// Parses word i of a line of numbers, which a message counts from 1.
 template <class Real>
 Real parse_number_of(const std::vector<std::string>& words, std::size_t i) {
     try {
@@ -42,6 +43,7 @@ std::uint64_t parse_whole(const std::string& text, std::uint64_t least, std::uin
     return value;
 }
 
+/// Parses the value of the option --seconds; `to_do` says in a message what takes so long.
 double seconds_of(const std::string& text, std::string_view to_do) {
     constexpr double most = 1e6;
     try {
@@ -53,6 +55,7 @@ double seconds_of(const std::string& text, std::string_view to_do) {
                             ": a number above 0, at most 1,000,000, not '" + text + "'");
 }
 
+/// Splits a line into the texts of its numbers, which blanks or a single comma separate.
 std::vector<std::string> split_numbers(std::string_view line) {
     constexpr std::string_view blanks = " \t\r";
     std::vector<std::string> words;
@@ -85,6 +88,7 @@ bool is_mesh_name(const std::string& name) {
 
 constexpr std::size_t most_poses = 10'000'000;  // as in motions; a pipe could otherwise deliver poses without end
 
+/// Parses the rows of [R t], and rejects a matrix R that is no rotation.
 aabb::pose parse_pose(const std::vector<std::string>& words) {
     if (words.size() != 12)
         throw aabb::input_error(
@@ -104,6 +108,7 @@ aabb::pose parse_pose(const std::vector<std::string>& words) {
 
 }  // namespace
 
+/// The pose in the value of an option, which messages name; the identity without the option.
 aabb::pose pose_of(const std::optional<std::string>& text, const char* option) {
     if (!text) return {};
     try {
@@ -113,8 +118,9 @@ aabb::pose pose_of(const std::optional<std::string>& text, const char* option) {
     }
 }
 
+/// Reads a pose from each line that is not empty, and keeps their line numbers for later messages.
 given_poses read_poses(const std::string& file) {
-    given_poses parsed{{}, file, {}};
+    given_poses parsed{.poses = {}, .file = file, .lines = {}};
     for (line_stream lines(file); lines.next();) {
         try {
             const std::vector<std::string> words = split_numbers(without_comment(lines.line()));
@@ -131,6 +137,7 @@ given_poses read_poses(const std::string& file) {
     return parsed;
 }
 
+/// Loads meshes by name, and tells the user how reading changed each.
 std::vector<aabb::mesh> read_meshes(const std::vector<std::string>& names) {
     std::vector<aabb::mesh> meshes;
     for (const std::string& name : names) {
@@ -155,6 +162,7 @@ void require_other_file(const std::string& out, const std::string& input) {
         throw aabb::input_error(out + " would overwrite " + input + ", which this command reads");
 }
 
+/// Rejects an output `out` that would overwrite, or from now on hide, a mesh that the same command reads.
 void require_no_mesh(const std::string& out, const std::vector<std::string>& meshes) {
     std::vector<std::string> names;
     for (const std::string& name : meshes) names.emplace_back(name_without_order(name));
@@ -177,6 +185,7 @@ bool is_config_name(const std::string& argument) {
     return argument.ends_with(".toml");
 }
 
+/// The scene of a command without a config: a recording, one or two meshes, or a motion file and its meshes.
 scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     const std::string& first = arguments.front();
     if (is_config_name(first))
@@ -187,12 +196,12 @@ scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     if (first.ends_with(".aabbs")) {
         if (arguments.size() > 1)
             throw aabb::input_error("a recording is a scene of its own, so give " + first + " alone");
-        return {"recording", {{"file", first}}, {}, std::nullopt, {}};
+        return {.kind = "recording", .settings = {{"file", first}}, .meshes = {}, .seed = std::nullopt};
     }
     if (!is_mesh_name(first) && arguments.size() > 1) {
         const std::vector<std::string> meshes(arguments.begin() + 1, arguments.end());
         note_left_out(meshes);
-        return {"motion", {{"file", first}}, meshes, std::nullopt, {}};
+        return {.kind = "motion", .settings = {{"file", first}}, .meshes = meshes, .seed = std::nullopt};
     }
     if (std::error_code ignored; !is_mesh_name(first) && std::filesystem::is_regular_file(first, ignored))
         throw aabb::input_error(first +
@@ -201,7 +210,7 @@ scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     if (arguments.size() > 2)
         throw aabb::input_error("more than two meshes need a motion file, which comes first; " + first + " is a mesh");
     note_left_out(arguments);
-    return {"mesh_pair", {{"normalise", "no"}}, arguments, 1, {}};
+    return {.kind = "mesh_pair", .settings = {{"normalise", "no"}}, .meshes = arguments, .seed = 1};
 }
 
 }  // namespace aabblab

@@ -8,8 +8,7 @@ import aabblab.scenes;
 export namespace aabblab {
 
 /// Parses a decimal or C99 hexadecimal number, correctly rounded to Real, which is float or double.
-/// @throws aabb::input_error on anything else, NaN, infinity or overflow, with the number's place: "number 3 of 18: 'x'
-/// is not a number".
+/// @throws aabb::input_error on anything else, NaN, infinity or overflow: "number 3 of 18: 'x' is not a number".
 template <class Real>
 [[nodiscard]] Real parse_number_of(const std::vector<std::string>& words, std::size_t i);
 

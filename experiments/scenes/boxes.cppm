@@ -21,11 +21,10 @@ struct scene_size {
 enum class length_unit : unsigned char { extent, spacing };
 
 struct motion_config : scene_size {
-    /// The displacement of a box per frame, in `unit`.
     double displacement = 0.1;
     length_unit unit = length_unit::extent;
 };
-/// @param help the text for `displacement`
+/// The parameters of scenes of moving boxes; `help` explains the displacement, which not every kind applies alike.
 [[nodiscard]] constexpr auto motion_parameters_with(std::string_view help) {
     return std::tuple_cat(
         size_parameters<scene_size>("how many boxes"),
@@ -39,9 +38,7 @@ struct motion_config : scene_size {
 inline constexpr auto motion_parameters =
     motion_parameters_with("displacement of each box per frame, along its path if walls reflect it");
 
-/// `displacement` as a length.
-/// @param extent mean extent of the boxes
-/// @param sides of the world, 0 on a flat axis
+/// The displacement as a length, for the mean extent of the boxes and the sides of the world, 0 on a flat axis.
 [[nodiscard]] inline double step_of(const motion_config& c, double extent, const aabb::vec3d& sides) {
     return c.displacement * (c.unit == length_unit::extent ? extent : mean_spacing(sides, c.objects));
 }
@@ -129,12 +126,10 @@ private:
 /// Boxes that drift with points: by default, unit cubes with their lowest corner there.
 class drifting_boxes : public generated_boxes {
 protected:
-    /// @param further_bytes_each memory that the kind holds per object besides its point
     drifting_boxes(std::string_view name, const scene_size& size, std::uint64_t seed, double further_bytes_each = 0)
         : generated_boxes(name, size, seed, drifting_points::bytes_each + further_bytes_each) {}
 
-    /// @param width of the cube (square, segment) in which points drift
-    /// @param extent, sides see `step_of`
+    /// Places points in a cube (square, segment) of this width, with random directions and the step of `step_of`.
     void drift(const motion_config& c, double width, double extent, const aabb::vec3d& sides, int axes = 3) {
         const double step = step_of(c, extent, sides);
         points_ = {c.objects, axes, width, {step, step}, random_};

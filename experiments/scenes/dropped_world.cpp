@@ -9,9 +9,11 @@ import :posed_meshes;
 
 namespace aabblab {
 
+/// A floor, which rests, and balls above it in a lattice that random shifts let collapse. The law of contact makes a
+/// ball that rests on the floor sink to the depth of the configuration, and damps it in proportion to critical damping.
 stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> meshes, std::uint64_t seed) {
     constexpr double gravity = 9.81;
-    constexpr double gap = 1.05;
+    constexpr double gap = 1.05;  // of the lattice, in extents, as is the next
     constexpr double perturbation = 0.005;
     stepped_world world;
     world.meshes = std::move(meshes);

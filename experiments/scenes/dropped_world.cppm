@@ -6,9 +6,8 @@ import aabblab.stepping;
 
 export namespace aabblab {
 
-/// Balls in a cubic lattice above a floor, perturbed so that the lattice collapses, with random rotations:
-/// SimBenchmark's 666 test (leggedrobotics/SimBenchmark), with meshes instead of spheres. Lengths are relative to the
-/// longest extent of the ball, which is in metres.
+/// Balls in a cubic lattice above a floor, perturbed so that the lattice collapses, with random rotations: the 666 test
+/// of leggedrobotics/SimBenchmark with meshes. Lengths are over the longest extent of the ball, which is in metres.
 struct dropped_config {
     std::uint32_t balls = 216;
     double height = 0.5;   ///< of the lowest ball above the floor

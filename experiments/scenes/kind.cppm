@@ -1,6 +1,5 @@
 /// Concepts of scene kinds. A kind has a name, a summary and parameters like a strategy, and is constructed from its
-/// configuration and a seed (boxes), or from its configuration, meshes and a seed (meshes). A kind that reads a file
-/// has no seed: it opens the `file` of its configuration.
+/// configuration, meshes unless it has boxes, and a seed. A kind that reads a file opens the one of its configuration.
 module aabblab.scenes:kind;
 
 import aabb.pipeline;
@@ -22,6 +21,7 @@ concept MeshScene =
         { S::most_meshes } -> std::convertible_to<std::size_t>;
     };
 
+/// A kind that reads the `file` of its configuration; the file determines the boxes, or the poses of given meshes.
 template <class S>
 concept PlaysFile = aabb::Configurable<S> && requires(const aabb::config_of<S>& config) {
     { config.file } -> std::convertible_to<std::string>;
@@ -45,7 +45,6 @@ struct scene_kind {
 /// All kinds, in the order of CMakeLists.txt.
 [[nodiscard]] std::span<const scene_kind> kinds();
 
-/// The meshes of these names. @throws aabb::input_error on no name, or more than `most`.
 [[nodiscard]] std::vector<aabb::mesh> meshes_named(const scene_choice& choice, std::span<const std::string> names,
                                                    std::size_t most);
 
@@ -57,6 +56,7 @@ template <PlaysFile S>
     return config;
 }
 
+/// Describes kind S, with the function that makes its scenes from a choice of settings, meshes and seed.
 template <class S>
 [[nodiscard]] scene_kind kind_of() {
     scene_kind kind{{std::string(S::name), std::string(S::summary), MeshScene<S> || MeshFileScene<S>, PlaysFile<S>,

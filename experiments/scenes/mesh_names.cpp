@@ -23,6 +23,7 @@ bool is_shape(std::string_view name) {
     return std::ranges::find(shapes(), name, &shape_info::name) != shapes().end();
 }
 
+/// Makes the shape that the choice names, one of the list; rejects a size beyond the memory before it is allocated.
 template <class... Shapes>
 aabb::mesh make_shape(aabb::type_list<Shapes...>, const aabb::strategy_choice& choice) {
     aabb::mesh mesh;
@@ -70,7 +71,7 @@ struct ordered_name {
     std::optional<std::string_view> build;  ///< empty if triangles keep their order
 };
 
-/// Splits a name, unless a file has the full name.
+/// Splits "NAME:order=BUILD" into the name and the build, unless a file has the full name.
 ordered_name split_name(std::string_view name, const std::filesystem::path& folder) {
     constexpr std::string_view key = "order=";
     if (is_there(name, folder)) return {name, {}};
@@ -88,6 +89,7 @@ ordered_name split_name(std::string_view name, const std::filesystem::path& fold
     return {name, {}};
 }
 
+/// Reads the first file of this name, or makes the shape; an unknown name is rejected with the nearest known one.
 loaded_mesh make_unordered_mesh(std::string_view name, const std::filesystem::path& folder) {
     std::error_code ignored;
     for (const std::filesystem::path& file : places(name, folder))
@@ -112,6 +114,7 @@ std::filesystem::path data_folder() {
     return set != nullptr && *set != '\0' ? set : AABBLAB_DATA_FOLDER;
 }
 
+/// The path of a file, as given or in the folder of the config that names it.
 std::filesystem::path resolve_file(const std::filesystem::path& name, const std::filesystem::path& folder) {
     std::error_code ignored;
     std::filesystem::path beside = folder / name;
@@ -130,6 +133,7 @@ bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
     return is_shape(name.substr(0, name.find(':'))) || is_there(name, folder);
 }
 
+/// Finds a mesh by name; its triangles are in the order of the leaves of a tree if the name ends in "order=BUILD".
 loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder) {
     const auto [plain_name, build] = split_name(name, folder);
     if (!build) return make_unordered_mesh(name, folder);
@@ -140,6 +144,7 @@ loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder
     return loaded;
 }
 
+/// The meshes of these names for a scene, whose kind takes at least one and at most `most` of them.
 std::vector<aabb::mesh> meshes_named(const scene_choice& choice, std::span<const std::string> names, std::size_t most) {
     if (names.empty()) throw aabb::input_error(choice.kind + " needs at least one mesh");
     if (names.size() > most)

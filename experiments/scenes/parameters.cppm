@@ -11,10 +11,9 @@ template <class Config>
     return aabb::integer_parameter{"frames", &Config::frames, 0U, 0x7ffffffeU, "frames after the first one"};
 }
 
-/// @param objects help text for the number of objects
 template <class Config>
-[[nodiscard]] constexpr auto size_parameters(std::string_view objects) {
-    return std::tuple{aabb::integer_parameter{"objects", &Config::objects, 0U, 0x7fffffffU, objects},
+[[nodiscard]] constexpr auto size_parameters(std::string_view help) {
+    return std::tuple{aabb::integer_parameter{"objects", &Config::objects, 0U, 0x7fffffffU, help},
                       frames_parameter<Config>()};
 }
 

@@ -62,14 +62,14 @@ namespace aabblab {
     return double{b.max[k]} - double{b.min[k]};
 }
 
-/// Centres the mesh at the origin and scales its longest extent; each vertex is rounded to float once.
-inline void normalise(aabb::mesh& m, double wanted = 1) {
+/// Centres a mesh at the origin and scales it to a longest extent; each vertex is rounded to float once.
+inline void normalise(aabb::mesh& m, double wanted_extent = 1) {
     const aabb::box bounds = aabb::bounds_of(m);
     const Eigen::Vector3d centre = centre_of(bounds);
     const double extent = longest_extent(bounds);
     if (extent == 0) return;
     for (aabb::vec3f& v : m.vertices) {
-        Eigen::Vector3d scaled = (in_eigen(v) - centre) / extent * wanted;
+        Eigen::Vector3d scaled = (in_eigen(v) - centre) / extent * wanted_extent;
         // A vertex that no triangle uses may lie anywhere, but must stay finite.
         for (double& x : scaled) x = std::fmin(std::fmax(x, -0x1p100), 0x1p100);
         v = in_float(scaled);
@@ -99,7 +99,6 @@ protected:
     }
 
     virtual void advance() = 0;
-    /// @param frame its number, from 0
     virtual void place(std::size_t frame, std::vector<aabb::pose>& poses) = 0;
     [[nodiscard]] std::size_t frames_run() const { return frames_run_; }
 

@@ -23,7 +23,7 @@ public:
         return static_cast<std::uint32_t>((engine_() >> 32) * count >> 32);
     }
 
-    /// Uniform on the unit sphere; with 2 axes on the unit circle; with 1 axis one of its two directions.
+    /// Uniform on the unit sphere (2 axes: circle, 1: two points), by rejecting points of the cube outside the ball.
     [[nodiscard]] Eigen::Vector3d direction(int axes = 3) {
         while (true) {
             Eigen::Vector3d p = Eigen::Vector3d::Zero();
@@ -43,7 +43,7 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// The positive root of x^3 = value >= 0 by Newton's method: std::cbrt differs between libraries in its last digit.
+/// The root of x^3 = value >= 0 by Newton's method, from above: std::cbrt differs between libraries in its last digit.
 [[nodiscard]] inline double cube_root(double value) {
     if (value == 0) return 0;
     double root = value > 1 ? value : 1;
@@ -65,8 +65,7 @@ struct step_range {
     double most;
 };
 
-/// Points that move through the cube [0, width]^3 on straight lines with constant steps. The walls reflect them, and a
-/// random hundredth of them changes direction every frame.
+/// Points that move through the cube [0, width]^3 by constant steps. Walls reflect them; a hundredth turns every frame.
 class drifting_points {
 public:
     drifting_points() = default;
@@ -85,6 +84,7 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return points_.size(); }
     [[nodiscard]] const Eigen::Vector3d& operator[](std::size_t i) const noexcept { return points_[i].at; }
 
+    /// Moves all points by a step, after a random hundredth of them has turned.
     void advance(random_source& random) {
         const auto count = static_cast<std::uint32_t>(points_.size());
         // The remainder is carried over, so that few points turn as often as many do.
@@ -104,6 +104,7 @@ private:
     };
     static_assert(sizeof(point) == static_cast<std::size_t>(bytes_each));
 
+    /// Moves a point along axis k, between reflecting walls at 0 and at the width.
     void move(point& p, int k) const {
         if (width_ == 0) return;
         // The unfolded path between two walls has a period of twice the width.

@@ -21,8 +21,7 @@ struct scene_choice {
     std::vector<aabb::setting> settings;  ///< "objects", "frames", "displacement", … as text
     std::vector<std::string> meshes;
     std::optional<std::uint64_t> seed = 1;  ///< empty if the kind reads a file
-    /// The folder of the config, a fallback for relative paths. It is neither compared nor stored, since a scene is the
-    /// same wherever its config is stored.
+    /// The config's folder, a fallback for relative paths. It is no part of the scene, so neither compared nor stored.
     std::filesystem::path folder = {};
 
 private:

@@ -21,6 +21,7 @@ void require_seed(const scene_info& info, const scene_choice& choice) {
 
 }  // namespace
 
+/// The names, summaries and parameters of all kinds of scenes.
 std::span<const scene_info> scene_kinds() {
     static const std::vector<scene_info> infos = [] {
         std::vector<scene_info> list;
@@ -45,6 +46,7 @@ std::vector<std::string> scene_names() {
     return names;
 }
 
+/// The edge of a cube (square, segment) with an equal share of the world for each object; flat axes do not count.
 double mean_spacing(const aabb::vec3d& sides, std::size_t objects) {
     double volume = 1;
     int axes = 0;
@@ -57,6 +59,7 @@ double mean_spacing(const aabb::vec3d& sides, std::size_t objects) {
     return edge_of(volume / static_cast<double>(objects), axes);
 }
 
+/// Identifies a scene but for its kind and seed: "objects=1000 frames=20 meshes=elephant.off+torus_knot".
 std::string settings_text(const scene_choice& scene) {
     std::string text;
     const auto add = [&](const std::string& part) { text += (text.empty() ? "" : " ") + part; };

@@ -17,8 +17,7 @@ export namespace aabblab {
 [[nodiscard]] bool has_meshes(const scene_choice& scene);
 [[nodiscard]] std::vector<std::string> scene_names();
 
-/// @throws aabb::input_error on an unknown kind, parameter or value, on meshes for a scene of boxes, on a superfluous
-/// or missing seed, and on an invalid file.
+/// @throws aabb::input_error on an unknown kind, parameter or value, extra meshes, an extra or no seed, a bad file.
 [[nodiscard]] std::unique_ptr<aabb::box_scene> make_box_scene(const scene_choice& choice);
 [[nodiscard]] std::unique_ptr<aabb::mesh_scene> make_mesh_scene(const scene_choice& choice);
 

@@ -19,7 +19,6 @@ public:
     struct config : motion_config {
         double moving = 1;
         double density = 0.1;
-        /// Edge of the largest cube over that of the smallest, with sizes distributed as in `mixed_sizes`.
         double ratio = 1;
         std::uint32_t clouds = 1;
         double apart = 4;
@@ -39,6 +38,7 @@ public:
                    aabb::number_parameter{"parked", &config::parked, 0.0, 1.0,
                                           "share of the cubes that rest in a cloud of their own", true}});
 
+    /// Derives the width of the clouds from the density and places them. The first cubes rest, some of them parked.
     cloud(const config& c, std::uint64_t seed)
         : drifting_boxes(name, c, seed, sizeof(double) + sizeof(Eigen::Vector3d)),
           edges_(spread_edges(c.objects, c.ratio)),

@@ -22,10 +22,10 @@ public:
         motion_parameters,
         std::tuple{aabb::integer_parameter{"clusters", &config::clusters, 1U, 1'000'000U, "how many clusters"}});
 
+    /// Each cube overlaps two others of its cluster on average; the world is the bounding box of the clusters.
     clustered(const config& c, std::uint64_t seed) : drifting_boxes(name, c, seed) {
         const double width = width_for((c.objects + c.clusters - 1) / c.clusters, 3);
         place_clusters(c.clusters, width + 1);
-        // The world is the bounding box of the clusters.
         Eigen::Vector3d least = corners_.front();
         Eigen::Vector3d most = corners_.front();
         for (const Eigen::Vector3d& corner : corners_) {
@@ -38,7 +38,7 @@ public:
     }
 
 private:
-    /// Selects a uniformly random subset of the cells of the smallest sufficient lattice.
+    /// Selects random cells of a lattice, eight clusters wide (Knuth's algorithm S); clusters lie near their middles.
     void place_clusters(std::uint32_t wanted, double width) {
         const std::uint32_t side = lattice_side(wanted);
         for (std::uint32_t cell = 0, cells = side * side * side; corners_.size() < wanted; ++cell) {

@@ -31,6 +31,7 @@ public:
                                "of the wave, over the extent of the mesh that it deforms"},
         normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
+    /// Chooses the rotations of both meshes, their offset and the directions of the wave at random.
     deforming(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise) {
         // A single mesh is paired with a copy of itself.
@@ -38,48 +39,48 @@ public:
         mesh_of = {0, 1};
         const aabb::box rigid = aabb::bounds_of(meshes[0]);
         const aabb::box waving = aabb::bounds_of(meshes[1]);
-        extent_ = longest_extent(waving);
-        amplitude_ = c.amplitude * extent_;
+        waving_extent_ = longest_extent(waving);
+        amplitude_ = c.amplitude * waving_extent_;
         random_source random(seed);
-        rotation_ = random_rotation(random);
-        turn_ = turn(random.direction(), 0.1);
-        centre_ = centre_of(rigid);
-        place_ = random.direction() * (c.distance * (longest_extent(rigid) + extent_) / 2);
-        standing_ = placed(centre_of(waving), random_rotation(random), Eigen::Vector3d::Zero());
-        along_ = random.direction();
-        push_ = random.direction();
-        rest_ = meshes[1].vertices;
+        rigid_rotation_ = random_rotation(random);
+        rotation_per_frame_ = turn(random.direction(), /*angle=*/0.1);
+        rigid_centre_ = centre_of(rigid);
+        rigid_place_ = random.direction() * (c.distance * (longest_extent(rigid) + waving_extent_) / 2);
+        waving_pose_ = placed(centre_of(waving), random_rotation(random), Eigen::Vector3d::Zero());
+        wave_direction_ = random.direction();
+        offset_direction_ = random.direction();
+        rest_vertices_ = meshes[1].vertices;
     }
 
     [[nodiscard]] bool deforms(std::uint32_t mesh) const override { return mesh == 1; }
 
 private:
-    void advance() override { rotation_ = composed(turn_, rotation_); }
+    void advance() override { rigid_rotation_ = composed(rotation_per_frame_, rigid_rotation_); }
 
     void place(std::size_t frame, std::vector<aabb::pose>& poses) override {
         wave(static_cast<double>(frame) / 20);
-        poses = {placed(centre_, rotation_, place_), standing_};
+        poses = {placed(rigid_centre_, rigid_rotation_, rigid_place_), waving_pose_};
     }
 
     /// Applies a wave of two periods over the extent of the mesh; time is in periods.
     void wave(double time) {
-        for (std::size_t v = 0; v < rest_.size(); ++v) {
-            const Eigen::Vector3d at = in_eigen(rest_[v]);
-            const double offset = amplitude_ * on_circle(2 * dot(along_, at) / extent_ + time).sin;
-            meshes[1].vertices[v] = in_float(at + push_ * offset);
+        for (std::size_t v = 0; v < rest_vertices_.size(); ++v) {
+            const Eigen::Vector3d at = in_eigen(rest_vertices_[v]);
+            const double offset = amplitude_ * on_circle(2 * dot(wave_direction_, at) / waving_extent_ + time).sin;
+            meshes[1].vertices[v] = in_float(at + offset_direction_ * offset);
         }
     }
 
-    Eigen::Quaterniond rotation_;
-    Eigen::Quaterniond turn_;
-    Eigen::Vector3d centre_;
-    Eigen::Vector3d place_;
-    aabb::pose standing_;
-    double extent_ = 0;
+    Eigen::Quaterniond rigid_rotation_;
+    Eigen::Quaterniond rotation_per_frame_;
+    Eigen::Vector3d rigid_centre_;
+    Eigen::Vector3d rigid_place_;
+    aabb::pose waving_pose_;
+    double waving_extent_ = 0;
     double amplitude_ = 0;
-    Eigen::Vector3d along_;
-    Eigen::Vector3d push_;
-    std::vector<aabb::vec3f> rest_;
+    Eigen::Vector3d wave_direction_;
+    Eigen::Vector3d offset_direction_;
+    std::vector<aabb::vec3f> rest_vertices_;
 };
 
 }  // namespace aabblab

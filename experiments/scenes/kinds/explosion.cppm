@@ -16,7 +16,6 @@ public:
         "unit cubes heaped in a cube that creep outwards, then fly apart, then rest, a third of the frames each";
 
     struct config : scene_size {
-        /// The displacement of a flying cube per frame, in edges; a creeping cube moves a hundredth of it.
         double displacement = 0.5;
     };
     static constexpr auto parameters =
@@ -24,8 +23,9 @@ public:
                        std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
                                                          "displacement of a flying cube per frame, in edges"}});
 
+    /// Places cubes at random in a cube of their total volume; each will fly away from its centre.
     explosion(const config& c, std::uint64_t seed)
-        : generated_boxes(name, c, seed, sizeof(flying_box)), flight_(c.displacement) {
+        : generated_boxes(name, c, seed, sizeof(flying_box)), flight_step_(c.displacement) {
         const double side = cube_root(c.objects);
         boxes_.resize(c.objects);
         for (flying_box& b : boxes_) {
@@ -44,7 +44,7 @@ private:
 
     void advance() override {
         const std::size_t last = frames() - 1;
-        const double step = 3 * frame() <= last ? flight_ / 100 : 3 * frame() <= 2 * last ? flight_ : 0;
+        const double step = 3 * frame() <= last ? flight_step_ / 100 : 3 * frame() <= 2 * last ? flight_step_ : 0;
         for (flying_box& b : boxes_) b.corner += b.direction * step;
     }
 
@@ -52,7 +52,7 @@ private:
         for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = cube_at(boxes_[i].corner, 1);
     }
 
-    double flight_;
+    double flight_step_;
     std::vector<flying_box> boxes_;
 };
 

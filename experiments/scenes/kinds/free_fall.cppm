@@ -24,6 +24,7 @@ public:
     };
     static constexpr auto parameters = motion_parameters_with("greatest displacement of a box per frame");
 
+    /// Derives gravity from the speed v at which a box from the greatest height h hits the floor: v² = 2 g h.
     free_fall(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(falling_box)) {
         const double width = std::sqrt(c.objects);
         const double fastest = step_of(c, 1, {width + 1, width + 1, height + 1});
@@ -45,6 +46,7 @@ private:
         for (falling_box& b : boxes_) fall(b);
     }
 
+    /// Moves a box along its parabola for a frame; if it hits the floor, up again for the remaining share of the frame.
     void fall(falling_box& b) const {
         double& z = b.corner[2];
         const double next = z + b.speed - gravity_ / 2;

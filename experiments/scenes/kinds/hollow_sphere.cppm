@@ -7,8 +7,7 @@ import :boxes;
 
 namespace aabblab {
 
-/// Unit cubes whose centres move along great circles of a sphere. Nearly all of their world is empty, and projections
-/// on every axis are uniformly distributed.
+/// Unit cubes that move along great circles of a sphere. Their world is nearly empty, and projections are uniform.
 class hollow_sphere final : public generated_boxes {
 public:
     static constexpr std::string_view name = "hollow_sphere";
@@ -18,6 +17,7 @@ public:
     using config = motion_config;
     static constexpr auto parameters = motion_parameters;
 
+    /// Chooses the radius of the sphere and the angle of a step, and places points at random with random directions.
     hollow_sphere(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(point)) {
         // A cube overlaps those with centres in the cube of edge 2 around its own, in which the sphere has an area of
         // 4.767, averaged over the direction of its normal. With this radius each overlaps two others on average.
@@ -26,8 +26,8 @@ public:
         const double step = step_of(c, 1, {side, side, side});
         // The sine of half the angle of a step, which is at most the diameter of the sphere.
         const double sine = radius_ > 0 ? std::min(1.0, step / (2 * radius_)) : 0;
-        along_ = 1 - 2 * sine * sine;
-        across_ = 2 * sine * std::sqrt(1 - sine * sine);
+        step_cosine_ = 1 - 2 * sine * sine;
+        step_sine_ = 2 * sine * std::sqrt(1 - sine * sine);
         points_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
             const Eigen::Vector3d at = random_.direction();
@@ -54,17 +54,17 @@ private:
         }
     }
 
+    /// Rotates each point and its direction by a step along its great circle, after a random hundredth has turned.
     void advance() override {
         const auto count = static_cast<std::uint32_t>(points_.size());
-        // A hundredth of the points turns, as in `drifting_points`.
         for (to_turn_ += count; to_turn_ >= 100; to_turn_ -= 100) {
             point& turned = points_[random_.below(count)];
             turned.direction = tangent_at(turned.at);
         }
         for (point& p : points_) {
             const Eigen::Vector3d before = p.at;
-            p.at = unit(before * along_ + p.direction * across_);
-            const Eigen::Vector3d ahead = p.direction * along_ - before * across_;
+            p.at = unit(before * step_cosine_ + p.direction * step_sine_);
+            const Eigen::Vector3d ahead = p.direction * step_cosine_ - before * step_sine_;
             p.direction = unit(ahead - p.at * dot(ahead, p.at));
         }
     }
@@ -75,8 +75,8 @@ private:
     }
 
     double radius_ = 0;
-    double along_ = 1;
-    double across_ = 0;
+    double step_cosine_ = 1;
+    double step_sine_ = 0;
     std::vector<point> points_;
     std::uint64_t to_turn_ = 0;
 };

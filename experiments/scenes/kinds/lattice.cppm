@@ -8,8 +8,7 @@ import :boxes;
 namespace aabblab {
 
 /// Unit cubes side by side on an integer lattice: each touches its neighbours, corners included, so that results depend
-/// on closed comparisons, and sorted lists are full of ties. All move along the diagonal by the same step, so that
-/// equal coordinates stay equal in spite of rounding.
+/// on closed comparisons, and sorted lists are full of ties. All move by the same step, so that coordinates stay equal.
 class lattice final : public generated_boxes {
 public:
     static constexpr std::string_view name = "lattice";
@@ -29,6 +28,7 @@ public:
         : generated_boxes(name, c, seed, 0, ""), displacement_(c.displacement), side_(lattice_side(c.objects)) {}
 
 private:
+    /// Shifts all cubes. The bounds where neighbours touch are the same sum, so that they are equal; `cube_at` differs.
     void place(std::span<aabb::box> boxes) override {
         const double shift = static_cast<double>(frame()) * displacement_;
         for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -19,7 +19,6 @@ public:
     struct config {
         std::uint32_t frames = 20;
         double distance = 0.5;
-        /// Rotation of the second mesh per frame, in radians if small; see `turn`.
         double turn = 0.1;
         scaling normalise = scaling::yes;
     };
@@ -30,36 +29,37 @@ public:
         aabb::number_parameter{"turn", &config::turn, 0.0, 1e6, "of the second mesh per frame, in radians", true},
         normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
+    /// Chooses the path, the axis and the first rotation of the second mesh at random.
     mesh_pair(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
-        : generated_meshes(c.frames, std::move(models), c.normalise), turns_(c.turn > 0) {
+        : generated_meshes(c.frames, std::move(models), c.normalise), is_turning_(c.turn > 0) {
         mesh_of = {0, static_cast<std::uint32_t>(meshes.size() - 1)};
         const aabb::box first = aabb::bounds_of(meshes.front());
         const aabb::box second = aabb::bounds_of(meshes.back());
-        standing_ = placed(centre_of(first), Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
-        centre_ = centre_of(second);
+        first_pose_ = placed(centre_of(first), Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
+        second_centre_ = centre_of(second);
         random_source random(seed);
-        rotation_ = random_rotation(random);
-        turn_ = turn(random.direction(), c.turn);
-        start_ = random.direction() * (c.distance * (longest_extent(first) + longest_extent(second)) / 2);
+        second_rotation_ = random_rotation(random);
+        rotation_per_frame_ = turn(random.direction(), c.turn);
+        path_start_ = random.direction() * (c.distance * (longest_extent(first) + longest_extent(second)) / 2);
     }
 
 private:
     void advance() override {
-        if (turns_) rotation_ = composed(turn_, rotation_);
+        if (is_turning_) second_rotation_ = composed(rotation_per_frame_, second_rotation_);
     }
 
     void place(std::size_t frame, std::vector<aabb::pose>& poses) override {
         // The path leads from the start through the origin to the mirror image of the start.
         const double share = frames() > 1 ? 1 - 2 * static_cast<double>(frame) / static_cast<double>(frames() - 1) : 1;
-        poses = {standing_, placed(centre_, rotation_, start_ * share)};
+        poses = {first_pose_, placed(second_centre_, second_rotation_, path_start_ * share)};
     }
 
-    aabb::pose standing_;
-    Eigen::Vector3d centre_;
-    Eigen::Vector3d start_;
-    Eigen::Quaterniond rotation_;
-    bool turns_;
-    Eigen::Quaterniond turn_;
+    aabb::pose first_pose_;
+    Eigen::Vector3d second_centre_;
+    Eigen::Vector3d path_start_;
+    Eigen::Quaterniond second_rotation_;
+    bool is_turning_;
+    Eigen::Quaterniond rotation_per_frame_;
 };
 
 }  // namespace aabblab

@@ -25,7 +25,6 @@ public:
         double density = 0.5;
         double displacement = 0.05;
         scaling normalise = scaling::yes;
-        /// The number of huge objects, and their longest extent over the side of the world, which the others determine.
         std::uint32_t huge = 0;
         double span = 0.5;
     };
@@ -41,6 +40,8 @@ public:
                    aabb::number_parameter{"span", &config::span, 0.0, 1.0,
                                           "longest extent of a huge object over the side of the world"}});
 
+    /// Assigns a mesh to each object, derives the side of the world from the density of the objects that are not huge,
+    /// scales the huge mesh to its share of the side, and chooses random points, steps and rotations.
     mesh_swarm(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise), random_(seed) {
         require_memory(
@@ -48,32 +49,32 @@ public:
             c.objects * (drifting_points::bytes_each + sizeof(spin) + sizeof(aabb::pose) + sizeof(std::uint32_t)));
         const std::uint32_t huge = std::min(c.huge, c.objects);
         const std::uint32_t others = c.objects - huge;
-        const std::uint32_t first = huge > 0 ? 1 : 0;  // the first mesh of the others
-        if (meshes.size() == first) meshes.push_back(meshes[0]);
+        const std::uint32_t first_other_mesh = huge > 0 ? 1 : 0;
+        if (meshes.size() == first_other_mesh) meshes.push_back(meshes[0]);
         std::vector<double> extents;
         for (const aabb::mesh& m : meshes) extents.push_back(longest_extent(aabb::bounds_of(m)));
         mesh_of.assign(huge, 0);
         double sum = 0;
         double volume = 0;
         for (std::uint32_t i = 0; i < others; ++i) {
-            mesh_of.push_back(first + static_cast<std::uint32_t>(i % (meshes.size() - first)));
+            mesh_of.push_back(first_other_mesh + static_cast<std::uint32_t>(i % (meshes.size() - first_other_mesh)));
             const double extent = extents[mesh_of.back()];
             sum += extent;
             volume += extent * extent * extent;
         }
-        extent_ = others == 0 ? 0 : sum / others;
+        mean_extent_ = others == 0 ? 0 : sum / others;
         const double side = cube_root((others == 0 ? huge : volume) / c.density);
         if (huge > 0) normalise(meshes[0], c.span * side);
         for (const aabb::mesh& m : meshes) centres_.push_back(centre_of(aabb::bounds_of(m)));
         huge_extent_ = c.span * side;
         const double mean = c.objects == 0 ? 0 : (sum + huge * huge_extent_) / c.objects;
-        points_ = {others, 3, side - extent_, {0, c.displacement * mean}, random_};
+        points_ = {others, 3, side - mean_extent_, {0, c.displacement * mean}, random_};
         huge_ = {huge, 3, side - huge_extent_, {0, c.displacement * mean}, random_};
         spins_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
-            const Eigen::Quaterniond at = random_rotation(random_);
+            const Eigen::Quaterniond rotation = random_rotation(random_);
             const Eigen::Vector3d axis = random_.direction();
-            spins_.push_back({at, turn(axis, random_.unit() * c.displacement)});
+            spins_.push_back({rotation, turn(axis, random_.unit() * c.displacement)});
         }
     }
 
@@ -81,27 +82,28 @@ private:
     void advance() override {
         points_.advance(random_);
         huge_.advance(random_);
-        for (spin& s : spins_) s.at = composed(s.by, s.at);
+        for (spin& s : spins_) s.rotation = composed(s.rotation_per_frame, s.rotation);
     }
 
+    /// Rotates each object about the centre of its mesh, and moves it to its point.
     void place(std::size_t, std::vector<aabb::pose>& poses) override {
         poses.resize(spins_.size());
         for (std::size_t i = 0; i < poses.size(); ++i) {
             // The world begins at the origin, and centres keep half an extent from its walls.
             const bool is_huge = i < huge_.size();
             const Eigen::Vector3d& point = is_huge ? huge_[i] : points_[i - huge_.size()];
-            const double wall = (is_huge ? huge_extent_ : extent_) / 2;
-            poses[i] = placed(centres_[mesh_of[i]], spins_[i].at, point + Eigen::Vector3d::Constant(wall));
+            const double margin = (is_huge ? huge_extent_ : mean_extent_) / 2;
+            poses[i] = placed(centres_[mesh_of[i]], spins_[i].rotation, point + Eigen::Vector3d::Constant(margin));
         }
     }
 
     struct spin {
-        Eigen::Quaterniond at;
-        Eigen::Quaterniond by;  // per frame
+        Eigen::Quaterniond rotation;
+        Eigen::Quaterniond rotation_per_frame;
     };
 
     random_source random_;
-    double extent_ = 0;  // mean over objects that are not huge
+    double mean_extent_ = 0;  // of objects that are not huge
     double huge_extent_ = 0;
     std::vector<Eigen::Vector3d> centres_;  // by mesh
     drifting_points points_;

@@ -22,6 +22,7 @@ public:
         motion_parameters, std::tuple{aabb::number_parameter{"ratio", &config::ratio, 1.0, 1e6,
                                                              "edge of the largest cube over that of the smallest"}});
 
+    /// Lets the cubes drift in a world in which each overlaps two others on average.
     mixed_sizes(const config& c, std::uint64_t seed)
         : drifting_boxes(name, c, seed, sizeof(double)),
           edges_(spread_edges(c.objects, c.ratio)),
@@ -36,13 +37,13 @@ private:
     static double width_around(const std::vector<double>& edges) {
         if (edges.empty()) return 0;
         const auto count = static_cast<double>(edges.size());
-        double first = 0, second = 0, third = 0;
+        double mean_edge = 0, mean_square = 0, mean_cube = 0;
         for (const double e : edges) {
-            first += e / count;
-            second += e * e / count;
-            third += e * e * e / count;
+            mean_edge += e / count;
+            mean_square += e * e / count;
+            mean_cube += e * e * e / count;
         }
-        return cube_root(count * (2 * third + 6 * second * first) / 2);
+        return cube_root(count * (2 * mean_cube + 6 * mean_square * mean_edge) / 2);
     }
 
     [[nodiscard]] aabb::box box_at(const Eigen::Vector3d& centre, std::size_t i) const override {

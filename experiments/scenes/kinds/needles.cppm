@@ -34,6 +34,7 @@ private:
         return cube_root(c.objects * volume / 2);
     }
 
+    /// The box with this centre that is long on axis i modulo 3, and of edge 1 on the others.
     [[nodiscard]] aabb::box box_at(const Eigen::Vector3d& centre, std::size_t i) const override {
         aabb::box b{};
         for (int k = 0; k < 3; ++k) {

@@ -25,6 +25,7 @@ public:
             aabb::number_parameter{"span", &config::span, 0.0, 1.0, "edge of a huge box over the side of the world"},
             aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many boxes are huge"}});
 
+    /// Derives the world from the unit cubes, each of which overlaps two others on average, and the huge ones from it.
     one_huge(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, drifting_points::bytes_each) {
         const std::uint32_t huge = std::min(c.objects, c.huge);
         const double width = width_for(c.objects, 3);

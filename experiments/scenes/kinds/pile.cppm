@@ -23,6 +23,7 @@ public:
                        std::tuple{aabb::integer_parameter{"neighbours", &config::neighbours, 10U, 50U,
                                                           "mean number of others that a box overlaps"}});
 
+    /// Places boxes at random in a heap that is as high as the wanted number of neighbours requires.
     pile(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(jiggling_box)) {
         const double height = height_for(c);
         step_ = step_of(c, 1, {2 * height + 1, 2 * height + 1, height + 1});
@@ -51,8 +52,8 @@ private:
         }
     }
 
-    /// A box overlaps those whose corners lie in the cube of volume 8 around its own, as far as this cube is in the
-    /// heap of volume 4/3 height^3. That share depends on the height, so that both are found by fixed-point iteration.
+    /// The height of the heap, by fixed-point iteration: a box overlaps those whose corners lie in the cube of volume 8
+    /// around its own, as far as this cube is in the heap of volume 4/3 height^3, and that share depends on the height.
     double height_for(const config& c) {
         if (c.objects < 2) return 1;
         double height = 0;
@@ -65,6 +66,7 @@ private:
         return height;
     }
 
+    /// Estimates by sampling which share of the cube of edge 2 around a box of the heap lies in the heap, on average.
     double share_in_heap(double height) {
         constexpr int samples = 4096;
         int inside = 0;

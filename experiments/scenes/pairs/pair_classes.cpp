@@ -99,20 +99,16 @@ pair shared_edge(random_source& random, const format&) {
 pair skew_coplanar(random_source& random, const format&) {
     const double m = static_cast<double>(random.below(7)) - 3;
     const double n = static_cast<double>(random.below(7)) - 3;
-    return changed(lattice_pair(random, 1000), [&](Vector3d p) {
-        p[2] = m * p[0] + n * p[1];
-        return p;
-    });
+    return changed(lattice_pair(random, 1000),
+                   [&](const Vector3d& p) -> Vector3d { return {p[0], p[1], m * p[0] + n * p[1]}; });
 }
 
 pair coplanar(random_source& random, const format&) {
     const double height = random.unit();
-    return changed(any_pair(random), [&](Vector3d p) {
-        p[2] = height;
-        return p;
-    });
+    return changed(any_pair(random), [&](const Vector3d& p) -> Vector3d { return {p[0], p[1], height}; });
 }
 
+/// Two triangles of length 1 and height 1e-6 whose long edges pass each other within about that distance.
 pair sliver(random_source& random, const format&) {
     pair p = any_pair(random);
     const Vector3d meeting = random.point(1);
@@ -126,6 +122,7 @@ pair sliver(random_source& random, const format&) {
     return p;
 }
 
+/// Flattens the second triangle, and the first in half of the pairs, to a segment or, seldom, a point.
 pair zero_area(random_source& random, const format&) {
     pair p = lattice_pair(random, 4);
     const auto flatten = [&](triangle& t) {
@@ -200,6 +197,7 @@ aabb::triangle3<Real> rounded(const triangle& t) {
 
 }  // namespace
 
+/// The names and summaries of all classes of pairs.
 std::span<const pair_class_info> pair_classes() {
     static const std::vector<pair_class_info> infos = [] {
         std::vector<pair_class_info> list;
@@ -215,6 +213,7 @@ struct pair_source<Real>::state {
     random_source random;
 };
 
+/// Finds the class of this name. Each class has random numbers of its own, or several would have the same corners.
 template <class Real>
 pair_source<Real>::pair_source(std::string_view name, std::uint64_t seed) {
     const auto entry = std::ranges::find(classes, name, [](const pair_class& c) { return c.info.name; });
@@ -223,7 +222,6 @@ pair_source<Real>::pair_source(std::string_view name, std::uint64_t seed) {
         for (const pair_class& c : classes) names.emplace_back(c.info.name);
         throw aabb::input_error(aabb::unknown_name("class of pairs", name, names, "aabblab list pairs"));
     }
-    // Each class has its own random sequence, or several classes would have the same corners.
     const auto number = static_cast<std::uint64_t>(entry - classes.begin());
     state_ = std::make_unique<state>(&*entry, random_source(seed * classes.size() + number));
 }

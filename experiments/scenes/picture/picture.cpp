@@ -21,8 +21,8 @@ constexpr double narrowest = 1.0 / 8;  // ratio of the sides of a panel
 
 /// The two axes that are shown, and their scales in pixels.
 struct view_plane {
-    /// Objects fall and pile up along z, so z is omitted only if it is flat, or less than a quarter as wide as both
-    /// others. If one of the two axes is much longer, each has its own scale.
+    /// Chooses the two axes that the picture shows. Objects fall and pile up along z, so z is omitted only if it is
+    /// flat or less than a quarter as wide as both others. If one of the two is much longer, each has its own scale.
     view_plane(const aabb::box& world, const aabb::vec3d& sides) {
         for (int k = 0; k < 3; ++k) {
             const bool is_empty = world.min[k] > world.max[k];
@@ -35,14 +35,14 @@ struct view_plane {
         // A single box is flat on all axes, so its lengths decide.
         aabb::vec3d weight = sides == aabb::vec3d{} ? length : sides;
         weight[2] *= 4;
-        int left_out = 2;
+        int omitted_axis = 2;
         for (const int k : {1, 0})
-            if (weight[k] < weight[left_out]) left_out = k;
-        across = left_out == 0 ? 1 : 0;
-        up = left_out == 2 ? 1 : 2;
+            if (weight[k] < weight[omitted_axis]) omitted_axis = k;
+        across = omitted_axis == 0 ? 1 : 0;
+        up = omitted_axis == 2 ? 1 : 2;
         const double ratio = length[up] / length[across];
         const double shown = std::clamp(ratio, narrowest, 1 / narrowest);
-        equal_scales = ratio == shown;
+        has_equal_scales = ratio == shown;
         width = shown < 0.4 ? wide_panel : shown <= 1 ? panel_side : panel_side / shown;
         height = width * shown;
         scale[across] = width / length[across];
@@ -57,7 +57,7 @@ struct view_plane {
     int up = 1;
     double width = 0;
     double height = 0;
-    bool equal_scales = true;
+    bool has_equal_scales = true;
     aabb::vec3d least{};   // by axis, as are the following
     aabb::vec3d length{};  // shown
     aabb::vec3d scale{};   // pixels per unit of length
@@ -69,11 +69,11 @@ std::string_view name_of_axis(int axis) {
 }
 
 struct frame_drawing {
-    std::vector<std::size_t> drawn;         // objects by descending size
-    std::size_t huge = 0;                   // the number of them that are outlined on top
-    std::vector<std::uint8_t> overlapping;  // by object
-    std::size_t present = 0;
-    std::size_t pairs = 0;
+    std::vector<std::size_t> drawn_objects;  // objects by descending size
+    std::size_t huge = 0;                    // the number of them that are outlined on top
+    std::vector<std::uint8_t> overlapping;   // by object
+    std::size_t present_objects = 0;
+    std::size_t overlapping_pairs = 0;
 };
 
 std::vector<double> ticks(const view_plane& view, int axis, double pixels, double pixels_each) {
@@ -82,6 +82,7 @@ std::vector<double> ticks(const view_plane& view, int axis, double pixels, doubl
                         round_step(length, std::max(2.0, pixels / pixels_each)));
 }
 
+/// Draws ticks with their values below and to the left of a panel, and the names of the axes.
 void add_axes(svg_picture& to, const view_plane& view) {
     const double below = view.height;
     for (const double value : ticks(view, view.across, view.width, 80)) {
@@ -103,11 +104,12 @@ svg_box rectangle_of(const view_plane& view, const aabb::box& b) {
     return {left, top, std::max(1.0, view.x(b.max[view.across]) - left), std::max(1.0, view.y(b.min[view.up]) - top)};
 }
 
+/// Draws the boxes of a frame in two colours, and outlines the huge ones, which would otherwise be hidden.
 void add_boxes(svg_picture& to, const view_plane& view, const picture_data::frame& frame,
                const frame_drawing& drawing) {
     double area = 0;
     svg_picture boxes;
-    for (const std::size_t object : drawing.drawn) {
+    for (const std::size_t object : drawing.drawn_objects) {
         const svg_box r = rectangle_of(view, frame.boxes[object]);
         area += r.width * r.height;
         boxes.rectangle(drawing.overlapping[object] != 0 ? "overlapping" : "apart", r);
@@ -117,15 +119,16 @@ void add_boxes(svg_picture& to, const view_plane& view, const picture_data::fram
     to.group(boxes, {{"fill-opacity", std::clamp(0.6 / depth, 0.03, 0.35)},
                      {"stroke-opacity", std::clamp(1.5 / depth, 0.1, 0.8)}});
     for (std::size_t i = 0; i < drawing.huge; ++i)
-        to.rectangle("huge", rectangle_of(view, frame.boxes[drawing.drawn[i]]));
+        to.rectangle("huge", rectangle_of(view, frame.boxes[drawing.drawn_objects[i]]));
 }
 
 /// The drawing of one frame, with its axes and paths.
 svg_picture panel_of(const view_plane& view, std::string_view title, const picture_data::frame& frame,
                      const frame_drawing& drawing, const std::vector<polylines>& paths) {
     svg_picture panel;
-    panel.text("title", {0, -10},
-               fmt::format("{}: boxes {}, overlapping pairs {}", title, drawing.present, drawing.pairs));
+    panel.text(
+        "title", {0, -10},
+        fmt::format("{}: boxes {}, overlapping pairs {}", title, drawing.present_objects, drawing.overlapping_pairs));
     panel.rectangle("world", {0, 0, view.width, view.height});
     add_axes(panel, view);
     add_boxes(panel, view, frame, drawing);
@@ -135,7 +138,7 @@ svg_picture panel_of(const view_plane& view, std::string_view title, const pictu
 }
 
 /// Projects a path, which is interrupted while the object is absent.
-polylines drawn_path(const view_plane& view, const picture_data::path& path) {
+polylines projected_path(const view_plane& view, const picture_data::path& path) {
     polylines lines;
     bool is_new = true;
     for (const auto& place : path) {
@@ -147,13 +150,13 @@ polylines drawn_path(const view_plane& view, const picture_data::path& path) {
 }
 
 /// Projects paths until their total length would hide the boxes, but at least one.
-std::vector<polylines> clear_paths(const view_plane& view, std::span<const picture_data::path> paths) {
+std::vector<polylines> projected_paths(const view_plane& view, std::span<const picture_data::path> paths) {
     const double most = 8 * (view.width + view.height);
     double length = 0;
     std::vector<polylines> clear;
     for (const picture_data::path& path : paths) {
         if (length >= most) break;
-        clear.push_back(drawn_path(view, path));
+        clear.push_back(projected_path(view, path));
         for (const std::vector<place>& line : clear.back())
             for (std::size_t i = 1; i < line.size(); ++i)
                 length += std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
@@ -207,24 +210,25 @@ frame_drawing drawing_of(const picture_data::frame& frame) {
     const std::unique_ptr<aabb::global_stage> search = aabb::make_box_engine("cgal");
     for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
         if (!frame.has(i)) continue;
-        drawing.drawn.push_back(i);
+        drawing.drawn_objects.push_back(i);
         search->insert(static_cast<std::uint32_t>(i));
     }
-    drawing.present = drawing.drawn.size();
-    std::vector<aabb::index_pair> pairs;
-    if (drawing.present > 0) {
+    drawing.present_objects = drawing.drawn_objects.size();
+    std::vector<aabb::index_pair> overlapping_pairs;
+    if (drawing.present_objects > 0) {
         search->update(frame.boxes);
-        search->search(pairs);
+        search->search(overlapping_pairs);
     }
-    drawing.pairs = pairs.size();
+    drawing.overlapping_pairs = overlapping_pairs.size();
     drawing.overlapping.resize(frame.boxes.size());
-    for (const auto [a, b] : pairs) drawing.overlapping[a] = drawing.overlapping[b] = 1;
-    drawing.huge = sort_by_size(drawing.drawn, frame.boxes);
-    sample(drawing.drawn, drawing.huge);
+    for (const auto [a, b] : overlapping_pairs) drawing.overlapping[a] = drawing.overlapping[b] = 1;
+    drawing.huge = sort_by_size(drawing.drawn_objects, frame.boxes);
+    sample(drawing.drawn_objects, drawing.huge);
     if (drawing.huge > most_outlined) drawing.huge = 0;
     return drawing;
 }
 
+/// The lines above the drawing: what the scene is, how large it is, and what the picture shows of it.
 std::vector<std::string> caption_lines(const picture_data& data, const picture_caption& caption, const view_plane& view,
                                        bool is_sampled) {
     std::vector<std::string> lines;
@@ -234,11 +238,12 @@ std::vector<std::string> caption_lines(const picture_data& data, const picture_c
                                 counted(data.frames(), "frame"), displacement_text(data)));
     lines.push_back(fmt::format(
         "seen along {}: {} across, {} upwards{}{}", name_of_axis(3 - view.across - view.up), name_of_axis(view.across),
-        name_of_axis(view.up), view.equal_scales ? "" : ", each with a scale of its own",
+        name_of_axis(view.up), view.has_equal_scales ? "" : ", each with a scale of its own",
         is_sampled ? fmt::format("; a sample of {} boxes is drawn, huge ones first", most_boxes) : ""));
     return lines;
 }
 
+/// Explains the colours and lines of the drawing.
 svg_picture legend(std::size_t paths, bool has_huge) {
     svg_picture keys;
     keys.rectangle("apart", {0, -11, 13, 13});
@@ -255,11 +260,12 @@ svg_picture legend(std::size_t paths, bool has_huge) {
 
 }  // namespace
 
+/// Draws the first and the last frame as SVG, under a caption and a legend.
 std::string picture_of(const picture_data& data, const picture_caption& caption) {
     const view_plane view(data.world(), data.sides());
     const frame_drawing first = drawing_of(data.first());
     const frame_drawing last = drawing_of(data.last());
-    const bool is_sampled = std::max(first.present, last.present) > most_boxes;
+    const bool is_sampled = std::max(first.present_objects, last.present_objects) > most_boxes;
     svg_picture picture;
     picture.style(style);
     picture.text("name", {left_margin, 32}, caption.name);
@@ -268,7 +274,7 @@ std::string picture_of(const picture_data& data, const picture_caption& caption)
         picture.text("", {left_margin, y}, line);
         y += line_height;
     }
-    const std::vector<polylines> paths = clear_paths(view, data.paths());
+    const std::vector<polylines> paths = projected_paths(view, data.paths());
     picture.put({left_margin, y + 6}, legend(paths.size(), first.huge + last.huge > 0));
     const place left = {left_margin, y + 46};
     const double panel_height = view.height + bottom_margin;

@@ -21,7 +21,6 @@ public:
     /// The centre of an object in every frame, or in every n-th of many; empty while it is absent.
     using path = std::vector<std::optional<aabb::vec3d>>;
 
-    /// @param objects number in the scene
     /// @param frames number in the scene; `add_frame` must be called for each of them
     picture_data(std::size_t objects, std::size_t frames);
 
@@ -38,8 +37,7 @@ public:
     /// The sides of the world; 0 on a flat axis, on which all boxes of a frame are equal.
     [[nodiscard]] aabb::vec3d sides() const;
 
-    /// The mean displacement of centres per frame, over the mean of the longest extents, or over the mean spacing.
-    /// Empty if there is nothing to measure.
+    /// The mean displacement of centres per frame, over the mean longest extent or the mean spacing; empty without any.
     [[nodiscard]] std::optional<double> displacement_over_extent() const;
     [[nodiscard]] std::optional<double> displacement_over_spacing() const;
 

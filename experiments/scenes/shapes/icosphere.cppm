@@ -17,6 +17,7 @@ struct icosphere {
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(20, "about how many triangles");
 
+    /// Cuts each edge of the icosahedron into n parts, so that 20 n² is nearest to the wanted number of triangles.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         builder b;
         b.cuts = 1;
@@ -65,8 +66,8 @@ private:
             return on_sphere(p * (cuts - i - j) + q * i + r * j);
         }
 
+        /// Adds the triangles of a face in rows of vertices: row j runs parallel to p-q, from the edge p-r to q-r.
         void cut_face(std::uint32_t p, std::uint32_t q, std::uint32_t r) {
-            // Row j runs parallel to p-q, from the edge p-r to the edge q-r.
             std::vector<std::uint32_t> below;
             for (std::uint32_t j = 0; j <= cuts; ++j) {
                 std::vector<std::uint32_t> row;

@@ -18,8 +18,9 @@ struct noise_sphere {
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(18, "about how many triangles");
 
+    /// Puts rings of vertices between the poles, at distances from the centre that the noise decides.
     [[nodiscard]] static aabb::mesh make(const config& c) {
-        const auto [rings, around] = rings_for(c.triangles, 0.5);
+        const auto [rings, around] = rings_for(c.triangles, /*aspect=*/0.5);
         const noise waves;
         aabb::mesh m;
         m.vertices.push_back(waves.surface({0, 0, 1}));
@@ -46,8 +47,9 @@ private:
     /// Plane waves of random directions, with amplitudes proportional to wavelengths.
     class noise {
     public:
+        /// The same waves for every mesh, each 1.2 times as frequent as the one before.
         noise() {
-            random_source random(1);
+            random_source random(/*seed=*/1);
             double frequency = 0.35;
             for (wave& w : waves_) {
                 w = {random.direction(), frequency, random.unit(), 0.06 / frequency};

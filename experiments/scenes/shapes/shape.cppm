@@ -22,8 +22,7 @@ struct ring_counts {
     std::uint32_t around;  ///< vertices per ring
 };
 
-/// Chooses rings so that 2 · rings · around is nearest to `triangles`; among equally near choices, the one nearest to
-/// rings = aspect · around.
+/// Chooses rings so that 2 · rings · around is nearest to `triangles`, and among equals rings to aspect · around.
 [[nodiscard]] inline ring_counts rings_for(std::uint32_t triangles, double aspect) {
     const double half = triangles / 2.0;
     const double ideal = std::fmax(3, std::sqrt(half / aspect));

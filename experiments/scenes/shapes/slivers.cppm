@@ -5,8 +5,7 @@ import :shape;
 namespace aabblab {
 
 /// Triangles of length 100 along (1, 1, 1) and width 0.001, in a row of width 10 across it: all of their boxes overlap,
-/// but no triangles intersect. A second row offset by half a gap, 5 √½ / n along (1, -1, 0), lies in the gaps of the
-/// first one and intersects nothing.
+/// but no triangles intersect. A second row offset by half a gap, 5 √½ / n along (1, -1, 0), intersects nothing either.
 struct slivers {
     static constexpr std::string_view name = "slivers";
     static constexpr std::string_view summary = "thin triangles in a row along a diagonal, whose boxes all overlap";
@@ -14,6 +13,7 @@ struct slivers {
     using config = shape_size<3000>;
     static constexpr auto parameters = config::parameters(2, "how many triangles");
 
+    /// Adds triangles that point along the diagonal (1, 1, 1), side by side; `along`, `aside`, `up` are its local axes.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         constexpr double half_length = 28.867513459481287;  // 50 √⅓ along each axis
         constexpr double across = 7.0710678118654755;       // 10 √½ along x, and back along y

@@ -18,6 +18,7 @@ struct torus_knot {
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(96, "about how many triangles");
 
+    /// Puts rings of vertices along the knot, and closes the tube with the band from the last ring to the first.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         // The length of the knot is about 12.5 times the circumference of the tube.
         const auto [rings, around] = rings_for(c.triangles, 12.5);
@@ -31,8 +32,7 @@ struct torus_knot {
     }
 
 private:
-    /// The point `along` the knot and `around` the tube, both in turns. The frame from the normal of the torus and the
-    /// tangent of the knot closes.
+    /// The point `along` the knot and `around` the tube, in turns; the frame of torus normal and knot tangent closes.
     [[nodiscard]] static aabb::vec3f surface(double along, double around) {
         constexpr double major = 2;
         constexpr double tube = 0.4;
