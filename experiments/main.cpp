@@ -16,8 +16,7 @@ namespace aabblab {
 
 namespace {
 
-constexpr int check_failed = 1;
-constexpr int bad_input = 2;
+constexpr int check_failed = 1, bad_input = 2;
 
 /// Parses the command line, which also runs the command; the parser reports --version and --help by exceptions.
 void parse_and_run(CLI::App& program, int argc, char** argv) {

@@ -60,8 +60,7 @@ private:
 
 /// Measurements of a frame, or their means over several frames.
 struct frame_sample {
-    double ns = 0;
-    double pairs = 0;
+    double ns = 0, pairs = 0;
     aabb::work_counters work;
 
     [[nodiscard]] double count(aabb::work what) const { return static_cast<double>(work[what]); }
@@ -316,14 +315,12 @@ const std::array<cost_group_info, 6> cost_groups{
 
 /// The observations of a group, of scenes used for the fit and of held-out scenes.
 struct group_observations {
-    std::vector<timed_work> fitted;
-    std::vector<timed_work> held_out;
+    std::vector<timed_work> fitted, held_out;
 };
 
 /// Counts the work of every trial, then times all trials in interleaved rounds until the time is over.
 std::vector<group_observations> observe_trials(std::vector<trial> trials, double seconds) {
-    constexpr std::size_t fewest_repeats = 3;
-    constexpr std::size_t most_repeats = 25;
+    constexpr std::size_t fewest_repeats = 3, most_repeats = 25;
     const auto remaining = [seconds, began = std::chrono::steady_clock::now()] {
         return seconds - std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     };
@@ -334,9 +331,10 @@ std::vector<group_observations> observe_trials(std::vector<trial> trials, double
     const auto time = [&](trial& t, std::size_t) {
         const std::vector<measured_part> timed = t.run(aabb::instrumentation::none);
         for (std::size_t p = 0; p < timed.size(); ++p) t.observations[p].second.ns.push_back(timed[p].ns);
-        shown.at(static_cast<std::size_t>(seconds - std::max(0.0, remaining())));
+        shown.update(static_cast<std::size_t>(seconds - std::max(0.0, remaining())));
     };
-    run_rounds(trials, {.end = most_repeats, .fewest = fewest_repeats, .left = remaining}, time, [](std::size_t) {});
+    run_rounds(trials, {.end = most_repeats, .fewest = fewest_repeats, .seconds_left = remaining}, time,
+               [](std::size_t) {});
     std::vector<group_observations> by_group(cost_groups.size());
     for (trial& t : trials)
         for (auto& [group, timed] : t.observations) {

@@ -23,8 +23,7 @@ struct timed_work {
 /// The factors, at least 1, by which predicted times are too long or too short.
 struct accuracy {
     std::size_t observations = 0;
-    double median = 1;
-    double worst = 1;
+    double median = 1, worst = 1;
 };
 [[nodiscard]] accuracy accuracy_of(std::span<const timed_work> observations, std::span<const estimate> costs);
 

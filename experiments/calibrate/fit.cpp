@@ -32,8 +32,7 @@ void descend(const normal_equations& equations, Eigen::VectorXd& costs) {
     constexpr int most_rounds = 20'000;
     constexpr double near_enough = 1e-12;
     for (int round = 0; round < most_rounds; ++round) {
-        double change = 0;
-        double norm = 0;
+        double change = 0, norm = 0;
         for (Eigen::Index i = 0; i < costs.size(); ++i) {
             const double curvature = equations.products(i, i);
             if (!(curvature > 0)) continue;

@@ -13,8 +13,7 @@ namespace {
 struct atlas_request {
     std::optional<std::string> out;
     std::optional<std::string> source;  ///< the folder or archive to judge instead of the folder `out`
-    bool quick = false;
-    bool judge = false;
+    bool quick = false, judge = false;
 
     [[nodiscard]] std::filesystem::path folder() const {
         if (out) return *out;

@@ -14,8 +14,7 @@ namespace {
 
 struct calibrate_request {
     std::optional<std::string> out;
-    bool quick = false;
-    bool reset = false;
+    bool quick = false, reset = false;
 };
 
 /// The fitted costs beside the shipped ones, with 95 % confidence intervals.

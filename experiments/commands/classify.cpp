@@ -18,8 +18,7 @@ namespace {
 struct classify_request {
     std::string file;
     std::string triangle{info_of(aabb::strategy_kind::triangle).fallback};
-    bool keep_doubles = false;
-    bool geometry = false;
+    bool keep_doubles = false, geometry = false;
 };
 
 /// @param words 18 numbers: the corners of one triangle, then of the other
@@ -39,7 +38,7 @@ void classify_lines(line_stream lines, const aabb::triangle_test& test, const cl
     std::optional<progress> shown;  // results on a terminal show the progress themselves
     if (isatty(STDOUT_FILENO) == 0) shown.emplace("bytes classified", lines.size());
     while (lines.next()) {
-        if (shown) shown->at(lines.bytes_read());
+        if (shown) shown->update(lines.bytes_read());
         try {
             const std::vector<std::string> words = split_numbers(without_comment(lines.line()));
             if (words.empty()) continue;

@@ -21,11 +21,7 @@ struct collide_request {
     std::optional<std::string> out, poses_of_b;
     std::size_t repeats = 1;
     std::string self;  ///< how to treat pairs that share a vertex: "true" (together) or `apart`; empty without --self
-    bool first = false;
-    bool count = false;
-    bool geometry = false;
-    bool exit_code = false;
-    bool json = false;
+    bool first = false, count = false, geometry = false, exit_code = false, json = false;
 
     [[nodiscard]] std::vector<std::string> meshes() const { return b ? std::vector{a, *b} : std::vector{a}; }
     [[nodiscard]] mesh_query query() const {

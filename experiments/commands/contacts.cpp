@@ -18,8 +18,7 @@ struct contacts_request {
     std::vector<std::string> meshes;
     method_options method{{aabb::stage::global_search, aabb::stage::local_detection}};
     std::optional<std::string> out;
-    bool geometry = false;
-    bool json = false;
+    bool geometry = false, json = false;
 };
 
 std::string json_of(const search_method& method, const frames_result& result) {

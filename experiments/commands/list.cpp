@@ -22,8 +22,7 @@ struct list_request {
 
 /// A named item of the list, as text and as JSON.
 struct list_item {
-    std::string name;
-    std::string summary;
+    std::string name, summary;
     std::span<const aabb::parameter_info> parameters;
     json members;
 };
@@ -98,9 +97,8 @@ std::vector<section> sections() {
         list.push_back({std::string(name_of(kind)), "", items_of(aabb::strategies(kind))});
     list.push_back({"engines", "", items_of(aabb::engines())});
     for (const auto& e : aabb::left_out_engines()) {
-        const json members = {{"name", e.name}, {"not_found", e.library}};
         const std::string summary = "left out: " + e.library + " was not found when this was built";
-        list.back().left_out.push_back({e.name, summary, {}, members});
+        list.back().left_out.push_back({e.name, summary, {}, {{"name", e.name}, {"not_found", e.library}}});
     }
     list.push_back({"library_tests", ", triangle tests of engines' libraries, for classify and errors",
                     items_of(aabb::library_tests())});

@@ -12,9 +12,7 @@ struct run_request {
     std::string config;
     std::optional<std::string> out;
     std::optional<std::size_t> process;
-    bool quick = false;
-    bool resume = false;
-    bool counts = false;
+    bool quick = false, resume = false, counts = false;
 };
 
 int run(const run_request& request) {

@@ -18,10 +18,7 @@ struct scene_request {
     std::string kind;
     std::map<std::string, std::optional<std::string>> settings;  ///< by the parameter's name
     std::vector<std::string> meshes;
-    std::optional<std::string> seed;
-    std::optional<std::string> out;
-    std::optional<std::string> motion;
-    std::optional<std::string> picture;
+    std::optional<std::string> seed, out, motion, picture;
 };
 
 /// A mesh scene as input of the broad phase: the world boxes of its objects. Optionally writes their poses.
@@ -165,10 +162,10 @@ void write_scene(const scene_request& request) {
         progress shown("frames", scene.frames());
         if (request.out) {
             const std::string type = choice.seed ? fmt::format("aabblab, seed {}", *choice.seed) : "aabblab";
-            write_recording(scene, request.kind, type, *request.out, [&](std::size_t done) { shown.at(done); });
+            write_recording(scene, request.kind, type, *request.out, [&](std::size_t done) { shown.update(done); });
         } else {
             std::vector<aabb::box> boxes;
-            for (std::size_t done = 1; scene.next(boxes); ++done) shown.at(done);
+            for (std::size_t done = 1; scene.next(boxes); ++done) shown.update(done);
         }
     }
     const std::string size = counted(scene.objects(), "object") + ", " + counted(scene.frames(), "frame");

@@ -88,8 +88,7 @@ enum class experiment_size { full, quick };
 struct pair_set {
     std::string pair_class;
     bool in_double = false;
-    std::uint64_t count = 0;
-    std::uint64_t seed = 1;
+    std::uint64_t count = 0, seed = 1;
 };
 
 /// A method with its parameters swept, one point per combination of their values; one of the lists is empty.
@@ -101,8 +100,7 @@ struct error_curve {
 
 /// A plot of one metric of the compositions against another, by name.
 struct metric_plot {
-    std::string x;
-    std::string y;
+    std::string x, y;
 };
 
 /// A config of `errors`. It measures the errors of triangle tests against their time, on generated pairs and on mesh

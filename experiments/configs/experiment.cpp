@@ -22,8 +22,7 @@ void require_plain_name(const document& doc, const node& name) {
         doc.fail(name.line, "the name '" + text + "' must consist of letters, digits, - and _");
 }
 
-constexpr std::size_t quick_repeats = 3;
-constexpr std::size_t most_repeats = 1'000'000;
+constexpr std::size_t quick_repeats = 3, most_repeats = 1'000'000;
 
 std::vector<std::string> engines_of(const document& doc) {
     std::vector<std::string> names;

@@ -114,7 +114,7 @@ std::vector<error_point> run_pairs(const error_study& study, const pair_set& set
         batch.resize(std::min<std::uint64_t>(left, pairs_in_batch));
         source.next(batch);
         run.run_batch(std::span<const aabb::triangle_pair<Real>>(batch));
-        shown.at(done += batch.size());
+        shown.update(done += batch.size());
     }
     return run.points();
 }
@@ -238,7 +238,7 @@ std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint6
     const auto flush = [&] {
         run.run_batch(batch);
         batch.clear();
-        shown.at(done + hits);
+        shown.update(done + hits);
     };
     while (hits < set.count && tried / most_pairs_per_hit < set.count) {
         aabb::triangle_pair<Real> p{};
@@ -273,7 +273,7 @@ std::vector<error_point> measure_errors(const error_study& study,
     progress shown("scenes", study.scenes.size());
     for (std::size_t i = 0; i < study.scenes.size(); ++i) {
         add(run_scene(study, study.scenes[i]));
-        shown.at(i + 1);
+        shown.update(i + 1);
     }
     return points;
 }
@@ -289,7 +289,7 @@ std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
         for (hit_point& p : set.in_double ? run_hits<double>(set, shown, done) : run_hits<float>(set, shown, done))
             points.push_back(std::move(p));
         if (finished) finished(points);
-        shown.at(done += set.count);
+        shown.update(done += set.count);
     }
     return points;
 }

@@ -213,7 +213,7 @@ std::vector<extreme_row> run_extreme_scenes(std::span<const aabb::extreme_scene>
                        : scenes[i].most_bytes > 0 ? for_large_meshes
                                                   : for_meshes,
                        rows);
-        shown.at(i + 1);
+        shown.update(i + 1);
     }
     return rows;
 }

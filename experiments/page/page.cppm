@@ -35,8 +35,7 @@ public:
     [[nodiscard]] const std::string& markdown() const { return markdown_; }
 
 private:
-    std::string html_;
-    std::string markdown_;
+    std::string html_, markdown_;
 };
 
 }  // namespace aabblab

@@ -109,7 +109,7 @@ frames_result search_frames(scene_frames& scene, search_method& method, number_t
         }
         totals.add(frame.pairs, frame.contacts);
         result.object_pairs += count_object_pairs(frame.contacts);
-        shown.at(frame.number + 1);
+        shown.update(frame.number + 1);
     });
     if (rows) rows->commit();
     result.pairs = totals.candidates();

@@ -9,7 +9,7 @@ namespace aabblab {
 
 namespace {
 
-/// "takes 1.31 times as long (1.25-1.36)"
+/// How much slower a finalist is than the winner: "takes 1.31 times as long (1.25-1.36)"
 std::string ratio_text(const racer& r) {
     if (!r.has_range())
         return fmt::format("takes {:.2f} times as long, in {}, too few for a confidence interval", r.ratio(),
@@ -20,7 +20,7 @@ std::string ratio_text(const racer& r) {
                    : fmt::format("is as fast within the noise of {} repeats {}", r.times.size(), range);
 }
 
-/// Describes `auto`, unless it is first or second and therefore described already.
+/// How `auto` did, since it is what users get without a recommendation; empty if it is first or second, so described.
 std::string sentence_about_auto(const race_result& race) {
     const auto is_automatic = [](const racer& r) { return r.tested.name.is_automatic(); };
     if (const auto ended = std::ranges::find_if(race.finalists, is_automatic); ended != race.finalists.end())
@@ -124,6 +124,7 @@ std::vector<std::string> caveats_of(const race_result& race) {
 
 }  // namespace
 
+/// The recommendation, one sentence each: the winner and its lead, `auto`, options to use it, wrong results, caveats.
 std::vector<std::string> advice_of(const race_result& race) {
     const racer& winner = race.finalists.front();
     std::string use = fmt::format("Use {}: {:.4g} ms for {}", winner.name, winner.last->whole_ms(), frames_text(race));

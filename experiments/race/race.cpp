@@ -16,13 +16,10 @@ namespace aabblab {
 
 namespace {
 
-constexpr std::size_t first_frames = 4;
-constexpr std::size_t most_finalists = 6;
-constexpr std::size_t fewest_finalists = 2;
-constexpr std::size_t most_repeats = 15;
+constexpr std::size_t first_frames = 4, most_repeats = 15;
+constexpr std::size_t fewest_finalists = 2, most_finalists = 6;
 /// A candidate beyond this ratio to the fastest, in total and per frame, is dropped. The margin shrinks every round.
-constexpr double first_margin = 2;
-constexpr double last_margin = 1.25;
+constexpr double first_margin = 2, last_margin = 1.25;
 /// The share of the time that the first round may use, so that some remains for repeats.
 constexpr double share_of_first_round = 2.0 / 3;
 
@@ -57,9 +54,10 @@ public:
         : scene_(scene), limits_(limits), budget_(limits.to_run()), running_(std::move(candidates)) {
         result_.objects = scene.scene().objects();
         result_.frames = scene.scene().frames();
-        result_.frames_of_all = result_.frames * running_.size();
+        result_.frames_of_all = result_.frames * running_.size();  // if no candidate were stopped early
     }
 
+    /// Rounds reduce the candidates to so few that the final fits into the time; CGAL then checks the finalists.
     race_result run() {
         std::size_t frames = std::min(result_.frames, first_frames);
         double margin = first_margin;
@@ -78,8 +76,8 @@ public:
         rank(running_);
         std::ranges::reverse(result_.dropped);
         result_.finalists = std::move(running_);
-        for (const std::vector<racer>* group : {&result_.finalists, &result_.dropped, &result_.wrong})
-            for (const racer& r : *group) result_.frames_run += r.frames;
+        for (const std::vector<racer>* racers : {&result_.finalists, &result_.dropped, &result_.wrong})
+            for (const racer& r : *racers) result_.frames_run += r.frames;
         return std::move(result_);
     }
 
@@ -126,14 +124,15 @@ private:
                 is_done = true;
             }
             if (is_done) least = std::min(least, r.seconds);
-            shown.at(++done);
+            shown.update(++done);
         }
         return std::isfinite(least);
     }
 
+    /// Runs all candidates. If none finishes a frame, the first one gets all the time, also that of the validation,
+    /// which would have nothing to validate.
     void run_first_round(std::size_t& frames, double margin) {
-        if (!run_all(frames, margin, true)) {
-            // There are no results to validate, so the first candidate gets that time too, for a single frame.
+        if (!run_all(frames, margin, /*is_first_round=*/true)) {
             frames = 1;
             racer& first = running_.front();
             first.broken_off.reset();
@@ -156,7 +155,7 @@ private:
     /// @returns whether the round counts
     bool run_round(std::size_t frames, double margin) {
         const std::vector<racer> before = running_;
-        const bool any_done = run_all(frames, margin, false);
+        const bool any_done = run_all(frames, margin, /*is_first_round=*/false);
         const bool is_out_of_time =
             std::ranges::any_of(running_, [](const racer& r) { return r.broken_off && r.broken_off->is_out_of_time; });
         if (!is_out_of_time) require_any_accepted();
@@ -259,10 +258,10 @@ private:
             else
                 require_any_accepted();
             keep_only([](const racer& r) { return !r.broken_off; });
-            shown.at(repeat + 1);
+            shown.update(repeat + 1);
         };
         const round_limits limits{
-            .end = most_repeats, .left = [&] { return seconds_left(); }, .expected = seconds_of_repeat(frames)};
+            .end = most_repeats, .seconds_left = [&] { return seconds_left(); }, .expected = seconds_of_repeat(frames)};
         run_rounds(running_, limits, run, drop);
         if (!running_.empty() && !running_.front().times.empty()) {
             result_.final_frames = frames;
@@ -329,13 +328,13 @@ void rank(std::vector<racer>& finalists) {
                      [](const racer& a, const racer& b) { return a.log_ratio->value < b.log_ratio->value; });
 }
 
+/// `auto`, exact engines, and exact compositions of one stage: of meshes the narrow phase. The order is random, as
+/// there may be no time for all, with a constant seed, so that a race can be repeated.
 std::vector<racer> race_candidates(const scene_frames& scene) {
     const bool meshes = scene.meshes() != nullptr;
     std::vector<racer> candidates;
     const auto add = [&](candidate tested, std::string name) {
-        racer& r = candidates.emplace_back();
-        r.tested = std::move(tested);
-        r.name = std::move(name);
+        candidates.push_back({.tested = std::move(tested), .name = std::move(name)});
     };
     const auto automatic = candidate_of(select_composition({}, traits_of(scene)), meshes).name;
     add(candidate_of(aabb::named_strategies(), scene), "auto (= " + text_of(automatic) + ")");

@@ -15,14 +15,14 @@ inline constexpr std::size_t fewest_repeats = 5;
 /// A candidate in the race, with its runs so far.
 struct racer {
     candidate tested;
-    std::string name;
-    std::vector<observation> times;     ///< of a finalist: the final, by repeat
-    std::optional<observation> last;    ///< the last round that it finished; of a finalist, the median
-    std::optional<attempt> broken_off;  ///< the unfinished run for which it was dropped
-    double seconds = 0;                 ///< total time of the last round that it finished
-    std::size_t frames = 0;             ///< the most frames of the scene that it ran in any round
-    double slowdown = 0;                ///< its time in the last round over that of the fastest
-    std::optional<estimate> log_ratio;  ///< of a finalist: the median over repeats, relative to the winner
+    std::string name = {};
+    std::vector<observation> times = {};     ///< of a finalist: the final, by repeat
+    std::optional<observation> last = {};    ///< the last round that it finished; of a finalist, the median
+    std::optional<attempt> broken_off = {};  ///< the unfinished run for which it was dropped
+    double seconds = 0;                      ///< total time of the last round that it finished
+    std::size_t frames = 0;                  ///< the most frames of the scene that it ran in any round
+    double slowdown = 0;                     ///< its time in the last round over that of the fastest
+    std::optional<estimate> log_ratio = {};  ///< of a finalist: the median over repeats, relative to the winner
 
     [[nodiscard]] bool has_range() const { return times.size() >= fewest_repeats; }
     [[nodiscard]] double ratio() const { return std::exp(log_ratio->value); }
@@ -34,8 +34,7 @@ struct racer {
 };
 
 struct race_result {
-    std::size_t objects = 0;
-    std::size_t frames = 0;
+    std::size_t objects = 0, frames = 0;
     std::size_t final_frames = 0;   ///< of the final: fewer than `frames` if time was short
     std::vector<racer> finalists;   ///< from the fastest
     std::vector<racer> dropped;     ///< in reverse order of being dropped

@@ -17,10 +17,11 @@ namespace aabblab {
 
 namespace {
 
+/// The ranking of the finalists.
 table table_of(const race_result& race) {
     table t{{{row_number}, {"finalist", false}, {"all ms"}, {"ratio"}, {"95 %"}, {"ms/frame"}}, {}};
-    t.columns.push_back({"first ms", true, 1});
-    t.columns.push_back({"build ms", true, 2});
+    t.columns.push_back({.name = "first ms", .spare = 1});
+    t.columns.push_back({.name = "build ms", .spare = 2});
     t.columns.push_back({"KiB"});
     for (const racer& r : race.finalists) {
         const observation& time = *r.last;
@@ -62,20 +63,22 @@ std::vector<std::string> legend() {
             ms_per_frame_text, build_ms_text};
 }
 
-std::string page_of(const std::string& scene, const race_result& race, const std::string& measured) {
+/// The report as HTML: the advice, then what it rests on: ranking, measures of the scene, dropped candidates, machine.
+std::string page_of(const std::string& scene, const race_result& race, const std::string& measures_html) {
     page report(scene);
     report.title(scene);
     report.paragraph(fmt::format("{}", fmt::join(advice_of(race), " ")));
     report.add(table_of(race));
     report.paragraph(fmt::format("{}", fmt::join(legend(), " ")));
-    report.add_html(measured);
+    report.add_html(measures_html);
     report.add(dropped_table_of(race));
     report.paragraph(
         "Dropped: a candidate was stopped after this many frames, since it took this many times as long as the "
         "fastest, both in total and per frame after the first; or its run did not finish. Strategies have their "
         "default parameters.");
-    const calibrated_costs here = label_costs(aabb::machine_costs());
-    report.paragraph("aabblab " + here.version + ", " + here.date + ", " + here.processor + ", " + here.instructions);
+    const calibrated_costs label = label_costs(aabb::machine_costs());
+    report.paragraph(
+        fmt::format("aabblab {}, {}, {}, {}", label.version, label.date, label.processor, label.instructions));
     return report.html();
 }
 

@@ -166,8 +166,8 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
         stiff_result result;
         {
             progress done("running " + std::string(study.name), 1000);
-            result = study.run(
-                {quick, default_candidate(), [&](double share) { done.at(static_cast<std::size_t>(1000 * share)); }});
+            result = study.run({quick, default_candidate(),
+                                [&](double share) { done.update(static_cast<std::size_t>(1000 * share)); }});
         }
         add_study(report, study, result);
         if (shown) {

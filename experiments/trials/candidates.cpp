@@ -15,7 +15,7 @@ namespace aabblab {
 
 namespace {
 
-/// Sets one stage of a candidate to that of the composition.
+/// Gives a candidate one stage of the composition: the names of its strategies, its exactness and its factory.
 void set_stage(candidate& result, const aabb::composition& c, aabb::stage stage) {
     for (const aabb::strategy_kind kind : kinds_of(stage)) result.name[kind] = to_text(c[kind]);
     result.exact = result.exact && is_exact(c, stage);
@@ -37,6 +37,7 @@ candidate candidate_of(const aabb::composition& c, bool meshes) {
     return result;
 }
 
+/// A candidate `auto`: every run keeps the named strategies and selects the others anew for the scene.
 candidate candidate_of(const aabb::named_strategies& named, const scene_frames& scene) {
     aabb::composition initial = aabb::complete_composition(named);
     const auto selected = [named, traits = traits_of(scene)](aabb::composition& c) -> const aabb::composition& {
@@ -67,6 +68,7 @@ aabb::scene_traits traits_of(const scene_frames& scene) {
     return aabb::traits_of(scene.meshes()->meshes, scene.objects(), scene.frames());
 }
 
+/// A reference engine, with the default composition for a stage that it lacks; empty if it cannot run the scene.
 std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes) {
     if (!engine.searches_boxes && !(meshes && engine.collides_meshes)) return std::nullopt;
     candidate result;
@@ -95,7 +97,7 @@ public:
 
     /// "brownian (objects=1000 seed=1)"
     [[nodiscard]] std::string scene_text() const { return scene_.kind + " (" + parameters_text(scene_) + ")"; }
-    /// The recording of the whole scene.
+    /// The file with all frames of the scene, which the first call writes into a temporary folder for all engines.
     [[nodiscard]] const std::filesystem::path& recording() {
         if (!recording_.empty()) return recording_;
         std::error_code error;
@@ -108,7 +110,7 @@ public:
         objects_ = scene->objects();
         frames_ = scene->frames();
         const std::filesystem::path file = std::filesystem::path(name) / "scene.aabbs";
-        write_recording(*scene, scene_.kind, parameters_text(scene_), file, {});
+        write_recording(*scene, scene_.kind, parameters_text(scene_), file, /*progress=*/{});
         return recording_ = file;
     }
     [[nodiscard]] std::size_t objects() const { return objects_; }
@@ -124,8 +126,8 @@ private:
 /// Reads the CSV output of an external engine row by row.
 class engine_output {
 public:
-    /// @param noun the noun for the rows in messages: "the pairs of the external engine 'NAME'"
-    /// @param columns the expected first line
+    /// Opens the file and requires `columns` as its first line, so that a wrong file is not read as results.
+    /// @param noun the rows in messages: "the pairs of the external engine 'NAME'"
     /// @throws aabb::input_error if the file is missing or its header differs. All member functions that read throw it.
     engine_output(std::string noun, const std::filesystem::path& file, std::string columns)
         : noun_(std::move(noun)), columns_(std::move(columns)) {
@@ -134,19 +136,19 @@ public:
         if (std::filesystem::is_directory(file)) throw aabb::input_error(noun_ + " are a folder; expected a file");
         in_.emplace(file, noun_);
         if (!next()) throw aabb::input_error(noun_ + " are an empty file; expected the line " + columns_);
-        if (text_ != columns_) fail("expected the line " + columns_);
+        if (line_ != columns_) fail("expected the line " + columns_);
     }
 
-    /// Advances to the next row; false after the last.
+    /// Advances to the next row and splits it at commas (pairs and times have three columns); false after the last.
     bool next() {
         fields_.clear();
         const bool has_row = in_->next();
-        text_ = has_row ? in_->line() : std::string_view();
+        line_ = has_row ? in_->line() : std::string_view();
         if (!has_row) return false;
         for (std::size_t from = 0;;) {
-            const std::size_t to = std::min(text_.find(',', from), text_.size());
-            fields_.push_back(text_.substr(from, to - from));
-            if (to == text_.size()) break;
+            const std::size_t to = std::min(line_.find(',', from), line_.size());
+            fields_.push_back(line_.substr(from, to - from));
+            if (to == line_.size()) break;
             from = to + 1;
         }
         if (fields_.size() != 3) fail("expected " + columns_);
@@ -167,8 +169,8 @@ public:
     /// Throws an error that quotes the row and its line number.
     [[noreturn]] void fail(const std::string& sentence) const {
         constexpr std::size_t longest_quote = 60;  // since a row may have any length
-        std::string row(text_.substr(0, longest_quote));
-        if (text_.size() > longest_quote) row += "…";
+        std::string row(line_.substr(0, longest_quote));
+        if (line_.size() > longest_quote) row += "…";
         throw aabb::input_error(noun_ + ", line " + std::to_string(in_->number()) + ", '" + row + "': " + sentence);
     }
 
@@ -183,17 +185,17 @@ private:
 
     std::string noun_, columns_;
     std::optional<line_stream> in_;
-    std::string_view text_;
-    std::vector<std::string_view> fields_;  // views into text_
+    std::string_view line_;
+    std::vector<std::string_view> fields_;  // views into line_
 };
 
 /// A broad phase that replays the pairs of an external engine. The constructor runs the engine on the whole scene.
 /// Error messages begin with the place in the config and the scene.
 class external_search final : public aabb::global_stage {
 public:
-    /// Runs the engine.
+    /// Runs the engine on all frames at once; `update` then advances through the pairs that it wrote.
     /// @param times receives the reported times, by frame
-    /// @throws engine_timeout, and aabb::input_error if the engine cannot be started or fails, or if its times are
+    /// @throws engine_timeout, and aabb::input_error if the engine cannot be started or fails, or if times are
     /// malformed
     external_search(const external_engine& engine, exchange_folder& exchange, std::vector<reported_times>& times)
         : place_(engine.place + ": " + exchange.scene_text() + ": "), name_("external engine '" + engine.name + "'") {
@@ -201,7 +203,7 @@ public:
             run(engine, exchange);
             read_times(times);
             table_.emplace("the pairs of the " + name_, pairs_file_, "frame,a,b");
-            read_ahead();
+            read_next_row();
         });
     }
 
@@ -220,12 +222,12 @@ public:
     [[nodiscard]] std::vector<aabb::omission> left_out() const override { return {}; }
 
 private:
-    struct intersecting_pair {
+    struct pair_row {
         std::uint32_t frame;
         aabb::index_pair pair;
     };
 
-    /// Prefixes the errors of `work` with the place in the config.
+    /// Prefixes errors of `work` with the place in the config. Timeouts keep their type: other candidates still run.
     template <class Work>
     void with_place(Work work) const {
         try {
@@ -254,19 +256,17 @@ private:
             arguments.push_back(file.string());
         }
         // Without a terminal the engine cannot wait for keyboard input.
-        const program_result ended = run_child(engine.program, arguments,
-                                               {.folder = {},
-                                                .input = "/dev/null",
-                                                .errors = {},
-                                                .kept = true,
-                                                .timeout = std::chrono::seconds(engine.timeout_s)});
+        const std::chrono::seconds timeout(engine.timeout_s);
+        const program_result ended =
+            run_child(engine.program, arguments, {.input = "/dev/null", .has_keeper = true, .timeout = timeout});
         if (ended.timed_out)
             throw engine_timeout(fmt::format("the {} was killed: it was still running after {} s, its timeout_s", name_,
                                              engine.timeout_s));
-        if (ended.rejected == ENOENT && engine.program.find('/') == std::string::npos)
+        if (ended.start_error == ENOENT && engine.program.find('/') == std::string::npos)
             fail(fmt::format(": there is no program {0} in PATH; write ./{0} for one in the folder of the config",
                              engine.program));
-        if (ended.rejected != 0) fail(": " + engine.program + " cannot be started: " + std::strerror(ended.rejected));
+        if (ended.start_error != 0)
+            fail(": " + engine.program + " cannot be started: " + std::strerror(ended.start_error));
         if (!WIFEXITED(ended.status)) fail(" was terminated by signal " + std::to_string(WTERMSIG(ended.status)));
         if (WEXITSTATUS(ended.status) != 0) fail(" ended with status " + std::to_string(WEXITSTATUS(ended.status)));
     }
@@ -288,25 +288,26 @@ private:
     }
 
     /// Reads the next row, which may belong to a later frame.
-    void read_ahead() {
-        ahead_.reset();
+    void read_next_row() {
+        next_row_.reset();
         if (!table_->next()) return;
         const std::uint32_t frame = table_->number(0, "a frame", frames_);
         const std::uint32_t a = table_->number(1, "an object", objects_);
         const std::uint32_t b = table_->number(2, "an object", objects_);
         if (a == b) table_->fail("object " + std::to_string(a) + " is paired with itself");
-        ahead_ = {frame, aabb::ordered_pair(a, b)};
+        next_row_ = {frame, aabb::ordered_pair(a, b)};
     }
 
+    /// Collects the pairs of the next frame. Rows must be sorted by frame, so that one pass suffices, and be distinct.
     void take_frame() {
         pairs_.clear();
-        for (; ahead_ && ahead_->frame <= frame_; read_ahead()) {
-            if (ahead_->frame < frame_)
+        for (; next_row_ && next_row_->frame <= frame_; read_next_row()) {
+            if (next_row_->frame < frame_)
                 table_->fail(
                     fmt::format("this row of frame {} follows one of frame {}; expected rows sorted by frame, "
                                 "from 0 on, in any order within a frame",
-                                ahead_->frame, frame_));
-            pairs_.push_back(ahead_->pair);
+                                next_row_->frame, frame_));
+            pairs_.push_back(next_row_->pair);
         }
         sort_rows(pairs_);
         if (const auto duplicate = std::ranges::adjacent_find(pairs_); duplicate != pairs_.end())
@@ -319,11 +320,12 @@ private:
     std::filesystem::path pairs_file_, times_file_;
     std::size_t objects_ = 0, frames_ = 0;
     std::optional<engine_output> table_;
-    std::uint32_t frame_ = 0;                 // the next frame
-    std::optional<intersecting_pair> ahead_;  // the first row of a later frame
+    std::uint32_t frame_ = 0;           // the next frame
+    std::optional<pair_row> next_row_;  // the first row of a later frame
     std::vector<aabb::index_pair> pairs_;
 };
 
+/// An external engine. Creating its broad phase runs it on the whole scene and fills in the times that it reports.
 candidate candidate_of(const external_engine& engine, const std::shared_ptr<exchange_folder>& exchange) {
     candidate result;
     result.name.engine = engine.name;
@@ -338,6 +340,7 @@ candidate candidate_of(const external_engine& engine, const std::shared_ptr<exch
 
 }  // namespace
 
+/// The candidates in the order of all tables: compositions, each `auto`, engines, and external engines for boxes.
 std::vector<candidate> candidates_for(const experiment& e, const scene_choice& scene) {
     const bool meshes = has_meshes(scene);
     std::vector<candidate> candidates;

@@ -56,6 +56,7 @@ elapsed time_query(stage_runner& runner, const query_settings& query, std::strin
 
 }  // namespace
 
+/// Runs a scene on fresh stages and sums their times: building, frame 0, and all later frames, which reuse its state.
 observation observe(scene_frames& scene, const candidate& tested, const protocol& settings) {
     observation result;
     std::optional<stage_runner> runner;

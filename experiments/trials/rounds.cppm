@@ -28,7 +28,7 @@ struct round_limits {
     std::size_t begin = 0;
     std::size_t fewest = 0;  ///< rounds before this one run regardless of the time
     /// The remaining seconds; if given, a round begins only if they exceed the time of the previous round.
-    std::function<double()> left = nullptr;
+    std::function<double()> seconds_left = nullptr;
     double expected = 0;  ///< seconds of the first round, estimated
 };
 
@@ -38,13 +38,13 @@ struct round_limits {
 /// @returns the first round that was not run
 template <class Candidate, class Run, class After>
 std::size_t run_rounds(std::vector<Candidate>& candidates, const round_limits& limits, Run run, After after_round) {
-    double previous = limits.expected;
+    double seconds_of_round = limits.expected;  // of the previous one
     std::size_t round = limits.begin;
     for (; round < limits.end && !candidates.empty(); ++round) {
-        const double remaining = limits.left ? limits.left() : std::numeric_limits<double>::infinity();
-        if (round >= limits.fewest && remaining <= previous) break;
+        const double remaining = limits.seconds_left ? limits.seconds_left() : std::numeric_limits<double>::infinity();
+        if (round >= limits.fewest && remaining <= seconds_of_round) break;
         run_round(candidates, round, [&](Candidate& c) { run(c, round); });
-        if (limits.left) previous = remaining - limits.left();
+        if (limits.seconds_left) seconds_of_round = remaining - limits.seconds_left();
         after_round(round);
     }
     return round;
@@ -97,9 +97,7 @@ private:
 
 /// Ratios of the times of two candidates within the same rounds.
 struct paired_ratio {
-    double median = 1;
-    double least = 1;
-    double greatest = 1;
+    double median = 1, least = 1, greatest = 1;
 
     /// Whether the rounds do not show that one is faster by more than 3 %. A single round never shows it.
     [[nodiscard]] bool may_be_same() const { return least == greatest || (least < 1.03 && greatest > 1 / 1.03); }

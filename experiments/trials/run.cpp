@@ -16,7 +16,7 @@ struct timed_candidate {
     row result;
 };
 
-/// Reduces a validated row to the metrics that the experiment records.
+/// Reduces a validated row to the metrics that the experiment records; the columns of the others stay empty.
 row recorded_row(const experiment& e, const validated_row& v) {
     row r = v;
     r.experiment = e.name;
@@ -41,7 +41,7 @@ std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
     return matching;
 }
 
-/// The candidates that early stopping does not repeat, since they took too long in the first repeat of the share.
+/// The candidates that took `patience` times as long as the fastest in this process's first repeat: they stop there.
 std::set<candidate_name> stopped_early(const experiment& e, const round_limits& share, std::span<const row> rows) {
     std::set<candidate_name> names;
     if (!e.patience) return names;
@@ -57,14 +57,14 @@ std::set<candidate_name> stopped_early(const experiment& e, const round_limits& 
 
 /// Drops an interrupted repeat, which can only be the last, so that it runs again: ratios are formed within a repeat.
 void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, const round_limits& share,
-                             std::size_t candidates, results_folder& results) {
+                             std::size_t candidate_count, results_folder& results) {
     if (results.rows().empty()) return;
     const row last = results.rows().back();
     if (last.scene != scene || last.repeat < share.begin || last.repeat >= share.end) return;
     const std::vector<row> rows = rows_of(scene, results.rows());
-    if (last.repeat > share.begin) candidates -= stopped_early(e, share, rows).size();
+    if (last.repeat > share.begin) candidate_count -= stopped_early(e, share, rows).size();
     const auto finished = std::ranges::count(rows, last.repeat, &row::repeat);
-    if (static_cast<std::size_t>(finished) < candidates)
+    if (static_cast<std::size_t>(finished) < candidate_count)
         results.drop([&](const row& r) { return r.scene == scene && r.repeat == last.repeat; });
 }
 
@@ -94,16 +94,15 @@ std::string time_repeat(const scene_choice& scene, const query_settings& query, 
     row& r = timed.result;
     const observation times = observe(scene, *timed.tested, {.query = query});
     const bool is_external = timed.tested->reported != nullptr;
-    const auto store = [is_external](double wall, double cpu, std::optional<double>& wall_ms,
-                                     std::optional<double>& cpu_ms) {
-        wall_ms = wall;
-        if (!is_external) cpu_ms = cpu;
+    const auto store = [is_external](elapsed took, std::optional<double>& wall_ms, std::optional<double>& cpu_ms) {
+        wall_ms = took.wall_ms;
+        if (!is_external) cpu_ms = took.cpu_ms;
     };
-    store(times.build.wall_ms, times.build.cpu_ms, r.build_ms, r.build_cpu_ms);
-    store(times.first.wall_ms(), times.first.cpu_ms(), r.first_ms, r.first_cpu_ms);
-    store(times.rest.update.wall_ms, times.rest.update.cpu_ms, r.update_ms, r.update_cpu_ms);
-    store(times.rest.search.wall_ms, times.rest.search.cpu_ms, r.search_ms, r.search_cpu_ms);
-    store(times.rest.detect.wall_ms, times.rest.detect.cpu_ms, r.detect_ms, r.detect_cpu_ms);
+    store(times.build, r.build_ms, r.build_cpu_ms);
+    store({times.first.wall_ms(), times.first.cpu_ms()}, r.first_ms, r.first_cpu_ms);
+    store(times.rest.update, r.update_ms, r.update_cpu_ms);
+    store(times.rest.search, r.search_ms, r.search_cpu_ms);
+    store(times.rest.detect, r.detect_ms, r.detect_cpu_ms);
     std::string wrong = times.wrong;
     if (wrong.empty() && times.digest != r.digest && !may_diverge(scene, *timed.tested))
         wrong = "its digest is " + times.digest + " when timed, but was " + r.digest + " when validated";
@@ -164,6 +163,7 @@ experiment_record record_of(const experiment& e) {
     return {e.name, e.file, e.text, hash_of(e), e.quick, e.scenes, e.notes};
 }
 
+/// Only the first process validates. A resumed experiment runs what has no row yet, after interrupted repeats.
 std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
                                    std::span<const candidate> candidates, results_folder& results,
                                    std::size_t process) {
@@ -178,7 +178,7 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
     std::size_t finished_runs = 0;
     std::set<candidate_name> stopped;  // not repeated any more
     const auto run = [&](timed_candidate& next, std::size_t repeat) {
-        shown.at(finished_runs++);
+        shown.update(finished_runs++);
         next.result.repeat = repeat;
         next.result.process = process;
         if (results.has(next.result)) return;

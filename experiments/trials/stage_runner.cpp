@@ -4,6 +4,7 @@ import aabblab.pair_output;
 
 namespace aabblab {
 
+/// Makes the scene; messages about poses name the file that they come from, if any.
 scene_frames::scene_frames(const scene_choice& choice) {
     const scene_info& info = scene_named(choice.kind);
     if (!info.has_meshes) {
@@ -11,7 +12,7 @@ scene_frames::scene_frames(const scene_choice& choice) {
         return;
     }
     meshes_ = make_mesh_scene(choice);
-    if (info.reads_file) file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
+    if (info.reads_file) poses_file_ = std::ranges::find(choice.settings, "file", &aabb::setting::name)->value;
 }
 
 bool scene_frames::next() {
@@ -44,6 +45,7 @@ void scene_frames::note_changes(std::span<const std::uint8_t> present) {
 stage_runner::stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted)
     : stage_runner(stages{tested.make_global(counted), scene.meshes() ? tested.make_local(counted) : nullptr}, scene) {}
 
+/// Boxes go to the broad phase directly. Meshes need a pipeline, which derives their boxes from poses.
 stage_runner::stage_runner(stages run_stages, const scene_frames& scene)
     : scene_(scene), stages_(std::move(run_stages)) {
     if (stages_.global) stages_.global->expect(scene.frames());
@@ -101,8 +103,7 @@ std::vector<aabb::part_bytes> stage_runner::global_bytes() const {
 std::vector<aabb::part_bytes> stage_runner::local_bytes() const {
     if (!stages_.local) return {};
     std::vector<aabb::part_bytes> parts = stages_.local->bytes();
-    std::size_t triangles = 0;
-    std::size_t vertices = 0;
+    std::size_t triangles = 0, vertices = 0;
     for (const aabb::mesh& m : scene_.meshes()->meshes) {
         triangles += aabb::bytes_of(m.triangles);
         vertices += aabb::bytes_of(m.vertices);
@@ -120,12 +121,13 @@ std::size_t stage_runner::held_bytes() const {
     return sum;
 }
 
+/// How much larger the boxes of the trees are than tight ones, in area: the mean over all trees; empty without trees.
 std::optional<double> stage_runner::box_inflation() const {
     if (!stages_.local) return std::nullopt;
     double sum = 0;
     const std::uint32_t models = pipeline_->models();
-    for (std::uint32_t m = 0; m < models; ++m) {
-        const std::optional<aabb::tree_validation> tree = stages_.local->validate_tree(m);
+    for (std::uint32_t model = 0; model < models; ++model) {
+        const std::optional<aabb::tree_validation> tree = stages_.local->validate_tree(model);
         if (!tree) return std::nullopt;
         sum += tree->area_inflation;
     }
@@ -136,11 +138,12 @@ elapsed time_detection(stage_runner& runner) {
     return elapsed_in([&] { runner.detect(); });
 }
 
+/// Times the phases of each frame and passes its results to the scene, whose bodies may react to their contacts.
 void run_frames(scene_frames& scene, stage_runner& runner, const std::function<void(const searched_frame&)>& on_frame,
                 std::size_t most_frames, const timed_detection& detect) {
     for (std::uint32_t frame = 0; frame < most_frames && scene.next(); ++frame) {
         phases took{elapsed_in([&] { runner.update(); }), elapsed_in([&] { runner.search(); }), {}};
-        // Sorting within a search, as of column groups, counts as update, as it does for other strategies.
+        // Some broad phases sort during the search; this counts as update, where other strategies sort.
         const double share = runner.share_of_update();
         const elapsed sorting{share * took.search.wall_ms, share * took.search.cpu_ms};
         took.update += sorting;
@@ -152,6 +155,7 @@ void run_frames(scene_frames& scene, stage_runner& runner, const std::function<v
     }
 }
 
+/// The digest lets runs be compared without storing their pairs.
 void tally::add(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts) {
     candidates_ += pairs.size();
     if (meshes_) {

@@ -23,11 +23,11 @@ enum : int { is_done = 0, has_failed = 1, is_rejected = 2, has_no_memory = 3 };
 /// Precedes the message of an input_error.
 constexpr char rejection_mark = 0;
 
+/// Sends text to the parent; ends the process if that does not read any more.
 void write_all(int pipe, std::string_view text) {
     while (!text.empty()) {
         const ssize_t n = write(pipe, text.data(), text.size());
         if (n < 0 && errno == EINTR) continue;
-        // The parent does not read any more.
         if (n <= 0) _exit(has_failed);
         text.remove_prefix(static_cast<std::size_t>(n));
     }
@@ -68,8 +68,8 @@ int milliseconds_until(clock::time_point end) {
     return static_cast<int>(std::clamp(std::ceil(remaining), 1.0, double{std::numeric_limits<int>::max()}));
 }
 
-/// Appends to the text until the other end closes.
-/// @returns whether that was before `end`
+/// Appends what the child writes until it closes its end of the pipe.
+/// @returns whether that was before `end`, the time limit
 bool read_until(int pipe, clock::time_point end, std::string& text) {
     std::array<char, 4096> part{};
     while (clock::now() < end) {
@@ -85,7 +85,8 @@ bool read_until(int pipe, clock::time_point end, std::string& text) {
     return false;
 }
 
-/// @param status of waitpid
+/// How the child ended, from the status of waitpid. A SIGKILL from outside is most likely that of the kernel, which
+/// kills the child first if memory runs out.
 ending ending_of(int status) {
     if (WIFSIGNALED(status)) return WTERMSIG(status) == SIGKILL ? ending::out_of_memory : ending::failed;
     switch (WEXITSTATUS(status)) {
@@ -99,10 +100,9 @@ ending ending_of(int status) {
 // The protocol between child and parent. The first letter is the type of the line; omissions are sent without reasons.
 //   f seconds build frames digest  update search detect (frame 0)  update search detect (later frames)
 //   l bytes omission...
-constexpr char frame_line = 'f';
-constexpr char last_line = 'l';
+constexpr char frame_line = 'f', last_line = 'l';
 
-/// @param seconds since the run began
+/// The line that reports the times of all frames so far, so that the last one describes a run that was killed.
 std::string line_of(const observation& partial, double seconds) {
     std::ostringstream text;
     text.precision(17);
@@ -114,7 +114,7 @@ std::string line_of(const observation& partial, double seconds) {
     return text.str();
 }
 
-/// Parses the output of the child; an incomplete last line is ignored.
+/// Parses the lines of `send_run`. A killed child may have written only a part of its last line, which is ignored.
 attempt attempt_from(const child_result& work) {
     attempt result{.end = work.end, .seen = {}, .reason = work.reason, .seconds = work.seconds};
     observation& seen = result.seen;
@@ -134,7 +134,8 @@ attempt attempt_from(const child_result& work) {
     return result;
 }
 
-/// Runs a candidate in the child process and sends a line per frame, so that a killed run still has results.
+/// Runs a candidate in the child process and sends a line per frame, so that a killed run still has results. A last
+/// line has what is known only at the end: bytes and omissions.
 void send_run(scene_frames& scene, const candidate& tested, std::size_t frames, const output_sender& send) {
     const auto begin = clock::now();
     const auto on_frame = [&](const observation& partial) {
@@ -148,6 +149,7 @@ void send_run(scene_frames& scene, const candidate& tested, std::size_t frames, 
 
 }  // namespace
 
+/// Does the work in a forked child, which may run out of time or memory without harm to this process.
 child_result run_in_child(const std::function<void(const output_sender&)>& work, double seconds) {
     child_result result;
     if (!(seconds > 0)) return result;
@@ -181,6 +183,7 @@ child_result run_in_child(const std::function<void(const output_sender&)>& work,
     return result;
 }
 
+/// A child inherits the meshes, so they are read only once.
 child_result staged_scene::in_child(const std::function<void(scene_frames&, const output_sender&)>& work,
                                     double seconds) {
     return run_in_child(

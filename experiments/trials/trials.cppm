@@ -20,8 +20,7 @@ export namespace aabblab {
 
 /// The times that an external engine reports for one frame.
 struct reported_times {
-    double update_ms = 0;
-    double search_ms = 0;
+    double update_ms = 0, search_ms = 0;
 };
 
 /// An external engine exceeded its timeout and was killed; a type of its own, so that the other candidates still run.
@@ -51,7 +50,7 @@ public:
     explicit scene_frames(std::unique_ptr<aabb::box_scene> scene) : box_scene_(std::move(scene)) {}
     /// @param file the source of its poses, for messages; empty if they are generated
     explicit scene_frames(std::unique_ptr<aabb::mesh_scene> scene, std::string file = {})
-        : meshes_(std::move(scene)), file_(std::move(file)) {}
+        : meshes_(std::move(scene)), poses_file_(std::move(file)) {}
 
     [[nodiscard]] std::size_t objects() const { return meshes_ ? meshes_->mesh_of.size() : box_scene_->objects(); }
     [[nodiscard]] std::size_t frames() const { return meshes_ ? meshes_->frames() : box_scene_->frames(); }
@@ -66,8 +65,8 @@ public:
         try {
             work();
         } catch (const aabb::input_error& error) {
-            if (file_.empty()) throw;
-            throw aabb::input_error(file_ + ": frame " + std::to_string(frames_run_ - 1) + ": " + error.what());
+            if (poses_file_.empty()) throw;
+            throw aabb::input_error(poses_file_ + ": frame " + std::to_string(frames_run_ - 1) + ": " + error.what());
         }
     }
     /// Null for a scene of boxes.
@@ -83,13 +82,12 @@ private:
 
     std::unique_ptr<aabb::box_scene> box_scene_;
     std::unique_ptr<aabb::mesh_scene> meshes_;
-    std::string file_;            // the source of the poses
-    std::size_t frames_run_ = 0;  // frames so far
+    std::string poses_file_;      // empty if poses are generated
+    std::size_t frames_run_ = 0;  // including the current one
     std::vector<aabb::box> boxes_;
     std::vector<aabb::pose> poses_;
     std::vector<std::uint8_t> present_;  // by object
-    std::vector<std::uint32_t> arrivals_;
-    std::vector<std::uint32_t> departures_;
+    std::vector<std::uint32_t> arrivals_, departures_;
 };
 
 /// The stages of one run.
@@ -154,8 +152,7 @@ private:
 
 /// Times of the phases of one frame, or their sums over several frames.
 struct phases {
-    elapsed update;
-    elapsed search;
+    elapsed update, search;
     elapsed detect;  ///< the configured query
 
     phases& operator+=(const phases& other) {
@@ -205,8 +202,7 @@ public:
 private:
     bool meshes_;
     std::uint32_t frame_ = 0;
-    std::uint64_t candidates_ = 0;
-    std::uint64_t contacts_ = 0;
+    std::uint64_t candidates_ = 0, contacts_ = 0;
     aabb::digest digest_;
 };
 
@@ -364,8 +360,7 @@ struct validated_row : row {
 };
 
 struct scene_validation {
-    std::uint64_t objects = 0;
-    std::uint64_t frames = 0;
+    std::uint64_t objects = 0, frames = 0;
     std::string exact_by;  ///< the source of the ground truth
     std::string digest;    ///< of the ground truth
     std::vector<validated_row> candidates;

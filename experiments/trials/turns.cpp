@@ -26,15 +26,17 @@ attempt run_baseline(staged_scene& scene, const candidate& baseline, std::size_t
 
 }  // namespace
 
+/// The first run of the baseline, alone, sets the frames of all runs (those that it finishes in time) and the limit of
+/// each further run. Candidates are dropped when such a run exceeds its limit or shows that they are hopeless.
 interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate> candidates, std::size_t frames,
                                  std::size_t rounds, const time_limits& limits) {
     progress shown("runs", rounds * candidates.size());
     interleaved_runs result{frames, 0, std::vector<std::vector<observation>>(candidates.size()),
                             std::vector<std::optional<attempt>>(candidates.size()),
                             std::vector<bool>(candidates.size())};
-    const double before = limits.to_run();
+    const double seconds_before = limits.to_run();
     attempt baseline = run_baseline(scene, candidates[0], frames, limits);
-    const double baseline_seconds = before - limits.to_run();
+    const double baseline_seconds = seconds_before - limits.to_run();
     if (baseline.end != ending::done) {
         result.broken_off[0] = std::move(baseline);
         return result;
@@ -45,8 +47,8 @@ interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate>
     std::iota(running.begin(), running.end(), std::size_t{0});
     std::size_t finished_runs = 0;
     const auto run = [&](std::size_t index, std::size_t round) {
-        shown.at(finished_runs++);
-        if (index == 0 && round == 0) return;
+        shown.update(finished_runs++);
+        if (index == 0 && round == 0) return;  // the baseline's first run is done already
         const double remaining = limits.to_run();
         const stopping_rule rule{.grace = hopeless_ms / 1000, .share = greatest_share * remaining, .margin = 2};
         const double limit = rule.longest(baseline_seconds);
@@ -66,7 +68,8 @@ interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate>
                       [&](std::size_t index) { return result.hopeless[index] || result.times[index].size() <= round; });
         finished_runs = (round + 1) * candidates.size();
     };
-    result.rounds = run_rounds(running, {.end = rounds, .left = [&] { return limits.to_run(); }}, run, stop_early);
+    result.rounds =
+        run_rounds(running, {.end = rounds, .seconds_left = [&] { return limits.to_run(); }}, run, stop_early);
     return result;
 }
 

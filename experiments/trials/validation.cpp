@@ -110,8 +110,8 @@ private:
                    parameters_text(choice_) + "), frame " + std::to_string(frame) + ": " + difference;
     }
 
-    /// Classifies the differences of each pair of objects, by the geometry of the triangles. A false positive that is
-    /// reported more than once counts once.
+    /// Counts the differing pairs of triangles by geometric class (`aabb::difference_class`: coplanar, touching, …). As
+    /// contacts are sorted, a false positive that is reported repeatedly follows itself; it counts once.
     void classify(const aabb::set_difference<aabb::contact>& contacts) {
         struct triangle_pairs {
             std::vector<aabb::index_pair> false_negatives, false_positives;
@@ -131,7 +131,7 @@ private:
                 scene_.poses()[objects.a], meshes.meshes[meshes.mesh_of[objects.b]], scene_.poses()[objects.b]);
     }
 
-    /// @param what "missing" or "invented", as in differences.csv
+    /// Appends rows of differences.csv, one for each class that is not 0. `what` is "missing" or "invented".
     void add_differences(std::vector<difference>& differences, std::string_view what, std::uint64_t boxes,
                          std::span<const std::size_t> classes) const {
         const auto add = [&](std::string_view kind, std::uint64_t count) {
@@ -149,10 +149,8 @@ private:
     tally tally_;
     std::string failure_;
     aabb::work_counters first_frame_;
-    std::uint64_t box_false_negatives_ = 0;
-    std::uint64_t box_false_positives_ = 0;
-    std::uint64_t contact_false_negatives_ = 0;
-    std::uint64_t contact_false_positives_ = 0;
+    std::uint64_t box_false_negatives_ = 0, box_false_positives_ = 0;
+    std::uint64_t contact_false_negatives_ = 0, contact_false_positives_ = 0;
     aabb::differences classes_;
 };
 
@@ -163,6 +161,8 @@ scene_validation validate_scene(const scene_choice& choice, std::span<const cand
     return validate_scene(choice, scene, candidates);
 }
 
+/// All candidates advance with the ground truth, since a scene may react to its results. One whose external engine
+/// exceeds its timeout fails alone.
 scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
                                 std::span<const candidate> candidates) {
     aabb::ground_truth truth(scene.objects(), scene.meshes());
@@ -186,14 +186,14 @@ scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
     for (std::size_t frame = 0; scene.next(); ++frame) {
         if (posed) scene.in_frame([&] { posed->update(scene.poses()); });
         if (posed)
-            truth.compute({posed->boxes(), scene.poses(), {}, {}});
+            truth.compute({posed->boxes(), scene.poses(), /*arrivals=*/{}, /*departures=*/{}});
         else
-            truth.compute({scene.boxes(), {}, scene.arrivals(), scene.departures()});
+            truth.compute({scene.boxes(), /*poses=*/{}, scene.arrivals(), scene.departures()});
         truth_tally.add(truth.pairs(), truth.contacts());
-        shown.at(++finished_runs);
+        shown.update(++finished_runs);
         for (validated_runner& r : runners) {
             r.compare_frame(frame, truth);
-            shown.at(++finished_runs);
+            shown.update(++finished_runs);
         }
         scene.take_results(truth.pairs(), truth.contacts());
     }

@@ -479,7 +479,7 @@ TEST_CASE("Rounds are run in turn while there is time for one more, and the fewe
         left -= 2;
     };
     const auto after = [&](std::size_t) { std::erase(all, 'c'); };
-    CHECK(aabblab::run_rounds(all, {.end = 9, .fewest = 2, .left = [&] { return left; }}, run, after) == 2);
+    CHECK(aabblab::run_rounds(all, {.end = 9, .fewest = 2, .seconds_left = [&] { return left; }}, run, after) == 2);
     CHECK(order == "a0b0c0b1a1");
 }
 

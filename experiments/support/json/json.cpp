@@ -19,6 +19,7 @@ namespace {
 /// The nesting limit of lists and objects, since visitors recurse. Valid inputs stay far below it.
 constexpr int most_nested = 64;
 
+/// Whether brackets outside strings are nested beyond `most_nested`; works on malformed JSON, too.
 bool is_nested_too_deeply(std::string_view text) {
     int depth = 0;
     bool in_string = false;

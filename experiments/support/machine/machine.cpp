@@ -28,6 +28,7 @@ std::optional<std::uint64_t> bytes_of(const std::string& size) {
     return *unit == 'K' ? number << 10U : *unit == 'M' ? number << 20U : *unit == 'G' ? number << 30U : number;
 }
 
+/// The bytes of each cache of a processor: "L1d", "L1i", "L2". Its folder has a folder index0, index1, … for each.
 std::map<std::string, std::uint64_t> caches_in(const std::filesystem::path& folder) {
     std::map<std::string, std::uint64_t> caches;
     for (int i = 0;; ++i) {
@@ -41,6 +42,7 @@ std::map<std::string, std::uint64_t> caches_in(const std::filesystem::path& fold
     }
 }
 
+/// Reads the number and model of the processors, and whether a hypervisor shares them, which disturbs times.
 void read_cpuinfo(const std::filesystem::path& file, machine& m) {
     std::ifstream in(file);
     for (std::string line; std::getline(in, line);) {
@@ -70,6 +72,7 @@ std::string libc() {
 
 }  // namespace
 
+/// Describes the machine whose proc/ and sys/ are in `root`.
 machine this_machine(const std::filesystem::path& root) {
     machine m;
     const std::filesystem::path core = root / "sys/devices/system/cpu/cpu0";

@@ -4,6 +4,7 @@ import aabblab.fmt;
 
 namespace aabblab {
 
+/// Replaces the characters that HTML and SVG reserve.
 std::string markup_text(std::string_view text) {
     std::string safe;
     for (const char c : text) switch (c) {

@@ -37,7 +37,7 @@ public:
     void disc(place middle, double radius) {
         add("circle", {{"cx", along(middle.x)}, {"cy", middle.y}, {"r", radius}});
     }
-    /// Always in pixels.
+    /// Adds polylines, always in pixels. A single point becomes a line of length 0, of which only the caps are drawn.
     void path(std::string_view kind, const polylines& lines, bool closed = false, const attributes& look = {}) {
         std::string d;
         for (const std::vector<place>& line : lines) {
@@ -90,8 +90,7 @@ private:
     }
     [[nodiscard]] std::string along(double value) const { return short_number(value) + unit_; }
 
-    std::string unit_;
-    std::string elements_;
+    std::string unit_, elements_;
 };
 
 }  // namespace aabblab

@@ -15,8 +15,7 @@ namespace aabblab {
 
 namespace {
 
-bool outlives_reader = false;
-bool reader_has_gone = false;
+bool outlives_reader = false, reader_has_gone = false;
 
 void handle_write_error(int error) {
     if (error != EPIPE)
@@ -66,12 +65,12 @@ std::string escaped(std::string_view text, bool keep_lines) {
 }  // namespace
 
 std::string visible(std::string_view text) {
-    return escaped(text, false);
+    return escaped(text, /*keep_lines=*/false);
 }
 
 void print(std::string_view text) {
     if (reader_has_gone) return;
-    const std::string shown = escaped(text, true);
+    const std::string shown = escaped(text, /*keep_lines=*/true);
     if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size()) handle_write_error(errno);
 }
 
@@ -114,6 +113,7 @@ void print_paragraph(std::string_view text) {
     print(wrapped(text) + "\n");
 }
 
+/// Breaks text after a prefix; further lines are indented by its width. `most` is the width of a whole line.
 std::string hanging(std::string_view before, std::string_view text, std::size_t most) {
     const std::size_t indent = characters(before);
     const std::string lines = wrapped(text, most > indent ? most - indent : 0);
@@ -125,6 +125,7 @@ std::string hanging(std::string_view before, std::string_view text, std::size_t 
     return result;
 }
 
+/// A line of a list or of help: the name, then the text in a second column, or below a name that is too long.
 std::string entry(std::string_view name, std::string_view text) {
     const std::size_t column = std::min<std::size_t>(30, output_width() / 2);
     const std::string pad(column, ' ');

@@ -53,7 +53,7 @@ void request_signal_at_end_of(pid_t parent, int signal) {
     if (getppid() != parent) _exit(127);  // the parent has already ended
 }
 
-/// Starts the program; returns only if that fails.
+/// Starts the program, with signals handled by default, which this process may change; returns only if that fails.
 void exec_program(char* const* arguments, const process_options& options, int output) {
     if (dup2(output, STDOUT_FILENO) < 0 || !redirect(options.input.c_str(), O_RDONLY, STDIN_FILENO) ||
         !redirect(options.errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO) ||
@@ -90,10 +90,8 @@ void kill_descendants() {
 /// Forks a process that will become the program. The keeper, this process, waits until that one ends, or until SIGTERM,
 /// which the end of the parent also causes. It then kills all descendants, in any session, and ends like the program.
 /// @returns true in the new process; false if fork fails
-[[nodiscard]] bool fork_under_keeper(int output, int rejection, pid_t parent) {
-    sigset_t awaited;
-    sigset_t before;
-    sigset_t none;
+[[nodiscard]] bool fork_under_keeper(int output, int start_errors, pid_t parent) {
+    sigset_t awaited, before, none;
     sigemptyset(&none);
     sigfillset(&awaited);
     sigprocmask(SIG_SETMASK, &awaited, &before);
@@ -110,7 +108,7 @@ void kill_descendants() {
         return true;
     }
     close(output);
-    close(rejection);
+    close(start_errors);
     int status = 0;
     for (pid_t ended = 0; ended != program;) {
         if (sigwaitinfo(&awaited, nullptr) == SIGTERM) {
@@ -180,6 +178,7 @@ bool ends_before(pid_t child, clock::time_point end) {
 
 }  // namespace
 
+/// Forks a child and collects what it prints. Through a second pipe it reports why the program could not be started.
 program_result run_child(const std::string& program, const std::vector<std::string>& arguments,
                          const process_options& options) {
     std::vector<std::string> texts{program};
@@ -187,42 +186,42 @@ program_result run_child(const std::string& program, const std::vector<std::stri
     std::vector<char*> pointers;
     for (std::string& text : texts) pointers.push_back(text.data());
     pointers.push_back(nullptr);
-    pipe_ends output;
-    pipe_ends rejection;
-    if (!output.open() || !rejection.open()) return {errno, 0, false, {}};
+    pipe_ends output, start_errors;
+    if (!output.open() || !start_errors.open()) return {.start_error = errno};
     const pid_t parent = getpid();
     const pid_t child = fork();
-    if (child < 0) return {errno, 0, false, {}};
+    if (child < 0) return {.start_error = errno};
     if (child == 0) {
-        if (!options.kept) request_signal_at_end_of(parent, SIGKILL);
-        if (!options.kept || fork_under_keeper(output.ends[1], rejection.ends[1], parent))
+        if (!options.has_keeper) request_signal_at_end_of(parent, SIGKILL);
+        if (!options.has_keeper || fork_under_keeper(output.ends[1], start_errors.ends[1], parent))
             exec_program(pointers.data(), options, output.ends[1]);
         const int why = errno;
-        _exit(write(rejection.ends[1], &why, sizeof why) < 0 ? 126 : 127);
+        _exit(write(start_errors.ends[1], &why, sizeof why) < 0 ? 126 : 127);
     }
     output.close_end(1);
-    rejection.close_end(1);
+    start_errors.close_end(1);
     program_result result{};
     // If the program starts, exec closes the other end, and nothing is read.
-    if (const std::string why = read_all(rejection.ends[0]); why.size() == sizeof result.rejected)
-        std::memcpy(&result.rejected, why.data(), why.size());
+    if (const std::string why = read_all(start_errors.ends[0]); why.size() == sizeof result.start_error)
+        std::memcpy(&result.start_error, why.data(), why.size());
     std::optional<clock::time_point> end;
     if (options.timeout.count() > 0) end = clock::now() + options.timeout;
     result.printed = read_all(output.ends[0], end);
     // A program may close its output before it ends.
     result.timed_out = end && !ends_before(child, *end);
     // On SIGTERM the keeper kills the program and all its descendants.
-    if (result.timed_out) kill(child, options.kept ? SIGTERM : SIGKILL);
+    if (result.timed_out) kill(child, options.has_keeper ? SIGTERM : SIGKILL);
     while (waitpid(child, &result.status, 0) < 0 && errno == EINTR) continue;
     return result;
 }
 
+/// Runs a program whose exit status 1 is a result, such as a failed check; any other but 0 is an error.
 ended_process run_to_end(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                          const std::filesystem::path& log) {
     flush_output();
-    const program_result ended = run_child(program.string(), arguments, {.folder = {}, .input = {}, .errors = log});
-    if (ended.rejected != 0)
-        throw aabb::input_error(program.string() + " cannot be started: " + std::strerror(ended.rejected));
+    const program_result ended = run_child(program.string(), arguments, {.errors = log});
+    if (ended.start_error != 0)
+        throw aabb::input_error(program.string() + " cannot be started: " + std::strerror(ended.start_error));
     const int status = ended.status;
     if (!WIFEXITED(status) || WEXITSTATUS(status) > 1)
         throw aabb::input_error(program.filename().string() +
@@ -236,6 +235,7 @@ ended_process run_to_end(const std::filesystem::path& program, const std::vector
     return result;
 }
 
+/// Runs this program in a new process and returns what it prints: one failure per line.
 std::vector<std::string> lines_of_own_process(const std::vector<std::string>& arguments) {
     // By this link, because the file of that name may be another build by now.
     ended_process ended = run_to_end("/proc/self/exe", arguments, {});
@@ -249,6 +249,7 @@ std::filesystem::path own_folder() {
     return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
+/// Forks a guard that removes the folder as soon as the pipe closes: when this process has ended, in whatever way.
 folder_guard::folder_guard(std::filesystem::path folder) : folder_(std::move(folder)) {
     pipe_ends life;
     if (!life.open()) return;

@@ -7,21 +7,21 @@ export namespace aabblab {
 
 /// How a program runs; what is empty is inherited from this process.
 struct process_options {
-    std::filesystem::path folder;
-    std::filesystem::path input;
-    std::filesystem::path errors;     ///< appended to; with /dev/stdout errors are part of the output
-    bool kept = false;                ///< detached from the terminal; all descendants are killed at its end
-    std::chrono::seconds timeout{0};  ///< time until it is killed; 0 for none
+    std::filesystem::path folder = {}, input = {};
+    std::filesystem::path errors = {};  ///< appended to; with /dev/stdout errors are part of the output
+    bool has_keeper = false;            ///< detached from the terminal; all descendants are killed at its end
+    std::chrono::seconds timeout{0};    ///< time until it is killed; 0 for none
 };
 
 struct program_result {
-    int rejected;    ///< errno if it could not be started, otherwise 0
-    int status;      ///< of waitpid
-    bool timed_out;  ///< it was killed; its descendants survive unless it was kept
-    std::string printed;
+    int start_error = 0;     ///< errno if it could not be started, otherwise 0
+    int status = 0;          ///< of waitpid
+    bool timed_out = false;  ///< it was killed; its descendants survive unless it had a keeper
+    std::string printed = {};
 };
 
-/// Runs a program to its end. Neither it nor, if kept, its descendants outlive the calling thread, however that ends.
+/// Runs a program to its end. Neither it nor, with a keeper, its descendants outlive the calling thread, however that
+/// ends.
 /// @param program a path, or a name without slashes to be looked up in PATH
 [[nodiscard]] program_result run_child(const std::string& program, const std::vector<std::string>& arguments,
                                        const process_options& options);

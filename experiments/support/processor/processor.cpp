@@ -25,6 +25,7 @@ std::map<std::size_t, double> busy_ticks() {
 
 }  // namespace
 
+/// Pins this thread to the processor that was idlest during a short sample, where other load disturbs times least.
 idlest_processor::idlest_processor() {
     // A tick is a hundredth of a second.
     constexpr auto sample_time = std::chrono::milliseconds(60);

@@ -30,8 +30,7 @@ private:
         if (is_pinned_) sched_setaffinity(0, sizeof before_, &before_);
     }
 
-    cpu_set_t before_;
-    cpu_set_t idlest_;
+    cpu_set_t before_, idlest_;
     bool is_pinned_ = false;
 };
 

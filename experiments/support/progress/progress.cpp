@@ -20,6 +20,7 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
+/// "searching: 30 of 120, about 12 s left"; assumes that steps take equally long.
 std::string progress_text(std::string_view what, std::size_t done, std::size_t total,
                           std::chrono::duration<double> elapsed) {
     std::string text = std::string(what) + ": " + std::to_string(done);
@@ -33,7 +34,8 @@ std::string progress_text(std::string_view what, std::size_t done, std::size_t t
 progress::progress(std::string what, std::size_t total)
     : what_(std::move(what)), total_(total), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
-void progress::at(std::size_t done) {
+/// Redraws the line at most five times a second, and not in the first two seconds: short work shows nothing.
+void progress::update(std::size_t done) {
     if (!on_terminal_) return;
     const clock::time_point now = clock::now();
     if (now - start_ < 2s || (visible_ && now - drawn_ < 200ms)) return;

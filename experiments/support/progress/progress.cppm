@@ -11,7 +11,7 @@ export namespace aabblab {
                                         std::chrono::duration<double> elapsed);
 
 /// A progress line on stderr, shown on terminals only, and only after two seconds of work. The destructor clears the
-/// line; `hide` clears it for other output until the next `at`.
+/// line; `hide` clears it for other output until the next `update`.
 class progress {
 public:
     /// @param what the work, as in "searching"
@@ -22,7 +22,7 @@ public:
     ~progress() { hide(); }
 
     /// Reports that `done` steps are done. Cheap enough for steps of a millisecond.
-    void at(std::size_t done);
+    void update(std::size_t done);
     void hide();
 
 private:

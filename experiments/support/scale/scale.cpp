@@ -29,19 +29,19 @@ constexpr std::string_view minus_sign = "\u2212";
     const std::vector<double> values = round_values(from, to, step);
     double largest = 0;
     for (const double at : values) largest = std::max(largest, std::abs(at));
-    const bool powers = largest >= 1e7 || step < 1e-5;
-    const int exponent = powers ? exponent_of(largest) : 0;
+    const bool has_power = largest >= 1e7 || step < 1e-5;
+    const int exponent = has_power ? exponent_of(largest) : 0;
     const int decimals = std::max(0, exponent - exponent_of(step));
     std::vector<tick> ticks;
     for (const double at : values)
-        ticks.push_back(powers && at != 0 ? power_tick(at, at * std::pow(10, -exponent), exponent, decimals)
-                                          : tick{at, number_text(at, powers ? 0 : decimals)});
+        ticks.push_back(has_power && at != 0 ? power_tick(at, at * std::pow(10, -exponent), exponent, decimals)
+                                             : tick{at, number_text(at, has_power ? 0 : decimals)});
     return ticks;
 }
 
 /// Ticks at all multiples of powers of ten; only the given multiples of every `decades`-th power have labels.
 [[nodiscard]] std::vector<tick> decade_ticks(double from, double to, std::span<const int> multiples, int decades) {
-    const bool powers = from < 0.9e-4 || to > 1.1e6;
+    const bool has_power = from < 0.9e-4 || to > 1.1e6;
     std::vector<tick> ticks;
     for (int exponent = exponent_of(from); exponent <= exponent_of(to); ++exponent)
         for (int multiple = 1; multiple < 10; ++multiple) {
@@ -50,8 +50,8 @@ constexpr std::string_view minus_sign = "\u2212";
             if (value < from * (1 - 1e-9) || value > to * (1 + 1e-9)) continue;
             const bool is_labelled = std::ranges::find(multiples, multiple) != multiples.end();
             if (is_labelled && exponent % decades == 0)
-                ticks.push_back(powers ? power_tick(value, multiple, exponent, 0)
-                                       : tick{value, number_text(value, std::max(0, -exponent))});
+                ticks.push_back(has_power ? power_tick(value, multiple, exponent, 0)
+                                          : tick{value, number_text(value, std::max(0, -exponent))});
             else if (decades == 1 || multiple == 1)
                 ticks.push_back({value, {}});
         }
@@ -81,6 +81,7 @@ double round_step(double span, double most) {
     return 10 * power;
 }
 
+/// The multiples of a step from `from` to `to`, including ends that are multiples up to rounding.
 std::vector<double> round_values(double from, double to, double step) {
     const double first = std::ceil(from / step - 1e-6);
     std::vector<double> values;
@@ -94,6 +95,7 @@ double scale::place(double value) const {
     return logarithmic ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
 }
 
+/// The range of an axis that shows these values, with its ticks. It is a little wider, as marks at an end would be cut.
 scale scale_of(double least, double greatest, bool logarithmic, scale_end end) {
     scale s{least, greatest, logarithmic};
     if (logarithmic) {

@@ -12,8 +12,7 @@ struct tick {
 };
 
 struct scale {
-    double from;
-    double to;
+    double from, to;
     bool logarithmic;
     std::vector<tick> ticks{};
     bool named = false;  ///< ticks have names, not numbers

@@ -21,23 +21,25 @@ std::string one_line(std::string_view text) {
     return line;
 }
 
+/// Inserts blanks into words longer than `length`, such as the names of compositions, so that lines can break there:
+/// after the last comma or colon of the word, else anywhere.
 std::string with_breaks(std::string_view text, std::size_t length) {
-    std::string broken;
-    std::size_t word = 0;      // where it begins in `broken`
-    std::size_t break_at = 0;  // where it can be broken
+    std::string result;
+    std::size_t word_begin = 0, break_at = 0;  // in `result`: of the word, and its last possible break if greater
     for (const char c : text) {
-        if (begins_character(c) && c != ' ' && characters(std::string_view(broken).substr(word)) == length) {
-            if (break_at <= word) break_at = broken.size();
-            broken.insert(break_at, " ");
-            word = break_at + 1;
+        if (begins_character(c) && c != ' ' && characters(std::string_view(result).substr(word_begin)) == length) {
+            if (break_at <= word_begin) break_at = result.size();
+            result.insert(break_at, " ");
+            word_begin = break_at + 1;
         }
-        broken += c;
-        if (c == ' ') word = broken.size();
-        if (c == ',' || c == ':') break_at = broken.size();
+        result += c;
+        if (c == ' ') word_begin = result.size();
+        if (c == ',' || c == ':') break_at = result.size();
     }
-    return broken;
+    return result;
 }
 
+/// Fills lines with words; a word longer than a line gets its own.
 std::vector<std::string> lines_of(std::string_view text, std::size_t length) {
     std::vector<std::string> lines;
     const std::string words = one_line(text);
