@@ -333,8 +333,7 @@ std::vector<group_observations> observe_trials(std::vector<trial> trials, double
         for (std::size_t p = 0; p < timed.size(); ++p) t.observations[p].second.ns.push_back(timed[p].ns);
         shown.update(static_cast<std::size_t>(seconds - std::max(0.0, remaining())));
     };
-    run_rounds(trials, {.end = most_repeats, .fewest = fewest_repeats, .seconds_left = remaining}, time,
-               [](std::size_t) {});
+    run_rounds(trials, {.end = most_repeats, .fewest = fewest_repeats, .seconds_left = remaining}, time, [](auto) {});
     std::vector<group_observations> by_group(cost_groups.size());
     for (trial& t : trials)
         for (auto& [group, timed] : t.observations) {

@@ -22,15 +22,14 @@ void add_strategies(const document& doc, const std::string& key, const node& val
         return add(doc.at_line(value.line, [&] { return aabb::parse_strategy(value.text); }));
     if (value.kind != node_kind::table) doc.fail_type(key, value, "a name, a table with a name, or a list of them");
     const node& name = doc.required(value, "name", key + " has no name; expected { name = \"" + example + "\", … }");
-    std::vector<alternatives> parameters;
+    std::vector<alternatives> keys;
     for (const node& entry : value.items)
-        if (entry.key != "name") parameters.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
+        if (entry.key != "name") keys.emplace_back(entry.key, doc.alternatives_of(entry.key, entry));
     const std::vector<located_text> names = doc.alternatives_of("name", name);
     for (const located_text& strategy : names) doc.at_line(strategy.line, [&] { require({strategy.text, {}}); });
-    doc.require_small_product(value.line, "choices of " + key, sizes_of(parameters, names.size()),
-                              choices.items().size());
+    doc.require_small_product(value.line, "choices of " + key, sizes_of(keys, names.size()), choices.items().size());
     for (const located_text& strategy : names)
-        for (const std::vector<aabb::setting>& settings : cartesian_product(parameters)) add({strategy.text, settings});
+        for (const std::vector<aabb::setting>& settings : cartesian_product(keys)) add({strategy.text, settings});
 }
 
 /// Reads a name, a table of a name and parameters, or a list of both.
@@ -154,17 +153,18 @@ void add_compositions(const document& doc, const node& compose, unique_list<aabb
         add_composition(doc, compose.line, aabb::composition(named), list);
 }
 
-/// Selects a composition without a scene, which rejects named strategies that are invalid together in every scene.
+/// Adds one `auto` for each combination of named strategies. A selection without a scene is rejected if they are
+/// invalid together in every scene.
 void add_automatic(const document& doc, const node& compose, std::vector<aabb::named_strategies>& automatic) {
     for (const aabb::named_strategies& named : combinations_of(doc, compose, automatic.size())) {
         unique_list<aabb::composition> ignored;
-        add_composition(doc, compose.line, select_composition(named, {}), ignored);
+        add_composition(doc, compose.line, select_composition(named, /*scene=*/{}), ignored);
         if (std::ranges::find(automatic, named) != automatic.end()) doc.fail(compose.line, "this auto is listed twice");
         automatic.push_back(named);
     }
 }
 
-/// Describes the choices by their names and the settings that they share.
+/// Describes the points of a curve by the names of the choices, and by the settings that do not vary along it.
 std::string common_text(std::span<const aabb::strategy_choice> choices) {
     std::string text;
     std::set<std::string> names;
@@ -248,6 +248,7 @@ error_curve read_curve(const document& doc, const node& written) {
     return curve;
 }
 
+/// Makes the triangle test of a strategy or of an engine's library.
 std::unique_ptr<aabb::triangle_test> triangle_test_named(const aabb::strategy_choice& choice) {
     std::vector<std::string> names = aabb::strategy_names(aabb::strategy_kind::triangle);
     if (std::ranges::find(names, choice.name) != names.end()) return aabb::make_triangle_test(choice);

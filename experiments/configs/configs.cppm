@@ -75,7 +75,6 @@ enum class experiment_size { full, quick };
 /// is malformed. A relative path is resolved from the working directory, then from the folder of the config.
 [[nodiscard]] experiment read_experiment(const std::filesystem::path& file, experiment_size size);
 
-/// Parses the text of a config. `file` appears only in messages.
 [[nodiscard]] experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size);
 
 /// Makes a triangle test, a strategy or one from a library, from the name and settings in a config or an option.
@@ -150,7 +149,6 @@ struct calibrated_costs {
 /// Reads the costs, or only the header of a file of another version, whose costs may differ in name and meaning.
 /// @throws aabb::input_error with file and line on malformed TOML, an unknown key, or a cost that is not positive.
 [[nodiscard]] calibrated_costs read_costs(const std::filesystem::path& file);
-/// Parses the text of such a file. `file` appears only in messages.
 [[nodiscard]] calibrated_costs parse_costs(const std::string& text, const std::string& file);
 
 /// Where `calibrate` stores costs: $XDG_CONFIG_HOME/aabblab/costs.toml, else ~/.config/aabblab/costs.toml.

@@ -31,6 +31,7 @@ std::string header_field(const document& doc, const std::string& key) {
     return doc.text_of(key, doc.required(doc.root(), key, "there is no " + key + "; aabblab calibrate writes it"));
 }
 
+/// Reads a cost; it must be above 0, because nothing is free.
 double cost_of(const document& doc, const node& table, const aabb::cost_info& cost) {
     const std::string key(cost.name);
     const node& value = doc.required(table, key, "[costs] has no " + key + "; aabblab calibrate writes all");
@@ -50,7 +51,7 @@ std::filesystem::path folder_in(const char* variable) {
 }
 
 /// The date of the costs that `use_calibrated_costs` loaded; empty while the shipped costs are in use.
-std::string& loaded_date() {
+std::string& date_of_loaded_costs() {
     static std::string date;
     return date;
 }
@@ -68,15 +69,16 @@ std::string text_of(const calibrated_costs& costs) {
     text += "version = " + toml_string(costs.version) + "\ndate = " + toml_string(costs.date) +
             "\nprocessor = " + toml_string(costs.processor) + "\ninstructions = " + toml_string(costs.instructions) +
             "\n\n[costs]\n";
-    constexpr std::size_t column = 34;
+    constexpr std::size_t comment_column = 34;
     for (const aabb::cost_info& cost : aabb::cost_infos) {
         std::string line = std::string(cost.name) + " = " + aabb::shortest(costs.costs.*cost.value);
-        line.append(column > line.size() ? column - line.size() : 1, ' ');
+        line.append(comment_column > line.size() ? comment_column - line.size() : 1, ' ');
         text += line + " # " + std::string(cost.unit) + ": " + std::string(cost.of) + "\n";
     }
     return text;
 }
 
+/// Reads the costs; of another version only the header, because its costs may differ in name and meaning.
 calibrated_costs parse_costs(const std::string& text, const std::string& file) {
     const document doc(text, file, longest_file, "a file of costs");
     calibrated_costs parsed{
@@ -104,6 +106,7 @@ std::filesystem::path calibrated_costs_file() {
     return home.empty() ? home : home / ".config" / file;
 }
 
+/// Makes strategies plan by the costs that `calibrate` stored, if it ran with this version on this machine.
 void use_calibrated_costs() {
     const std::filesystem::path file = calibrated_costs_file();
     std::error_code ignored;  // an inaccessible file counts as absent
@@ -115,19 +118,20 @@ void use_calibrated_costs() {
             throw aabb::input_error(std::string(e.what()) + "; aabblab calibrate --reset removes it");
         }
     }();
-    if (!costs.applies_to(label_costs({}))) {
+    const calibrated_costs here = label_costs(/*costs=*/{});  // only its label counts: version and machine
+    if (!costs.applies_to(here)) {
         note(file.string() + " is of aabblab " + costs.version + " with " + costs.instructions + " on " +
              costs.processor +
              ", so the shipped costs are used until aabblab calibrate measures those of this machine");
         return;
     }
     aabb::set_machine_costs(costs.costs);
-    loaded_date() = costs.date;
+    date_of_loaded_costs() = costs.date;
 }
 
 std::string costs_in_force() {
-    if (loaded_date().empty()) return "costs as shipped";
-    return "costs calibrated " + loaded_date() + " (" + calibrated_costs_file().string() + ")";
+    if (date_of_loaded_costs().empty()) return "costs as shipped";
+    return "costs calibrated " + date_of_loaded_costs() + " (" + calibrated_costs_file().string() + ")";
 }
 
 }  // namespace aabblab

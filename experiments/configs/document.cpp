@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t most_parts = 16;  // per dotted key; a config needs two
 constexpr std::size_t most_products = 100'000;
 
+/// Copies a value of toml++ with all that it contains, so that only this file depends on toml++.
 node to_node(const toml::node& value) {
     node result;
     result.line = static_cast<int>(value.source().begin.line);
@@ -71,7 +72,7 @@ std::string_view name_of(node_kind kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
-/// Bisects for the first line at which an assertion of toml++ fails.
+/// Bisects for the first line at which an assertion of toml++ fails, as that does not say where.
 int line_of_failed_assertion(std::string_view text) {
     const auto fails = [&](std::size_t end) {
         try {
@@ -89,8 +90,7 @@ int line_of_failed_assertion(std::string_view text) {
     return static_cast<int>(first - ends.begin()) + 1;
 }
 
-/// Skips up to `most` more quotes after `end`: a multi-line string may end in quotes of its own before the closing
-/// ones.
+/// Skips up to `most` quotes after `end`: a multi-line string may end in quotes of its own before the closing ones.
 std::size_t end_of_quotes(std::string_view text, std::size_t end, std::size_t most) {
     const std::size_t last = std::min(end + most, text.size());
     while (end < last && text[end] == text[end - 1]) ++end;
@@ -101,22 +101,22 @@ std::size_t end_of_quotes(std::string_view text, std::size_t end, std::size_t mo
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
     const std::string_view quote = text.substr(begin, 1);
     const std::string triple(3, quote[0]);
-    const bool lines = text.substr(begin).starts_with(triple);
-    const std::string_view closing = lines ? triple : quote;
+    const bool is_multi_line = text.substr(begin).starts_with(triple);
+    const std::string_view closing = is_multi_line ? triple : quote;
     for (std::size_t i = begin + closing.size(); i < text.size(); ++i) {
         if (text[i] == '\\' && quote == "\"")
             ++i;
         else if (text.substr(i).starts_with(closing))
-            return end_of_quotes(text, i + closing.size(), lines ? 2 : 0) - 1;
-        else if (text[i] == '\n' && !lines)
+            return end_of_quotes(text, i + closing.size(), is_multi_line ? 2 : 0) - 1;
+        else if (text[i] == '\n' && !is_multi_line)
             return i - 1;
     }
     return text.size();
 }
 
-/// The line of a key with too many parts; 0 if there is none. Each part is a nested table, and toml++ recurses into
-/// them without a limit.
-int line_of_long_key(std::string_view text) {
+/// The line of the first dotted key, such as a.b.c, with more than `most_parts` parts; 0 if there is none. Each part is
+/// a nested table, into which toml++ recurses without a limit.
+int line_of_deep_key(std::string_view text) {
     const auto joins = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '\t'; };
     std::size_t parts = 1;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -141,13 +141,14 @@ const node* node::find(std::string_view wanted) const {
     return entry == items.end() ? nullptr : &*entry;
 }
 
+/// Parses TOML. What toml++ does not limit or locate itself is rejected with its line here.
 document::document(const std::string& as_written, std::string file, std::size_t most, std::string_view noun)
     : file_(std::move(file)) {
     const std::string text = without_returns_at_ends(as_written);
     if (text.size() > most)
         throw aabb::input_error(file_ + " is longer than " + std::to_string(most) + " bytes, the limit for " +
                                 std::string(noun));
-    if (const int line = line_of_long_key(text))
+    if (const int line = line_of_deep_key(text))
         fail(line, "a key has more than " + std::to_string(most_parts) + " parts");
     try {
         root_ = to_node(toml::parse(text, file_));
@@ -209,9 +210,9 @@ const std::string& document::text_of(const std::string& key, const node& value) 
 std::uint64_t document::integer_of(const std::string& key, const node& value, std::uint64_t least) const {
     std::uint64_t number = 0;
     const char* end = value.text.data() + value.text.size();
-    const bool parsed = value.kind == node_kind::integer &&
-                        std::from_chars(value.text.data(), end, number) == std::from_chars_result{end, std::errc{}};
-    if (!parsed || number < least) {
+    const bool is_integer = value.kind == node_kind::integer &&
+                            std::from_chars(value.text.data(), end, number) == std::from_chars_result{end, std::errc{}};
+    if (!is_integer || number < least) {
         const std::string actual = value.kind == node_kind::text ? "the text \"" + value.text + "\""
                                    : value.is_scalar()           ? value.text
                                                                  : std::string(name_of(value.kind));
@@ -231,6 +232,7 @@ std::vector<located_text> document::texts_of(const std::string& key, const node&
     return texts;
 }
 
+/// Removes { others_but = […] } from a list; returns the excluded names, or nullopt if the list has no such entry.
 std::optional<std::vector<located_text>> document::take_others(node& list) const {
     const auto is_others = [](const node& item) { return item.find("others_but") != nullptr; };
     const auto others = std::ranges::find_if(list.items, is_others);
@@ -241,6 +243,7 @@ std::optional<std::vector<located_text>> document::take_others(node& list) const
     return excluded;
 }
 
+/// The distinct values that a key takes in turn, each in runs of its own: a scalar, or the scalars of a list.
 std::vector<located_text> document::alternatives_of(const std::string& key, const node& value) const {
     if (value.is_scalar()) return {{value.text, value.line}};
     if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");

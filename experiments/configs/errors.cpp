@@ -17,6 +17,7 @@ namespace {
 const std::vector<std::string> known_precisions = {"float", "double"};
 constexpr std::uint64_t quick_share = 20;  // a quick run takes 1/20 of the pairs by default
 
+/// The number of pairs in each set of a table: `count`, or in quick runs that of `quick`, or else a share of `count`.
 std::uint64_t count_of(const document& doc, const node& pairs, experiment_size size) {
     const node* count = pairs.find("count");
     const node* quick = pairs.find("quick");
@@ -209,6 +210,7 @@ error_study parse_error_study(const std::string& text, const std::string& file, 
     study.text = text;
     study.curves = curves_of(doc);
     read_sized(doc, size, study);
+    // Validates the quick settings in full runs, too.
     error_study in_quick = study;
     if (size == experiment_size::full) read_sized(doc, experiment_size::quick, in_quick);
     return study;

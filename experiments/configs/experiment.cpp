@@ -46,6 +46,7 @@ std::string resolve_program(const document& doc, const std::string& name) {
     return program.string();
 }
 
+/// Reads [[external]], a program of the user that takes part as an engine.
 external_engine read_external(const document& doc, const node& table) {
     doc.require_table("external", table);
     doc.require_keys(table, " of [[external]]", {"name", "command", "exact", "timeout_s"});
@@ -112,8 +113,7 @@ std::size_t read_word(const document& doc, const char* key, const node& value,
                       std::span<const std::string_view> known) {
     if (value.kind != node_kind::text) doc.fail_type(key, value, "a word in quotes");
     const auto word = std::ranges::find(known, value.text);
-    const std::vector<std::string> names(known.begin(), known.end());
-    if (word == known.end()) doc.fail(value.line, aabb::unknown_name(key, value.text, names));
+    if (word == known.end()) doc.fail(value.line, aabb::unknown_name(key, value.text, {known.begin(), known.end()}));
     return static_cast<std::size_t>(word - known.begin());
 }
 
@@ -141,7 +141,8 @@ void read_query(const document& doc, experiment& e) {
     if (e.query.cold) e.notes.emplace_back("caches: cold before each query");
 }
 
-/// Fresh processes share the repeats, so there cannot be more processes than repeats.
+/// Reads how many fresh processes share the repeats: at most one for each. Quick runs, and runs that time nothing, have
+/// fewer repeats than the config says, and then fewer processes, too.
 void read_processes(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     const node* processes = measure ? measure->find("processes") : nullptr;
@@ -239,6 +240,7 @@ std::vector<aabb::composition> every_composition(const experiment& e) {
     return compositions;
 }
 
+/// Digests what determines the results, from parsed values: the layout of a config and its comments may change.
 std::string hash_of(const experiment& e) {
     std::string text = e.name + " repeats=" + std::to_string(e.repeats) + " processes=" + std::to_string(e.processes);
     if (e.patience) text += " patience=" + std::to_string(*e.patience);

@@ -129,7 +129,8 @@ void add_frames(aabb::digest& digest, auto& scene, std::size_t objects) {
         for (const Placed& p : frame) digest.add(std::bit_cast<std::array<std::uint32_t, sizeof(Placed) / 4>>(p));
 }
 
-/// Generates the scene once and digests the contents of its meshes and its file.
+/// Generates the scene once and digests its meshes and file, whose contents may change between a run and its
+/// resumption.
 void add_content(aabb::digest& digest, const scene_choice& choice, const scene_info& info) {
     if (info.has_meshes) {
         const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
@@ -237,7 +238,7 @@ const node* seed_of(const document& doc, experiment_size size) {
     return doc.root().find("seed");
 }
 
-/// Scenes that the experiment already has, at another size, are valid and are not generated again.
+/// Reads and checks all scenes. Those that the experiment already has, at its other size, are not generated again.
 void read_scenes(const document& doc, experiment_size size, experiment& e) {
     const node& scenes = doc.required(doc.root(), "scene", "this config has no scene; expected at least one [[scene]]");
     const std::span<const node> tables = doc.tables_of("scene");

@@ -16,6 +16,7 @@ bool truth_of(const document& doc, const node& table, const std::string& key) {
     return doc.flag_of(key, entry_of(doc, table, key));
 }
 
+/// Reads a coordinate, which must be finite as a float, since cases are tested in float and in double.
 double coordinate_of(const document& doc, const std::string& key, const node& value) {
     if (value.kind != node_kind::integer && value.kind != node_kind::real)
         doc.fail_type("a coordinate of " + key, value, "a number");

@@ -42,8 +42,7 @@ void add_contacts(number_table& rows, const searched_frame& frame, const scene_f
 }  // namespace
 
 std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choice& choice, bool composed) {
-    std::unique_ptr<aabb::triangle_test> test =
-        composed ? aabb::make_triangle_test(choice) : triangle_test_named(choice);
+    auto test = composed ? aabb::make_triangle_test(choice) : triangle_test_named(choice);
     if (test->constructs()) return test;
     std::vector<std::string> names = constructing_tests();
     const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);

@@ -1,5 +1,4 @@
-/// Queries of one or both stages: all pairs of boxes or triangles in the frames of a scene, or of two meshes at given
-/// poses, with digest, times and rows.
+/// Queries of one or both stages, in the frames of a scene or of two meshes at given poses, with digest, times, rows.
 export module aabblab.queries;
 
 import aabb.pipeline;

@@ -129,8 +129,7 @@ private:
         return std::isfinite(least);
     }
 
-    /// Runs all candidates. If none finishes a frame, the first one gets all the time, also that of the validation,
-    /// which would have nothing to validate.
+    /// Runs all candidates. If none finishes, the first gets all the time for one frame: there is nothing to validate.
     void run_first_round(std::size_t& frames, double margin) {
         if (!run_all(frames, margin, /*is_first_round=*/true)) {
             frames = 1;
@@ -241,8 +240,7 @@ private:
         const std::vector<racer> before = running_;
         bool is_out_of_time = false;  // time is over within a repeat, which is discarded
         const auto run = [&](racer& r, std::size_t) {
-            attempt outcome =
-                scene_.run(r.tested, frames, time_limit(seconds_of(r, frames), last_margin), seconds_left());
+            auto outcome = scene_.run(r.tested, frames, time_limit(seconds_of(r, frames), last_margin), seconds_left());
             if (outcome.is_out_of_time) {
                 is_out_of_time = true;
             } else if (outcome.end == ending::done) {

@@ -76,9 +76,8 @@ std::string page_of(const std::string& scene, const race_result& race, const std
         "Dropped: a candidate was stopped after this many frames, since it took this many times as long as the "
         "fastest, both in total and per frame after the first; or its run did not finish. Strategies have their "
         "default parameters.");
-    const calibrated_costs label = label_costs(aabb::machine_costs());
-    report.paragraph(
-        fmt::format("aabblab {}, {}, {}, {}", label.version, label.date, label.processor, label.instructions));
+    const calibrated_costs used = label_costs(aabb::machine_costs());
+    report.paragraph(fmt::format("aabblab {}, {}, {}, {}", used.version, used.date, used.processor, used.instructions));
     return report.html();
 }
 

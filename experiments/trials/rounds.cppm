@@ -8,8 +8,7 @@ export namespace aabblab {
 /// The index of the candidate at a place of a round. Carry-over effects are balanced: over n rounds of n candidates
 /// each candidate begins one round and, for even n, follows every other candidate once, for odd n about once (Williams,
 /// "Experimental designs balanced for the estimation of residual effects of treatments", 1949).
-[[nodiscard]] constexpr std::size_t index_in_round(std::size_t place, std::size_t round,
-                                                   std::size_t candidates) noexcept {
+[[nodiscard]] constexpr std::size_t index_in_round(std::size_t place, std::size_t round, std::size_t candidates) {
     // 0, 1, -1, 2, -2 and so on.
     const std::size_t offset = place % 2 == 1 ? (place + 1) / 2 : candidates - place / 2;
     return (round + offset) % candidates;

@@ -63,8 +63,7 @@ void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, con
     if (last.scene != scene || last.repeat < share.begin || last.repeat >= share.end) return;
     const std::vector<row> rows = rows_of(scene, results.rows());
     if (last.repeat > share.begin) candidate_count -= stopped_early(e, share, rows).size();
-    const auto finished = std::ranges::count(rows, last.repeat, &row::repeat);
-    if (static_cast<std::size_t>(finished) < candidate_count)
+    if (static_cast<std::size_t>(std::ranges::count(rows, last.repeat, &row::repeat)) < candidate_count)
         results.drop([&](const row& r) { return r.scene == scene && r.repeat == last.repeat; });
 }
 

@@ -46,8 +46,7 @@ stage_runner::stage_runner(const candidate& tested, const scene_frames& scene, a
     : stage_runner(stages{tested.make_global(counted), scene.meshes() ? tested.make_local(counted) : nullptr}, scene) {}
 
 /// Boxes go to the broad phase directly. Meshes need a pipeline, which derives their boxes from poses.
-stage_runner::stage_runner(stages run_stages, const scene_frames& scene)
-    : scene_(scene), stages_(std::move(run_stages)) {
+stage_runner::stage_runner(stages given, const scene_frames& scene) : scene_(scene), stages_(std::move(given)) {
     if (stages_.global) stages_.global->expect(scene.frames());
     if (!scene.meshes()) return;
     if (stages_.global)

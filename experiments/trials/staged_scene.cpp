@@ -85,8 +85,7 @@ bool read_until(int pipe, clock::time_point end, std::string& text) {
     return false;
 }
 
-/// How the child ended, from the status of waitpid. A SIGKILL from outside is most likely that of the kernel, which
-/// kills the child first if memory runs out.
+/// How the child ended, from the status of waitpid. A SIGKILL from outside is likely the kernel's, out of memory.
 ending ending_of(int status) {
     if (WIFSIGNALED(status)) return WTERMSIG(status) == SIGKILL ? ending::out_of_memory : ending::failed;
     switch (WEXITSTATUS(status)) {
@@ -103,12 +102,11 @@ ending ending_of(int status) {
 constexpr char frame_line = 'f', last_line = 'l';
 
 /// The line that reports the times of all frames so far, so that the last one describes a run that was killed.
-std::string line_of(const observation& partial, double seconds) {
+std::string line_of(const observation& seen, double seconds) {
     std::ostringstream text;
     text.precision(17);
-    text << frame_line << ' ' << seconds << ' ' << partial.build.wall_ms << ' ' << partial.frames << ' '
-         << partial.digest;
-    for (const phases* const took : {&partial.first, &partial.rest})
+    text << frame_line << ' ' << seconds << ' ' << seen.build.wall_ms << ' ' << seen.frames << ' ' << seen.digest;
+    for (const phases* const took : {&seen.first, &seen.rest})
         text << ' ' << took->update.wall_ms << ' ' << took->search.wall_ms << ' ' << took->detect.wall_ms;
     text << '\n';
     return text.str();
@@ -138,8 +136,8 @@ attempt attempt_from(const child_result& work) {
 /// line has what is known only at the end: bytes and omissions.
 void send_run(scene_frames& scene, const candidate& tested, std::size_t frames, const output_sender& send) {
     const auto begin = clock::now();
-    const auto on_frame = [&](const observation& partial) {
-        send(line_of(partial, std::chrono::duration<double>(clock::now() - begin).count()));
+    const auto on_frame = [&](const observation& seen) {
+        send(line_of(seen, std::chrono::duration<double>(clock::now() - begin).count()));
     };
     const observation whole = observe(scene, tested, {.frames = frames, .on_frame = on_frame});
     std::string last = fmt::format("{} {}", last_line, whole.bytes);

@@ -58,8 +58,7 @@ public:
     bool next();
     /// Passes the sorted results of this frame to the scene, which may react to them; contacts exist only for meshes.
     void take_results(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
-    /// Runs work on this frame. Invalid poses are detected only when they are used: if they come from a file, the
-    /// message is prefixed with file and frame.
+    /// Runs work on this frame. Invalid poses are found when they are used; messages on a file's poses name the frame.
     template <class Work>
     void in_frame(Work work) const {
         try {
@@ -100,7 +99,7 @@ struct stages {
 class stage_runner {
 public:
     stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted);
-    stage_runner(stages run_stages, const scene_frames& scene);
+    stage_runner(stages given, const scene_frames& scene);
 
     /// Execute the phases of a frame, which are timed separately: update of the stages, broad phase, narrow phase.
     /// @throws aabb::input_error with file and frame if poses from a file are rejected.
@@ -274,8 +273,7 @@ struct child_result {
 /// Sends output of the work to the parent at once, so that it survives work that does not finish.
 using output_sender = std::function<void(std::string_view)>;
 
-/// Does the work in a forked child process, which is killed at its time limit. If memory runs out, the kernel kills the
-/// child first.
+/// Does the work in a forked child process, which is killed at its time limit, and first if memory runs out.
 /// @param seconds the limit; nothing is started unless it is positive
 [[nodiscard]] child_result run_in_child(const std::function<void(const output_sender&)>& work, double seconds);
 
@@ -345,12 +343,10 @@ struct interleaved_runs {
 [[nodiscard]] candidate candidate_of(const aabb::named_strategies& named, const scene_frames& scene);
 /// What `auto` may know of a scene before its first frame.
 [[nodiscard]] aabb::scene_traits traits_of(const scene_frames& scene);
-/// Combines an engine that implements one stage with the default composition of the other; empty if the engine cannot
-/// run the scene.
+/// Combines an engine of one stage with the default composition of the other; empty if it cannot run the scene.
 [[nodiscard]] std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes);
 
-/// The candidates of a scene: the compositions of the experiment, then its engines, then, for boxes, its external
-/// engines.
+/// The candidates of a scene: compositions of the experiment, then engines, then, for boxes, external engines.
 [[nodiscard]] std::vector<candidate> candidates_for(const experiment& e, const scene_choice& scene);
 
 /// The untimed result of a candidate compared with the ground truth: a row with everything that a run may record.

@@ -161,8 +161,7 @@ scene_validation validate_scene(const scene_choice& choice, std::span<const cand
     return validate_scene(choice, scene, candidates);
 }
 
-/// All candidates advance with the ground truth, since a scene may react to its results. One whose external engine
-/// exceeds its timeout fails alone.
+/// All candidates advance with the ground truth, to which a scene may react. One whose engine times out fails alone.
 scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
                                 std::span<const candidate> candidates) {
     aabb::ground_truth truth(scene.objects(), scene.meshes());

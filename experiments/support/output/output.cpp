@@ -116,9 +116,8 @@ void print_paragraph(std::string_view text) {
 /// Breaks text after a prefix; further lines are indented by its width. `most` is the width of a whole line.
 std::string hanging(std::string_view before, std::string_view text, std::size_t most) {
     const std::size_t indent = characters(before);
-    const std::string lines = wrapped(text, most > indent ? most - indent : 0);
     std::string result(before);
-    for (const char c : lines) {
+    for (const char c : wrapped(text, most > indent ? most - indent : 0)) {
         result += c;
         if (c == '\n') result.append(indent, ' ');
     }

@@ -20,8 +20,7 @@ struct program_result {
     std::string printed = {};
 };
 
-/// Runs a program to its end. Neither it nor, with a keeper, its descendants outlive the calling thread, however that
-/// ends.
+/// Runs a program to its end. Neither it nor, with a keeper, any descendant ever outlives the calling thread.
 /// @param program a path, or a name without slashes to be looked up in PATH
 [[nodiscard]] program_result run_child(const std::string& program, const std::vector<std::string>& arguments,
                                        const process_options& options);

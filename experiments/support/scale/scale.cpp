@@ -10,8 +10,7 @@ constexpr std::string_view minus_sign = "\u2212";
 
 [[nodiscard]] std::string number_text(double value, int decimals) {
     std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
-    const std::size_t point = std::min(digits.find('.'), digits.size());
-    for (std::size_t i = point; i > 3; i -= 3) digits.insert(i - 3, ",");
+    for (std::size_t i = std::min(digits.find('.'), digits.size()); i > 3; i -= 3) digits.insert(i - 3, ",");
     return (value < 0 ? std::string(minus_sign) : std::string()) + digits;
 }
 

@@ -45,8 +45,7 @@ double thread_cpu_ms() {
     return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
-/// The time of reading the clock, which is subtracted from every measurement: the minimum of many readings, because
-/// disturbances only add time.
+/// The time of reading the clock, subtracted from all measurements: the minimum, because disturbances only add time.
 double empty_cpu_ms() {
     static const double least = [] {
         double minimum = std::numeric_limits<double>::infinity();
