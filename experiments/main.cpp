@@ -46,12 +46,12 @@ void open_standard_streams() {
     if (is_closed) throw aabb::input_error("standard output is closed, so nothing can be printed");
 }
 
-/// Prints the error after all earlier output.
+/// Prints the error after all earlier output, and returns the exit status for it.
 int report_error(int status, const std::string& sentence) {
     try {
         flush_output();
     } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch)
-        // The first error is reported.
+        // Of two errors the first is reported.
     }
     note(sentence);
     return status;

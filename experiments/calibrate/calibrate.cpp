@@ -76,7 +76,7 @@ struct box_run {
 std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentation counted) {
     const costs_in_scope costs(run.planned_by);
     scene_frames scene(std::make_unique<aabb::known_boxes>(*run.frames));
-    stage_runner runner(candidate_of(run.composed, false), scene, counted);
+    stage_runner runner(candidate_of(run.composed, /*meshes=*/false), scene, counted);
     aabb::work_counters before;
     std::vector<frame_sample> samples;
     run_frames(scene, runner, [&](const searched_frame& frame) {
@@ -130,7 +130,7 @@ trial frames_trial(const generated_scene& scene, cost_group group, const aabb::c
                    const aabb::cost_model& planned_by, work_of_frame work) {
     return {scene.name, scene.held_out,
             [group, run = box_run{scene.frames, c, planned_by}, work = std::move(work)](aabb::instrumentation counted) {
-                const frame_sample mean = mean_of(sample_frames(run, counted), warm_up_frames, 1);
+                const frame_sample mean = mean_of(sample_frames(run, counted), warm_up_frames, /*step=*/1);
                 return std::vector{measured_part{group, work(mean), mean.ns}};
             }};
 }
@@ -142,8 +142,8 @@ trial verlet_list_trial(const generated_scene& scene) {
     return {scene.name, scene.held_out,
             [n = scene.n, run = box_run{scene.frames, c, {}}](aabb::instrumentation counted) {
                 const std::vector<frame_sample> samples = sample_frames(run, counted);
-                const frame_sample built = mean_of(samples, warm_up_frames, 2);
-                const frame_sample reused = mean_of(samples, warm_up_frames + 1, 2);
+                const frame_sample built = mean_of(samples, warm_up_frames, /*step=*/2);
+                const frame_sample reused = mean_of(samples, warm_up_frames + 1, /*step=*/2);
                 // Reuse of a list tests each of its pairs and does not search.
                 assert(counted == aabb::instrumentation::none ||
                        (built.work[aabb::work::subsets] > 0 && reused.work[aabb::work::subsets] == 0));
@@ -153,6 +153,7 @@ trial verlet_list_trial(const generated_scene& scene) {
             }};
 }
 
+/// Adds a search by columns and a Verlet list. Work: boxes and pairs searched, boxes kept and watched, pairs tested.
 void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
     trials.push_back(frames_trial(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
         return std::vector<double>{n, mean.pairs, 0, 0, 0};
@@ -160,7 +161,7 @@ void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
     trials.push_back(verlet_list_trial(scene));
 }
 
-/// @param lists the number of sorted lists: one per cut axis, and one for the sweep
+/// Adds a search with an axial cut, or none, which sorts `lists` lists: one per cut axis, and one for the sweep.
 void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, const std::string& sort,
                    const aabb::strategy_choice& partition, double lists) {
     aabb::composition c;
@@ -177,6 +178,7 @@ void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, con
     }));
 }
 
+/// Adds trials with few and many subsets and copies, so that the fit can separate their costs.
 void add_cut_trials(std::vector<trial>& trials, const generated_scene& scene) {
     const auto cut = [](const char* axes, const char* segments) {
         return aabb::strategy_choice{"axial_cut", {{"axes", axes}, {"segments", segments}}};
@@ -190,6 +192,7 @@ void add_cut_trials(std::vector<trial>& trials, const generated_scene& scene) {
     add_cut_trial(trials, scene, "radix", cut("3", "16"), 3);
 }
 
+/// Adds a search by columns along these axes; the costs `planned_by` determine how many columns it has.
 void add_column_trial(std::vector<trial>& trials, const generated_scene& scene, const char* axes,
                       const aabb::cost_model& planned_by) {
     aabb::composition c;
@@ -231,13 +234,14 @@ std::size_t frames_for(std::size_t objects) {
     return objects < 1000 ? 41 : objects < 10'000 ? 17 : 9;
 }
 
+/// Adds a trial with two parts: building the trees, by triangle, and all queries, by node visit.
 void add_mesh_trial(std::vector<trial>& trials, const scene_choice& choice, bool held_out, const std::string& build,
                     cost_group group) {
     const auto triangles = static_cast<double>(traits_of(scene_frames(choice)).triangles);
     aabb::composition c;
     c[aabb::strategy_kind::build] = {build, {}};
     trials.push_back({choice.kind + " " + settings_text(choice), held_out, [=](aabb::instrumentation counted) {
-                          const observation result = observe(choice, candidate_of(c, true), {.counted = counted});
+                          const auto result = observe(choice, candidate_of(c, /*meshes=*/true), {.counted = counted});
                           const auto visits = static_cast<double>(result.work[aabb::work::node_visits]);
                           const double queries = result.first.detect.cpu_ms + result.rest.detect.cpu_ms;
                           return std::vector{measured_part{group, {triangles}, 1e6 * result.build.cpu_ms},
@@ -290,11 +294,11 @@ std::vector<trial> mesh_trials(calibration_size size) {
     const bool quick = size == calibration_size::quick;
     std::vector<trial> trials;
     for (const std::size_t triangles : quick ? sizes{3000, 20'000} : sizes{3000, 20'000, 80'000}) {
-        add_mesh_trials(trials, "noise_sphere", "torus_knot", triangles, false);
-        add_mesh_trials(trials, "icosphere", "noise_sphere", triangles, false);
+        add_mesh_trials(trials, "noise_sphere", "torus_knot", triangles, /*held_out=*/false);
+        add_mesh_trials(trials, "icosphere", "noise_sphere", triangles, /*held_out=*/false);
     }
     for (const std::size_t triangles : quick ? sizes{8000} : sizes{8000, 40'000})
-        add_mesh_trials(trials, "torus_knot", "icosphere", triangles, true);
+        add_mesh_trials(trials, "torus_knot", "icosphere", triangles, /*held_out=*/true);
     return trials;
 }
 
@@ -345,6 +349,7 @@ std::vector<group_observations> observe_trials(std::vector<trial> trials, double
 
 }  // namespace
 
+/// Fits the costs of each group of operations to measured times, and checks their predictions in held-out scenes.
 calibration calibrate(calibration_size size, double seconds) {
     std::vector<trial> trials = box_trials(size);
     std::ranges::move(mesh_trials(size), std::back_inserter(trials));

@@ -76,10 +76,10 @@ public:
         sums_.assign(observations.front().work.size(), cells(scenes.size(), 1));
         products_.assign(observations.front().work.size() * observations.front().work.size(), cells(scenes.size(), 1));
         std::size_t scene = 0;
-        for (const auto& [name, places] : scenes) {
+        for (const auto& [name, indices] : scenes) {
             for (std::size_t repeat = 0; repeat < size_.repeats; ++repeat) {
                 normal_equations own(count_);
-                for (const std::size_t o : places) own.add(observations[o], observations[o].ns[repeat], weights[o]);
+                for (const std::size_t o : indices) own.add(observations[o], observations[o].ns[repeat], weights[o]);
                 for (Eigen::Index i = 0; i < count_; ++i) {
                     sums_[static_cast<std::size_t>(i)].add(scene, 0, own.sums[i]);
                     for (Eigen::Index j = 0; j <= i; ++j) products_[index_of(i, j)].add(scene, 0, own.products(i, j));
@@ -90,6 +90,7 @@ public:
     }
 
     [[nodiscard]] const sample_size& size() const { return size_; }
+    /// The equations of one bootstrap resample.
     [[nodiscard]] normal_equations draw(const resample& drawn) const {
         normal_equations equations(count_);
         for (Eigen::Index i = 0; i < count_; ++i) {
@@ -113,6 +114,7 @@ private:
 
 }  // namespace
 
+/// Iteratively reweighted least squares (Huber), in which outliers count less; intervals are from a bootstrap.
 std::vector<estimate> fit_costs(std::span<const timed_work> observations) {
     constexpr int rounds = 30;
     const auto count = static_cast<Eigen::Index>(observations.front().work.size());
@@ -138,6 +140,7 @@ std::vector<estimate> fit_costs(std::span<const timed_work> observations) {
     return estimates;
 }
 
+/// By what factor the predicted times are off, in either direction: the median and the worst.
 accuracy accuracy_of(std::span<const timed_work> observations, std::span<const estimate> costs) {
     Eigen::VectorXd values(static_cast<Eigen::Index>(costs.size()));
     std::ranges::transform(costs, values.begin(), &estimate::value);

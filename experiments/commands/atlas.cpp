@@ -22,6 +22,7 @@ struct atlas_request {
     }
 };
 
+/// Measures the atlas, or with --judge reads existing results, and then writes and prints its maps and ratios.
 int run(const atlas_request& request) {
     outlive_reader();
     if (request.source && !request.judge)

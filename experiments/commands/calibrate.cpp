@@ -17,7 +17,7 @@ struct calibrate_request {
     bool quick = false, reset = false;
 };
 
-/// The fitted costs beside the shipped ones, with 95 % confidence intervals.
+/// The fitted costs ("here", on this machine) beside the shipped ones, with 95 % confidence intervals.
 table table_of(const calibration& fit) {
     table t{{{"cost", false}, {"unit", false}, {"shipped"}, {"here"}, {"95 %"}}, {}};
     for (std::size_t k = 0; k < aabb::cost_infos.size(); ++k) {
@@ -39,6 +39,7 @@ table checks_of(const calibration& fit) {
     return t;
 }
 
+/// Measures the costs on the idlest processor and stores them where commands look for them, or in the file of --out.
 void calibrate(const calibrate_request& request) {
     const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : calibrated_costs_file();
     if (file.empty())
@@ -53,9 +54,9 @@ void calibrate(const calibrate_request& request) {
     // Opened before measuring, so that an output error is reported without delay.
     if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
     output_file out(file);
-    const idlest_processor here;
-    const calibration fit =
-        request.quick ? calibrate(calibration_size::quick, 12) : calibrate(calibration_size::full, 95);
+    const idlest_processor pinned;
+    const calibration fit = request.quick ? calibrate(calibration_size::quick, /*seconds=*/12)
+                                          : calibrate(calibration_size::full, /*seconds=*/95);
     const calibrated_costs kept = label_costs(fit.costs);
     out.write(text_of(kept));
     out.commit();

@@ -21,7 +21,7 @@ struct classify_request {
     bool keep_doubles = false, geometry = false;
 };
 
-/// @param words 18 numbers: the corners of one triangle, then of the other
+/// Tests two triangles: 0 or 1, or their intersection. `words` are the corners of the first, then of the second.
 template <class Real>
 std::string result_of(const aabb::triangle_test& test, const std::vector<std::string>& words, bool geometry) {
     if (words.size() != 18)
@@ -33,7 +33,7 @@ std::string result_of(const aabb::triangle_test& test, const std::vector<std::st
     return test.intersects(triangles[0], triangles[1]) ? "1\n" : "0\n";
 }
 
-/// Results of lines before a malformed line are still printed, as the program flushes them before the error.
+/// Tests a pair per line. Results before a malformed line are still printed: the program flushes them before errors.
 void classify_lines(line_stream lines, const aabb::triangle_test& test, const classify_request& request) {
     std::optional<progress> shown;  // results on a terminal show the progress themselves
     if (isatty(STDOUT_FILENO) == 0) shown.emplace("bytes classified", lines.size());

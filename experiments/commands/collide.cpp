@@ -25,9 +25,8 @@ struct collide_request {
 
     [[nodiscard]] std::vector<std::string> meshes() const { return b ? std::vector{a, *b} : std::vector{a}; }
     [[nodiscard]] mesh_query query() const {
-        return {.ask = count   ? query_kind::count
-                       : first ? query_kind::first
-                               : query_kind::pairs,
+        const query_kind ask = count ? query_kind::count : first ? query_kind::first : query_kind::pairs;
+        return {.ask = ask,
                 .self = !self.empty(),
                 .neighbours = !self.empty() && self != "apart",
                 .by_pose = poses_of_b.has_value(),
@@ -133,7 +132,7 @@ void reject_contradictions(const collide_request& request) {
               "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair");
 }
 
-/// Opens the CSV file of --out with the columns of this request; it must not overwrite an input.
+/// Opens the CSV file of --out for the pairs, with this request's columns; it must not overwrite a mesh or pose file.
 std::optional<number_table> open_rows(const collide_request& request) {
     if (!request.out) return std::nullopt;
     require_no_mesh(*request.out, request.meshes());
@@ -143,11 +142,12 @@ std::optional<number_table> open_rows(const collide_request& request) {
     return std::optional<number_table>(std::in_place, *request.out, columns);
 }
 
+/// Rejects bad options, poses and outputs first, since reading and searching large meshes takes long.
 int collide(const collide_request& request) {
     reject_contradictions(request);
     const search_choice choice = request.method.choice(request.geometry);
     const aabb::pose pose_a = pose_of(request.poses[0], "--pose-a");
-    given_poses poses_b{{pose_of(request.poses[1], "--pose-b")}, {}, {}};
+    given_poses poses_b{{pose_of(request.poses[1], "--pose-b")}, /*file=*/{}, /*lines=*/{}};
     if (request.poses_of_b) poses_b = read_poses(*request.poses_of_b);
     std::optional<number_table> rows = open_rows(request);
     const mesh_result result = search_meshes(request.query(), choice, read_meshes(request.meshes()), pose_a,

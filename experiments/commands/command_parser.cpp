@@ -37,6 +37,7 @@ public:
     std::string make_description(const CLI::App* command) const override {
         return wrapped(command->get_description(), output_width()) + "\n";
     }
+    /// Wraps each line of the footer and keeps its indent.
     std::string make_footer(const CLI::App* command) const override {
         std::istringstream lines(Formatter::make_footer(command));
         std::string text;
@@ -136,6 +137,8 @@ parsed_option parsed_option::hidden() const {
     return *this;
 }
 
+/// Adds a command. If it is a subcommand, as in `validate extreme`, its parent becomes runnable without one, and
+/// options of the parent before it are rejected, which the parser would accept and the subcommand ignore.
 command_parser command_parser::add_command(const std::string& name, const std::string& help) const {
     CLI::App* const subcommand = command_->add_subcommand(name, help);
     if (command_->get_parent() != nullptr) {
@@ -150,6 +153,7 @@ command_parser command_parser::command(const std::string& name) const {
     return {*command_->get_subcommand(name), *status_};
 }
 
+/// Adds an option whose value is stored in a variable or passed to a function.
 parsed_option command_parser::option(const std::string& names, const option_value& value,
                                      const std::string& help) const {
     const std::pair<std::string, std::string> parts = split_placeholder(names);
@@ -170,12 +174,8 @@ parsed_option command_parser::flag(const std::string& name, std::variant<bool*, 
     return parsed_option(parts.second.empty() ? *option : *option->option_text(parts.second));
 }
 
-void command_parser::footer(const std::string& text) const {
-    command_->footer(text);
-}
-
-void command_parser::footer(const std::function<std::string()>& text) const {
-    command_->footer(text);
+void command_parser::footer(const std::variant<std::string, std::function<std::string()>>& text) const {
+    std::visit([&](const auto& given) { command_->footer(given); }, text);
 }
 
 void command_parser::callback(const std::function<int()>& act) const {
@@ -188,6 +188,7 @@ void wrap_help(CLI::App& program) {
     program.formatter(std::make_shared<wrapped_help>());
 }
 
+/// The message of the innermost command: on an argument that nothing accepts, otherwise the parser's own.
 std::string rejection_of(const CLI::App& program, const CLI::ParseError& error) {
     const CLI::App* innermost = &program;
     std::string prefix;

@@ -35,8 +35,7 @@ private:
     CLI::Option* option_;
 };
 
-/// Declares the options, arguments and subcommands of a command or the program. It hides the parser's header, which
-/// takes longer to compile than most commands.
+/// Declares what a command or the program takes. It hides the parser's header, which takes long to compile.
 class command_parser {
 public:
     /// @param status the program's exit status, which a command sets: 0, or 1 if a check failed
@@ -73,9 +72,8 @@ public:
     parsed_option option(const std::string& names, const option_value& value, const std::string& help) const;
     /// @param value a text if the flag has an optional value, as in "--self [=apart]"; "true" without a value
     parsed_option flag(const std::string& name, std::variant<bool*, std::string*> value, const std::string& help) const;
-    void footer(const std::string& text) const;
-    /// The text is generated only for the help.
-    void footer(const std::function<std::string()>& text) const;
+    /// @param text a function is called only for the help
+    void footer(const std::variant<std::string, std::function<std::string()>>& text) const;
 
 private:
     void callback(const std::function<int()>& act) const;

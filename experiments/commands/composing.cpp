@@ -37,6 +37,7 @@ void method_options::add_to(const command_parser& command, const std::string& re
     command.footer("aabblab list shows every strategy with its parameters.");
 }
 
+/// What to search with. Compositions that are invalid for every input are rejected here, before any file is read.
 search_choice method_options::choice(bool geometry) const {
     if (geometry && engine_)
         throw aabb::input_error("--geometry needs a triangle test, so --engine cannot be combined with it");
@@ -52,7 +53,7 @@ search_choice method_options::choice(bool geometry) const {
                 throw aabb::input_error(fmt::format("--{} auto: omit the option to have one selected", name_of(kind)));
             choice.named[kind] = aabb::parse_strategy(*values_[kind]);
         }
-    static_cast<void>(method_of(choice, {}));
+    static_cast<void>(method_of(choice, /*traits=*/{}));
     return choice;
 }
 

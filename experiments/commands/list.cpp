@@ -140,6 +140,7 @@ json json_of(const std::vector<list_item>& entries) {
     return array;
 }
 
+/// One key per part of the list; those of strategy kinds are grouped under "strategies".
 json json_of(const std::vector<section>& sections) {
     json root;
     for (const section& part : sections) {

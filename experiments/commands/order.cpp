@@ -17,6 +17,7 @@ struct order_request {
     std::optional<std::string> numbers;
 };
 
+/// Writes the mesh with its triangles in the order of a tree's leaves, and on request their original indices.
 void write_ordered(const order_request& request) {
     const aabb::strategy_choice build = aabb::parse_strategy(request.build);
     require_known(aabb::strategy_kind::build, build);

@@ -15,6 +15,7 @@ struct run_request {
     bool quick = false, resume = false, counts = false;
 };
 
+/// Runs an experiment, or, if it was started by a run with --process, one of its processes.
 int run(const run_request& request) {
     outlive_reader();
     const experiment e = request.process ? read_experiment(request.config, request.quick ? experiment_size::quick

@@ -28,7 +28,7 @@ public:
     world_boxes(const scene_choice& choice, motion_file* motion)
         : scene_(choice), motion_(motion), world_(*scene_.meshes()) {
         if (scene_.meshes()->reacts())
-            finder_.emplace(candidate_of(aabb::composition(), true), scene_, aabb::instrumentation::none);
+            finder_.emplace(candidate_of(aabb::composition(), /*meshes=*/true), scene_, aabb::instrumentation::none);
     }
 
     [[nodiscard]] const aabb::mesh_scene& meshes() const { return *scene_.meshes(); }
@@ -145,6 +145,7 @@ void require_outputs(const scene_request& request) {
     require_extension("--picture", request.picture, ".svg", "a picture");
 }
 
+/// Plays a scene once and writes all requested outputs from it.
 void write_scene(const scene_request& request) {
     require_outputs(request);
     const scene_info& kind = scene_named(request.kind);

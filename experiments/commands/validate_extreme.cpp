@@ -18,7 +18,7 @@ int validate_extreme(const extreme_request& request) {
     outlive_reader();
     const std::filesystem::path folder =
         request.out.value_or(request.quick ? "results/extreme-quick" : "results/extreme");
-    const suite_report report = run_extreme_suite(folder, request.cases, request.quick, true);
+    const suite_report report = run_extreme_suite(folder, request.cases, request.quick, /*shown=*/true);
     print("\nEvery result is in " + visible((folder / "extreme.csv").string()) + "\n");
     print(report.failures.empty()
               ? "Everything that must be exact is exact, and everything that must be rejected is rejected.\n"

@@ -16,7 +16,7 @@ struct stiff_request {
 int validate_stiff(const stiff_request& request) {
     outlive_reader();
     const std::filesystem::path folder = request.out.value_or(request.quick ? "results/stiff-quick" : "results/stiff");
-    const suite_report report = run_stiff_suite(folder, request.studies, request.quick, true);
+    const suite_report report = run_stiff_suite(folder, request.studies, request.quick, /*shown=*/true);
     print(report.failures.empty() ? "Everything is as expected.\n"
                                   : std::to_string(report.failures.size()) + " values are not as expected.\n");
     print("Every number is in " + visible(folder.string()) + ", in one file per study,\nevery plot in " +

@@ -153,8 +153,7 @@ void add_compositions(const document& doc, const node& compose, unique_list<aabb
         add_composition(doc, compose.line, aabb::composition(named), list);
 }
 
-/// Adds one `auto` for each combination of named strategies. A selection without a scene is rejected if they are
-/// invalid together in every scene.
+/// Adds an `auto` for each combination of named strategies; selecting without a scene rejects those valid in none.
 void add_automatic(const document& doc, const node& compose, std::vector<aabb::named_strategies>& automatic) {
     for (const aabb::named_strategies& named : combinations_of(doc, compose, automatic.size())) {
         unique_list<aabb::composition> ignored;

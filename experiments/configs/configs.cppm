@@ -154,8 +154,7 @@ struct calibrated_costs {
 /// Where `calibrate` stores costs: $XDG_CONFIG_HOME/aabblab/costs.toml, else ~/.config/aabblab/costs.toml.
 /// @returns an empty path if the environment names neither folder.
 [[nodiscard]] std::filesystem::path calibrated_costs_file();
-/// Replaces the shipped costs by the calibrated ones, if there are any, for the rest of the process. Costs of another
-/// version or machine are ignored with a note.
+/// Replaces the shipped costs by calibrated ones in this process; those of another version or machine are ignored.
 /// @throws aabb::input_error like `read_costs`.
 void use_calibrated_costs();
 /// Describes the costs in use: "costs as shipped", or "costs calibrated 2026-01-31T12:00:00Z (FILE)".

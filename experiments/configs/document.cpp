@@ -114,8 +114,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     return text.size();
 }
 
-/// The line of the first dotted key, such as a.b.c, with more than `most_parts` parts; 0 if there is none. Each part is
-/// a nested table, into which toml++ recurses without a limit.
+/// The line of a dotted key (a.b.c) of more than `most_parts` parts, or 0: toml++ recurses into each, without a limit.
 int line_of_deep_key(std::string_view text) {
     const auto joins = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '\t'; };
     std::size_t parts = 1;

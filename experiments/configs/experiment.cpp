@@ -113,7 +113,8 @@ std::size_t read_word(const document& doc, const char* key, const node& value,
                       std::span<const std::string_view> known) {
     if (value.kind != node_kind::text) doc.fail_type(key, value, "a word in quotes");
     const auto word = std::ranges::find(known, value.text);
-    if (word == known.end()) doc.fail(value.line, aabb::unknown_name(key, value.text, {known.begin(), known.end()}));
+    const std::vector<std::string> names(known.begin(), known.end());
+    if (word == known.end()) doc.fail(value.line, aabb::unknown_name(key, value.text, names));
     return static_cast<std::size_t>(word - known.begin());
 }
 

@@ -129,8 +129,7 @@ void add_frames(aabb::digest& digest, auto& scene, std::size_t objects) {
         for (const Placed& p : frame) digest.add(std::bit_cast<std::array<std::uint32_t, sizeof(Placed) / 4>>(p));
 }
 
-/// Generates the scene once and digests its meshes and file, whose contents may change between a run and its
-/// resumption.
+/// Generates the scene once and digests its meshes and file, which may change before a run is resumed.
 void add_content(aabb::digest& digest, const scene_choice& choice, const scene_info& info) {
     if (info.has_meshes) {
         const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);

@@ -56,6 +56,7 @@ double longest_edge(const aabb::box& b) {
     return std::max({edge(0), edge(1), edge(2)});
 }
 
+/// The longest edge of all boxes over the median of their longest edges; empty if that is 0.
 std::optional<double> size_ratio_of(std::span<const aabb::box> boxes) {
     std::vector<double> edges;
     for (const aabb::box& b : boxes) edges.push_back(longest_edge(b));

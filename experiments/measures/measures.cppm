@@ -31,8 +31,7 @@ struct motion_measures {
 
 /// Measures of a scene; motion is the mean over its first frames.
 struct scene_measures {
-    std::size_t objects = 0;
-    std::size_t frames = 0;
+    std::size_t objects = 0, frames = 0;
     std::size_t present = 0;                ///< objects in frame 0
     std::optional<std::size_t> triangles;   ///< of all meshes; empty for boxes
     box_measures boxes;                     ///< of frame 0

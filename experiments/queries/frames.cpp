@@ -41,6 +41,7 @@ void add_contacts(number_table& rows, const searched_frame& frame, const scene_f
 
 }  // namespace
 
+/// The triangle test for --geometry, which must construct intersections. In a composition, only strategies are allowed.
 std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choice& choice, bool composed) {
     auto test = composed ? aabb::make_triangle_test(choice) : triangle_test_named(choice);
     if (test->constructs()) return test;
@@ -68,6 +69,7 @@ aabb::triangle_intersection hit_geometry::operator()(aabb::index_pair triangles)
     return aabb::transformed(test_->intersection(in_double(s), in_double(t)), pose_a_);
 }
 
+/// Makes the stages of a search. An engine takes the place of the last one; strategies without a name are selected.
 search_method method_of(const search_choice& choice, const aabb::scene_traits& traits) {
     constexpr auto uncounted = aabb::instrumentation::none;
     const aabb::composition c = select_composition(choice.named, traits);
@@ -87,6 +89,8 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
     return method;
 }
 
+/// Searches every frame, and sums up times and results. Takes the stages of `method`, of which the rest is used. `rows`
+/// receives every result and is committed at the end; it may be null.
 frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows) {
     const bool meshes = scene.meshes() != nullptr;
     frames_result result;

@@ -27,44 +27,45 @@ std::vector<std::uint32_t> used_vertices(const aabb::mesh& m) {
 /// Finds triangles that share a vertex, compared by position, since meshes may repeat vertices.
 class mesh_neighbours {
 public:
-    explicit mesh_neighbours(const aabb::mesh& m) : mesh_(m), place_of_(m.vertices.size()) {
+    /// Groups the triangles by the positions of their corners: a counting sort.
+    explicit mesh_neighbours(const aabb::mesh& m) : mesh_(m), position_of_(m.vertices.size()) {
         const std::vector<std::uint32_t> used = used_vertices(m);
-        std::uint32_t place = 0;
+        std::uint32_t position = 0;
         for (std::size_t i = 0; i < used.size(); ++i) {
-            if (i > 0 && m.vertices[used[i]] != m.vertices[used[i - 1]]) ++place;
-            place_of_[used[i]] = place;
+            if (i > 0 && m.vertices[used[i]] != m.vertices[used[i - 1]]) ++position;
+            position_of_[used[i]] = position;
         }
-        begin_.resize(std::size_t{place} + 2);
+        begin_.resize(std::size_t{position} + 2);
         for (const auto& corners : m.triangles)
-            for (const std::uint32_t vertex : corners) ++begin_[place_of_[vertex] + 1];
+            for (const std::uint32_t vertex : corners) ++begin_[position_of_[vertex] + 1];
         std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
         triangles_.resize(begin_.back());
         std::vector<std::size_t> end(begin_.begin(), begin_.end() - 1);
         for (std::uint32_t t = 0; t < m.triangles.size(); ++t)
-            for (const std::uint32_t vertex : m.triangles[t]) triangles_[end[place_of_[vertex]]++] = t;
+            for (const std::uint32_t vertex : m.triangles[t]) triangles_[end[position_of_[vertex]]++] = t;
     }
 
     /// The neighbours with greater indices, ascending; valid until the next call.
     [[nodiscard]] std::span<const std::uint32_t> after(std::uint32_t triangle) {
         neighbours_.clear();
         for (const std::uint32_t vertex : mesh_.triangles[triangle]) {
-            const std::uint32_t place = place_of_[vertex];
-            const auto around = std::span(triangles_).subspan(begin_[place], begin_[place + 1] - begin_[place]);
+            const std::size_t* const begin = &begin_[position_of_[vertex]];
+            const auto around = std::span(triangles_).subspan(begin[0], begin[1] - begin[0]);
             merged_.clear();
             std::set_union(neighbours_.begin(), neighbours_.end(), std::ranges::upper_bound(around, triangle),
                            around.end(), std::back_inserter(merged_));
             neighbours_.swap(merged_);
         }
-        // A triangle with two corners at one place is listed there twice.
+        // A triangle with two corners at one position is listed there twice.
         neighbours_.erase(std::ranges::unique(neighbours_).begin(), neighbours_.end());
         return neighbours_;
     }
 
 private:
     const aabb::mesh& mesh_;
-    std::vector<std::uint32_t> place_of_;   // by vertex; equal for vertices at the same position
-    std::vector<std::size_t> begin_;        // offsets by place, with the end of the last
-    std::vector<std::uint32_t> triangles_;  // grouped by place, ascending
+    std::vector<std::uint32_t> position_of_;  // by vertex; equal for equal vertices
+    std::vector<std::size_t> begin_;          // offsets by position, with the end of the last
+    std::vector<std::uint32_t> triangles_;    // grouped by position, ascending
     std::vector<std::uint32_t> neighbours_, merged_;
 };
 
@@ -88,8 +89,8 @@ bool share_vertex(const aabb::mesh& m, aabb::index_pair pair) {
 /// @param others sorted pairs that share no vertex
 /// @param take receives the sorted pairs of each triangle in turn
 /// @returns the number of pairs that share a vertex
-std::uint64_t merge_adjacent_pairs(const aabb::mesh& m, std::span<const aabb::index_pair> others,
-                                   const std::function<void(std::span<const aabb::index_pair>)>& take) {
+std::uint64_t merge_neighbours(const aabb::mesh& m, std::span<const aabb::index_pair> others,
+                               const std::function<void(std::span<const aabb::index_pair>)>& take) {
     mesh_neighbours neighbours(m);
     std::uint64_t count = 0;
     std::vector<aabb::index_pair> pairs;  // of one triangle
@@ -137,14 +138,14 @@ struct query_result {
     std::vector<aabb::index_pair> pairs;  ///< the stored pairs, without those that `detect` leaves in the runner
 };
 
-/// @param with_adjacent whether pairs that share a vertex are stored
-query_result result_of(stage_runner& runner, const mesh_query& query, const aabb::mesh& m, bool with_adjacent) {
+/// Runs the query. Within one mesh, neighbours (pairs that share a vertex) are counted apart, and stored on request.
+query_result result_of(stage_runner& runner, const mesh_query& query, const aabb::mesh& m, bool neighbours_too) {
     query_result result;
     if (query.self) {
         runner.each_self_pair(0, [&](aabb::index_pair pair) {
             const bool neighbours = share_vertex(m, pair);
             ++(neighbours ? result.neighbours : result.count);
-            if (neighbours ? with_adjacent : query.ask != query_kind::count) result.pairs.push_back(pair);
+            if (neighbours ? neighbours_too : query.ask != query_kind::count) result.pairs.push_back(pair);
         });
         return result;
     }
@@ -165,8 +166,8 @@ public:
     pair_record(const mesh_query& query, const scene_frames& scene, mesh_result& result, number_table* rows)
         : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
 
-    /// @param with_adjacent whether the pairs include those that share a vertex
-    void add(std::uint32_t pose, query_result hits, bool with_adjacent) {
+    /// @param neighbours_too whether the pairs include those that share a vertex
+    void add(std::uint32_t pose, query_result hits, bool neighbours_too) {
         pose_ = pose;
         sort_rows(hits.pairs);
         require_each_once(hits.pairs, method_.name);
@@ -174,8 +175,8 @@ public:
         if (method_.geometry)
             method_.geometry->set_meshes(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
         if (query_.ask == query_kind::first) result_.first.emplace_back();
-        if (!query_.neighbours || with_adjacent) return add_sorted(hits.pairs);
-        const std::uint64_t neighbours = merge_adjacent_pairs(
+        if (!query_.neighbours || neighbours_too) return add_sorted(hits.pairs);
+        const std::uint64_t neighbours = merge_neighbours(
             meshes.front(), hits.pairs, [&](std::span<const aabb::index_pair> pairs) { add_sorted(pairs); });
         if (neighbours != hits.neighbours)
             throw defect(fmt::format("{} finds {} pairs of triangles that share a vertex, but there are {}",
@@ -227,6 +228,7 @@ std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
 
 }  // namespace
 
+/// Times each query on its own; only the results of the first repeat are recorded.
 mesh_result search_meshes(const mesh_query& query, const search_choice& choice, std::vector<aabb::mesh> meshes,
                           const aabb::pose& pose_a, given_poses poses_b, number_table* rows) {
     const std::size_t poses = poses_b.poses.size();
@@ -242,14 +244,16 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     // Within one mesh, pairs that share a vertex may dominate: n triangles around one vertex have n²/2 of them. They
     // are stored only if they are reported and an inexact method may have missed some; with an exact method, they
     // follow from the mesh.
-    const bool with_adjacent = query.neighbours && !result.method.exact && query.ask != query_kind::count;
+    const bool neighbours_too = query.neighbours && !result.method.exact && query.ask != query_kind::count;
     pair_record record(query, scene, result, rows);
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
         query_result hits;
         try {
             searcher->update();
             searcher->search();
-            const auto ask = [&] { hits = result_of(*searcher, query, scene.meshes()->meshes.front(), with_adjacent); };
+            const auto ask = [&] {
+                hits = result_of(*searcher, query, scene.meshes()->meshes.front(), neighbours_too);
+            };
             result.query_ms.push_back(milliseconds_of(ask));
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(
@@ -263,7 +267,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
             hits.count = hits.pairs.size();
         }
         result.counts.push_back(hits.count);
-        if (query.ask != query_kind::count) record.add(frame, std::move(hits), with_adjacent);
+        if (query.ask != query_kind::count) record.add(frame, std::move(hits), neighbours_too);
     }
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);

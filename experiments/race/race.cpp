@@ -1,5 +1,4 @@
 module;
-
 #include <random>
 
 module aabblab.race;

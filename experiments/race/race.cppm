@@ -66,7 +66,6 @@ struct recommend_request {
     std::optional<std::string> report;  ///< the HTML page to write
     double seconds = 60;
 };
-
 /// Runs a race, prints the ranking and recommends a configuration.
 /// @returns the exit status: 1 if results differ
 [[nodiscard]] int recommend(const recommend_request& request);

@@ -89,8 +89,7 @@ std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool mesh
 
 namespace {
 
-/// The temporary folder in which the external engines of a scene find its recording and write their results. It is
-/// created on first use, and removed by the destructor.
+/// A temporary folder, created on first use, for the recording of a scene and the results of its external engines.
 class exchange_folder {
 public:
     explicit exchange_folder(scene_choice scene) : scene_(std::move(scene)) {}

@@ -146,8 +146,7 @@ validated_candidates validated_before(std::span<const candidate> candidates, std
 }
 
 /// Shuffles all candidates but the baseline, reproducibly for each scene. In the order of the config, a candidate often
-/// follows a similar one, whose code is still cached, and a few repeats are too few for every candidate to follow every
-/// other one.
+/// follows a similar one, whose code is still cached, and repeats are too few for each to follow every other.
 std::vector<candidate> shuffled(std::span<const candidate> candidates, const scene_choice& scene) {
     std::vector<candidate> order(candidates.begin(), candidates.end());
     const std::string text = scene.kind + parameters_text(scene);

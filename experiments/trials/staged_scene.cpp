@@ -41,8 +41,7 @@ void raise_oom_score() {
     close(file);
 }
 
-/// Does the work in the child process and exits with a status that tells how it ended. The parent reads the output, and
-/// the message of an input_error, from the pipe.
+/// Does the work in the child, with its output and the message of an input_error to the pipe; exits with how it ended.
 [[noreturn]] void work_and_exit(int pipe, const std::function<void(const output_sender&)>& work) {
     raise_oom_score();
     int status = has_failed;

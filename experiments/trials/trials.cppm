@@ -247,8 +247,7 @@ struct protocol {
     std::function<void(const observation&)> on_frame = nullptr;  ///< receives the observation so far after each frame
 };
 
-/// Runs a scene from its first frame; the scene reacts to the results. The times of an external engine are those that
-/// it reports itself, which are wall times only.
+/// Runs a scene from its first frame; the scene reacts to the results. External engines report their own wall times.
 [[nodiscard]] observation observe(scene_frames& scene, const candidate& tested, const protocol& settings = {});
 [[nodiscard]] observation observe(const scene_choice& scene, const candidate& tested, const protocol& settings = {});
 
@@ -362,8 +361,7 @@ struct scene_validation {
     std::vector<validated_row> candidates;
 };
 
-/// Runs all candidates in lockstep with the ground truth, compares the result sets frame by frame, and counts their
-/// work. The scene reacts to the ground truth.
+/// Runs all candidates in lockstep with the ground truth, to which the scene reacts, compares results and counts work.
 [[nodiscard]] scene_validation validate_scene(const scene_choice& scene, std::span<const candidate> candidates);
 /// Validates a scene that exists already and is at its first frame.
 /// @param choice its description, for messages

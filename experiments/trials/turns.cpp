@@ -16,8 +16,7 @@ bool is_hopeless(const observation& run, const observation& baseline) {
     return run.whole_ms() > hopeless_ms && run.frame_ms() > hopeless_ratio * baseline.frame_ms();
 }
 
-/// Runs the baseline. If its time is over before the last frame, it runs again with the frames that it finished, since
-/// only a run that finishes reports bytes and omissions.
+/// Runs the baseline, and if time is over, again with the frames that it finished: only finished runs report bytes.
 attempt run_baseline(staged_scene& scene, const candidate& baseline, std::size_t frames, const time_limits& limits) {
     attempt first = scene.run(baseline, frames, greatest_share * limits.to_run());
     if (first.end != ending::stopped || first.seen.frames == 0) return first;

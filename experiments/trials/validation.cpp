@@ -83,8 +83,7 @@ public:
     }
 
 private:
-    /// Sums the work over the frames after frame 0, or of frame 0 if it is the only one. Leaves the counts empty if
-    /// they are all 0, since engines have no counters.
+    /// Sums the work after frame 0, or of frame 0 if it is the only one; empty if all is 0: engines have no counters.
     void fill_counts(row& r) const {
         aabb::work_counters work = runner_.counters();
         if (scene_.frames() > 1)

@@ -21,8 +21,7 @@ std::string one_line(std::string_view text) {
     return line;
 }
 
-/// Inserts blanks into words longer than `length`, such as the names of compositions, so that lines can break there:
-/// after the last comma or colon of the word, else anywhere.
+/// Inserts blanks into words longer than `length`, after a comma or colon if there is one, so that lines can break.
 std::string with_breaks(std::string_view text, std::size_t length) {
     std::string result;
     std::size_t word_begin = 0, break_at = 0;  // in `result`: of the word, and its last possible break if greater
