@@ -128,11 +128,12 @@ using work_of_frame = std::function<std::vector<double>(const frame_sample&)>;
 /// A trial whose only part is the mean frame after the warm-up.
 trial frames_trial(const generated_scene& scene, cost_group group, const aabb::composition& c,
                    const aabb::cost_model& planned_by, work_of_frame work) {
-    return {scene.name, scene.held_out,
-            [group, run = box_run{scene.frames, c, planned_by}, work = std::move(work)](aabb::instrumentation counted) {
-                const frame_sample mean = mean_of(sample_frames(run, counted), warm_up_frames, /*step=*/1);
-                return std::vector{measured_part{group, work(mean), mean.ns}};
-            }};
+    const box_run run{scene.frames, c, planned_by};
+    const auto measure = [group, run, work = std::move(work)](aabb::instrumentation counted) {
+        const frame_sample mean = mean_of(sample_frames(run, counted), warm_up_frames, /*step=*/1);
+        return std::vector{measured_part{group, work(mean), mean.ns}};
+    };
+    return {scene.name, scene.held_out, measure};
 }
 
 /// A Verlet list that is rebuilt in every even frame and reused in every odd one.

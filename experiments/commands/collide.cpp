@@ -43,6 +43,7 @@ nlohmann::ordered_json geometry_of(const intersecting_pair& pair) {
     return geometry;
 }
 
+/// Prints one object, in which --poses makes results lists by pose.
 void print_json(const collide_request& request, const mesh_result& result) {
     /// An array with a value per pose, or the only value.
     const auto by_pose = [&](nlohmann::ordered_json values, bool several = false) {

@@ -137,8 +137,8 @@ parsed_option parsed_option::hidden() const {
     return *this;
 }
 
-/// Adds a command. If it is a subcommand, as in `validate extreme`, its parent becomes runnable without one, and
-/// options of the parent before it are rejected, which the parser would accept and the subcommand ignore.
+/// Adds a command. If its parent is a command, too, as in `validate extreme`, that takes at most one; options between
+/// the two names are rejected, which the parser would accept and the subcommand ignore.
 command_parser command_parser::add_command(const std::string& name, const std::string& help) const {
     CLI::App* const subcommand = command_->add_subcommand(name, help);
     if (command_->get_parent() != nullptr) {
@@ -179,6 +179,7 @@ void command_parser::footer(const std::variant<std::string, std::function<std::s
 }
 
 void command_parser::callback(const std::function<int()>& act) const {
+    // If a subcommand is given, only that runs.
     command_->callback([command = command_, status = status_, act] {
         if (command->get_subcommands().empty()) *status = act();
     });

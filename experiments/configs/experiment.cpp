@@ -142,8 +142,8 @@ void read_query(const document& doc, experiment& e) {
     if (e.query.cold) e.notes.emplace_back("caches: cold before each query");
 }
 
-/// Reads how many fresh processes share the repeats: at most one for each. Quick runs, and runs that time nothing, have
-/// fewer repeats than the config says, and then fewer processes, too.
+/// Reads how many fresh processes share the repeats: at most one for each. More are an error, but not in quick runs,
+/// which have fewer repeats, or if nothing is timed.
 void read_processes(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     const node* processes = measure ? measure->find("processes") : nullptr;

@@ -89,8 +89,8 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
     return method;
 }
 
-/// Searches every frame, and sums up times and results. Takes the stages of `method`, of which the rest is used. `rows`
-/// receives every result and is committed at the end; it may be null.
+/// Searches every frame, and sums up times and results. Moves the stages out of `method`, but uses its name and
+/// geometry. `rows` receives every result and is committed at the end; it may be null.
 frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows) {
     const bool meshes = scene.meshes() != nullptr;
     frames_result result;

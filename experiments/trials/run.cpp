@@ -161,7 +161,7 @@ experiment_record record_of(const experiment& e) {
     return {e.name, e.file, e.text, hash_of(e), e.quick, e.scenes, e.notes};
 }
 
-/// Only the first process validates. A resumed experiment runs what has no row yet, after interrupted repeats.
+/// Only the first process validates. A resumed one repeats an interrupted round, and then runs what has no row yet.
 std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
                                    std::span<const candidate> candidates, results_folder& results,
                                    std::size_t process) {

@@ -42,7 +42,7 @@ std::map<std::string, std::uint64_t> caches_in(const std::filesystem::path& fold
     }
 }
 
-/// Reads the number and model of the processors, and whether a hypervisor shares them, which disturbs times.
+/// Reads the number and model of the processors, and whether they report a hypervisor: this is a virtual machine.
 void read_cpuinfo(const std::filesystem::path& file, machine& m) {
     std::ifstream in(file);
     for (std::string line; std::getline(in, line);) {

@@ -94,7 +94,7 @@ double scale::place(double value) const {
     return logarithmic ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
 }
 
-/// The range of an axis that shows these values, with its ticks. It is a little wider, as marks at an end would be cut.
+/// The range of an axis, somewhat wider than its values, with ticks; a linear one may end on ticks or begin at 0.
 scale scale_of(double least, double greatest, bool logarithmic, scale_end end) {
     scale s{least, greatest, logarithmic};
     if (logarithmic) {
