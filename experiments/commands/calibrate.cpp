@@ -70,13 +70,13 @@ void calibrate(const calibrate_request& request) {
 }  // namespace
 
 void add_calibrate(const command_parser& program) {
-    const command_parser command = program.add_command(
-        "calibrate",
-        "Measure the costs of elementary operations on this machine, and store them for strategies to plan with");
+    const command_parser command = program.add_command("calibrate",
+                                                       "Measure the costs of elementary operations on this machine, "
+                                                       "and store them for the strategies' cost estimates");
     auto& request = command.set_action<calibrate_request>(calibrate);
     const parsed_option quick = command.flag("--quick", &request.quick, "Take about 20 seconds instead of two minutes");
-    const parsed_option out =
-        command.option("--out FILE", &request.out, "Write the costs to this file, from which they are not used");
+    const parsed_option out = command.option(
+        "--out FILE", &request.out, "Write the costs to this file only; strategies keep using the stored ones");
     command.flag("--reset", &request.reset, "Remove the stored costs: the shipped ones are used again")
         .excludes(quick)
         .excludes(out);

@@ -62,7 +62,7 @@ void classify(const classify_request& request) {
 
 void add_classify(const command_parser& program) {
     const command_parser command = program.add_command(
-        "classify", "Test whether triangles intersect, and in what: reads a pair per line, writes a result per line");
+        "classify", "Test whether two triangles intersect, and where: reads a pair per line, writes a result per line");
     auto& request = command.set_action(classify);
     command.argument("FILE", &request.file,
                      "18 numbers per line, decimal or C99 hexadecimal, separated by blanks or commas; # begins a "
@@ -71,7 +71,7 @@ void add_classify(const command_parser& program) {
                    "Triangle test (default exact): a strategy, or a library test that `list` shows");
     command.flag("--double", &request.keep_doubles, "Keep the numbers as doubles instead of rounding to float");
     command.flag("--geometry", &request.geometry,
-                 "Write intersections instead of 0 or 1: kind, number of corners, corners, error on each axis");
+                 "Write intersections instead of 0 or 1: kind, number of vertices, vertices, error bound on each axis");
 }
 
 }  // namespace aabblab

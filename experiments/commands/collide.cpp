@@ -187,13 +187,15 @@ void add_collide(const command_parser& program) {
         request.repeats =
             parse_whole(text, 1, 1'000'000, "--repeat is the number of searches: a whole number from 1 to 1,000,000");
     };
-    command.option("--repeat N", take_repeats, "Search N times, at all poses in turn; --json lists every time");
+    command.option("--repeat N", take_repeats, "Search N times, at all poses in turn; --json lists the time of each");
     command.option("--out FILE", &request.out,
                    "CSV file for pairs: a,b; with --self a,b,shared_vertices; --self=apart a,b; --poses pose,a,b");
-    command.flag("--geometry", &request.geometry,
-                 "Add the intersection of its triangles to each pair, in world coordinates: kind, corners, error");
-    command.flag("--exit-code", &request.exit_code,
-                 "Exit with status 1 if triangles intersect, with --self without a shared vertex, as diff does");
+    command.flag(
+        "--geometry", &request.geometry,
+        "Add to each pair the intersection of its triangles, in world coordinates: kind, vertices, error bound");
+    command.flag(
+        "--exit-code", &request.exit_code,
+        "Exit with status 1, as diff does, if triangles intersect; with --self, if any that share no vertex do");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

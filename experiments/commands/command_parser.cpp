@@ -42,7 +42,9 @@ public:
         std::istringstream lines(Formatter::make_footer(command));
         std::string text;
         for (std::string line; std::getline(lines, line);) {
-            const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+            std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+            // An indented name and its text: further lines begin below the text.
+            if (indent > 0) indent = std::min(line.find_first_not_of(' ', line.find("  ", indent)), line.size());
             text += hanging(line.substr(0, indent), line.substr(indent)) + "\n";
         }
         return text;

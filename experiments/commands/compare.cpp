@@ -19,8 +19,8 @@ void add_compare(const command_parser& program) {
         "compare", "Compare two results folders, of two commits or machines: ratios, results, counts and bytes");
     auto& request = command.set_action(run);
     command.argument("A", &request.a, "Results folder of one experiment or several");
-    command.argument("B", &request.b, "Results folder that is compared with A");
-    command.flag("--times", &request.times, "Also compare milliseconds, if both folders are of one machine");
+    command.argument("B", &request.b, "Results folder to compare with A; ratios are B over A");
+    command.flag("--times", &request.times, "Also compare milliseconds, if both folders come from one machine");
     command.flag("--all", &request.all, "Also list what is unchanged or undecided");
 }
 

@@ -31,7 +31,7 @@ void method_options::add_to(const command_parser& command, const std::string& re
     for (const aabb::stage stage : stages_)
         for (const aabb::strategy_kind kind : kinds_of(stage))
             command.option(fmt::format("--{} S", name_of(kind)), &values_[kind],
-                           fmt::format("One of {} (default: {}), as in NAME:parameter=value", listed_names(kind),
+                           fmt::format("One of {} (default: {}); parameters: NAME:parameter=value", listed_names(kind),
                                        default_text(kind)));
     command.option("--engine E", &engine_, "Reference engine instead of " + replaced);
     command.footer("aabblab list shows every strategy with its parameters.");

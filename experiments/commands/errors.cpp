@@ -33,13 +33,14 @@ int run(const errors_request& request) {
 }  // namespace
 
 void add_errors(const command_parser& program) {
-    const command_parser command = program.add_command(
-        "errors", "Compare error with run time: the wrong results of methods, and the time that they take");
+    const command_parser command =
+        program.add_command("errors", "Compare the error rates of methods with their run times");
     auto& request = command.set_action(run);
     command.optional_argument(
         "CONFIG", &request.config,
         "Config of a study: methods and input (default experiments/configs/errors/triangle_tests.toml)");
-    command.option("--out DIR", &request.out, "Folder of tables and plots (default results/errors-NAME)");
+    command.option("--out DIR", &request.out,
+                   "Folder of tables and plots (default results/errors-NAME; NAME: the config's name)");
     command.flag("--quick", &request.quick, "Use fewer pairs, for a first look");
 }
 

@@ -9,10 +9,10 @@ void add_explain(const command_parser& program) {
     const command_parser command = program.add_command(
         "explain", "Explain a scene: its measures, the selected composition, the reasons, memory and savings");
     auto& request = command.set_action(explain);
-    command.argument(
-        "WHAT", &request.what,
-        std::string("Config of an experiment (.toml), to explain its compositions; or a scene, for auto: ") +
-            scene_arguments_help);
+    command.argument("WHAT", &request.what,
+                     std::string("Config of an experiment (.toml), to explain its compositions; or a scene, to explain "
+                                 "what auto selects: ") +
+                         scene_arguments_help);
     command.option(
         "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },
         "Time for each scene (default 60); what does not fit into it is listed as not finished");

@@ -207,7 +207,7 @@ void add_parameters(const command_parser& command, scene_request& request) {
 
 void add_scene(const command_parser& program) {
     const command_parser command = program.add_command(
-        "scene", "Generate a scene, and write it as a recording of boxes, as motion or as a picture");
+        "scene", "Generate a scene, and write it as a recording of boxes, a motion file or a picture");
     auto& request = command.set_action(write_scene);
     command.argument("NAME", &request.kind, "A scene that 'aabblab list scenes' shows");
     add_parameters(command, request);

@@ -52,7 +52,7 @@ struct validate_request {
 int validate(const validate_request& request) {
     outlive_reader();
     if (request.quick && !request.config)
-        throw aabb::input_error("--quick applies the settings under quick in a config, so it needs CONFIG");
+        throw aabb::input_error("--quick applies the quick settings of a config, so it needs CONFIG");
     const experiment e = request.config ? open_experiment(*request.config, request.quick) : built_in_experiment();
     std::size_t wrong = 0;
     for (const scene_choice& scene : e.scenes) {
@@ -78,11 +78,11 @@ int validate(const validate_request& request) {
 
 void add_validate(const command_parser& program) {
     const command_parser command = program.add_command(
-        "validate", "Compare every composition of an experiment, or every one there is, with the ground truth");
+        "validate", "Compare every composition of an experiment, or all possible ones, with the ground truth");
     auto& request = command.set_action(validate);
     command.optional_argument("CONFIG", &request.config,
                               "Config of the experiment (.toml); without it, every composition is validated");
-    command.flag("--quick", &request.quick, "Apply the settings under quick in the config, for a first look");
+    command.flag("--quick", &request.quick, "Apply the quick settings of the config, for a first look");
 }
 
 }  // namespace aabblab

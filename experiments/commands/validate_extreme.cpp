@@ -33,7 +33,7 @@ void add_validate_extreme(const command_parser& program) {
         program.command("validate")
             .add_command("extreme", "Validate extreme scenes, invalid input, rounding modes and hard triangle pairs");
     command.footer([] {
-        std::string text = "Scenes:\n";
+        std::string text = "Scenes, whose results must be exact unless the scene must be rejected:\n";
         for (const aabb::extreme_scene& scene : all_extreme_scenes(aabb::extreme_size::full).scenes)
             text += entry(scene.name, scene.summary);
         return text.substr(0, text.size() - 1);  // the parser prints the last line end

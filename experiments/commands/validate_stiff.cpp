@@ -32,12 +32,16 @@ void add_validate_stiff(const command_parser& program) {
             .add_command("stiff",
                          "Simulate bodies in contact, and compare them with closed forms and published results");
     auto& request = command.set_action(validate_stiff);
-    std::string names;
-    for (const stiff_study& study : stiff_studies()) names += (names.empty() ? "" : ", ") + std::string(study.name);
-    command.optional_argument("STUDY", &request.studies, "Studies to run (default all): " + names);
+    command.optional_argument("STUDY", &request.studies, "Studies to run, from the list below (default all)");
     command.option("--out DIR", &request.out,
                    "Folder of tables and plots (default results/stiff, with --quick results/stiff-quick)");
     command.flag("--quick", &request.quick, "Run fewer and shorter simulations, for a first look");
+    command.footer([] {
+        std::string text = "Studies:\n";
+        for (const stiff_study& study : stiff_studies())
+            text += entry(study.name, study.about.substr(0, study.about.find(". ")));
+        return text.substr(0, text.size() - 1);  // the parser prints the last line end
+    });
 }
 
 }  // namespace aabblab

@@ -118,11 +118,11 @@ std::unique_ptr<mesh_scene> balls_moved(double far) {
 std::vector<extreme_scene> mesh_scenes(extreme_size size) {
     const std::uint32_t many = size == extreme_size::small ? 300U : size == extreme_size::quick ? 20'000U : 1'000'000U;
     extreme_scene against_one = scene_of_meshes(
-        "many_against_one", std::to_string(many) + " copies of one triangle, against another",
+        "many_against_one", std::to_string(many) + " copies of one triangle, against another triangle",
         [many] { return posed(std::vector{coincident(many), soup_of({crossing_triangle})}, {{{}, {}}}); });
     against_one.query = extreme_query::count_pairs;
     extreme_scene against_itself =
-        scene_of_meshes("many_against_many", "the same mesh against itself: any one pair",
+        scene_of_meshes("many_against_many", "the same mesh against itself: stops at any one pair",
                         [many] { return posed(coincident(many), {{{}, shifted(0.5, 0.5, 0)}}); });
     against_itself.query = extreme_query::first_pair;
     // The largest layout has an internal node of 32 bytes and a leaf of 28 per triangle; the rest is for stacks.
@@ -141,7 +141,7 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
         scene_of_meshes("slivers", "triangles a millionth as high as long", [] { return needles(1e-6F); }),
         scene_of_meshes("thinnest", "triangles about as high as one unit in the last place",
                         [] { return needles(1e-8F); }),
-        scene_of_meshes("zero_areas", "triangles, segments and points", zero_areas),
+        scene_of_meshes("zero_areas", "triangles, segments and points, against each other", zero_areas),
     };
     for (const auto& [name, radius] : {std::pair{"scale_1e-44", 1e-44},
                                        {"scale_1e-39", 1e-39},
@@ -153,10 +153,10 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
         scenes.push_back(scene_of_meshes(name, "two intersecting spheres of that radius",
                                          [size = radius] { return balls_of(size); }));
     for (const auto& [name, radius] : {std::pair{"beside_1e-6", 1e-6}, {"beside_1e6", 1e6}, {"beside_1e-38", 1e-38}})
-        scenes.push_back(scene_of_meshes(name, "a sphere of that radius on one of radius 1",
+        scenes.push_back(scene_of_meshes(name, "a sphere of that radius that intersects one of radius 1",
                                          [size = radius] { return ball_on_ball(size); }));
     for (const auto& [name, far] : {std::pair{"moved_1e6", 1e6}, {"moved_1e9", 1e9}, {"moved_1e15", 1e15}})
-        scenes.push_back(scene_of_meshes(name, "two spheres that far from the origin, as close to each other",
+        scenes.push_back(scene_of_meshes(name, "two intersecting spheres that far from the origin",
                                          [distance = far] { return balls_moved(distance); }));
     return scenes;
 }

@@ -170,7 +170,7 @@ constexpr std::array<pair_class, 16> classes{{
      [](random_source& random, const format&) {
          return changed(any_pair(random), [](const Vector3d& p) -> Vector3d { return p * 1e-3; });
      }},
-    {{"near_coplanar", "in one plane up to a unit in the last place"}, near_coplanar},
+    {{"near_coplanar", "in one plane to within one unit in the last place"}, near_coplanar},
     {{"vertex_on_plane", "a corner in the other's plane, up to rounding"}, vertex_on_plane},
     {{"edge_on_edge", "an edge through a point of an edge, up to rounding"}, edge_on_edge},
     {{"shared_vertex", "one shared corner"}, shared_vertex},
