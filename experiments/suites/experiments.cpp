@@ -70,7 +70,7 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
         print(heading_of(scene) + "\n" + to_text(table_of(scene, e.shown), output_width()) + "\n");
         if (shown != printed::tables_and_counts) continue;
         if (const table counts = counts_table_of(scene); !counts.columns.empty())
-            print("work per frame after the first one, and bytes\n" + to_text(counts, output_width()) + "\n");
+            print("work per frame after frame 0, and memory\n" + to_text(counts, output_width()) + "\n");
     }
     flush_output();
 }

@@ -156,7 +156,7 @@ TEST_CASE("A composition that is the only one is named, above the table where it
         const std::string heading = aabblab::heading_of(scene);
         INFO(heading);
         CHECK(holds(heading, "\nthis composition: sort " + std::string(sort) + ", sweep one_axis\n"));
-        CHECK(holds(heading, "ratio to " + std::string(shown) + "\n"));
+        CHECK(holds(heading, "\nbaseline: " + std::string(shown) + "\n"));
     }
 }
 
@@ -175,8 +175,9 @@ TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those
     CHECK(column_of(t, "ratio") == texts{"0.20", "1.00", "0.10", "-"});
     CHECK(column_of(t, "result") == texts{"exact", "exact", "-3 +5", "exact"});
     CHECK(holds(aabblab::heading_of(scene),
-                "exact results before inexact ones, each in ascending order of ratio; ratio to slow\n"));
-    CHECK(holds(aabblab::heading_of(scene), "all lines: 1,234,567 pairs\n"));
+                "in ascending order of ratio, exact results before inexact ones\nratio: ms/frame relative to"));
+    CHECK(holds(aabblab::heading_of(scene), " confidence interval\nbaseline: slow\n"));
+    CHECK(holds(aabblab::heading_of(scene), "all lines, over all frames: 1,234,567 pairs of boxes\n"));
     CHECK(holds(aabblab::heading_of(scene), "a result -3 +5 has 3 false negatives and 5 false positives\n"));
     rows[1].false_negatives = 12;
     rows[1].false_positives = 0;

@@ -57,18 +57,17 @@ struct shared_column {
     }
 };
 
-/// The columns that move to the heading if all cells are equal: results, as of exact candidates, and bytes.
-std::vector<shared_column> shared_columns(const scene_summary& scene,
-                                          std::span<const candidate_summary* const> ranking) {
-    shared_column result{{"result"}, "result {}", {}};
-    shared_column pairs{{"pairs"}, "{} pairs", {}};
-    shared_column contacts{{.name = "contacts", .spare = 1}, "{} contacts", {}};
-    shared_column bytes{{.name = "KiB", .spare = 2}, "{} KiB", {}};
-    for (const candidate_summary* candidate : ranking) {
-        result.cells.push_back(result_of(*candidate));
-        pairs.cells.push_back(grouped(candidate->pairs));
-        contacts.cells.push_back(candidate->contacts ? grouped(*candidate->contacts) : "-");
-        bytes.cells.push_back(candidate->bytes ? kib_text(*candidate->bytes) : "-");
+/// The columns of results, which are equal for all exact lines, and of bytes.
+std::vector<shared_column> shared_columns(const scene_summary& scene, std::span<const summary_line* const> ranking) {
+    shared_column result{{"result"}, "{}", {}};
+    shared_column pairs{{"pairs"}, "{} pairs of boxes", {}};
+    shared_column contacts{{"contacts", true, 1}, "{} contacts", {}};
+    shared_column bytes{{"KiB", true, 2}, "{} KiB", {}};
+    for (const summary_line* line : ranking) {
+        result.cells.push_back(result_of(*line));
+        pairs.cells.push_back(grouped(line->pairs));
+        contacts.cells.push_back(line->contacts ? grouped(*line->contacts) : "-");
+        bytes.cells.push_back(line->bytes ? kib_text(*line->bytes) : "-");
     }
     std::vector<shared_column> columns{std::move(result), std::move(pairs)};
     if (any_has(scene, &candidate_summary::contacts)) columns.push_back(std::move(contacts));
@@ -135,14 +134,15 @@ table table_of(const scene_summary& scene, std::span<const std::string> shown) {
 
 /// What the table would otherwise repeat in every row, and how to read its order, its results and missing intervals.
 std::string heading_of(const scene_summary& scene) {
-    std::string text =
-        fmt::format("{}: {}, {}\n", scene.scene.kind, counted(scene.objects, "object"), counted(scene.frames, "frame"));
+    std::string text = fmt::format("{}: {}, frame 0{}\n", scene.scene.kind, counted(scene.objects, "object"),
+                                   scene.frames > 1 ? fmt::format(" and {} more", grouped(scene.frames - 1)) : "");
     std::string parameters = settings_text(scene.scene);
     if (scene.seeds.size() == 1) parameters += fmt::format("{}seed={}", parameters.empty() ? "" : " ", scene.seeds[0]);
     text += parameters + "\n";
     if (scene.seeds.size() > 1)
-        text += fmt::format("pooled over {} seeds: pairs and contacts are sums\n", scene.seeds.size());
-    const auto is_automatic = [](const candidate_summary& candidate) { return candidate.name.is_automatic(); };
+        text += fmt::format("pooled over {} seeds: pairs and contacts are sums, ratios geometric means\n",
+                            scene.seeds.size());
+    const auto is_automatic = [](const summary_line& line) { return line.name.is_automatic(); };
     if (!scene.common.empty())
         text += (scene.differing.empty()                               ? "this composition: "
                  : std::ranges::any_of(scene.candidates, is_automatic) ? "all compositions but auto: "
@@ -153,7 +153,7 @@ std::string heading_of(const scene_summary& scene) {
     for (const shared_column& c : shared_columns(scene, ranking))
         if (c.is_constant())
             constant += (constant.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
-    if (!constant.empty()) text += "all lines: " + constant + "\n";
+    if (!constant.empty()) text += "all lines, over all frames: " + constant + "\n";
     if (!scene.digest.empty()) text += "digest of the ground truth: " + scene.digest + "\n";
     const bool inexact = std::ranges::any_of(scene.candidates, [](const auto& c) { return c.status != "exact"; });
     const auto with_errors = std::ranges::find_if(
@@ -167,11 +167,16 @@ std::string heading_of(const scene_summary& scene) {
     for (const candidate_summary& candidate : scene.candidates)
         if (candidate.repeats < repeats) stopped += (stopped.empty() ? "" : ", ") + candidate.label;
     if (!stopped.empty()) text += "repeated less often than others: " + stopped + "\n";
-    if (scene.candidates.size() > 1 && any_has(scene, &candidate_summary::ratio))
-        text += (inexact ? "exact results before inexact ones, each in ascending order of ratio; ratio to "
-                         : "in ascending order of ratio; ratio to ") +
-                scene.candidates[0].label + "\n";
-    if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
+    if (scene.lines.size() > 1 && any_has(scene, &summary_line::ratio))
+        text += std::string("in ascending order of ratio") +
+                (inexact ? ", exact results before inexact ones\n" : "\n") +
+                "ratio: ms/frame relative to the baseline in the same repeat, the median over\nrepeats, with its 95 % "
+                "confidence interval\nbaseline: " +
+                scene.lines[0].label + "\n";
+    if (any_has(scene, &summary_line::ms_per_frame))
+        text += "ms/frame: the mean time per frame after frame 0, the median over repeats\n";
+    if (any_has(scene, &summary_line::bytes)) text += "KiB: memory of all parts except the meshes\n";
+    if (std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ratio && !l.ratio_interval; }))
         text += "95 %: - if there are too few repeats, seeds or processes for an interval\n";
     return text;
 }
