@@ -50,13 +50,17 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
     stage_runner runner(tested, scene, aabb::instrumentation::none);
     run_frames(scene, runner, [](const searched_frame&) {}, frames_before_bytes);
     const candidate_name& name = tested.name;
-    std::string text = text_of("broad phase", text_of(name, aabb::stage::global_search), runner.global_bytes());
+    std::string text;
+    if (scene.frames() > frames_before_bytes)
+        text = fmt::format("    bytes after {} of {} frames (aabblab run: after the last)\n", frames_before_bytes,
+                           grouped(scene.frames()));
+    text += text_of("broad phase", text_of(name, aabb::stage::global_search), runner.global_bytes());
     text += text_of(scene.meshes() ? "between phases" : "found pairs", "", {{"buffers", runner.buffer_bytes()}});
     if (scene.meshes())
         text += text_of("narrow phase", text_of(name, aabb::stage::local_detection), runner.local_bytes());
     std::vector<std::string> planned;
     for (const aabb::stage_plan& plan : runner.plans()) planned.push_back(to_text(plan.decision));
-    text += indented_list("plans from earlier frames", planned);
+    text += indented_list("state kept from earlier frames", planned);
     std::vector<std::string> left_out;
     for (const aabb::omission& absent : omissions_of(name, runner.left_out())) left_out.push_back(to_text(absent));
     return text + indented_list("left out", left_out);
@@ -128,10 +132,7 @@ bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named,
 /// @returns whether the results of all runs agree
 bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& limits) {
     print_measures(scene, limits);
-    if (const std::size_t frames = scene.scene().frames(); frames > frames_before_bytes)
-        print(fmt::format("  bytes after {} of {} frames; run reports those after the last\n", frames_before_bytes,
-                          grouped(frames)));
-    print_idle_parts(e, scene.choice());
+    print_unused(e, scene.choice());
     flush_output();
     bool agree = true;
     for (const aabb::named_strategies& named : e.automatic) {
@@ -166,7 +167,7 @@ int explain(const explain_request& request) {
         // A scene that cannot be created is reported before any output.
         staged_scene scene(choice);
         limits.note_scene_read();
-        if (&choice == e.scenes.data()) print(wrapped("strategies plan with " + costs_in_force()) + "\n\n");
+        if (&choice == e.scenes.data()) print(wrapped("cost model: " + costs_in_force()) + "\n\n");
         agree &= explain_scene(e, scene, limits);
     }
     return agree ? 0 : 1;

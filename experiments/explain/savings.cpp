@@ -89,7 +89,7 @@ std::string difference_text(std::uint64_t bytes, std::uint64_t than) {
 /// Prints what each omission of the selected composition, the first variant, saves over the fastest variant without it.
 void print_omissions(std::span<const variant> variants) {
     const std::vector<observation>& times = variants[0].times;
-    table t{{{"left out", false}, {"available with", false}, {"ms/frame"}, {"bytes"}}, {}};
+    table t{{{"left out", false}, {"available with", false}, {"saved ms"}, {"bytes"}}, {}};
     for (const aabb::absence what : omitted_by(variants[0])) {
         t.rows.push_back({to_text(what), "-", "-", "-"});
         const variant* fastest = fastest_with(what, variants.subspan(1));
@@ -99,9 +99,9 @@ void print_omissions(std::span<const variant> variants) {
                          fmt::format("{:.5f}{}", median_ms(fastest->times) - median_ms(times), undecided ? "?" : ""),
                          difference_text(fastest->times.back().bytes, times.back().bytes)};
     }
-    print("savings of what is left out, compared with the fastest variant that has it\n");
+    print("time per frame and bytes saved by what is left out, compared with the fastest\nvariant that has it\n");
     print_wrapped_table(t, 0);
-    print(wrapped("-: no variant that ran has it. Below 0: the variant takes less. ?: as above.") + "\n");
+    print(wrapped("-: no variant that ran has it. Below 0: the variant takes less. ?: undecided, as above.") + "\n");
 }
 
 /// The same candidate with all work counted, which shows what the counters would cost.
@@ -223,11 +223,12 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
                                     counted(most_objects_of_all_kinds, "object")));
     print_paragraph(ms_per_frame_text);
     print_paragraph(fmt::format(
-        "ratio: ms/frame relative to the selected composition in the same round, the median; range: the least and the "
-        "greatest ratio; ?: undecided, since the range comes within 3 % of 1; > {:.0f}: measured in one round.",
+        "ratio: ms/frame relative to the selected composition in the same round; times and ratios are medians over "
+        "rounds; range: the least and the greatest ratio; ?: undecided, since the range comes within 3 % of 1; a "
+        "ratio above {:.0f} comes from a single round.",
         hopeless_ratio));
     print_paragraph(build_ms_text);
-    print_paragraph("bytes: allocated after these frames; counters: as selected, with all work counted.");
+    print_paragraph("bytes: memory after these frames; counters of all work: as selected, with all work counted.");
     print("\n");
     print_omissions(variants);
     const bool agree = print_disagreements(variants);

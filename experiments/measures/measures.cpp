@@ -191,21 +191,24 @@ table measures_table(const scene_measures& m) {
     if (m.present != m.objects) add("present", grouped(m.present) + " of them in the first frame");
     if (m.triangles) add("triangles", grouped(*m.triangles) + " in the meshes");
     const auto& o = m.boxes.overlaps;
-    add("spread", fmt::format("on x, y, z a box overlaps {:.3g}, {:.3g}, {:.3g} others", o[0], o[1], o[2]));
+    add("overlaps", fmt::format("a box overlaps {:.3g}, {:.3g}, {:.3g} others on x, y, z", o[0], o[1], o[2]));
     for (std::size_t k = 0; k < 3; ++k)
         if (m.present > 2 && o[k] > 0.999 * static_cast<double>(m.present - 1))
             add("flat axis", std::string(1, "xyz"[k]));
     add("size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
-                          ", the longest edge over the median longest edge");
+                          ", the greatest edge over the median greatest edge of a box");
     add("density", fmt::format("{:.3g} overlapping pairs per object", m.pairs_per_object));
     add("clustering", fmt::format("{:.3g} times the pairs of uniformly distributed boxes", m.clustering));
     if (!m.motion) return measured;
     const double unit = m.boxes.typical_extent > 0 ? m.boxes.typical_extent : 1;
     const char* unit_name = m.boxes.typical_extent > 0 ? "typical extents" : "units";
+    if (m.boxes.typical_extent > 0)
+        add("unit", fmt::format("typical extent: {:.3g}, the mean edge without outliers", m.boxes.typical_extent));
     add("displacement", fmt::format("{:.3g} {} per frame, the mean", m.motion->displacement / unit, unit_name));
-    add("relative", fmt::format("{:.3g} {}, the greatest beyond the common motion",
+    add("relative", fmt::format("{:.3g} {} per frame, half of the range on one axis",
                                 m.motion->relative_displacement / unit, unit_name));
-    add("inversions", fmt::format("{:.3g} per object and frame", m.motion->inversions));
+    add("inversions", fmt::format("{:.3g} per object per frame, on the {} axis", m.motion->inversions,
+                                  "xyz"[std::ranges::min_element(o) - o.begin()]));
     add("at rest", fmt::format("{:.3g} % of the objects", 100 * m.motion->at_rest));
     if (m.turnover > 0) add("turnover", fmt::format("{:.3g} % of the objects come or go per frame", 100 * m.turnover));
     return measured;

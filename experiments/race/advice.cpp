@@ -92,7 +92,7 @@ std::vector<std::string> faster_at_other_lengths(const race_result& race) {
             faster = &other;
         }
         if (faster)
-            parts.push_back(fmt::format("with {} than about {:.0f} frames it would be {}", is_fewer ? "fewer" : "more",
+            parts.push_back(fmt::format("{} about {:.0f} frames, {} would be faster", is_fewer ? "below" : "above",
                                         is_fewer ? low : high, faster->name));
     }
     if (parts.empty()) parts.emplace_back("no other candidate is shown to be faster with fewer or more frames");

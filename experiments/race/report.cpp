@@ -57,10 +57,14 @@ table unfinished_table_of(const race_result& race) {
 }
 
 std::vector<std::string> legend() {
-    return {"all ms: build ms, first ms (frame 0) and the time of all further frames; the median of the repeats.",
-            "ratio: all ms relative to the fastest candidate in the same repeat, the median, with its 95 % confidence "
-            "interval; -: the fastest itself, or too few repeats.",
-            ms_per_frame_text, build_ms_text};
+    return {
+        "all ms: build ms, first ms (frame 0) and the time of all further frames. All times are those of the repeat "
+        "with the median of all ms.",
+        "ratio: all ms divided by that of candidate 1 in the same repeat, the median over repeats, with its 95 % "
+        "confidence interval; -: candidate 1 itself, or too few repeats.",
+        ms_per_frame_text, build_ms_text,
+        "KiB: memory without the meshes. From how many frames on another candidate is faster follows from the "
+        "median differences in the same repeat."};
 }
 
 /// The report as HTML: the advice, then what it rests on: ranking, measures of the scene, dropped candidates, machine.
@@ -108,9 +112,9 @@ int recommend(const recommend_request& request) {
     const std::string name = heading_of(scene.choice());
     print_paragraph(name + ": " + counted(race.objects, "object") + ", " + counted(race.frames, "frame"));
     print_paragraph(
-        fmt::format("{} of {} candidates reached the final; early stopping reduced the frames that ran to {:.0f} %",
+        fmt::format("{} of {} candidates reached the final round; early stopping saved {:.0f} % of the frames",
                     race.finalists.size(), race.finalists.size() + race.dropped.size() + race.wrong.size(),
-                    100 * static_cast<double>(race.frames_run) / static_cast<double>(race.frames_of_all)));
+                    100 - 100 * static_cast<double>(race.frames_run) / static_cast<double>(race.frames_of_all)));
     print("\n" + to_text(table_of(race), output_width()) + "\n");
     for (const std::string& line : legend()) print_paragraph(line);
     print("\n");

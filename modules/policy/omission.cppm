@@ -21,10 +21,9 @@ enum class absence : std::uint8_t {
 };
 
 inline constexpr std::array absence_texts = std::to_array<std::string_view>(
-    {"no partition", "no sort", "no projection list of the x axis", "no projection list of the y axis",
-     "no projection list of the z axis", "no projection lists beside those of the sweep itself", "no Verlet list",
-     "no division of large objects", "no local detection", "no boxes of single triangles", "no node indices",
-     "no work counters"});
+    {"partition", "sort", "projection list of the x axis", "projection list of the y axis",
+     "projection list of the z axis", "projection lists beside those of the sweep itself", "Verlet list",
+     "division of large objects", "local detection", "boxes of single triangles", "node indices", "work counters"});
 static_assert(absence_texts.size() == static_cast<std::size_t>(absence::counters) + 1);
 
 [[nodiscard]] inline std::string to_text(absence feature) {
@@ -38,7 +37,7 @@ struct omission {
 
     bool operator==(const omission&) const = default;
 };
-/// "no sort: so few boxes are tested by brute force"
+/// "sort: so few boxes are tested by brute force"
 [[nodiscard]] inline std::string to_text(const omission& o) {
     return to_text(o.feature) + (o.reason.empty() ? "" : ": ") + std::string(o.reason);
 }

@@ -137,7 +137,7 @@ public:
                                     {{{"pairs", static_cast<double>(list_.size())}, {"margin", margin_}}}}});
         else if (state_ == state::resting)
             stage_plans.push_back(
-                {plan_kind::static_frame, {"the pairs of an earlier frame, since nothing has moved"}});
+                {plan_kind::static_frame, {"the pairs of the last frame that was searched, until a box moves"}});
         return stage_plans;
     }
 

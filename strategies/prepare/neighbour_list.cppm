@@ -50,8 +50,7 @@ struct neighbour_list_prepare {
         if (scene.frames < fewest)
             return {.because = {{"fewer than {frames} frames: a Verlet list would not be worth its cost",
                                  {{{"frames", fewest}}}}}};
-        return {.serves = true,
-                .because = {{"frames follow each other: a Verlet list is kept while boxes move little"}}};
+        return {.serves = true, .because = {{"frames are coherent: a Verlet list is kept while boxes move little"}}};
     }
 
     neighbour_list_prepare() = default;

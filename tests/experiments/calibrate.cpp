@@ -163,8 +163,8 @@ TEST_CASE("What is wrong in a file of costs is said with its line") {
 
 TEST_CASE("The program plans by the costs that are kept, and says so") {
     const configured shipped;
-    CHECK(
-        shipped.run({"explain", "icosphere", "icosphere"}).out.starts_with("strategies plan with costs as shipped\n"));
+    CHECK(shipped.run({"explain", "icosphere", "icosphere"})
+              .out.starts_with("cost model: the shipped operation costs (aabblab calibrate measures yours)\n"));
     REQUIRE(shipped.run_experiment().status == 0);
     CHECK(shipped.costs_of_run()["source"] == "shipped");
     CHECK(shipped.costs_of_run()["ns"]["search_pair"] == aabb::cost_model{}.search_pair);
@@ -173,7 +173,7 @@ TEST_CASE("The program plans by the costs that are kept, and says so") {
     const program_result explained = kept.run({"explain", "icosphere", "icosphere"});
     CHECK(explained.status == 0);
     CHECK(explained.err.empty());
-    CHECK(explained.out.starts_with("strategies plan with costs calibrated 20"));
+    CHECK(explained.out.starts_with("cost model: operation costs calibrated 20"));
     CHECK(holds(explained.out, kept.file().string()));
     REQUIRE(kept.run_experiment().status == 0);
     const nlohmann::json costs = kept.costs_of_run();
@@ -199,7 +199,8 @@ TEST_CASE("Costs of another processor, instruction set or version are left alone
         CHECK(is_one_sentence(explained.err));
         CHECK(holds(explained.err,
                     "so the shipped costs are used until aabblab calibrate measures those of this machine"));
-        CHECK(explained.out.starts_with("strategies plan with costs as shipped\n"));
+        CHECK(
+            explained.out.starts_with("cost model: the shipped operation costs (aabblab calibrate measures yours)\n"));
     }
 }
 
