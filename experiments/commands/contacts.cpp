@@ -36,8 +36,8 @@ std::string text_of(const contacts_request& request, const search_method& method
            fmt::format("{} of triangles in {} of objects ({} of boxes), digest {}\n",
                        counted(result.contacts, "contact"), counted(result.object_pairs, "contact"),
                        counted(result.pairs, "pair"), result.digest) +
-           fmt::format("{}: built in {:.3f} ms, {:.3f} ms per frame (mean)\n", method.text(), result.build_ms,
-                       result.mean_ms());
+           fmt::format("{}: built in {:.3f} ms,\n{:.3f} ms per frame (mean, with frame 0)\n", method.text(),
+                       result.build_ms, result.mean_ms());
 }
 
 void find_contacts(const contacts_request& request) {

@@ -32,7 +32,8 @@ std::string text_of(const pairs_request& request, const search_method& method, c
         fmt::format("{}: {}, {}\n{}, digest {}\n", visible(request.recording), counted(result.objects, "object"),
                     counted(result.ms.size(), "frame"), counted(result.pairs, "overlapping pair"), result.digest);
     // The mean, not the median: a Verlet list is rebuilt in few frames and reused in all others.
-    if (!result.ms.empty()) text += fmt::format("{}: {:.4g} ms per frame (mean)\n", method.text(), result.mean_ms());
+    if (!result.ms.empty())
+        text += fmt::format("{}: {:.4g} ms per frame (mean, with frame 0)\n", method.text(), result.mean_ms());
     return text;
 }
 

@@ -42,7 +42,7 @@ std::vector<error_point> measure_errors(const error_study& study,
 enum class pair_group : std::uint8_t { of_floats, of_doubles, of_meshes };
 /// The groups that occur, in the order of the enumeration.
 [[nodiscard]] std::vector<pair_group> groups_in(std::span<const error_point> points);
-/// "generated triangles of floats"
+/// "generated triangle pairs with float coordinates"
 [[nodiscard]] std::string_view title_of(pair_group group);
 
 /// Each method over all sets of a group: its error rates, and the mean over the sets of the time per pair.

@@ -256,8 +256,9 @@ std::vector<pair_group> groups_in(std::span<const error_point> points) {
 }
 
 std::string_view title_of(pair_group group) {
-    constexpr std::array titles{"generated triangles of floats", "generated triangles of doubles",
-                                "triangles of meshes whose boxes overlap"};
+    constexpr std::array titles{"generated triangle pairs with float coordinates",
+                                "generated triangle pairs with double coordinates",
+                                "triangle pairs of meshes whose boxes overlap"};
     return titles[static_cast<std::size_t>(group)];
 }
 

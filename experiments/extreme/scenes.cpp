@@ -59,11 +59,11 @@ extreme_list all_extreme_scenes(aabb::extreme_size size) {
         if (is_mesh(file, /*folder=*/{}))
             list.scenes.push_back(scene_of(file));
         else
-            absent += (absent.empty() ? "" : " and ") + file;
-    if (!absent.empty()) list.notes.push_back("left out: " + absent + ", which ./aabblab data downloads");
+            absent += (absent.empty() ? "" : ", ") + file;
+    if (!absent.empty()) list.notes.push_back("skipped, as missing: " + absent + " (./aabblab data gets them)");
     if (!aabb::can_flush_denormals())
         list.notes.emplace_back(
-            "left out: threads that flush denormals, because the program cannot make this processor do so");
+            "skipped: threads that flush denormals, because the program cannot make this processor do so");
     return list;
 }
 

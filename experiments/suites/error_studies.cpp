@@ -14,12 +14,12 @@ namespace {
 void print_tables(std::span<const error_point> points) {
     for (const pair_group group : groups_in(points)) {
         print(
-            fmt::format("In {}:\nshares of wrong results among all pairs, of false negatives among intersecting\n"
-                        "ones, of false positives among the others; fewest wrong first\n\n{}\n",
+            fmt::format("In {}:\nwrong: share of all pairs; FN: false negatives, share of intersecting pairs;\n"
+                        "FP: false positives, share of disjoint pairs; fewest wrong first\n\n{}\n",
                         title_of(group), to_text(error_summary(points, group), output_width())));
-        print(fmt::format("By set, false negatives + false positives as shares of all pairs\n\n{}\n",
+        print(fmt::format("By set: FN + FP, here both as shares of all pairs\n\n{}\n",
                           to_text(errors_by_set(points, group), output_width())));
-        print(group_statement(points, group) + "\n\n");
+        print(wrapped(group_statement(points, group)) + "\n\n");
     }
 }
 
@@ -83,7 +83,7 @@ std::vector<std::string> measure_study(const error_study& study, const std::file
             run_experiment(*study.scene_experiment, folder, existing_results::replace, "the same command", shown);
         if (shown != printed::nothing) {
             const std::vector<scene_summary> scenes = summarise(read_rows(folder / "results.csv"));
-            for (const std::string& text : metric_statements(study, scenes)) print(text + "\n\n");
+            for (const std::string& text : metric_statements(study, scenes)) print(wrapped(text) + "\n\n");
             draw(folder / "figures", metric_figures(study, scenes));
         }
     } else if (!study.curves.empty()) {

@@ -18,7 +18,8 @@ namespace {
 /// The tables of the report on the extreme scenes, without empty ones.
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
     std::vector<named_table> tables = {
-        {"extreme_boxes", "Boxes, compared with the definition in a double loop", scene_table(rows, row_group::boxes)},
+        {"extreme_boxes", "Boxes, compared with a brute-force test of every pair of boxes",
+         scene_table(rows, row_group::boxes)},
         {"extreme_meshes", "Meshes, compared with CGAL's exact kernel; -false negatives +false positives",
          scene_table(rows, row_group::meshes)},
         {"extreme_tests", "Meshes, by inexact triangle tests", inexact_scene_table(rows)},
@@ -143,6 +144,9 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     suite_report report = report_of(rows);
     write_file(folder / "extreme.csv", csv_of(rows));
     if (shown) {
+        print(
+            "exact: the same pairs as the ground truth, found by all compositions in that number\n"
+            "rejected: invalid input, rejected as it must be; -: not run, or no error\n\n");
         for (const named_table& t : report.tables)
             print(t.caption + "\n\n" + to_text(t.content, output_width()) + "\n");
         for (const std::string& sentence : report.paragraphs) print(sentence + "\n");

@@ -213,6 +213,7 @@ TEST_CASE("Meshes that are not there are replaced by what the config names, and 
     REQUIRE(e.scenes[0].meshes == std::vector<std::string>{"icosphere:triangles=20", "torus_knot:triangles=96"});
     REQUIRE(e.notes.size() == 1);
     REQUIRE(e.notes[0].starts_with("no_such.off does not exist"));
+    REQUIRE(e.notes[0].ends_with(" in line 2 uses icosphere:triangles=20, torus_knot:triangles=96 instead"));
     REQUIRE(rejection_of(scene).find("test.toml:2: ") == 0);
     REQUIRE(holds(rejection_of(scene), "no_such.off"));
 }
