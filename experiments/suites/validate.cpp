@@ -145,8 +145,8 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     write_file(folder / "extreme.csv", csv_of(rows));
     if (shown) {
         print(
-            "exact: the same pairs as the ground truth, found by all compositions in that number\n"
-            "rejected: invalid input, rejected as it must be; -: not run, or no error\n\n");
+            "exact: the same pairs as the ground truth; rejected: invalid input, rejected as\n"
+            "it must be; a number counts compositions or tests; -: not run, or no error\n\n");
         for (const named_table& t : report.tables)
             print(t.caption + "\n\n" + to_text(t.content, output_width()) + "\n");
         for (const std::string& sentence : report.paragraphs) print(sentence + "\n");
