@@ -191,12 +191,10 @@ void add_collide(const command_parser& program) {
     command.option("--repeat N", take_repeats, "Search N times, at all poses in turn; --json lists the time of each");
     command.option("--out FILE", &request.out,
                    "CSV file for pairs: a,b; with --self a,b,shared_vertices; --self=apart a,b; --poses pose,a,b");
-    command.flag(
-        "--geometry", &request.geometry,
-        "Add to each pair the intersection of its triangles, in world coordinates: kind, vertices, error bound");
-    command.flag(
-        "--exit-code", &request.exit_code,
-        "Exit with status 1, as diff does, if triangles intersect; with --self, if any that share no vertex do");
+    command.flag("--geometry", &request.geometry,
+                 "Add to each pair the triangles' intersection, in world coordinates: kind, vertices, error bound");
+    command.flag("--exit-code", &request.exit_code,
+                 "Exit with status 1 (as diff) if triangles intersect; with --self, if any that share no vertex do");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

@@ -65,18 +65,16 @@ void add_contacts(const command_parser& program) {
         "contacts",
         "Run both phases on moving meshes: find the intersecting triangles of each frame and pair of objects");
     auto& request = command.set_action(find_contacts);
-    command.argument(
-        "MOTION", &request.motion,
-        "Text file with a line per frame and object: frame, object and 12 numbers, the rows of the pose [R t]");
+    command.argument("MOTION", &request.motion,
+                     "Text file with lines of frame, object and 12 numbers, the rows of the pose [R t]");
     command.argument(
         "MESH", &request.meshes,
         "Mesh files (OFF, OBJ, PLY, STL, glTF) or shapes; object i has mesh i modulo the number of meshes");
     request.method.add_to(command, "build, tree and triangle test");
     command.option("--out FILE", &request.out,
                    "CSV file for the contacts: rows frame,object_a,object_b,triangle_a,triangle_b");
-    command.flag(
-        "--geometry", &request.geometry,
-        "Add to each contact the intersection of its triangles, in world coordinates: kind, vertices, error bound");
+    command.flag("--geometry", &request.geometry,
+                 "Add to each contact the triangles' intersection, in world coordinates: kind, vertices, error bound");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

@@ -174,15 +174,11 @@ void add_list(const command_parser& program) {
                               fmt::format("List only this kind: one of {}", fmt::join(section_names(), ", ")));
     command.flag("--json", &request.json, "Print the list as JSON");
     command.footer(
-        "prepare, sort, partition, sweep: strategies of the broad phase\n"
-        "build, tree, triangle: strategies of the narrow phase\n"
-        "engines: reference systems, such as CGAL, that run the same scenes\n"
-        "library_tests: triangle tests of the engines' libraries, for classify and errors\n"
-        "integrators: time integration methods of validate stiff\n"
-        "scenes: generated or recorded scenes; shapes: generated meshes, in place of files\n"
-        "pairs: classes of generated triangle pairs, for errors\n"
-        "recorded: groups of columns that a run can record\n"
-        "metrics: quantities that are computed from recorded columns");
+        "prepare … sweep: strategies of the broad phase\nbuild … triangle: strategies of the narrow phase\n"
+        "engines: reference systems\nlibrary_tests: triangle tests of their libraries, for classify and errors\n"
+        "integrators: time integration methods of validate stiff\nscenes: generated or recorded scenes\n"
+        "shapes: generated meshes\npairs: classes of generated triangle pairs, for errors\n"
+        "recorded: groups of columns that a run records\nmetrics: quantities computed from these columns");
 }
 
 }  // namespace aabblab

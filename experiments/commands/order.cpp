@@ -53,9 +53,8 @@ void add_order(const command_parser& program) {
     command.option("--numbers FILE", &request.numbers, "CSV file for the original indices: rows triangle,was");
     command.footer(
         "For such a mesh, the build file_order with the tree implicit:vertices=fetched gives a tree of 1.2 bytes per "
-        "triangle. "
-        "collide, contacts and configs also accept FILE:order=BUILD and SHAPE:triangles=N,order=BUILD, which need no "
-        "file. Sorting again changes the order again, because a build depends on the original order.");
+        "triangle. collide, contacts and configs also accept FILE:order=BUILD and SHAPE:triangles=N,order=BUILD, which "
+        "need no file. Sorting again changes the order again, because a build depends on the original order.");
 }
 
 }  // namespace aabblab

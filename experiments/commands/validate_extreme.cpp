@@ -33,9 +33,9 @@ void add_validate_extreme(const command_parser& program) {
         program.command("validate")
             .add_command("extreme", "Validate extreme scenes, invalid input, rounding modes and hard triangle pairs");
     command.footer([] {
-        std::string text = "Scenes, whose results must be exact unless the scene must be rejected:\n";
+        std::string text = "Scenes, whose results must be exact unless they are 'rejected':\n";
         for (const aabb::extreme_scene& scene : all_extreme_scenes(aabb::extreme_size::full).scenes)
-            text += entry(scene.name, scene.summary);
+            text += entry(scene.name, scene.summary + (scene.rejection.empty() ? "" : ": rejected"));
         return text.substr(0, text.size() - 1);  // the parser prints the last line end
     });
     auto& request = command.set_action(validate_extreme);

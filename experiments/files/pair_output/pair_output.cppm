@@ -30,8 +30,7 @@ void require_each_once(std::span<const aabb::contact> contacts, std::string_view
 [[nodiscard]] std::string to_cells(const aabb::triangle_intersection& common);
 /// The column names of `to_cells`.
 inline constexpr std::string_view intersection_columns =
-    "kind,corners,error_x,error_y,error_z,"
-    "x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4,x5,y5,z5,x6,y6,z6";
+    "kind,corners,error_x,error_y,error_z,x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4,x5,y5,z5,x6,y6,z6";
 
 /// A CSV file of integers, which appears only when it is committed.
 class number_table {

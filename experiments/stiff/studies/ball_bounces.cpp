@@ -104,19 +104,18 @@ stiff_result run_ball_bounces(const stiff_setting& setting) {
 }
 
 stiff_study ball_bounces_study() {
-    return {
-        "ball_bounces",
-        "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring, without a dashpot and with one for a "
-        "restitution of 0.5, at dt·ω = 0.05 and stiffness 1e4 to 1e10 N/m. Errors are relative to the greatest depth "
-        "and to the speed of impact",
-        "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²)), with "
-        "ω = √(k/m) and the damping ratio ζ",
-        &run_ball_bounces,
-        {figure{.name = "ball_error_over_step",
-                .caption = "Error of the ball's position and velocity during contact over the step size. It falls "
-                           "with the order of each integrator.",
-                .x = {"step times angular frequency", /*logarithmic=*/true},
-                .y = {"greatest error (relative to the motion)", /*logarithmic=*/true}}}};
+    return {"ball_bounces",
+            "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring, without a dashpot and with one for "
+            "a restitution of 0.5, at dt·ω = 0.05 and k = 1e4 to 1e10 N/m. Errors are relative to the greatest depth "
+            "and speed",
+            "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²)), with "
+            "ω = √(k/m) and the damping ratio ζ",
+            &run_ball_bounces,
+            {figure{.name = "ball_error_over_step",
+                    .caption = "Error of the ball's position and velocity during contact over the step size. It falls "
+                               "with the order of each integrator.",
+                    .x = {"step times angular frequency", true},
+                    .y = {"greatest error (relative to the motion)", true}}}};
 }
 
 }  // namespace aabblab

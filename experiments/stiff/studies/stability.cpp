@@ -141,12 +141,10 @@ stiff_study stability_study() {
     return {
         "stability",
         "A ball of 1 kg oscillates on a floor about its equilibrium depth, always in contact, without a dashpot. The "
-        "study "
-        "measures the drift of its energy and the greatest stable step",
+        "study measures the drift of its energy and the greatest stable step",
         "central differences are stable up to dt·ω = 2, with ω = √(k/m); the stability polynomial of Dormand and "
-        "Prince "
-        "(1980) exceeds 1 in modulus beyond 0.9972 on the imaginary axis; the usual advice for the discrete element "
-        "method is a step of 5 to 10 % of the contact time, dt·ω 0.157 to 0.314",
+        "Prince (1980) exceeds 1 in modulus beyond 0.9972 on the imaginary axis; the usual advice for the discrete "
+        "element method is a step of 5 to 10 % of the contact time, dt·ω 0.157 to 0.314",
         &run_stability,
         {figure{.name = "energy_drift",
                 .caption = "Relative drift of a ball's energy over 1000 periods (100 with --quick) in contact, without "
