@@ -52,8 +52,7 @@ struct atlas_scene {
     [[nodiscard]] double number(std::string_view parameter) const;
 };
 
-/// The scenes without `columns`, which wins nearly everywhere, and without `auto`, which selects it: the choice among
-/// classic strategies.
+/// The scenes without `columns`, which wins nearly everywhere, and without `auto`, which selects it.
 [[nodiscard]] std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas);
 
 /// The logarithm of the ratio of two candidates' times, over the repeats that both have.

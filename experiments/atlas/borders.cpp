@@ -22,8 +22,7 @@ std::string settings_without(const scene_choice& scene, std::string_view paramet
     return settings_text(others);
 }
 
-/// The fraction of the way between two scenes at which the interpolated logarithm of a ratio of times is 0, with a 95 %
-/// interval, by drawing both ends from their normal distributions.
+/// The fraction of the segment at which the interpolated log ratio is 0, and its 95 % interval by sampling both ends.
 std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
     const auto share = [](double a, double b) { return a == b ? 0.5 : std::clamp(a / (a - b), 0.0, 1.0); };
     constexpr std::size_t draws = 2000;

@@ -38,9 +38,8 @@ void add_errors(const command_parser& program) {
     auto& request = command.set_action(run);
     command.optional_argument(
         "CONFIG", &request.config,
-        "Config of a study: methods and input (default experiments/configs/errors/triangle_tests.toml)");
-    command.option("--out DIR", &request.out,
-                   "Folder of tables and plots (default results/errors-NAME; NAME: the config's name)");
+        "Config of a study: its NAME, methods and input (default experiments/configs/errors/triangle_tests.toml)");
+    command.option("--out DIR", &request.out, "Folder of tables and plots (default results/errors-NAME)");
     command.flag("--quick", &request.quick, "Use fewer pairs, for a first look");
 }
 

@@ -38,9 +38,8 @@ void add_run(const command_parser& program) {
     const command_parser command =
         program.add_command("run", "Run an experiment: validate, then time, every composition in every scene");
     auto& request = command.set_action(run);
-    command.argument("CONFIG", &request.config, "Config of the experiment (.toml)");
-    command.option("--out DIR", &request.out,
-                   "Folder of the results (default results/NAME, or results/NAME-quick; NAME: the config's name)");
+    command.argument("CONFIG", &request.config, "Config of the experiment (.toml), with its NAME");
+    command.option("--out DIR", &request.out, "Folder of the results (default results/NAME, or results/NAME-quick)");
     command.flag("--quick", &request.quick, "Apply the quick settings of the config, for a first look");
     command.flag("--resume", &request.resume, "Skip runs whose results are in the folder already");
     command.flag("--counts", &request.counts, "Also print the work of each composition, and the bytes of its parts");

@@ -90,7 +90,7 @@ int line_of_failed_assertion(std::string_view text) {
     return static_cast<int>(first - ends.begin()) + 1;
 }
 
-/// Skips up to `most` quotes after `end`: a multi-line string may end in quotes of its own before the closing ones.
+/// Skips up to `most` more quotes after `end`: a multi-line string may end in quotes before the closing ones.
 std::size_t end_of_quotes(std::string_view text, std::size_t end, std::size_t most) {
     const std::size_t last = std::min(end + most, text.size());
     while (end < last && text[end] == text[end - 1]) ++end;

@@ -85,9 +85,8 @@ std::vector<std::string> meshes_of(const document& doc, const node& scene, std::
     if (const node* listed = scene.find("meshes"))
         doc.at_line(listed->line, [&] { missing = std::ranges::find_if_not(meshes, exists); });
     if (fallback.empty() || missing == meshes.end()) return meshes;
-    std::string note = std::string(name_without_order(*missing, doc.folder())) +
-                       " does not exist (./aabblab data gets it), so the scene in line " + std::to_string(scene.line) +
-                       " uses";
+    std::string note(name_without_order(*missing, doc.folder()));
+    note += " does not exist (./aabblab data gets it), so the scene in line " + std::to_string(scene.line) + " uses";
     for (const std::string& mesh : fallback) note += (&mesh == fallback.data() ? " " : ", ") + mesh;
     notes.push_back(note + " instead");
     return fallback;

@@ -28,8 +28,7 @@ struct extreme_row {
     [[nodiscard]] std::string full_name() const { return candidate + (precision.empty() ? "" : " in " + precision); }
 };
 
-/// The scenes of `aabb::extreme_scenes`, every class of generated pairs as two meshes, and real meshes with zero-area
-/// triangles.
+/// The scenes of `aabb::extreme_scenes`, every class of generated pairs as two meshes, and degenerate meshes.
 struct extreme_list {
     std::vector<aabb::extreme_scene> scenes;
     std::vector<std::string> notes;  ///< a sentence per omission
@@ -49,8 +48,7 @@ struct extreme_list {
 /// One row per class of cases: exact tests in one column, compositions in another, then engines.
 [[nodiscard]] table case_table(std::span<const extreme_row> rows);
 
-/// The errors of inexact triangle tests, one column per test; scenes, or classes of cases, without errors are
-/// omitted.
+/// The errors of inexact triangle tests, one column per test; scenes or classes without errors are omitted.
 [[nodiscard]] table inexact_scene_table(std::span<const extreme_row> rows);
 [[nodiscard]] table inexact_case_table(std::span<const extreme_row> rows);
 

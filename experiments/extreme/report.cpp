@@ -61,8 +61,7 @@ std::string sum_cell(const row_list& rows) {
     return std::to_string(candidates.size()) + (rejected ? " rejected" : " exact");
 }
 
-/// The cell of one candidate: "exact", "rejected", "WRONG", or its counts of errors if it may be inexact; "-" if it was
-/// not run.
+/// The cell of one candidate: "exact", "rejected", "WRONG", or counts of errors if it may be inexact; "-" if not run.
 std::string cell_of(const row_list& rows) {
     if (rows.empty()) return "-";
     std::uint64_t false_negatives = 0, false_positives = 0;

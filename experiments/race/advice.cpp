@@ -50,7 +50,7 @@ struct break_even {
 };
 
 /// Where the total times of two candidates are equal: n frames take t1 + (n - 1) s, with t1 the time up to frame 0 and
-/// s that of each further frame, so n = 1 - (difference of t1) / (difference of s). Empty if repeats do not show it.
+/// s that of each further frame, so n = 1 - (difference of t1) / (difference of s). Empty if not significant.
 std::optional<break_even> break_even_of(const racer& other, const racer& winner) {
     if (!other.has_range()) return std::nullopt;
     const auto begin = significant_difference(other, winner, [](const observation& t) { return t.over(1); });

@@ -58,13 +58,12 @@ table unfinished_table_of(const race_result& race) {
 
 std::vector<std::string> legend() {
     return {
-        "all ms: build ms, first ms (frame 0) and the time of all further frames. All times are those of the repeat "
-        "with the median of all ms.",
+        "all ms: build ms, first ms (frame 0) and all further frames. All times are of the repeat with the median all "
+        "ms.",
         "ratio: all ms divided by that of candidate 1 in the same repeat, the median over repeats, with its 95 % "
         "confidence interval; -: candidate 1 itself, or too few repeats.",
         ms_per_frame_text, build_ms_text,
-        "KiB: memory without the meshes. From how many frames on another candidate is faster follows from the "
-        "median differences in the same repeat."};
+        "KiB: memory without meshes. Numbers of frames where another is faster: from median differences in a repeat."};
 }
 
 /// The report as HTML: the advice, then what it rests on: ranking, measures of the scene, dropped candidates, machine.

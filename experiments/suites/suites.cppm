@@ -1,5 +1,4 @@
-/// Runs experiments, studies of errors, the atlas and the suites of `validate`, reports progress, and stores the
-/// results in a folder.
+/// Runs experiments, studies of errors, the atlas and the suites of `validate`, reports progress and stores results.
 export module aabblab.suites;
 
 import aabb.std;

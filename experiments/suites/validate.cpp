@@ -18,8 +18,7 @@ namespace {
 /// The tables of the report on the extreme scenes, without empty ones.
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
     std::vector<named_table> tables = {
-        {"extreme_boxes", "Boxes, compared with a brute-force test of every pair of boxes",
-         scene_table(rows, row_group::boxes)},
+        {"extreme_boxes", "Boxes, compared with a test of every pair of boxes", scene_table(rows, row_group::boxes)},
         {"extreme_meshes", "Meshes, compared with CGAL's exact kernel; -false negatives +false positives",
          scene_table(rows, row_group::meshes)},
         {"extreme_tests", "Meshes, by inexact triangle tests", inexact_scene_table(rows)},

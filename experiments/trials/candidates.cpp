@@ -194,7 +194,7 @@ class external_search final : public aabb::global_stage {
 public:
     /// Runs the engine on all frames at once; `update` then advances through the pairs that it wrote.
     /// @param times receives the reported times, by frame
-    /// @throws engine_timeout; aabb::input_error if the engine cannot be started or fails, or its times are malformed
+    /// @throws engine_timeout, and aabb::input_error if the engine fails or reports malformed times
     external_search(const external_engine& engine, exchange_folder& exchange, std::vector<reported_times>& times)
         : place_(engine.place + ": " + exchange.scene_text() + ": "), name_("external engine '" + engine.name + "'") {
         with_place([&] {

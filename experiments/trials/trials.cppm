@@ -345,7 +345,7 @@ struct interleaved_runs {
 /// Combines an engine of one stage with the default composition of the other; empty if it cannot run the scene.
 [[nodiscard]] std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes);
 
-/// The candidates of a scene: compositions of the experiment, then engines, then, for boxes, external engines.
+/// The candidates of a scene: the experiment's compositions, then its engines, then, for boxes, external engines.
 [[nodiscard]] std::vector<candidate> candidates_for(const experiment& e, const scene_choice& scene);
 
 /// The untimed result of a candidate compared with the ground truth: a row with everything that a run may record.

@@ -115,8 +115,7 @@ private:
         return image_;
     }
 
-    /// The box of a child of B's node in A's frame. For a leaf without a box it is its parent's, or with
-    /// `triangle_aabb` that of its transformed triangle.
+    /// The box of a child of B's node in A's frame. A leaf without a box uses its parent's or its triangle's.
     template <class Frame>
     [[nodiscard]] box bounds_in_a(const model<Tree>& b, const Frame& to_a, const cursor& child, const box& parent) {
         if constexpr (!Tree::has_leaf_boxes)

@@ -1,6 +1,5 @@
 /// The standard library as a module, until libstdc++ provides `import std`. It exports only the names that the project
-/// uses; missing ones are added to the lists. Macros (`assert`, `INFINITY`, `stderr`) and placement `new` still need
-/// their headers.
+/// uses; missing ones are added to the lists. Macros (`assert`, `INFINITY`, `stderr`) and placement `new` need headers.
 module;
 #include <algorithm>
 #include <array>

@@ -217,7 +217,7 @@ private:
     }
 
     /// Splits in two passes over the items: the histogram yields the bin in which the split lies, then each item is
-    /// moved below, into or above that bin, and only that bin is sorted. The order within each side is kept.
+    /// moved below, into or above that bin, and only the items of that bin are sorted. Each side keeps its order.
     void split_by_histogram(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
                             std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers,
                             std::span<share> shares) const {

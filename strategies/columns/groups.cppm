@@ -17,9 +17,8 @@ struct column_group {
 /// depend on the number of threads.
 class column_groups {
 public:
-    /// Turns a plan of columns into the grid of groups (cache-sized regions, each cut into columns separately): as many
-    /// as planned, in the proportion of the columns, and no more than those on each axis. If these are less than half,
-    /// as for boxes along a line, groups are cut along the columns instead of the axis with fewer of them.
+    /// The grid of groups: as many as planned, in the proportion of the columns, and no more than those on each axis.
+    /// If these are too few, as for boxes along a line, groups are cut along the columns, not the axis with fewer.
     [[nodiscard]] static column_plan group_grid(column_plan plan) {
         const double groups = plan.groups;
         const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;

@@ -23,8 +23,7 @@ export namespace aabb {
 
 /// The factor by which the number of overlapping pairs grows with the margin of the boxes. For uniformly spread boxes,
 /// the number is proportional to the mean over pairs of the product of their summed extents on the three axes, a
-/// polynomial in the margin. An axis on which boxes lie closer together than their extents is ignored: they overlap on
-/// it anyway.
+/// polynomial in the margin. An axis on which boxes lie closer than their extents is ignored: they overlap anyway.
 class growth_of_pairs {
 public:
     growth_of_pairs() = default;

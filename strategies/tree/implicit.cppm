@@ -42,10 +42,10 @@ public:
     template <class Triangle, class Counters>
     using walk = front_walk<implicit_tree, Triangle, Counters>;
 
-    /// Chooses how vertices are read and whether fronts are kept. Vertices are fetched if there are few queries and the
-    /// meshes are not large. Vertex lists take about half as long to write as `sah` takes longer than `median`. They
-    /// speed up a query by a tenth if the two meshes have 150,000 triangles, whose vertices exceed the L2 cache, and by
-    /// less for fewer. Fronts are kept over several frames, unless so many pairs of objects would evict each other's.
+    /// Vertices are fetched if there are few queries and the meshes are not large. Vertex lists take about half as long
+    /// to write as `sah` takes longer than `median`. They speed up a query by a tenth if the two meshes have 150,000
+    /// triangles, whose vertices exceed the L2 cache, by less for fewer triangles, and hardly if these fit into it.
+    /// Fronts are kept over several frames, unless a frame has more pairs of objects than fronts: these would thrash.
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         constexpr double most_fetched_of_two = 200'000;
         constexpr std::size_t least_of_front = least_leaves_of_front * balanced_order::leaf_triangles;

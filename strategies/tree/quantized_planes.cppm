@@ -14,8 +14,7 @@ export namespace aabb {
 /// plane + q * step, in float, with product and sum rounded separately. Both are monotone in q, and decoded(0) is the
 /// parent's plane, so that bisection finds the greatest q that does not cut the child, by comparing the decoded plane
 /// with the child's. Only this comparison makes boxes conservative, whatever is rounded, underflows or overflows: a
-/// step is the difference of two planes times 2^-bits, hence finite, and a q whose product overflows fails the
-/// comparison.
+/// step is the difference of two planes times 2^-bits, hence finite; a q that overflows fails the comparison.
 class quantized_planes {
 public:
     static constexpr unsigned least_bits = 4;

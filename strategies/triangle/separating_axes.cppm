@@ -9,8 +9,7 @@ export namespace aabb {
 
 /// The separating axis test (Gottschalk, Lin and Manocha, "OBBTree", 1996; Ericson, "Real-Time Collision Detection",
 /// 2005, section 5.2.10) on 17 axes: the normals, the cross products of edges and, for coplanar triangles, the normals
-/// of edges. Inexact: rounded projections decide whether triangles touch. When to use: as the test of most engines, for
-/// comparison.
+/// of edges. Inexact: rounded projections decide whether triangles touch. When to use: to compare with most engines.
 class separating_axes_triangle : public test_in_precision<precision_choice::float32> {
 public:
     using test_in_precision::test_in_precision;

@@ -10,7 +10,8 @@ export namespace aabb {
 
 /// Traverses two trees simultaneously, level by level. Each step opens a batch of node pairs of the lowest level that
 /// has any, so that the pairs of a batch do not depend on each other and few pairs are pending. Leaves are read and
-/// transformed once for consecutive pairs, and their triangles are tested in batches.
+/// transformed once for consecutive pairs, and their triangles are tested in batches. First-pair queries use
+/// `nearest_walk`.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:

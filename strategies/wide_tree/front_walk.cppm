@@ -36,7 +36,7 @@ public:
 
 private:
     /// Tests only the pairs of the front if it is still valid, or of a new one if that is worth its cost; otherwise
-    /// walks from the roots. A first-pair query tries the last hit first, and builds a front only if there is no hit.
+    /// walks from the roots. A first-pair query tries the last hit first, and builds a front only if that fails.
     template <class Emit>
     void find_pairs_with_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
                                const relative_pose& to_a, walk_goal goal, const Emit& emit) {

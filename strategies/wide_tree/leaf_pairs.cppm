@@ -195,8 +195,7 @@ private:
     }
 
     /// Fits the missing slabs of B's leaves in these pairs. Slabs are fitted lazily, because many leaves have no
-    /// overlapping boxes, and for B's leaves, which are read less often: a node of B is opened with many nodes of A in
-    /// a row.
+    /// overlapping boxes, and for B's leaves, which are read less often: a node of B is opened with many of A in a row.
     inline void fit_missing_slabs(std::span<const std::uint32_t> leaves_b,
                                   std::span<const overlap> overlapping) noexcept {
         std::size_t missing = 0;

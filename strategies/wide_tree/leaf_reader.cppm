@@ -65,7 +65,7 @@ private:
 };
 
 /// Reads the leaves of pairs in groups that fit into two caches. It prefetches a group's vertex lists while the
-/// previous group is tested, and vertices a few leaves ahead: processors drop prefetches beyond some twenty in flight.
+/// previous group is tested, and vertices a few leaves ahead. Not all at once: processors drop more than some twenty.
 template <WideTreePolicy Tree>
 class leaf_reader {
 public:

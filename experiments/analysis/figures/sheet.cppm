@@ -1,5 +1,4 @@
-/// A figure as lines, areas and texts, independent of the file format. Positions are in ems of the font, from the left
-/// and lower edges.
+/// A figure as lines, areas and texts, independent of the file format. Positions are in ems from left and bottom.
 module aabblab.figures:sheet;
 
 import aabb.std;

@@ -60,8 +60,7 @@ class resample {
 public:
     resample(std::size_t processes, std::size_t seeds, level drawn, std::uint64_t random);
 
-    /// The mean over the cells of the median of their repeats; NaN if the condition was not measured. Empty cells are
-    /// skipped.
+    /// The mean over the non-empty cells of the median of their repeats; NaN if the condition was not measured.
     [[nodiscard]] double mean_of(const cells& measured) const;
 
 private:
@@ -107,7 +106,7 @@ enum class expectation : unsigned char {
     not_more  ///< it is not more than 1
 };
 
-/// The position of a ratio: relative to the equivalence band, 1/1.05 to 1.05, in `evidence_of`, or relative to 1 in
+/// The position of a ratio: relative to the equivalence band, 1/1.05 to 1.05, in `evidence_of`, or to 1 in
 /// `direction_of`.
 enum class outcome : unsigned char { less, same, more, undecided };
 
@@ -146,8 +145,7 @@ inline constexpr double one_sided = 0.025;
 /// The direction of a ratio: the same if it is significantly within the band, otherwise less or more if it is
 /// significantly on one side of 1, by however little. A ratio that may lie on either side of 1 is undecided.
 [[nodiscard]] outcome direction_of(const tails& p, double level = one_sided);
-/// The support for a claim. A ratio that is significantly not above the band favours a claim of not_more, whatever its
-/// direction.
+/// The support for a claim. A ratio significantly not above the band, in any direction, favours a claim of not_more.
 [[nodiscard]] support support_of(expectation expected, const tails& p, double level = one_sided);
 
 /// A claim about a ratio, with the measured p-values.
