@@ -58,8 +58,7 @@ table unfinished_table_of(const race_result& race) {
 
 std::vector<std::string> legend() {
     return {
-        "all ms: build ms, first ms (frame 0) and all further frames. All times are of the repeat with the median all "
-        "ms.",
+        "all ms: build ms, first ms (frame 0) and all further frames. Times are of the repeat with the median all ms.",
         "ratio: all ms divided by that of candidate 1 in the same repeat, the median over repeats, with its 95 % "
         "confidence interval; -: candidate 1 itself, or too few repeats.",
         ms_per_frame_text, build_ms_text,

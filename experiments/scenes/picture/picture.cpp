@@ -172,10 +172,11 @@ constexpr std::size_t most_outlined = 10;  // if more boxes are huge, none is ou
 
 // Blue and vermilion of Okabe and Ito (2008), which are distinguishable with any colour vision.
 constexpr std::string_view style =
-    "text{fill:#222}.name{font-size:18px;font-weight:bold}.title,.axis{font-weight:bold}.world{fill:none;stroke:#999}."
-    "tick{stroke:#999}.apart{fill:#0072b2;stroke:#0072b2;stroke-width:.6}.overlapping{fill:#d55e00;stroke:#d55e00;"
-    "stroke-width:.6}.huge{fill:none;stroke:#000;stroke-width:2.5;stroke-dasharray:8 "
-    "4}.way{fill:none;stroke:#000;stroke-width:1.2;stroke-opacity:.7}";
+    "text{fill:#222}.name{font-size:18px;font-weight:bold}.title,.axis{font-weight:bold}"
+    ".world{fill:none;stroke:#999}.tick{stroke:#999}"
+    ".apart{fill:#0072b2;stroke:#0072b2;stroke-width:.6}.overlapping{fill:#d55e00;stroke:#d55e00;stroke-width:.6}"
+    ".huge{fill:none;stroke:#000;stroke-width:2.5;stroke-dasharray:8 4}"
+    ".way{fill:none;stroke:#000;stroke-width:1.2;stroke-opacity:.7}";
 
 double extent_of(const aabb::box& b) {
     const int k = aabb::longest_axis(b);
