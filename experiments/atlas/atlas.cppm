@@ -26,7 +26,7 @@ struct atlas_candidate {
     std::vector<double> frame_ms{}, whole_ms{};
 
     [[nodiscard]] const std::vector<double>& times(atlas_time time) const {
-        return span == atlas_time::per_frame ? frame_ms : whole_ms;
+        return time == atlas_time::per_frame ? frame_ms : whole_ms;
     }
     /// The median over repeats.
     [[nodiscard]] double ms(atlas_time time) const { return quartiles_of(times(time)).median; }
@@ -44,7 +44,7 @@ struct atlas_scene {
     [[nodiscard]] const atlas_candidate* fastest_if(atlas_time time,
                                                     const std::function<bool(const atlas_candidate&)>& matches) const;
     [[nodiscard]] const atlas_candidate& fastest(atlas_time time) const {
-        return *fastest_if(span, [](const atlas_candidate&) { return true; });
+        return *fastest_if(time, [](const atlas_candidate&) { return true; });
     }
     /// The time of the fastest candidate, including `auto`.
     [[nodiscard]] double least_ms(atlas_time time) const;

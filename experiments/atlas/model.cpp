@@ -23,12 +23,8 @@ double pairs(const scene_measures& m) {
 }
 /// About the share of neighbours that are new in a frame: their relative motion in typical extents, at most 1.
 double renewed(const scene_measures& m) {
-    return m.motion && m.boxes.typical_extent > 0
-               ? std::min(1.0, m.motion->relative_displacement / m.boxes.typical_extent)
-               : 0;
-}
-double inversions(const scene_measures& m) {
-    return m.motion ? objects(m) * m.motion->inversions : 0;
+    if (!m.motion || m.boxes.typical_extent <= 0) return 0;
+    return std::min(1.0, m.motion->relative_displacement / m.boxes.typical_extent);
 }
 
 constexpr std::array<term, 9> terms{{
@@ -81,12 +77,12 @@ std::vector<candidate_model> models_of(const std::vector<atlas_scene>& atlas) {
     for (std::size_t i = 0; i < labels.size(); ++i) {
         const std::string& label = labels[i];
         shown.update(i);
-        const std::vector<timed_work> seen = observations_of(atlas, label, false);
-        if (seen.size() <= terms.size()) continue;
-        line_model m{label, fit_costs(seen), {}, {}};
-        m.seen = accuracy_of(seen, m.costs);
-        if (const std::vector<timed_work> unseen = observations_of(atlas, label, true); !unseen.empty())
-            m.unseen = accuracy_of(unseen, m.costs);
+        const std::vector<timed_work> in_map = observations_of(atlas, label, /*held_out=*/false);
+        if (in_map.size() <= terms.size()) continue;
+        candidate_model m{label, fit_costs(in_map)};
+        m.in_map = accuracy_of(in_map, m.costs);
+        if (const std::vector<timed_work> held_out = observations_of(atlas, label, true); !held_out.empty())
+            m.held_out = accuracy_of(held_out, m.costs);
         models.push_back(std::move(m));
     }
     return models;

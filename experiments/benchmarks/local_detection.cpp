@@ -231,7 +231,6 @@ struct triangle_aabb_test {
 };
 
 /// Möller's original of `triangle_box` (Akenine-Möller 2001), without the margin against false negatives by rounding.
-template <class Leaf>
 struct triangle_box_moller_test {
     static constexpr std::string_view name = "test/triangle_box_moller";
     static constexpr bool exact = false;

@@ -130,8 +130,8 @@ void use_calibrated_costs() {
 }
 
 std::string costs_in_force() {
-    if (loaded_date().empty()) return "the shipped operation costs (aabblab calibrate measures yours)";
-    return "operation costs calibrated " + loaded_date() + " (" + calibrated_costs_file().string() + ")";
+    if (date_of_loaded_costs().empty()) return "the shipped operation costs (aabblab calibrate measures yours)";
+    return "operation costs calibrated " + date_of_loaded_costs() + " (" + calibrated_costs_file().string() + ")";
 }
 
 }  // namespace aabblab

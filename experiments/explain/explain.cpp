@@ -132,7 +132,7 @@ bool explain_automatic(staged_scene& scene, const aabb::named_strategies& named,
 /// @returns whether the results of all runs agree
 bool explain_scene(const experiment& e, staged_scene& scene, const time_limits& limits) {
     print_measures(scene, limits);
-    print_unused(e, scene.choice());
+    print_idle_parts(e, scene.choice());
     flush_output();
     bool agree = true;
     for (const aabb::named_strategies& named : e.automatic) {

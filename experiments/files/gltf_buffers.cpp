@@ -174,7 +174,7 @@ private:
         for (std::size_t k = 0; k < width; ++k) {
             double& number = components[k];
             number = number_at(bytes + k * bytes_of(type), type);
-            if (accessor_.normalized && is_whole(type)) number = std::max(number / greatest(type), -1.0);
+            if (accessor_.normalized && is_integer(type)) number = std::max(number / greatest(type), -1.0);
         }
     }
 

@@ -57,11 +57,12 @@ table unfinished_table_of(const race_result& race) {
 }
 
 std::vector<std::string> legend() {
+    constexpr const char* ratio_text =
+        "ratio: all ms divided by that of candidate 1 in the same repeat, the median over repeats, with its 95 % "
+        "confidence interval; -: candidate 1 itself, or too few repeats.";
     return {
         "all ms: build ms, first ms (frame 0) and all further frames. Times are of the repeat with the median all ms.",
-        "ratio: all ms divided by that of candidate 1 in the same repeat, the median over repeats, with its 95 % "
-        "confidence interval; -: candidate 1 itself, or too few repeats.",
-        ms_per_frame_text, build_ms_text,
+        ratio_text, ms_per_frame_text, build_ms_text,
         "KiB: memory without meshes. Numbers of frames where another is faster: from median differences in a repeat."};
 }
 

@@ -26,10 +26,10 @@ namespace {
 class interruption {
 public:
     explicit interruption(const std::string& resume_with) {
-        message_ = "\naabblab: interrupted; what is finished is kept, and " + resume_with + " continues\n";
+        message = "\naabblab: interrupted; what is finished is kept, and " + resume_with + " continues\n";
         std::signal(SIGINT, [](int signal) {
             // Async-signal-safe functions only.
-            if (write(STDERR_FILENO, message_.data(), message_.size()) < 0) _exit(1);
+            if (write(STDERR_FILENO, message.data(), message.size()) < 0) _exit(1);
             std::signal(signal, SIG_DFL);
             std::raise(signal);
         });
@@ -39,7 +39,7 @@ public:
     ~interruption() { std::signal(SIGINT, SIG_DFL); }
 
 private:
-    static inline std::string message_;
+    static inline std::string message;
 };
 
 /// Notes each engine that cannot run, once per kind of scene.

@@ -82,8 +82,9 @@ struct column_block {
     }
 };
 
-/// The result of distributing boxes: it fails on an invalid box, and on too many copies or boxes in one place.
-enum class fill_result : std::uint8_t { complete, invalid, crowded };
+/// The result of distributing boxes to columns or groups: `invalid` if a box is, `not_worthwhile` if there are too many
+/// copies or too many boxes in one group.
+enum class fill_result : std::uint8_t { complete, invalid, not_worthwhile };
 
 inline constexpr box everywhere{
     {std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest()},

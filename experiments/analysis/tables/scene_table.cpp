@@ -57,17 +57,18 @@ struct shared_column {
     }
 };
 
-/// The columns of results, which are equal for all exact lines, and of bytes.
-std::vector<shared_column> shared_columns(const scene_summary& scene, std::span<const summary_line* const> ranking) {
+/// The columns that move to the heading if all cells are equal: results, as of exact candidates, and bytes.
+std::vector<shared_column> shared_columns(const scene_summary& scene,
+                                          std::span<const candidate_summary* const> ranking) {
     shared_column result{{"result"}, "{}", {}};
     shared_column pairs{{"pairs"}, "{} pairs of boxes", {}};
-    shared_column contacts{{"contacts", true, 1}, "{} contacts", {}};
-    shared_column bytes{{"KiB", true, 2}, "{} KiB", {}};
-    for (const summary_line* line : ranking) {
-        result.cells.push_back(result_of(*line));
-        pairs.cells.push_back(grouped(line->pairs));
-        contacts.cells.push_back(line->contacts ? grouped(*line->contacts) : "-");
-        bytes.cells.push_back(line->bytes ? kib_text(*line->bytes) : "-");
+    shared_column contacts{{.name = "contacts", .spare = 1}, "{} contacts", {}};
+    shared_column bytes{{.name = "KiB", .spare = 2}, "{} KiB", {}};
+    for (const candidate_summary* candidate : ranking) {
+        result.cells.push_back(result_of(*candidate));
+        pairs.cells.push_back(grouped(candidate->pairs));
+        contacts.cells.push_back(candidate->contacts ? grouped(*candidate->contacts) : "-");
+        bytes.cells.push_back(candidate->bytes ? kib_text(*candidate->bytes) : "-");
     }
     std::vector<shared_column> columns{std::move(result), std::move(pairs)};
     if (any_has(scene, &candidate_summary::contacts)) columns.push_back(std::move(contacts));
@@ -142,7 +143,7 @@ std::string heading_of(const scene_summary& scene) {
     if (scene.seeds.size() > 1)
         text += fmt::format("pooled over {} seeds: pairs and contacts are sums, ratios geometric means\n",
                             scene.seeds.size());
-    const auto is_automatic = [](const summary_line& line) { return line.name.is_automatic(); };
+    const auto is_automatic = [](const candidate_summary& candidate) { return candidate.name.is_automatic(); };
     if (!scene.common.empty())
         text += (scene.differing.empty()                               ? "this composition: "
                  : std::ranges::any_of(scene.candidates, is_automatic) ? "all compositions but auto: "
@@ -167,16 +168,16 @@ std::string heading_of(const scene_summary& scene) {
     for (const candidate_summary& candidate : scene.candidates)
         if (candidate.repeats < repeats) stopped += (stopped.empty() ? "" : ", ") + candidate.label;
     if (!stopped.empty()) text += "repeated less often than others: " + stopped + "\n";
-    if (scene.lines.size() > 1 && any_has(scene, &summary_line::ratio))
+    if (scene.candidates.size() > 1 && any_has(scene, &candidate_summary::ratio))
         text += std::string("in ascending order of ratio") +
                 (inexact ? ", exact results before inexact ones\n" : "\n") +
                 "ratio: ms/frame relative to the baseline in the same repeat, the median over\nrepeats, with its 95 % "
                 "confidence interval\nbaseline: " +
-                scene.lines[0].label + "\n";
-    if (any_has(scene, &summary_line::ms_per_frame))
+                scene.candidates[0].label + "\n";
+    if (any_has(scene, &candidate_summary::ms_per_frame))
         text += "ms/frame: the mean time per frame after frame 0, the median over repeats\n";
-    if (any_has(scene, &summary_line::bytes)) text += "KiB: memory of all parts except the meshes\n";
-    if (std::ranges::any_of(scene.lines, [](const summary_line& l) { return l.ratio && !l.ratio_interval; }))
+    if (any_has(scene, &candidate_summary::bytes)) text += "KiB: memory of all parts except the meshes\n";
+    if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
         text += "95 %: - if there are too few repeats, seeds or processes for an interval\n";
     return text;
 }
