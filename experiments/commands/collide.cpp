@@ -95,12 +95,11 @@ void print_text(const collide_request& request, const mesh_result& result) {
     const auto description_of = [&](const std::string& mesh, std::size_t i) {
         return visible(mesh) + " (" + counted(result.triangles[i], "triangle") + ")";
     };
-    print_paragraph(description_of(request.a, 0) + " against " +
-                    (request.b ? description_of(*request.b, 1) : "itself"));
+    print(description_of(request.a, 0) + " against " + (request.b ? description_of(*request.b, 1) : "itself") + "\n");
     print_results(request, result);
     std::vector<double> ms = result.query_ms;
     std::ranges::nth_element(ms, ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2));
-    print(fmt::format("{}: built in {:.3f} ms,\nsearched in {:.3f} ms{}\n", result.method.text(), result.build_ms,
+    print(fmt::format("{}: built in {:.3f} ms, searched in {:.3f} ms{}\n", result.method.text(), result.build_ms,
                       ms[ms.size() / 2], ms.size() == 1 ? "" : fmt::format(" (median of {})", ms.size())));
     if (result.bytes_per_triangle) print(fmt::format("tree: {:.1f} bytes per triangle\n", *result.bytes_per_triangle));
     std::string bytes;
