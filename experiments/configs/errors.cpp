@@ -132,8 +132,9 @@ std::vector<metric_plot> plots_of(const document& doc) {
     return plots;
 }
 
-/// The experiment in which compositions run whole scenes, as `run` does.
-experiment whole_of(const document& doc, const error_study& study, experiment_size size) {
+/// The experiment for the curves of compositions, which run whole scenes, as `run` does, and not single pairs. Its
+/// scenes are those of the experiment that the config names, and its own.
+experiment scene_experiment_of(const document& doc, const error_study& study, experiment_size size) {
     experiment e;
     if (study.scene_experiment) e.scenes = study.scene_experiment->scenes;
     e.name = study.name;
@@ -189,7 +190,7 @@ void read_sized(const document& doc, experiment_size size, error_study& study) {
     } else if (study.curves[0].triangles.empty()) {
         reject_keys(doc, {"pairs"}, "is for curves of triangle tests alone; these run whole scenes");
         study.plots = plots_of(doc);
-        study.scene_experiment = whole_of(doc, study, size);
+        study.scene_experiment = scene_experiment_of(doc, study, size);
         study.notes = study.scene_experiment->notes;
     } else {
         reject_keys(doc, {"plot", "measure"},

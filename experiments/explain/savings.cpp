@@ -163,7 +163,7 @@ bool print_disagreements(const std::vector<variant>& variants) {
 std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector<aabb::omission> by_stages) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         // The stages report the omissions of all other kinds.
-        if (!info_of(kind).apart || name[kind].empty()) continue;
+        if (!info_of(kind).is_compiled_alone || name[kind].empty()) continue;
         const std::span<const aabb::strategy_info> strategies = aabb::strategies(kind);
         const auto strategy =
             std::ranges::find(strategies, aabb::parse_strategy(name[kind]).name, &aabb::strategy_info::name);
@@ -174,6 +174,8 @@ std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector
 }
 
 /// Prints what each choice of the selected composition saves, by runs interleaved with variants that differ in one.
+/// Variants that differ in a setting are not rows of the table; `print_omissions` compares them.
+/// @returns false if variants report different pairs
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
     const scene_frames& scene = staged.scene();
     const bool meshes = scene.meshes() != nullptr;
@@ -183,7 +185,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     std::string unreplaced;  // kinds without any other strategy that fits the composition
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
-        if (!is_small && !info_of(kind).apart) continue;
+        if (!is_small && !info_of(kind).is_compiled_alone) continue;
         const std::vector<variant> of_kind = variants_by_strategy(selected, kind, meshes);
         variants.insert(variants.end(), of_kind.begin(), of_kind.end());
         std::ranges::move(variants_by_settings(selected, kind, meshes), std::back_inserter(by_settings));

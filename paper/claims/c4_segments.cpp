@@ -27,7 +27,8 @@ bool is_finer(const condition& c, int axes, int wanted, int before) {
     return segments && coarser && *segments > 1.1 * *coarser;
 }
 
-/// Times against the requested number of segments, a line per number of cut axes; marks show the most that are made.
+/// Times against the requested number of segments, a line per number of cut axes. Marks show the most segments that are
+/// made, since no box may be cut twice on an axis: requesting more changes nothing.
 figure figure_of(const std::string& name, const condition& c) {
     figure f = log_log(
         name,

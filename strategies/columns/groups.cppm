@@ -18,7 +18,8 @@ struct column_group {
 class column_groups {
 public:
     /// The grid of groups: as many as planned, in the proportion of the columns, and no more than those on each axis.
-    /// If these are too few, as for boxes along a line, groups are cut along the columns, not the axis with fewer.
+    /// If fewer than half as many result, as for boxes along a line, groups are cut along the columns instead of across
+    /// the axis with fewer, and `plan.axis` changes.
     [[nodiscard]] static column_plan group_grid(column_plan plan) {
         const double groups = plan.groups;
         const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;

@@ -31,10 +31,10 @@ const composed::local_detection_rows& local_rows() {
     return rows;
 }
 
-/// The kinds of a stage that are compiled alone (`apart`), or those compiled together.
-std::vector<strategy_kind> kinds_of(stage of, bool apart) {
+/// The kinds of a stage that are compiled alone (`is_compiled_alone`), or those compiled together.
+std::vector<strategy_kind> kinds_of(stage of, bool is_compiled_alone) {
     std::vector<strategy_kind> kinds = kinds_of(of);
-    std::erase_if(kinds, [&](strategy_kind kind) { return info_of(kind).apart != apart; });
+    std::erase_if(kinds, [&](strategy_kind kind) { return info_of(kind).is_compiled_alone != is_compiled_alone; });
     return kinds;
 }
 
@@ -45,7 +45,7 @@ void require_known(const composition& c, stage of) {
 /// The choices of the kinds that are compiled together, in their order.
 std::vector<strategy_choice> choices_of(const composition& c, stage of) {
     std::vector<strategy_choice> choices;
-    for (const strategy_kind kind : kinds_of(of, /*apart=*/false)) choices.push_back(c[kind]);
+    for (const strategy_kind kind : kinds_of(of, /*is_compiled_alone=*/false)) choices.push_back(c[kind]);
     return choices;
 }
 
@@ -68,13 +68,13 @@ const auto& accepted_row(const Rows& rows, const composition& c, stage of) {
 template <class Rows>
 std::vector<composition> every_composition(const Rows& rows, stage of) {
     std::vector<composition> compositions;
-    const std::vector<strategy_kind> kinds = kinds_of(of, /*apart=*/false);
+    const std::vector<strategy_kind> kinds = kinds_of(of, /*is_compiled_alone=*/false);
     for (const auto& row : rows) {
         if (!row.make) continue;
         composition& c = compositions.emplace_back();
         for (std::size_t i = 0; i < kinds.size(); ++i) c[kinds[i]] = {std::string(row.names[i]), {}};
     }
-    for (const strategy_kind kind : kinds_of(of, /*apart=*/true))
+    for (const strategy_kind kind : kinds_of(of, /*is_compiled_alone=*/true))
         for (const strategy_info& info : strategies(kind)) {
             if (info.name == info_of(kind).fallback) continue;
             composition c;
@@ -155,7 +155,7 @@ composition::composition(const named_strategies& named) {
     };
     for (const stage of : {stage::global_search, stage::local_detection}) {
         complete(of, &strategy_kind_info::default_with);
-        const bool any_named = std::ranges::any_of(kinds_of(of, /*apart=*/false),
+        const bool any_named = std::ranges::any_of(kinds_of(of, /*is_compiled_alone=*/false),
                                                    [&](strategy_kind kind) { return named[kind].has_value(); });
         if (any_named && rejection_of(*this, of).empty()) continue;
         const composition with_usual = *this;
@@ -168,7 +168,7 @@ composition::composition(const named_strategies& named) {
 std::string text_in_line(const by_kind<std::string>& choices, std::span<const strategy_kind> kinds) {
     std::string text;
     for (const strategy_kind kind : kinds) {
-        const bool is_usual = info_of(kind).apart && choices[kind] == info_of(kind).fallback;
+        const bool is_usual = info_of(kind).is_compiled_alone && choices[kind] == info_of(kind).fallback;
         if (!is_usual && !choices[kind].empty()) text += (text.empty() ? "" : " + ") + choices[kind];
     }
     return text;

@@ -15,7 +15,7 @@ struct fitting {
 fitting fitting_of(strategy_kind kind, const composition& completed, const scene_traits& scene) {
     fitting last;
     for (const strategy_info& info : strategies(kind)) {
-        if (!info.fit || (!info_of(kind).apart && info.name != completed[kind].name)) continue;
+        if (!info.fit || (!info_of(kind).is_compiled_alone && info.name != completed[kind].name)) continue;
         last.fit = info.fit(scene);
         if (!last.fit.serves) continue;
         last.name = info.name;
@@ -37,7 +37,7 @@ composition completed(const named_strategies& named) {
     for (const stage of : {stage::global_search, stage::local_detection}) {
         const auto take = [&](const composition& others) {
             for (const strategy_kind kind : kinds_of(of))
-                if (named[kind] || !info_of(kind).apart) result[kind] = named[kind].value_or(others[kind]);
+                if (named[kind] || !info_of(kind).is_compiled_alone) result[kind] = named[kind].value_or(others[kind]);
             return rejection_of(result, of).empty();
         };
         if (take(fastest) || take(usual) || std::ranges::any_of(every_composition(of), take)) continue;
@@ -79,7 +79,7 @@ void select_for_scene(composition& completed, const named_strategies& named, con
         if (named[kind] || !depends_on_scene(kind)) continue;
         strategy_choice& choice = completed[kind];
         choice.settings.clear();
-        if (info_of(kind).apart) choice.name = info_of(kind).fallback;
+        if (info_of(kind).is_compiled_alone) choice.name = info_of(kind).fallback;
         traits.exact_triangles = scene.triangles == 0 || is_exact(completed, stage::local_detection);
         fitting best = fitting_of(kind, completed, traits);
         if (!best.fit.serves) continue;

@@ -140,7 +140,7 @@ constexpr const char* guard_script = "trap '' HUP INT TERM; read -r end; rm -rf 
 
 using clock = std::chrono::steady_clock;
 
-/// True if input, or the end of input, arrives before that time.
+/// True if input, or the end of input, arrives before that time. Without a time it does not wait: the next read blocks.
 bool becomes_readable(int input, const std::optional<clock::time_point>& end) {
     pollfd request{input, POLLIN, 0};
     while (end) {
