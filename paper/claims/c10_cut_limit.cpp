@@ -23,17 +23,17 @@ draft c10_claim(const measurements& m) {
         .claim = {.claim = "Cutting a box more than once on an axis is not worth its cost",
                   .measured =
                       "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
+                  .lead = "With at most one cut per box and axis",
                   .experiments = {"c10"}},
         .primary = {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.conditions_of("c10"))
         for (const std::string segments : {"auto", "32"}) {
             if (!limit_changes_cut(c, segments)) continue;
-            const std::string subject = value_of(c.scene(), "scene") == "mixed_sizes"
-                                            ? "with at most one cut per box on mixed sizes"
-                                            : "with at most one cut of huge boxes";
+            const bool is_mixed = value_of(c.scene(), "scene") == "mixed_sizes";
             c10.add(endpoint_of(c, with_limit("on", segments), with_limit("off", segments), "frame_cpu_ms",
                                 {{"segments", segments}}),
-                    subject + (segments == "auto" ? "" : " and 32 segments"));
+                    std::string(is_mixed ? "boxes of mixed sizes" : "huge boxes") +
+                        (segments == "auto" ? ", automatic number of segments" : ", 32 segments per axis"));
         }
     figure& f = c10.claim.figures.emplace_back(log_log(
         "c10",

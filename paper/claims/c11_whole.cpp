@@ -19,7 +19,7 @@ std::optional<double> global_share(const condition& c) {
 /// The ratio of every method to the traditional one, which shows the gain of each change alone.
 table table_of_changes(const std::vector<condition>& conditions) {
     table t = empty_table({"meshes"}, {"objects"});
-    for (const condition& c : conditions) t.rows.push_back({mesh_of(c), value_of(c.scene(), "objects")});
+    for (const condition& c : conditions) t.rows.push_back({mesh_of(c), number_text(value_of(c.scene(), "objects"))});
     add_ratios(t, conditions, methods);
     t.columns.push_back({"broad phase, % of traditional time"});
     for (std::size_t i = 0; i < conditions.size(); ++i) t.rows[i].push_back(digits_cell(global_share(conditions[i])));

@@ -14,7 +14,7 @@ draft c12_claim(const measurements& m) {
     for (const condition& c : m.conditions_of("three_lists"))
         c12.add(endpoint_of(c, improved.with(kind::sweep, "all_axes"), uncut.with(kind::sweep, "all_axes"), "box_tests",
                             {{"sweep", "all_axes"}}),
-                "with three sorted lists", /*along=*/"", quantity::box_tests);
+                "with three sorted lists (sweep all_axes)", /*along=*/"", quantity::box_tests);
     figure& f = c12.claim.figures.emplace_back(
         log_log("c12", "Box tests per frame against the number of objects, with the axial cut and without.", "objects",
                 "box tests per frame"));

@@ -44,25 +44,28 @@ draft c1_claim(const measurements& m) {
     const std::vector<const condition*> large = matching(conditions, {{"scene", "brownian"}, {"objects", "10000"}});
     for (const condition* c : of_all_sizes) add(*c, "on drifting boxes", "objects");
     for (const condition* c : large)
-        if (!matches(c->scene(), drifting)) add(*c, "on 10,000 drifting boxes", "displacement");
+        if (!matches(c->scene(), drifting)) add(*c, "on 10,000 drifting boxes at other displacements", "displacement");
     // Both compositions with the paper's three lists, each sorted and swept.
     for (const condition& c : m.conditions_of("three_lists"))
         c1.add(endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),
                            "frame_cpu_ms", {{"sweep", "all_axes"}}),
-               "with three sorted lists", "displacement");
+               "with three sorted lists (sweep all_axes)", "displacement");
     for (const condition* c : large)
         c1.add(endpoint_of(*c, improved, incremental, "frame_cpu_ms", {{"over", "incremental"}}),
-               "compared with the classic incremental sweep", "displacement");
+               "on 10,000 drifting boxes, compared with the classic incremental sweep", "displacement");
     for (const condition& c : conditions)
         if (!is_brownian(c)) add(c, subject_of(c));
     for (const condition* c : matching(conditions, drifting))
         for (const auto& [changed, subject] :
-             {std::pair{methods[1].tested, "with the cut alone at 10,000 boxes"}, {uncut, "with Shell sort alone"}})
+             {std::pair{methods[1].tested, "with the cut alone, on 10,000 drifting boxes"},
+              {uncut, "with Shell sort alone"}})
             c1.unjudged.emplace_back(endpoint_of(*c, changed, traditional, "frame_cpu_ms")).subject = subject;
     table changes = factors_table(factors_of(conditions));
     add_ratios(changes, conditions, methods);
     c1.claim.tables.push_back(
-        {"figure1", "Time per frame over that of the traditional method, with 95 % intervals.", changes});
+        {"figure1",
+         std::string("Time per frame over that of the traditional method, with 95 % intervals.") + unit_legend,
+         changes});
     figure& f = c1.claim.figures.emplace_back(log_log(
         "figure1",
         "Time of the broad phase against the number of objects: the traditional method, the improved one, and each "

@@ -30,7 +30,7 @@ row_value work() {
 table inversions_table(const std::map<std::string, std::vector<const condition*>>& by_displacement) {
     table t{{{"displacement"}}, {}};
     for (const condition* c : by_displacement.begin()->second)
-        t.columns.push_back({value_of(c->scene(), "objects") + " elements"});
+        t.columns.push_back({number_text(value_of(c->scene(), "objects")) + " elements"});
     for (const auto& [displacement, conditions] : by_displacement) {
         std::vector<std::string>& cells = t.rows.emplace_back(std::vector{displacement});
         for (const condition* c : conditions) cells.push_back(digits_cell(inversions_of(*c)));
@@ -38,8 +38,8 @@ table inversions_table(const std::map<std::string, std::vector<const condition*>
     return t;
 }
 
-constexpr std::pair<const char*, const char*> sorts[] = {{"insertion", "with insertion sort"},
-                                                         {"shell:gaps=four_one", "with two gaps"},
+constexpr std::pair<const char*, const char*> sorts[] = {{"insertion", "insertion sort"},
+                                                         {"shell:gaps=four_one", "Shell sort with two gaps"},
                                                          {"shell:gaps=ciura_eight", "with Ciura's eight gaps"},
                                                          {"shell:gaps=ciura", "with Ciura's gaps extended as N grows"},
                                                          {"shell:gaps=tokuda", "with Tokuda's gaps"},
@@ -75,7 +75,7 @@ draft c2_claim(const measurements& m) {
                        .measured =
                            "comparisons and moves per element at 10 N elements over those at N, by linear regression "
                            "against log N, from 10,000 elements on",
-                       .lead = "Per element, when N grows tenfold",
+                       .lead = "Work per element when N grows tenfold",
                        .experiments = {"c2"}},
              .primary = {{{"sort", "insertion"}, {"displacement", "0.1"}},
                          {{"sort", "shell:gaps=four_one"}, {"displacement", "0.1"}},

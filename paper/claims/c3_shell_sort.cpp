@@ -27,9 +27,9 @@ table gaps_table(const std::vector<condition>& conditions) {
     table t{{{"inversions per element"}, {"scene", false}, {"objects"}, {"displacement"}}, {}};
     for (const std::string& gaps : gap_sequences) t.columns.push_back({gaps});
     for (const condition* c : ordered) {
-        std::vector<std::string>& cells =
-            t.rows.emplace_back(std::vector{three_digits(disorder_of(*c)), value_of(c->scene(), "scene"),
-                                            value_of(c->scene(), "objects"), value_of(c->scene(), "displacement")});
+        std::vector<std::string>& cells = t.rows.emplace_back(
+            std::vector{three_digits(disorder_of(*c)), value_of(c->scene(), "scene"),
+                        number_text(value_of(c->scene(), "objects")), value_of(c->scene(), "displacement")});
         for (const std::string& gaps : gap_sequences) cells.push_back(ratio_cell(over_insertion(*c, gaps)));
     }
     return t;
@@ -67,6 +67,7 @@ draft c3_claim(const measurements& m) {
     draft c3{
         .claim = {.claim = "Shell sort beats insertion sort under temporal coherence",
                   .measured = "time per frame to update and sort the boxes, shell with Ciura's gaps over insertion",
+                  .lead = "Shell sort compared with insertion sort",
                   .experiments = {"c3"}},
         .primary = {drifting, {{"scene", "line"}, {"objects", "100000"}, {"displacement", "300"}}}};
     const std::vector<condition>& conditions = m.conditions_of("c3");

@@ -74,7 +74,7 @@ table automatic_table(const std::vector<condition>& conditions) {
 /// Claim C4: times of finer cuts over coarser ones, and of the automatic number of segments over the most allowed.
 draft c4_claim(const measurements& m) {
     draft c4{
-        .claim = {.claim = "The more segments, the faster, up to the limit; and segments need not be tiny",
+        .claim = {.claim = "More segments are faster, up to one cut per box; tiny segments are not needed",
                   .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
                               "with each number of segments over that with the next smaller one, up to the limit; and "
                               "with the automatic number over that at the limit",
@@ -98,12 +98,12 @@ draft c4_claim(const measurements& m) {
         return endpoint_of(c, cut_into(axes, finer.number), cut_into(axes, coarser.number), "frame_cpu_ms",
                            {{"axes", std::to_string(axes)}, {"segments", finer.name}, {"over", coarser.name}});
     };
+    const auto boxes_of = [](const condition& c) {
+        return std::string(is_brownian(c) ? "drifting boxes" : "clusters");
+    };
     for_each_cut([&](const condition& c, int axes) {
         c4.add(ratio(c, axes, limit, {"8", "8"}),
-               is_brownian(c)
-                   ? "on drifting boxes at the limit of one cut per box, compared with eight segments per axis"
-                   : "in clusters",
-               "axes");
+               boxes_of(c) + ", as many segments as one cut per box allows, compared with eight per axis", "axes");
     });
     for_each_cut([&](const condition& c, int axes) {
         for (std::size_t i = 1; i < segments_wanted.size(); ++i) {
@@ -116,9 +116,7 @@ draft c4_claim(const measurements& m) {
     // Segments need not be tiny: the automatic number is as good as the most that the limit allows.
     for_each_cut([&](const condition& c, int axes) {
         c4.add(ratio(c, axes, {"auto", "auto"}, limit),
-               is_brownian(c) ? "with the automatic number of segments, compared with the limit"
-                              : "in clusters with the automatic number",
-               "axes")
+               boxes_of(c) + ", automatic number of segments, compared with as many as one cut per box allows", "axes")
             .expected = expectation::not_more;
     });
     if (conditions.empty()) return c4;

@@ -113,17 +113,17 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
                 .source = "c5_world: growth"});
     };
     const row_value bytes = all_bytes();
-    for (const auto& [label, size] : {std::pair{"cells of 2", "2"}, {"cells chosen anew", "auto"}}) {
+    for (const auto& [label, size, text] :
+         {std::tuple{"cells of 2", "2", "cells of edge 2"}, {"cells chosen anew", "auto", "the automatic cell size"}}) {
         const selection tested = grid(size);
-        const std::string in_the_smallest =
-            std::string("with ") + label + " in the smallest world compared with the largest";
-        add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large",
-            in_the_smallest + ", both relative to the cut", small.log_ratios(tested, cut, measured("frame_cpu_ms")),
-            large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::time, expectation::less);
-        add(std::string("bytes of a grid, ") + label + ", small world over large", in_the_smallest,
-            small.logs(tested, bytes), large.logs(tested, bytes), quantity::bytes, expectation::less);
+        const std::string subject = fmt::format("a grid with {}, the smallest world compared with the largest", text);
+        add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large", subject,
+            small.log_ratios(tested, cut, measured("frame_cpu_ms")),
+            large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::relative_time, expectation::less);
+        add(std::string("bytes of a grid, ") + label + ", small world over large", subject, small.logs(tested, bytes),
+            large.logs(tested, bytes), quantity::bytes, expectation::less);
     }
-    add("bytes of axial_cut, large world over small", "with the cut in the largest world compared with the smallest",
+    add("bytes of axial_cut, large world over small", "the cut, the largest world compared with the smallest",
         large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
@@ -179,8 +179,8 @@ figure world_figure(const std::string& name, const std::string& quantity_name, c
 draft c5_claim(const measurements& m) {
     const std::string over_safest = "axial_cut over the safest cell size";
     draft c5{
-        .claim = {.claim = "No grid size suits every scene, the axial cut does; a grid's memory and time grow with the "
-                           "space",
+        .claim = {.claim = "No cell size suits every scene, the axial cut does; a grid's memory and time grow with the "
+                           "world",
                   .measured =
                       "the worst slowdown of axial_cut over that of the safest cell size; a slowdown is relative "
                       "to the best cell size of a scene, the worst is that over four scenes with the same number "
@@ -207,15 +207,16 @@ draft c5_claim(const measurements& m) {
                     .source = "c5: regret"});
         };
         add(
-            over_safest, "with the cut compared with the safest cell size, in the worst of four scenes",
+            over_safest, "worst slowdown over four scenes, the cut relative to the safest cell size",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(
-            "axial_cut over each scene's best cell size", "with the cut compared with each scene's best cell size",
+            "axial_cut over each scene's best cell size",
+            "the cut compared with the best cell size, in its worst scene",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
         const resample as_measured(size.processes, size.seeds, level::none, 0);
         c5.claim.remark = fmt::format(
-            "With {} objects the safest cell size takes {:.1f} times the time of the best one in its worst scene.",
+            "With {} objects the safest cell size takes {:.1f} times as long as the best one in its worst scene.",
             number_text(objects), std::exp(scenes.least_worst_regret(as_measured)));
     }
     const std::vector<condition>& worlds = m.conditions_of("c5_world");

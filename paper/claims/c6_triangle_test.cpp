@@ -112,6 +112,7 @@ draft c6_claim(const measurements& m) {
                   .measured = "time of a triangle-box test over that of a box test, which encloses the transformed box "
                               "by an axis-aligned one, or tests it as an oriented box on six or all fifteen axes; in "
                               "whole queries, of leafless over canonical",
+                  .lead = "Testing a leaf's triangle",
                   .experiments = {"figure2"}},
         .primary = {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", b_in_frame_of_a}},
                     {{"leaf_test", "triangle_box"}, {"over", "rotated_box_6"}},
@@ -129,18 +130,19 @@ draft c6_claim(const measurements& m) {
                 .subject = subject,
                 .source = "c6: test/" + test + frame + " over test/" + over + frame});
     };
-    add_test("triangle_box", "box", "for a leaf's triangle compared with its transformed axis-aligned box");
+    add_test("triangle_box", "box", "compared with its transformed axis-aligned box");
     add_test("triangle_box", "rotated_box_6", "compared with an oriented box on six axes");
     add_test("triangle_box", "rotated_box_15", "compared with an oriented box on all fifteen axes");
-    add_test("triangle_box_moller", "box", "by M\u00f6ller's original compared with a transformed box");
-    add_test("triangle_box_moller", "rotated_box_15", "by M\u00f6ller's original compared with fifteen axes");
-    add_test("triangle_aabb", "box", "for a triangle's box computed on the fly");
+    add_test("triangle_box_moller", "box", "with M\u00f6ller's original test, compared with a transformed box");
+    add_test("triangle_box_moller", "rotated_box_15",
+             "with M\u00f6ller's original test, compared with an oriented box on fifteen axes");
+    add_test("triangle_aabb", "box", "by its box, computed on the fly, compared with a transformed box");
     for (const char* test : {"triangle_box", "triangle_aabb"})
-        add_test(test, "box", "without a transformation", std::string(frame_a_suffix));
+        add_test(test, "box", "where neither is transformed", std::string(frame_a_suffix));
     const std::pair<std::string, const char*> queries[] = {
-        {"triangle_box", "in whole queries"},
-        {"triangle_aabb", "in whole queries with boxes computed on the fly"},
-        {"none", "in whole queries without a test at leaves"}};
+        {"triangle_box", "whole queries"},
+        {"triangle_aabb", "whole queries, boxes of triangles computed on the fly"},
+        {"none", "whole queries if leaf boxes are not tested first"}};
     for (const condition& c : m.conditions_of("figure2"))
         for (const auto& [test, subject] : queries) {
             endpoint ratio = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},

@@ -56,12 +56,13 @@ draft c7a_claim(const measurements& m) {
 draft c7b_claim(const measurements& m) {
     draft c7b{.claim = {.claim = "Compressed storage takes less time",
                         .measured = "time per query of the compressed tree over that of the canonical one",
+                        .lead = "Queries",
                         .experiments = {"figure2", "figure2_million"}},
               .primary = {{large_spheres.front(), {"leaf_test", "triangle_box"}}}};
     const std::pair<const char*, const char*> leaf_tests[] = {
         {"triangle_box", ""},
-        {"triangle_aabb", "where the box of a leaf's triangle is computed on the fly"},
-        {"none", "without a test of leaves before the triangle test"}};
+        {"triangle_aabb", "if the box of a leaf's triangle is computed on the fly"},
+        {"none", "if leaf boxes are not tested first"}};
     for (const auto& [leaf_test, subject] : leaf_tests)
         for (const condition* c : conditions_by_size(m))
             c7b.add(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject);

@@ -39,7 +39,7 @@ draft c9_claim(const measurements& m) {
                 c9.add(endpoint_of(c, split, unsplit, metric, {{"split_mesh", size}, {"time of", part}}), subject);
             };
             add("global_cpu_ms", "global search", "in the broad phase where meshes are split");
-            add("frame_cpu_ms", "both stages", "in both phases where meshes are split");
+            add("frame_cpu_ms", "both stages", "in both phases together where meshes are split");
         }
     figure& f = c9.claim.figures.emplace_back(
         log_log("c9",

@@ -1,6 +1,7 @@
 module aabblab.claims;
 
 import aabblab.fmt;
+import aabblab.numbers;
 
 namespace aabblab {
 
@@ -24,15 +25,12 @@ void decide_family(std::span<endpoint* const> endpoints, double band) {
     }
 }
 
-/// The direction of a ratio in a word, or "not more" if only that is decided.
 std::string word_of(const endpoint& e) {
-    if (e.expected == expectation::not_more && e.corrected == support::favours && e.direction == outcome::undecided)
-        return "not more";
-    constexpr std::array words{"less", "the same", "more", "open"};
-    return words[static_cast<std::size_t>(e.direction)];
+    constexpr std::array words{"less", "no difference", "more", "not more", "undecided"};
+    return words[static_cast<std::size_t>(wording_of(e))];
 }
 
-/// The ratios behind a verdict: all primary ones, and the number of other endpoints by outcome.
+/// The ratios behind a verdict: all primary ones, and the number of others by outcome.
 std::string evidence_text(std::span<const endpoint> endpoints) {
     std::string text;
     std::vector<endpoint> others;
@@ -44,11 +42,11 @@ std::string evidence_text(std::span<const endpoint> endpoints) {
     if (text.empty()) return "There are no measurements that decide it.";
     text = "Primary ratios, each with its 95 % interval: " + text + ".";
     if (others.empty()) return text;
-    return text + fmt::format(
-                      " Of {} other conditions {} favour the claim, {} contradict it, {} show no difference and "
-                      "{} are undecided.",
-                      others.size(), count_of(others, support::favours), count_of(others, support::contradicts),
-                      count_of(others, support::no_difference), count_of(others, support::undecided));
+    return text + counts_text(" Of " + counted(others.size(), "other ratio"),
+                              {{count_of(others, support::favours), "favours the claim", "favour the claim"},
+                               {count_of(others, support::contradicts), "contradicts it", "contradict it"},
+                               {count_of(others, support::no_difference), "shows no difference", "show no difference"},
+                               {count_of(others, support::undecided), "is undecided", "are undecided"}});
 }
 
 /// The verdict on a drafted claim from its decided endpoints, with the sentences and the table that report it.
@@ -74,14 +72,16 @@ claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoi
     claim.secondary.assign(ordered.begin() + (claim.has_primary ? 1 : 0), ordered.end());
     std::string name = claim.id;
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    table ratios = endpoint_table(
+        ordered, [](const endpoint& e) { return text_of(e.corrected) + (e.is_primary ? " (primary)" : ""); });
+    const bool has_unit = std::ranges::find(ratios.columns, "unit", &column::name) != ratios.columns.end();
     claim.tables.insert(claim.tables.begin(),
                         {name,
-                         "Every endpoint of " + claim.id + ": " + claim.measured +
-                             ". Outcomes are corrected by Holm's method: of primary endpoints over all claims, of the "
-                             "others over this claim. Intervals are uncorrected.",
-                         endpoint_table(ordered, [](const endpoint& e) {
-                             return text_of(e.corrected) + (e.is_primary ? " (primary)" : "");
-                         })});
+                         "Every ratio of " + claim.id + ": " + claim.measured +
+                             ". Outcomes are corrected by Holm's method: of primary ratios over all claims, of the "
+                             "others over this claim. Intervals are uncorrected." +
+                             (has_unit ? unit_legend : ""),
+                         std::move(ratios)});
     return claim;
 }
 

@@ -11,8 +11,8 @@ import aabblab.metrics;
 
 export namespace aabblab {
 
-/// The compared quantity, which determines the wording of a sentence.
-enum class quantity : unsigned char { time, bytes, box_tests, work, slowdown };
+/// The compared quantity, which determines the wording of a sentence. Relative times are those over the axial cut's.
+enum class quantity : unsigned char { time, bytes, box_tests, work, slowdown, relative_time };
 
 /// One ratio of a claim: its condition, its value and, once decided, its outcome.
 struct endpoint {
@@ -27,7 +27,7 @@ struct endpoint {
     support uncorrected = support::undecided;  ///< without correction, from its own interval
     bool is_primary = false;
     quantity compared = quantity::time;
-    /// Names the clause that reports it in a sentence: "on drifting boxes". Without one it is not mentioned.
+    /// The label of the clause that reports it in a sentence: "on drifting boxes". Without one it is not mentioned.
     std::optional<std::string> subject{};
     std::string along{};   ///< the factor that orders the endpoints of the clause; empty if unordered
     std::string source{};  ///< the rows: "figure1: frame_cpu_ms of sort=shell over sort=insertion"
@@ -45,7 +45,7 @@ struct claim_result {
     std::string claim{};     ///< what the paper says
     std::string measured{};  ///< which ratio of what
     std::string remark{};    ///< an additional sentence
-    std::string lead{};      ///< the beginning of the sentence, if it needs context
+    std::string lead{};      ///< precedes the first label of the sentence, if that needs context
     expectation expected = expectation::less;
     verdict_kind verdict = verdict_kind::undecided;
     std::string sentence{};  ///< the verdict in words: direction, size and conditions
@@ -112,7 +112,7 @@ struct reproduction {
 /// Three decimals, so that 1.048 does not look like the band's edge; fewer from 10 on, four below 0.01.
 [[nodiscard]] std::string ratio_digits_of(double ratio);
 
-/// The verdict in words, from all endpoints of a claim: one clause per subject.
+/// The verdict in words, from all endpoints of a claim: one clause per subject, "on drifting boxes: 2.0 times as fast".
 [[nodiscard]] std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead = {});
 /// For each claim: verdict, primary ratio with its interval, and its condition.
 [[nodiscard]] table verdict_table(const reproduction& results);
@@ -154,8 +154,8 @@ struct claim_source {
 [[nodiscard]] std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band);
 [[nodiscard]] verdict_kind verdict_of(std::span<const endpoint> endpoints);
 
-[[nodiscard]] inline std::size_t count_of(std::span<const endpoint> endpoints, support what) {
-    return static_cast<std::size_t>(std::ranges::count(endpoints, what, &endpoint::corrected));
+[[nodiscard]] inline std::ptrdiff_t count_of(std::span<const endpoint> endpoints, support what) {
+    return std::ranges::count(endpoints, what, &endpoint::corrected);
 }
 
 [[nodiscard]] inline bool is_same_clause(const endpoint& a, const endpoint& b) {
@@ -163,7 +163,16 @@ struct claim_source {
 }
 /// The factors of its condition and the observed ones.
 [[nodiscard]] factors factors_of(const endpoint& e);
-[[nodiscard]] std::string clause_of(std::span<const endpoint> endpoints, const endpoint& member);
+/// The outcome of an endpoint, as sentences report it: no difference if it is decided and the ratio is within the band.
+enum class wording : unsigned char { less, same, more, not_more, open };
+[[nodiscard]] wording wording_of(const endpoint& e);
+/// A number of things and what they do: "1 holds", "3 hold".
+struct counted_verb {
+    std::ptrdiff_t count;
+    std::string_view singular, plural;
+};
+/// "Of 14 claims, 2 hold, 6 hold in part and 1 is undecided."; counts of 0 are omitted.
+[[nodiscard]] std::string counts_text(std::string text, std::initializer_list<counted_verb> counts);
 [[nodiscard]] std::vector<std::string> headline_of(std::span<const claim_result> claims);
 [[nodiscard]] std::string disturbance_of(std::span<const measurements> machines);
 [[nodiscard]] named_table bands_table(std::span<const draft> drafts);
@@ -238,7 +247,11 @@ inline const selection improved{
 inline const selection uncut{{kind::sort, "shell"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
 inline constexpr const char* compressed = "compressed:leaf_test=triangle_box";
 
-/// "10,000"; text that is not an integer is unchanged.
+/// Explains a column `unit` of tables.
+inline constexpr const char* unit_legend =
+    " The unit is that of the displacement: the mean extent of a box, the mean spacing, or, if empty, a cube's edge.";
+
+/// "10,000 to 100,000": groups the digits of integers among words; other words are unchanged.
 [[nodiscard]] std::string number_text(const std::string& value);
 
 /// The growth of each sort's work, with which open choices are compared.

@@ -70,7 +70,7 @@ measured_choices scene_choices(const measurements& m) {
     const auto nearest = std::ranges::min_element(
         drifts, {}, [&](const condition* c) { return std::abs(std::log(number_of(c->scene(), "objects") / objects)); });
     const auto label_of = [](const condition& c) {
-        return value_of(c.scene(), "scene") + " of " + value_of(c.scene(), "objects");
+        return value_of(c.scene(), "scene") + " of " + number_text(value_of(c.scene(), "objects"));
     };
     if (nearest != drifts.end()) {
         scenes.insert(scenes.begin(), *nearest);
@@ -107,8 +107,8 @@ measured_choices gap_count_choices(const measurements& m) {
 measured_choices model_choices(const measurements& m) {
     measured_choices measured{"displacement 0.05", ""};
     for (const condition& c : m.conditions_of("c11")) {
-        const std::string label =
-            value_of(c.scene(), "objects") + " of " + mesh_of(c) + ", density " + value_of(c.scene(), "density");
+        const std::string label = number_text(value_of(c.scene(), "objects")) + " of " + mesh_of(c) + ", density " +
+                                  value_of(c.scene(), "density");
         if (matches(c.scene(), large_crowd)) measured.ours = label;
         measured.add(label, endpoint_of(c, improved.with(kind::tree, compressed),
                                         traditional.with(kind::tree, "canonical"), "frame_cpu_ms"));

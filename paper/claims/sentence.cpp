@@ -7,18 +7,21 @@ namespace aabblab {
 
 namespace {
 
-/// Ratios from here on are reported as factors, smaller ones in percent.
+/// Factors from here on have one decimal, smaller ones two.
 constexpr double factor_threshold = 1.5;
 /// Ratios within this factor are reported as a single one.
 constexpr double equality_threshold = 1.1;
 
-std::string_view noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "work", "worst slowdown"};
+/// Empty for quantities that labels name.
+std::string noun_of(quantity compared) {
+    constexpr std::array nouns{"time", "bytes", "box tests", "", "", "time relative to the cut"};
     return nouns[static_cast<std::size_t>(compared)];
 }
 
+/// "1.27", "2.1", "107"; factors near 1 have more decimals.
 std::string times_text(double factor) {
-    return factor < 9.95 ? fmt::format("{:.1f}", factor) : grouped(static_cast<std::size_t>(std::llround(factor)));
+    if (factor >= 9.95) return grouped(static_cast<std::size_t>(std::llround(factor)));
+    return fmt::format("{:.{}f}", factor, factor < 1.02 ? 3 : factor < factor_threshold ? 2 : 1);
 }
 
 /// "12", or "1.2" for small shares.
@@ -32,78 +35,33 @@ std::string span_text(const std::string& low, const std::string& high) {
     return low == high ? high : low + " to " + high;
 }
 
-/// The least and the greatest of several ratios on one side of 1, as factors above 1.
-struct extent {
-    double mild;
-    double strong;
-
-    [[nodiscard]] bool is_narrow() const { return strong / mild <= equality_threshold; }
-    [[nodiscard]] std::string times() const {
-        return is_narrow() ? times_text(std::sqrt(mild * strong)) : span_text(times_text(mild), times_text(strong));
+/// The size of ratios that all lie on one side of 1, in one unit for each quantity: "up to 2.1 times as fast", "1.27
+/// times as long", "34 to 36 % of the bytes". A wide range of factors is reported by the one farthest from 1.
+std::string size_text(std::span<const endpoint> endpoints) {
+    const auto [least, greatest] = std::ranges::minmax_element(endpoints, {}, &endpoint::ratio);
+    const double low = least->ratio, high = greatest->ratio;
+    if (const quantity compared = least->compared; compared != quantity::time) {
+        const std::string noun = noun_of(compared);
+        return span_text(percent_text(low), percent_text(high)) + " %" + (noun.empty() ? "" : " of the " + noun);
     }
-};
-
-/// A reduction of time, as a factor of speed if it is large: "12 % less time", "2.1 times as fast".
-std::string less_time_text(const extent& e) {
-    if (e.mild >= factor_threshold) return e.times() + " times as fast";
-    if (e.strong >= factor_threshold) return "up to " + times_text(e.strong) + " times as fast";
-    return span_text(percent_text(1 - 1 / e.mild), percent_text(1 - 1 / e.strong)) + " % less time";
-}
-
-/// The strongest reduction comes first.
-std::string less_text(const extent& e, std::string_view noun) {
-    return span_text(percent_text(1 / e.strong), percent_text(1 / e.mild)) + " % of the " + std::string(noun);
-}
-
-std::string more_text(const extent& e, std::string_view noun) {
-    if (e.mild >= factor_threshold) return fmt::format("{} times the {}", e.times(), noun);
-    if (e.strong >= factor_threshold) return fmt::format("up to {} times the {}", times_text(e.strong), noun);
-    return fmt::format("{} % more {}", span_text(percent_text(e.mild - 1), percent_text(e.strong - 1)), noun);
-}
-
-/// The extent of ratios that all lie on one side of 1; those below 1 are inverted.
-extent extent_of(std::span<const endpoint> endpoints) {
-    extent range{std::max(endpoints[0].ratio, 1 / endpoints[0].ratio), 0};
-    for (const endpoint& e : endpoints) {
-        const double factor = std::max(e.ratio, 1 / e.ratio);
-        range = {std::min(range.mild, factor), std::max(range.strong, factor)};
-    }
-    return range;
-}
-
-/// The outcome of an endpoint, as a sentence reports it.
-enum class wording : unsigned char { less, same, more, not_more, open };
-wording kind_of(const endpoint& e) {
-    if (e.direction != outcome::undecided) return static_cast<wording>(e.direction);
-    return e.corrected == support::favours ? wording::not_more : wording::open;
-}
-
-/// Time is the default quantity and not mentioned.
-std::string quantity_suffix(quantity compared) {
-    return compared == quantity::time ? "" : " in the " + std::string(noun_of(compared));
+    const bool is_faster = high < 1;
+    const double mild = is_faster ? 1 / high : low;
+    const double strong = is_faster ? 1 / low : high;
+    const std::string unit = is_faster ? " times as fast" : " times as long";
+    if (mild < factor_threshold && strong >= factor_threshold) return "up to " + times_text(strong) + unit;
+    if (mild >= factor_threshold && strong / mild <= equality_threshold)
+        return times_text(std::sqrt(mild * strong)) + unit;
+    return span_text(times_text(mild), times_text(strong)) + unit;
 }
 
 /// The phrase for endpoints (ratios of a claim) with the same outcome: "up to 2.1 times as fast".
-std::string predicate_of(std::span<const endpoint> endpoints, wording form) {
+std::string outcome_text(std::span<const endpoint> endpoints, wording form) {
+    if (form == wording::less || form == wording::more) return size_text(endpoints);
     const quantity compared = endpoints.front().compared;
-    const std::string_view noun = noun_of(compared);
-    const extent range = extent_of(endpoints);
-    switch (form) {
-        case wording::less: return compared == quantity::time ? less_time_text(range) : less_text(range, noun);
-        case wording::more: return more_text(range, noun);
-        case wording::same: return "no difference" + quantity_suffix(compared);
-        case wording::not_more: return fmt::format("no more {}", noun);
-        case wording::open: break;
-    }
-    return "undecided" + quantity_suffix(compared);
-}
-
-/// "10,000 objects", "a displacement of 0.1".
-std::string factor_text(const std::string& factor, const std::string& value) {
-    if (factor == "objects") return number_text(value) + (value == "1" ? " object" : " objects");
-    if (factor == "axes") return value + (value == "1" ? " axis" : " axes");
-    if (factor == "inversions") return number_text(value) + " inversions per element";
-    return "a " + factor + " of " + number_text(value);
+    const std::string noun = noun_of(compared);
+    if (form == wording::not_more) return "no more" + (noun.empty() ? "" : " " + noun);
+    return (form == wording::same ? "no difference" : "undecided") +
+           (noun.empty() || compared == quantity::time ? "" : " in the " + noun);
 }
 
 /// Consecutive endpoints of a clause with the same outcome.
@@ -116,55 +74,74 @@ struct stretch {
 std::vector<stretch> stretches_of(std::span<const endpoint> endpoints) {
     std::vector<stretch> stretches;
     for (const endpoint& e : endpoints) {
-        if (stretches.empty() || stretches.back().form != kind_of(e)) stretches.push_back({kind_of(e), {}});
+        if (stretches.empty() || stretches.back().form != wording_of(e)) stretches.push_back({wording_of(e), {}});
         stretches.back().endpoints.push_back(e);
     }
     return stretches;
 }
 
-/// The range of a stretch: "at 100 objects", "up to 1,000 objects", "from 3,162 objects on", "from 10 to 100 objects".
+/// The range of a stretch: "with 100 objects", "with up to 1,000 objects", "on 2 or more axes".
 std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
-    const std::string& factor = stretches[i].endpoints.front().along;
-    const std::string first = value_of(factors_of(stretches[i].endpoints.front()), factor);
-    const std::string last = value_of(factors_of(stretches[i].endpoints.back()), factor);
     if (stretches.size() == 1) return "";
-    if (i == 0 && stretches[i].endpoints.size() > 1) return " up to " + factor_text(factor, last);
-    if (i + 1 == stretches.size() && stretches[i].endpoints.size() > 1)
-        return " from " + factor_text(factor, first) + " on";
-    if (first == last) return " at " + factor_text(factor, first);
-    return " from " + number_text(first) + " to " + factor_text(factor, last);
+    const std::vector<endpoint>& endpoints = stretches[i].endpoints;
+    const std::string& factor = endpoints.front().along;
+    const std::string first = number_text(value_of(factors_of(endpoints.front()), factor));
+    const std::string last = number_text(value_of(factors_of(endpoints.back()), factor));
+    const std::string values = first == last               ? last
+                               : i == 0                    ? "up to " + last
+                               : i + 1 == stretches.size() ? first + " or more"
+                                                           : first + " to " + last;
+    if (factor == "objects") return " with " + values + (values == "1" ? " object" : " objects");
+    if (factor == "axes") return " on " + values + (values == "1" ? " axis" : " axes");
+    if (factor == "inversions") return " at " + values + " inversions per element";
+    return " at a " + factor + " of " + values;
 }
 
-std::string subject_text(const endpoint& e) {
-    return e.subject->empty() ? "" : " " + *e.subject;
-}
-
-/// Reports ordered endpoints by stretches: "30 % more time at 100 objects, 2.0 times as fast from 1,000 objects on".
-std::string ordered_clause(std::span<const endpoint> endpoints) {
+/// Reports ordered endpoints by stretches: "1.30 times as long with 100 objects, 2.0 times as fast with 1,000 or more".
+std::string ordered_outcomes(std::span<const endpoint> endpoints) {
     const std::vector<stretch> stretches = stretches_of(endpoints);
     std::string text;
-    for (std::size_t i = 0; i < stretches.size(); ++i) {
-        text += (i == 0 ? "" : ", ") + predicate_of(stretches[i].endpoints, stretches[i].form);
-        if (i == 0) text += subject_text(endpoints.front());
-        text += range_text(stretches, i);
-    }
+    for (std::size_t i = 0; i < stretches.size(); ++i)
+        text +=
+            (i == 0 ? "" : ", ") + outcome_text(stretches[i].endpoints, stretches[i].form) + range_text(stretches, i);
     return text;
 }
 
 /// Reports the least and the greatest ratio if their outcomes differ, and of undecided ones only the number.
-std::string unordered_clause(std::vector<endpoint> endpoints) {
-    const std::string subject = subject_text(endpoints.front());
-    const std::string undecided = predicate_of(endpoints, wording::open);
+std::string unordered_outcomes(std::vector<endpoint> endpoints) {
+    const std::string undecided = outcome_text(endpoints, wording::open);
     const std::size_t count = endpoints.size();
-    const std::size_t open = std::erase_if(endpoints, [](const endpoint& e) { return kind_of(e) == wording::open; });
-    if (endpoints.empty()) return undecided + subject;
+    const std::size_t open = std::erase_if(endpoints, [](const endpoint& e) { return wording_of(e) == wording::open; });
+    if (endpoints.empty()) return undecided;
     std::ranges::sort(endpoints, {}, &endpoint::ratio);
     const std::vector<stretch> stretches = stretches_of(endpoints);
-    const auto text_of = [](const endpoint& e) { return predicate_of({&e, 1}, kind_of(e)); };
+    const auto text_of = [](const endpoint& e) { return outcome_text({&e, 1}, wording_of(e)); };
     const std::string text = stretches.size() == 1
-                                 ? predicate_of(stretches.front().endpoints, stretches.front().form)
+                                 ? outcome_text(stretches.front().endpoints, stretches.front().form)
                                  : "from " + text_of(endpoints.front()) + " to " + text_of(endpoints.back());
-    return text + subject + (open == 0 ? "" : fmt::format(", {} of {} conditions undecided", open, count));
+    return text + (open == 0 ? "" : fmt::format(" in {} of {} conditions, {} undecided", count - open, count, open));
+}
+
+/// What was compared, which may be empty, and what was found: "on drifting boxes", "2.0 times as fast".
+struct clause {
+    std::string label;
+    std::string outcomes;
+};
+
+/// The clause that reports `member` and all endpoints with the same subject and quantity.
+clause clause_of(std::span<const endpoint> endpoints, const endpoint& member) {
+    std::vector<endpoint> reported;
+    std::ranges::copy_if(endpoints, std::back_inserter(reported),
+                         [&](const endpoint& e) { return is_same_clause(e, member); });
+    if (member.along.empty()) return {*member.subject, unordered_outcomes(std::move(reported))};
+    std::ranges::stable_sort(reported, {}, [&](const endpoint& e) { return number_of(factors_of(e), member.along); });
+    return {*member.subject, ordered_outcomes(reported)};
+}
+
+/// "Split at the median, compared with the mean: 1.13 times as long"; without lead and label only the outcomes.
+std::string clause_text(const std::string& lead, const clause& c) {
+    const std::string label = lead + (lead.empty() || c.label.empty() ? "" : ", ") + c.label;
+    return label + (label.empty() ? "" : ": ") + c.outcomes;
 }
 
 const claim_result* claim_named(std::span<const claim_result> claims, const std::string& id) {
@@ -173,83 +150,85 @@ const claim_result* claim_named(std::span<const claim_result> claims, const std:
 }
 
 /// The comparison with the classic sweep under the paper's own premise, that objects hardly move.
-std::string classic_sweep_clause(std::span<const claim_result> claims) {
+std::string classic_sweep_text(std::span<const claim_result> claims) {
     const claim_result* claim = claim_named(claims, "C1");
     if (!claim) return "";
     for (const endpoint& e : primaries_of(*claim))
-        if (value_of(e.where, "over") == "incremental") return "; with little motion, " + clause_of({&e, 1}, e);
+        if (value_of(e.where, "over") == "incremental")
+            return "; " + clause_text("with little motion", clause_of({&e, 1}, e));
     return "";
 }
 
 /// The clause that reports a claim's first primary endpoint, for the headline.
-std::string first_clause(std::span<const claim_result> claims, const std::string& id) {
+clause first_clause(std::span<const claim_result> claims, const std::string& id) {
     const claim_result* claim = claim_named(claims, id);
-    if (!claim || !claim->has_primary || !claim->primary.subject) return "not measured";
+    if (!claim || !claim->has_primary || !claim->primary.subject) return {"", "not measured"};
     std::vector<endpoint> endpoints{claim->primary};
     endpoints.insert(endpoints.end(), claim->secondary.begin(), claim->secondary.end());
     return clause_of(endpoints, claim->primary);
 }
 
-/// "Of 14 claims 2 hold, 6 hold in part, 5 do not hold and 1 is undecided."
-std::string counts_of(std::span<const claim_result> claims) {
-    std::vector<std::string> parts;
-    const auto add = [&](verdict_kind verdict, const char* singular, const char* plural) {
-        if (const auto count = std::ranges::count(claims, verdict, &claim_result::verdict); count > 0)
-            parts.push_back(fmt::format("{} {}", count, count == 1 ? singular : plural));
-    };
-    add(verdict_kind::holds, "holds", "hold");
-    add(verdict_kind::in_part, "holds in part", "hold in part");
-    add(verdict_kind::does_not_hold, "does not hold", "do not hold");
-    add(verdict_kind::no_difference, "shows no difference", "show no difference");
-    add(verdict_kind::undecided, "is undecided", "are undecided");
-    std::string text = fmt::format("Of {} claims", claims.size());
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        text += (i == 0 ? " " : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+}  // namespace
+
+wording wording_of(const endpoint& e) {
+    const bool is_within_band = 1 / (1 + equivalence_band) <= e.ratio && e.ratio <= 1 + equivalence_band;
+    if (e.direction != outcome::undecided) return is_within_band ? wording::same : static_cast<wording>(e.direction);
+    return e.corrected == support::favours ? wording::not_more : wording::open;
+}
+
+std::string counts_text(std::string text, std::initializer_list<counted_verb> counts) {
+    auto left = std::ranges::count_if(counts, [](const counted_verb& c) { return c.count > 0; });
+    std::string_view separator = ", ";
+    for (const auto& [count, singular, plural] : counts) {
+        if (count == 0) continue;
+        text += fmt::format("{}{} {}", separator, count, count == 1 ? singular : plural);
+        separator = --left > 1 ? ", " : " and ";
+    }
     return text + ".";
 }
 
-}  // namespace
-
 std::string number_text(const std::string& value) {
+    if (const std::size_t blank = value.find(' '); blank != std::string::npos)
+        return number_text(value.substr(0, blank)) + " " + number_text(value.substr(blank + 1));
     std::uint64_t number = 0;
     const char* const end = value.data() + value.size();
     return std::from_chars(value.data(), end, number) == std::from_chars_result{end, std::errc{}} ? grouped(number)
                                                                                                   : value;
 }
 
-/// The clause that reports `member` and all endpoints with the same subject and quantity.
-std::string clause_of(std::span<const endpoint> endpoints, const endpoint& member) {
-    std::vector<endpoint> reported;
-    std::ranges::copy_if(endpoints, std::back_inserter(reported),
-                         [&](const endpoint& e) { return is_same_clause(e, member); });
-    if (member.along.empty()) return unordered_clause(std::move(reported));
-    std::ranges::stable_sort(reported, {}, [&](const endpoint& e) { return number_of(factors_of(e), member.along); });
-    return ordered_clause(reported);
-}
-
 /// The sentence on a claim: a clause for each subject and quantity of its endpoints, in the order of their first ones.
+/// Successive clauses on one subject share its label.
 std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead) {
     if (endpoints.empty()) return "There are no measurements that decide it.";
-    std::string text;
+    std::string text, label;
     for (auto e = endpoints.begin(); e != endpoints.end(); ++e) {
         const auto shares_clause = [&](const endpoint& other) { return is_same_clause(*e, other); };
         if (!e->subject || std::any_of(endpoints.begin(), e, shares_clause)) continue;
-        text += (text.empty() ? "" : "; ") + clause_of(endpoints, *e);
+        const clause c = clause_of(endpoints, *e);
+        text += text.empty() ? clause_text(lead, c) : c.label == label ? ", " + c.outcomes : "; " + clause_text("", c);
+        label = c.label;
     }
-    if (!lead.empty()) text = lead + ": " + text;
     text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
     return text + ".";
 }
 
 /// A summary in three sentences: broad phase, narrow phase, number of verdicts of each kind.
 std::vector<std::string> headline_of(std::span<const claim_result> claims) {
+    const auto count = [&](verdict_kind v) { return std::ranges::count(claims, v, &claim_result::verdict); };
     return {
-        "The improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion sort, no "
-        "cut): " +
-            first_clause(claims, "C1") + classic_sweep_clause(claims) + ".",
-        "The compressed tree of the narrow phase, compared with the canonical one: " + first_clause(claims, "C7a") +
-            "; its queries: " + first_clause(claims, "C7b") + ".",
-        counts_of(claims)};
+        clause_text("The improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion "
+                    "sort, no cut)",
+                    first_clause(claims, "C1")) +
+            classic_sweep_text(claims) + ".",
+        clause_text("The compressed tree of the narrow phase, compared with the canonical one",
+                    first_clause(claims, "C7a")) +
+            clause_text("; its queries", first_clause(claims, "C7b")) + ".",
+        counts_text(fmt::format("Of {} claims", claims.size()),
+                    {{count(verdict_kind::holds), "holds", "hold"},
+                     {count(verdict_kind::in_part), "holds in part", "hold in part"},
+                     {count(verdict_kind::does_not_hold), "does not hold", "do not hold"},
+                     {count(verdict_kind::no_difference), "shows no difference", "show no difference"},
+                     {count(verdict_kind::undecided), "is undecided", "are undecided"}})};
 }
 
 }  // namespace aabblab

@@ -7,11 +7,6 @@ namespace aabblab {
 
 namespace {
 
-/// "10,000"; shorter text is unchanged.
-std::string grouped_if_long(const std::string& text) {
-    return text.size() < 5 ? text : number_text(text);
-}
-
 /// The waiting time in percent of all frames. A quiet machine takes a thousandth for itself.
 constexpr double most_waiting = 2;
 /// The median difference between successive repeats, in percent.
@@ -24,7 +19,7 @@ table endpoint_table(std::span<const endpoint> endpoints, const std::function<st
     std::vector<factors> conditions;
     for (const endpoint& e : endpoints) conditions.push_back(factors_of(e));
     table t = factors_table(conditions);
-    t.columns.insert(t.columns.end(), {{"measured"}, {"95 %"}, {"outcome", false}});
+    t.columns.insert(t.columns.end(), {{"ratio"}, {"95 %"}, {"outcome", false}});
     for (std::size_t i = 0; i < endpoints.size(); ++i)
         t.rows[i].insert(t.rows[i].end(),
                          {ratio_digits_of(endpoints[i].ratio),
@@ -45,7 +40,7 @@ table factors_table(std::span<const factors> conditions) {
             named.insert(name);
             t.columns.push_back({name, false});
             for (std::size_t i = 0; i < conditions.size(); ++i)
-                t.rows[i].push_back(grouped_if_long(value_of(conditions[i], name)));
+                t.rows[i].push_back(number_text(value_of(conditions[i], name)));
         }
     return t;
 }
@@ -82,7 +77,7 @@ std::string text_of(const factors& where) {
     std::string text;
     for (const auto& [name, value] : where)
         if (!value.empty())
-            text += (text.empty() ? "" : ", ") + (name == "scene" ? value : name + " " + grouped_if_long(value));
+            text += (text.empty() ? "" : ", ") + (name == "scene" ? value : name + " " + number_text(value));
     return text;
 }
 
@@ -163,13 +158,16 @@ named_table null_control(const measurements& m) {
     const auto count = [&](const std::string& outcome) { return std::ranges::count(ratios, outcome, outcome_of); };
     const auto excluding_1 =
         std::ranges::count_if(ratios, [](const endpoint& e) { return e.range.low > 1 || e.range.high < 1; });
-    return {
-        "null_control",
-        fmt::format("Null control: time per frame of a composition under two names. Of {} intervals {} miss 1; one in "
-                    "twenty is expected to. Without correction, {} are decided as a difference, {} as no difference, "
-                    "and {} are undecided.",
-                    ratios.size(), excluding_1, count("a difference"), count("no difference"), count("undecided")),
-        t};
+    const std::string text = fmt::format(
+        "Null control: time per frame of a composition under two names, the second name over the first. {} of the {} "
+        "intervals {} a ratio of 1; by chance one in twenty would. Without correction",
+        excluding_1 == 0 ? "None" : std::to_string(excluding_1), ratios.size(),
+        excluding_1 > 1 ? "exclude" : "excludes");
+    return {"null_control",
+            counts_text(text, {{count("a difference"), "is decided as a difference", "are decided as a difference"},
+                               {count("no difference"), "is decided as no difference", "are decided as no difference"},
+                               {count("undecided"), "is undecided", "are undecided"}}),
+            t};
 }
 
 /// A warning if a machine was not quiet, by the time without a processor and the scatter of repeats; otherwise empty.

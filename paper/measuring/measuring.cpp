@@ -233,11 +233,12 @@ measurements verified_measurements(const std::filesystem::path& folder, const st
 /// The verdicts in words for the terminal: a warning if the machine was not quiet, the headline, each claim's sentence.
 std::string verdict_text(const reproduction& reproduced) {
     std::string text;
-    if (!reproduced.disturbance.empty()) text += reproduced.disturbance + "\n\n";
-    for (const std::string& sentence : reproduced.headline) text += sentence + "\n";
+    if (!reproduced.disturbance.empty()) text += wrapped(reproduced.disturbance) + "\n\n";
+    for (const std::string& sentence : reproduced.headline) text += wrapped(sentence) + "\n";
     text += "\n";
     for (const claim_result& c : reproduced.claims)
-        text += fmt::format("{:<4} {}\n     {}. {}\n", c.id, c.claim, text_of(c.verdict), c.sentence);
+        text += hanging(fmt::format("{:<4} ", c.id), c.claim, paragraph_width()) + "\n" +
+                hanging("     ", text_of(c.verdict) + ". " + c.sentence, paragraph_width()) + "\n";
     return text;
 }
 
@@ -270,7 +271,7 @@ std::string agreement_with_published(std::span<const measurements> runs, const r
         const auto is_published = [&](const measurements& run) {
             return is_sealed_record(run.folder()) && seal_of_record(run.folder()) == seal_of_record(source.folder);
         };
-        if (std::ranges::all_of(runs, is_published)) return "These results are " + published + ".";
+        if (std::ranges::all_of(runs, is_published)) return "The results are those of " + published + ".";
         return agreement_of(reproduced.claims, judged(results).claims, published);
     } catch (const aabb::input_error& error) {
         note("verdicts are not compared with the published ones: " + std::string(error.what()));

@@ -83,10 +83,10 @@ std::string rule_picture() {
         std::string_view outcome;
     };
     constexpr std::array<example, 5> examples{{{0.45, 0.62, "less"},
-                                               {0.84, 0.98, "slightly less"},
-                                               {0.965, 1.035, "the same"},
+                                               {0.84, 0.98, "less"},
+                                               {0.965, 1.035, "no difference"},
                                                {1.3, 1.8, "more"},
-                                               {0.72, 1.35, "direction open"}}};
+                                               {0.72, 1.35, "undecided"}}};
     // The left part of the picture has the scale, and the right part the words.
     constexpr double plot_width = 64;
     const scale shown{0.4, 2.5, true};
@@ -119,10 +119,10 @@ struct verdict_word {
 /// In the order of `verdict_kind`.
 constexpr verdict_word verdict_words[] = {
     {"holds", "Holds", "every primary ratio favours the claim"},
-    {"part", "Holds in part", "some primary ratios favour it and some do not; the sentence says where"},
-    {"same", "No difference", "every primary ratio lies within the band"},
+    {"part", "Holds in part", "some primary ratios favour it and some do not; the text after the verdict says where"},
+    {"same", "No difference", "every primary ratio shows no difference"},
     {"not", "Does not hold", "no primary ratio favours it, and at least one contradicts it"},
-    {"open", "Undecided", "the direction of a primary ratio is open, and the verdict depends on it"}};
+    {"open", "Undecided", "a primary ratio is undecided, and the verdict depends on it"}};
 
 const verdict_word& word_of(verdict_kind verdict) {
     return verdict_words[static_cast<std::size_t>(verdict)];
@@ -150,7 +150,7 @@ std::string paragraph(std::string_view kind, const std::string& markup) {
 
 /// A verdict, followed by a sentence.
 std::string verdict_markup(const claim_result& c, const std::string& sentence) {
-    return element("span", {{"class", "word"}}, std::string(word_of(c.verdict).word) + ":") + " " +
+    return element("span", {{"class", "word"}}, std::string(word_of(c.verdict).word) + ".") + " " +
            markup_text(sentence);
 }
 
@@ -173,7 +173,7 @@ void add_claim_rows(page& out, const reproduction& reproduced) {
                  "\n");
     out.add_markdown(to_markdown(brief_table(reproduced)) + "\n");
     for (const claim_result& c : reproduced.claims)
-        out.add_markdown("- " + c.id + ", " + text_of(c.verdict) + ": " + c.sentence + "\n");
+        out.add_markdown("- " + c.id + ", " + text_of(c.verdict) + ". " + c.sentence + "\n");
     out.add_markdown("\n");
     for (const figure& f : reproduced.figures)
         out.add_markdown("![" + f.caption + "](figures/" + f.name + ".svg)\n\n" + f.caption + "\n\n");
@@ -246,13 +246,16 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
     }
     out.add_html(element("div", {{"class", "headline"}}, headline) + "\n");
     if (!origin.agreement.empty()) out.paragraph(origin.agreement);
-    out.paragraph(fmt::format("\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and "
-                              "{} claims, one of them of the method that it follows (SMB, 2006). Broad phase means the "
-                              "paper's global search, narrow phase its local detection. {}, {} size. Commit {}, {}, "
-                              "{}. {} rows of {} scenes; up to {} processes, {} seeds and {} repeats.",
-                              reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler,
-                              origin.cpu, origin.rows, origin.scenes, origin.processes, origin.seeds, origin.repeats),
-                  "soft");
+    out.paragraph(
+        fmt::format(
+            "\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and {} claims, "
+            "one of them taken from the method that it builds on (Li, Feng and Owen, \"SMB: collision detection "
+            "based on temporal coherence\", 2006). Broad phase means the paper's global search, narrow phase its "
+            "local detection; the scene brownian has drifting cubes. {}, {} size. Commit {}, {}, {}. {} rows of "
+            "{} scenes; up to {} processes, {} seeds and {} repeats, which the processes share.",
+            reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler, origin.cpu, origin.rows,
+            origin.scenes, origin.processes, origin.seeds, origin.repeats),
+        "soft");
     for (const std::string& note : origin.notes) out.paragraph("Note: " + note + ".", "soft");
     add_claim_rows(out, reproduced);
     add_rule(out, reproduced);
@@ -262,13 +265,13 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         out.heading(c.id + ": " + c.claim, c.id);
         out.add_html(paragraph("verdict " + std::string(word_of(c.verdict).kind), verdict_markup(c, c.sentence)) +
                      "\n");
-        out.add_markdown("**" + text_of(c.verdict) + ":** " + c.sentence + "\n\n");
+        out.add_markdown("**" + text_of(c.verdict) + ".** " + c.sentence + "\n\n");
         if (c.evidence != c.sentence) out.paragraph(c.evidence);
         out.paragraph("The ratio: " + c.measured + ".", "soft");
         for (const figure& f : c.figures) out.add(f);
         for (const named_table& t : c.tables)
             if (&t != c.tables.data()) out.add(t);
-        if (!c.tables.empty()) out.folded("Every endpoint", c.tables.front());
+        if (!c.tables.empty()) out.folded("Every ratio", c.tables.front());
         for (const std::string& experiment : c.experiments)
             for (const provenance::config& config : origin.configs)
                 if (config.experiment == experiment)

@@ -232,7 +232,7 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     std::vector<named_table> tables = reproduced.tables;
     tables.push_back({"verdicts", "The verdicts.", verdict_table(reproduced)});
     tables.push_back(reproduced.bands);
-    tables.push_back({"rule", "From endpoints to the verdict.", rule_table()});
+    tables.push_back({"rule", "From ratios to the verdict.", rule_table()});
     tables.push_back(reproduced.null_control);
     tables.push_back({"open", "What the paper leaves open.", choice_table(reproduced)});
     std::vector<figure> figures = reproduced.figures;

@@ -14,7 +14,7 @@ void judge_published(const std::string& archive, const temporary_folder& folder)
     const program_result judged =
         run_well({"reproduce", "--judge", (root / archive).string(), "--out", folder.path().string()});
     CHECK_FALSE(holds(judged.err, "not sealed"));
-    CHECK(judged.out.ends_with("These results are the published run, " + archive + ".\n"));
+    CHECK(judged.out.ends_with("The results are those of the published run, " + archive + ".\n"));
 }
 
 }  // namespace

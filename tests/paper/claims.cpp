@@ -103,6 +103,8 @@ TEST_CASE("A quick run decides claims in the same places as a full one, as many 
     const aabblab::reproduction quick = judged_worlds({0.6}, 0.01);
     const aabblab::reproduction full = judged_worlds({0.6}, 0.01, aabblab::experiment_size::full);
     const std::vector<aabblab::listed_claim> listed = aabblab::listed_claims();
+    const std::string count = std::to_string(listed.size());
+    CHECK(quick.headline.back() == "Of " + count + " claims, " + count + " hold.");
     for (std::size_t i = 0; i < listed.size(); ++i) {
         CAPTURE(listed[i].id);
         const std::set<std::string> places = places_of(full.claims[i]);
@@ -141,29 +143,34 @@ TEST_CASE("A sentence tells which way a line goes, how much and from where") {
         for (endpoint& e : all) e.compared = compared;
         return aabblab::sentence_of(all);
     };
-    CHECK(told({at("100", 0.5, less)}) == "2.0 times as fast on boxes.");
-    CHECK(told({at("100", 0.9, less)}) == "10 % less time on boxes.");
-    CHECK(told({at("100", 3, more)}) == "3.0 times the time on boxes.");
-    CHECK(told({at("100", 1.004, same)}) == "No difference on boxes.");
-    CHECK(told({at("100", 1.004, undecided)}) == "Undecided on boxes.");
-    CHECK(told({at("100", 0.36, less)}, quantity::bytes) == "36 % of the bytes on boxes.");
+    CHECK(told({at("100", 0.5, less)}) == "On boxes: 2.0 times as fast.");
+    CHECK(told({at("100", 0.9, less)}) == "On boxes: 1.11 times as fast.");
+    CHECK(told({at("100", 3, more)}) == "On boxes: 3.0 times as long.");
+    CHECK(told({at("100", 1.004, same)}) == "On boxes: no difference.");
+    CHECK(told({at("100", 1.004, undecided)}) == "On boxes: undecided.");
+    CHECK(told({at("100", 0.36, less)}, quantity::bytes) == "On boxes: 36 % of the bytes.");
     // In the order of numbers, not of words or of the file.
     CHECK(told({at("1000", 0.8, less), at("100", 1.3, more), at("10000", 0.25, less)}) ==
-          "30 % more time on boxes at 100 objects, up to 4.0 times as fast from 1,000 objects on.");
-    CHECK(
-        told({at("100", 1.6, more), at("1000", 1.2, more), at("10000", 1, same), at("20000", 0.5, less)}) ==
-        "Up to 1.6 times the time on boxes up to 1,000 objects, no difference at 10,000 objects, 2.0 times as fast at "
-        "20,000 objects.");
+          "On boxes: 1.30 times as long with 100 objects, up to 4.0 times as fast with 1,000 or more objects.");
+    CHECK(told({at("100", 1.6, more), at("1000", 1.2, more), at("10000", 1, same), at("20000", 0.5, less)}) ==
+          "On boxes: up to 1.6 times as long with up to 1,000 objects, no difference with 10,000 objects, 2.0 times as "
+          "fast with 20,000 objects.");
     std::vector<endpoint> scenes{at("1", 0.4, less), at("2", 1.3, more), at("3", 0.5, less)};
     for (endpoint& e : scenes) e.along.clear();
-    CHECK(told(scenes) == "From 2.5 times as fast to 30 % more time on boxes.");
+    CHECK(told(scenes) == "On boxes: from 2.5 times as fast to 1.30 times as long.");
     scenes[0].direction = undecided;
-    CHECK(told(scenes) == "From 2.0 times as fast to 30 % more time on boxes, 1 of 3 conditions undecided.");
+    CHECK(told(scenes) == "On boxes: from 2.0 times as fast to 1.30 times as long in 2 of 3 conditions, 1 undecided.");
     scenes[1].subject.reset();
-    CHECK(told(scenes) == "2.0 times as fast on boxes, 1 of 2 conditions undecided.");
+    CHECK(told(scenes) == "On boxes: 2.0 times as fast in 1 of 2 conditions, 1 undecided.");
     CHECK(aabblab::sentence_of({}) == "There are no measurements that decide it.");
-    CHECK(aabblab::sentence_of(std::vector{at("1", 2, more)}, "Of an element") ==
-          "Of an element: 2.0 times the time on boxes.");
+    CHECK(aabblab::sentence_of(std::vector{at("1", 2, more)}, "Per element") ==
+          "Per element, on boxes: 2.0 times as long.");
+    // Within the band it is no difference, wherever its interval lies; quantities of one subject share its label.
+    CHECK(told({at("100", 0.97, less)}) == "On boxes: no difference.");
+    std::vector<endpoint> quantities{at("1", 1.2, more), at("1", 0.36, less), at("1", 0.009, less)};
+    quantities[1].compared = quantity::bytes;
+    quantities[2].compared = quantity::slowdown;
+    CHECK(aabblab::sentence_of(quantities) == "On boxes: 1.20 times as long, 36 % of the bytes, 0.9 %.");
 }
 
 TEST_CASE("A claim is the same whatever the band where it is far from it, and another where it is near") {
@@ -228,7 +235,10 @@ TEST_CASE("The null control finds nothing where there is nothing, and says so wh
     const auto [same, nothing] = outcomes(1);
     REQUIRE(same.size() == 1);
     CHECK(same.at("no difference") > 4);
-    CHECK(holds(nothing, " 0 miss 1"));
+    CHECK(
+        holds(nothing, "None of the " + std::to_string(same.at("no difference")) + " intervals excludes a ratio of 1"));
+    CHECK(nothing.ends_with("Without correction, " + std::to_string(same.at("no difference")) +
+                            " are decided as no difference."));
     const auto [half, something] = outcomes(4);
     CHECK(half.at("a difference") == half.at("no difference"));
     CHECK(holds(something, " " + std::to_string(half.at("a difference")) + " are decided as a difference"));
@@ -246,7 +256,7 @@ TEST_CASE("A claim that is true from some size on says from which") {
     INFO(c1.sentence);
     CHECK(text_of(c1.verdict) == "holds");
     CHECK(c1.sentence.starts_with(
-        "2.0 times the time on drifting boxes at 100 objects, 10 times as fast from 1,000 objects on;"));
+        "On drifting boxes: 2.0 times as long with 100 objects, 10 times as fast with 1,000 or more objects;"));
 }
 
 TEST_CASE("A composition that was wrong has no rows, and a claim that compares it with others no verdict") {
@@ -310,8 +320,8 @@ TEST_CASE("The whole algorithm is judged where global search counts, too") {
     });
     const claim_result& c11 = named(all, "C11");
     CHECK(text_of(c11.verdict) == "holds in part");
-    CHECK(holds(c11.sentence, "% more time where detailed models touch"));
-    CHECK(holds(c11.sentence, "23 % less time with simple models far apart"));
+    CHECK(holds(c11.sentence, "Where detailed models touch: 1.20 times as long"));
+    CHECK(holds(c11.sentence, "with simple models far apart: 1.30 times as fast"));
     CHECK(c11.sentence.ends_with("% with 100,000 simple ones far apart."));
     CHECK(c11.tables.back().content.rows.front().back() == "2.00");
     CHECK(c11.tables.back().content.rows.back().back() == "66.7");
@@ -329,7 +339,7 @@ TEST_CASE("A cell size that is one cell in a scene is no grid there, and counts 
     });
     CHECK(text_of(named(all, "C5").verdict) == "holds");
     CHECK(std::abs(named(all, "C5").primary.ratio - 0.5) < 1e-9);
-    CHECK(holds(named(all, "C5").sentence, "takes 2.0 times the time of the best one"));
+    CHECK(holds(named(all, "C5").sentence, "takes 2.0 times as long as the best one"));
 }
 
 TEST_CASE("Input that is more ordered at one size than at others tells nothing of growth") {
@@ -424,7 +434,7 @@ TEST_CASE("A reproduction is one page without addresses, every table and figure,
         CHECK(holds(text, all.null_control.caption));
         // The last two: where the file that the program was built with breaks a line, and where it ends.
         for (const char* part : {"Error against run time", "A statement with its number.", "A plot.", "A table.",
-                                 "Each claim has its primary endpoints", "ratios of two compositions, or builds",
+                                 "Each claim has its primary ratios", "ratios between two compositions, two builds",
                                  "never between runs or machines."})
             CHECK_THAT(text, Catch::Matchers::ContainsSubstring(part));
     }
@@ -443,5 +453,7 @@ TEST_CASE("A reproduction is one page without addresses, every table and figure,
 
 TEST_CASE("A ratio near the edge of the band is not rounded to the edge") {
     CHECK(ratio_text(endpoint{.ratio = 1.075, .range = {1.0479, 1.1027}}) == "1.075 (1.048 to 1.103)");
+    CHECK(aabblab::text_of({{"scene", "line"}, {"elements", "1000 to 1000000"}}) ==
+          "line, elements 1,000 to 1,000,000");
     CHECK(ratio_text(endpoint{.ratio = 0.0182, .range = {0.0099, 12.34}}) == "0.0182 (0.00990 to 12.3)");
 }

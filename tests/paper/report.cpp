@@ -133,7 +133,7 @@ TEST_CASE("What lies beyond the scale of the rows is an arrow with its number") 
 TEST_CASE("The rule is drawn once, and every verdict that there can be is explained") {
     const std::string page = written(made_up()).html;
     CHECK(count_of("<svg class=\"rule\"", page) == 1);
-    for (const char* word : {"less", "the same", "more", "direction open"})
+    for (const char* word : {"less", "no difference", "more", "undecided"})
         CHECK(holds(page, ">" + std::string(word) + "</text>"));
     for (const char* word : {"Holds", "Holds in part", "No difference", "Does not hold", "Undecided"})
         CHECK(holds(page, ">" + std::string(word) + "</span></dt>"));
