@@ -453,7 +453,7 @@ TEST_CASE("A reproduction is one page without addresses, every table and figure,
 
 TEST_CASE("A ratio near the edge of the band is not rounded to the edge") {
     CHECK(ratio_text(endpoint{.ratio = 1.075, .range = {1.0479, 1.1027}}) == "1.075 (1.048 to 1.103)");
-    CHECK(aabblab::text_of({{"scene", "line"}, {"elements", "1000 to 1000000"}}) ==
+    CHECK(aabblab::text_of(aabblab::factors{{"scene", "line"}, {"elements", "1000 to 1000000"}}) ==
           "line, elements 1,000 to 1,000,000");
     CHECK(ratio_text(endpoint{.ratio = 0.0182, .range = {0.0099, 12.34}}) == "0.0182 (0.00990 to 12.3)");
 }
