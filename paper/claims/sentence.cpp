@@ -109,7 +109,7 @@ std::string ordered_outcomes(std::span<const endpoint> endpoints) {
 
 /// Reports the least and the greatest ratio if their outcomes differ, and of undecided ones only the number.
 std::string unordered_outcomes(std::vector<endpoint> endpoints) {
-    const std::string undecided = outcome_text(endpoints, wording::open);
+    std::string undecided = outcome_text(endpoints, wording::open);
     const std::size_t count = endpoints.size();
     const std::size_t open = std::erase_if(endpoints, [](const endpoint& e) { return wording_of(e) == wording::open; });
     if (endpoints.empty()) return undecided;
