@@ -63,8 +63,8 @@ void require_two_files(const std::string& a, const std::string& file, const std:
 
 /// The arguments that commands accept in place of a config, for help texts.
 inline constexpr const char* scene_arguments_help =
-    "A recording (.aabbs); one or two meshes (files in OFF, OBJ, PLY, STL or glTF, or shapes), which pass through each "
-    "other; or a motion file and its meshes";
+    "A recording (.aabbs); one or two meshes (files in OFF, OBJ, PLY, STL or glTF, or shapes), of which the second, "
+    "or a copy of the only one, moves through the first; or a motion file and its meshes";
 
 [[nodiscard]] bool is_config_name(const std::string& argument);
 

@@ -23,7 +23,7 @@ draft c10_claim(const measurements& m) {
         .claim = {.claim = "Cutting a box more than once on an axis is not worth its cost",
                   .measured =
                       "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
-                  .lead = "With at most one cut per box and axis",
+                  .lead = "With segments so wide that no box is cut twice on an axis",
                   .experiments = {"c10"}},
         .primary = {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.conditions_of("c10"))
@@ -33,7 +33,7 @@ draft c10_claim(const measurements& m) {
             c10.add(endpoint_of(c, with_limit("on", segments), with_limit("off", segments), "frame_cpu_ms",
                                 {{"segments", segments}}),
                     std::string(is_mixed ? "boxes of mixed sizes" : "huge boxes") +
-                        (segments == "auto" ? ", automatic number of segments" : ", 32 segments per axis"));
+                        (segments == "auto" ? ", automatic number of segments" : ", 32 segments requested"));
         }
     figure& f = c10.claim.figures.emplace_back(log_log(
         "c10",

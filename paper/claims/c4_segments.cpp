@@ -74,7 +74,8 @@ table automatic_table(const std::vector<condition>& conditions) {
 /// Claim C4: times of finer cuts over coarser ones, and of the automatic number of segments over the most allowed.
 draft c4_claim(const measurements& m) {
     draft c4{
-        .claim = {.claim = "More segments are faster, up to one cut per box; tiny segments are not needed",
+        .claim = {.claim =
+                      "More segments are faster while no box is cut twice on an axis; tiny segments are not needed",
                   .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
                               "with each number of segments over that with the next smaller one, up to the limit; and "
                               "with the automatic number over that at the limit",
@@ -103,7 +104,7 @@ draft c4_claim(const measurements& m) {
     };
     for_each_cut([&](const condition& c, int axes) {
         c4.add(ratio(c, axes, limit, {"8", "8"}),
-               boxes_of(c) + ", as many segments as one cut per box allows, compared with eight per axis", "axes");
+               boxes_of(c) + ", as many segments as cut no box twice on an axis, compared with eight per axis", "axes");
     });
     for_each_cut([&](const condition& c, int axes) {
         for (std::size_t i = 1; i < segments_wanted.size(); ++i) {

@@ -116,7 +116,8 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
     for (const auto& [label, size, text] :
          {std::tuple{"cells of 2", "2", "cells of edge 2"}, {"cells chosen anew", "auto", "the automatic cell size"}}) {
         const selection tested = grid(size);
-        const std::string subject = fmt::format("a grid with {}, the smallest world compared with the largest", text);
+        const std::string subject = fmt::format(
+            "a grid with {}, its cost divided by the cut's, in the smallest world relative to the largest", text);
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large", subject,
             small.log_ratios(tested, cut, measured("frame_cpu_ms")),
             large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::relative_time, expectation::less);
@@ -207,7 +208,10 @@ draft c5_claim(const measurements& m) {
                     .source = "c5: regret"});
         };
         add(
-            over_safest, "worst slowdown over four scenes, the cut relative to the safest cell size",
+            over_safest,
+            "worst slowdown over four scenes relative to the best cell size of each, that of the cut over that of the "
+            "safest "
+            "cell size",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(

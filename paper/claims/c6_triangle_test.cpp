@@ -140,9 +140,9 @@ draft c6_claim(const measurements& m) {
     for (const char* test : {"triangle_box", "triangle_aabb"})
         add_test(test, "box", "where neither is transformed", std::string(frame_a_suffix));
     const std::pair<std::string, const char*> queries[] = {
-        {"triangle_box", "whole queries"},
+        {"triangle_box", "whole queries of the leafless tree, compared with the canonical one"},
         {"triangle_aabb", "whole queries, boxes of triangles computed on the fly"},
-        {"none", "whole queries if leaf boxes are not tested first"}};
+        {"none", "whole queries if a leaf's triangle is not tested against the other node"}};
     for (const condition& c : m.conditions_of("figure2"))
         for (const auto& [test, subject] : queries) {
             endpoint ratio = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},

@@ -131,7 +131,10 @@ named_table bands_table(std::span<const draft> drafts) {
         const std::vector<std::vector<endpoint>> endpoints = decided(drafts, band);
         for (std::size_t i = 0; i < drafts.size(); ++i) t.rows[i].push_back(text_of(verdict_of(endpoints[i])));
     }
-    return {"bands", "The verdicts under narrower and wider bands of no difference.", t};
+    return {
+        "bands",
+        "The verdicts under other bands of no difference. Each decides all primary ratios anew, by Holm's correction.",
+        t};
 }
 
 /// Judges ratios of a composition to itself under another name. Every difference that is found here is an error of the

@@ -81,7 +81,7 @@ stiff_result run_bouncing(const stiff_setting& setting) {
 stiff_study bouncing_study() {
     return {
         "bouncing",
-        "49 balls of 10 kg fall 5 m and bounce without loss for 20 s (4 with --quick) on springs of 2e5 N/m. Their "
+        "49 balls of 10 kg fall 5 m and bounce without loss for 20 s (4 s with --quick) on springs of 2e5 N/m. Their "
         "energy must not drift; errors are relative to the initial energy",
         "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the errors of ODE and "
         "DART with impulses",

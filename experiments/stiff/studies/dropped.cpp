@@ -267,7 +267,7 @@ stiff_result run_dropped(const stiff_setting& setting) {
 stiff_study dropped_study() {
     return {
         "dropped",
-        "216 balls of 80 triangles (27 with --quick) fall 5 diameters on a floor and on each other, without loss. A "
+        "216 balls (27 with --quick) of 80 triangles fall 5 diameters on a floor and on each other, without loss. A "
         "pressure on the surface inside the other ball separates them. The study shows how the step size and each "
         "method change the trajectory",
         "the trajectory with exact contacts; energy errors that fall with the order of the integrator; SimBenchmark's "
