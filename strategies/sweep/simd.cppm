@@ -50,10 +50,8 @@ public:
                 append_overlapping(block, window, pairs);
                 window = first;
             }
-            // Make room for all candidates that this vector may add.
-            const std::size_t room = candidate_count_ + active + 3 * width;
-            for (auto* buffer : {&candidates_, &met_})
-                if (room > buffer->size()) buffer->resize(room);
+            // Reserve space for all candidates that this vector may add.
+            make_room(candidate_count_ + active + 3 * width);
             const vector_of_entries vector(&block.entries[first], block.ends);
             const auto number = static_cast<std::uint32_t>((first - window) / width);
             tests += active + width - 1;
@@ -101,6 +99,13 @@ private:
 
     /// The lanes of a vector that each of a few entries may overlap.
     using lane_overlaps = std::array<std::uint16_t, width>;
+
+    /// A function of its own: inlined, the growth of two buffers takes registers from the loop over vectors.
+    void make_room(std::size_t candidates) {
+        if (candidates <= met_.size()) return;
+        candidates_.resize(candidates);
+        met_.resize(candidates);
+    }
 
     /// Stores the entries that may overlap any lane as candidates, branch-free since that is hard to predict.
     inline void keep_candidates(simd::words entries, std::uint32_t present, const lane_overlaps& met, simd::words lanes,
