@@ -23,7 +23,8 @@ draft c10_claim(const measurements& m) {
         .claim = {.claim = "Cutting a box more than once on an axis is not worth its cost",
                   .measured =
                       "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
-                  .lead = "With segments so wide that no box is cut twice on an axis",
+                  .lead =
+                      "With segments widened until no box is cut twice on an axis, compared with the number requested",
                   .experiments = {"c10"}},
         .primary = {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.conditions_of("c10"))

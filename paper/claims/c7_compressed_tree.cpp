@@ -62,7 +62,7 @@ draft c7b_claim(const measurements& m) {
     const std::pair<const char*, const char*> leaf_tests[] = {
         {"triangle_box", ""},
         {"triangle_aabb", "if the box of a leaf's triangle is computed on the fly"},
-        {"none", "if a leaf's triangle is not tested against the other node"}};
+        {"none", "if a leaf's triangle is not tested against the boxes of the other tree"}};
     for (const auto& [leaf_test, subject] : leaf_tests)
         for (const condition* c : conditions_by_size(m))
             c7b.add(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject);
