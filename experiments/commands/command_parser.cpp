@@ -19,7 +19,7 @@ void reject_outer_options(const CLI::App& command, const CLI::App& subcommand) {
 }
 
 /// Splits "--out FILE" into the names of the option and the placeholder of its value.
-std::pair<std::string, std::string> split_placeholder(const std::string& names) {
+std::pair<std::string, std::string> split_value_name(const std::string& names) {
     const std::size_t blank = names.find(' ');
     return {names.substr(0, blank), blank == std::string::npos ? "" : names.substr(blank + 1)};
 }
@@ -158,7 +158,7 @@ command_parser command_parser::command(const std::string& name) const {
 /// Adds an option whose value is stored in a variable or passed to a function.
 parsed_option command_parser::option(const std::string& names, const option_value& value,
                                      const std::string& help) const {
-    const std::pair<std::string, std::string> parts = split_placeholder(names);
+    const std::pair<std::string, std::string> parts = split_value_name(names);
     const auto add = [&]<class Value>(const Value& to) {
         if constexpr (std::is_pointer_v<Value>)
             return command_->add_option(parts.first, *to, help);
@@ -171,7 +171,7 @@ parsed_option command_parser::option(const std::string& names, const option_valu
 
 parsed_option command_parser::flag(const std::string& name, std::variant<bool*, std::string*> value,
                                    const std::string& help) const {
-    const std::pair<std::string, std::string> parts = split_placeholder(name);
+    const std::pair<std::string, std::string> parts = split_value_name(name);
     CLI::Option* const option = std::visit([&](auto* to) { return command_->add_flag(parts.first, *to, help); }, value);
     return parsed_option(parts.second.empty() ? *option : *option->option_text(parts.second));
 }

@@ -210,11 +210,11 @@ private:
     /// The metrics of a composition in this scene; empty if it did not run in it.
     [[nodiscard]] std::optional<plotted_composition> values_of(const aabb::composition& c) const {
         const candidate_name name = candidate_of(c, has_meshes(scene_.scene)).name;
-        const auto found = std::ranges::find(scene_.candidates, name, &candidate_summary::name);
-        if (found == scene_.candidates.end()) return std::nullopt;
-        const std::optional<double>& x = found->metrics[static_cast<std::size_t>(&x_ - metrics().data())];
-        const std::optional<double>& y = found->metrics[static_cast<std::size_t>(&y_ - metrics().data())];
-        return x && y ? std::optional(plotted_composition{found->label, *x, *y}) : std::nullopt;
+        const auto candidate = std::ranges::find(scene_.candidates, name, &candidate_summary::name);
+        if (candidate == scene_.candidates.end()) return std::nullopt;
+        const std::optional<double>& x = candidate->metrics[static_cast<std::size_t>(&x_ - metrics().data())];
+        const std::optional<double>& y = candidate->metrics[static_cast<std::size_t>(&y_ - metrics().data())];
+        return x && y ? std::optional(plotted_composition{candidate->label, *x, *y}) : std::nullopt;
     }
 
     [[nodiscard]] bool has_front() const { return x_.direction != better::neither && y_.direction != better::neither; }

@@ -117,7 +117,8 @@ draft c4_claim(const measurements& m) {
     // Segments need not be tiny: the automatic number is as good as the most that the limit allows.
     for_each_cut([&](const condition& c, int axes) {
         c4.add(ratio(c, axes, {"auto", "auto"}, limit),
-               boxes_of(c) + ", automatic number of segments, compared with as many as one cut per box allows", "axes")
+               boxes_of(c) + ", automatic number of segments, compared with the most that cut no box twice on an axis",
+               "axes")
             .expected = expectation::not_more;
     });
     if (conditions.empty()) return c4;

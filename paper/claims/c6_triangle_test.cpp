@@ -91,9 +91,9 @@ figure figure_of(const test_times& times) {
         const auto x = static_cast<double>(f.x.names.size());
         f.x.names.emplace_back(x, name.substr(name.find('/') + 1));
         const auto add = [&](series& line, const std::string& test) {
-            const auto found = times.find(test);
-            if (found == times.end()) return;
-            const quartiles q = spread_of(found->second);
+            const auto entry = times.find(test);
+            if (entry == times.end()) return;
+            const quartiles q = spread_of(entry->second);
             line.points.push_back({x, q.median, q.low, q.high});
         };
         add(transformed, name);

@@ -141,10 +141,10 @@ void verify_record(const std::filesystem::path& folder) {
     const checksums_by_file actual = checksums_in(folder);
     const checksums_by_file stated = stated_checksums(folder / sums_name);
     for (const auto& [file, checksum] : stated) {
-        const auto found = actual.find(file);
-        if (found == actual.end())
+        const auto entry = actual.find(file);
+        if (entry == actual.end())
             throw aabb::input_error((folder / file).string() + " is missing, but SHA256SUMS names it");
-        if (found->second != checksum)
+        if (entry->second != checksum)
             throw aabb::input_error((folder / file).string() +
                                     " was altered after the run: it does not have the checksum that SHA256SUMS states");
     }

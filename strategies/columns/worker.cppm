@@ -159,7 +159,7 @@ public:
         return true;
     }
 
-    /// Sweeps the filled columns, and fills and sweeps again if the sweep takes so many tests that it stops early:
+    /// Sweeps the filled columns, and fills and sweeps again if the sweep stops early at its limit of tests:
     /// under a new plan, and then by exact keys, which bounds the cost by about that of a sweep along one axis.
     void sweep(const Partition& partition, const column_group& group, const box& within, kept_plan& kept,
                std::vector<index_pair>& pairs) {

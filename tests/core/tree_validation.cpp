@@ -43,18 +43,19 @@ tree_validation validate_tree(std::vector<told_tree::node> nodes) {
 }  // namespace
 
 TEST_CASE("a survey finds nothing wrong with a tree that is right") {
-    const tree_validation found = validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
-    CHECK(found.fault.empty());
-    CHECK(found.depth == 1);
-    CHECK(found.tight);
-    CHECK(found.area_inflation == 0);
+    const tree_validation validated = validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
+    CHECK(validated.fault.empty());
+    CHECK(validated.depth == 1);
+    CHECK(validated.tight);
+    CHECK(validated.area_inflation == 0);
 }
 
 TEST_CASE("a survey tells of boxes that are larger than they must be") {
-    const tree_validation found = validate_tree({{{{0, 0, 0}, {5, 5, 10}}, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
-    CHECK(found.fault.empty());
-    CHECK_FALSE(found.tight);
-    CHECK(found.area_inflation == (250.0 + 2) / (150.0 + 2) - 1);
+    const tree_validation validated =
+        validate_tree({{{{0, 0, 0}, {5, 5, 10}}, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
+    CHECK(validated.fault.empty());
+    CHECK_FALSE(validated.tight);
+    CHECK(validated.area_inflation == (250.0 + 2) / (150.0 + 2) - 1);
 }
 
 TEST_CASE("a survey finds what is wrong with a tree") {

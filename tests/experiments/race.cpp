@@ -51,12 +51,12 @@ racer losing(const std::string& name) {
 
 /// Writes its name behind what is in the file, each time it is made.
 aabblab::candidate noted(const aabblab::candidate& tested, const std::string& name, const std::string& file) {
-    aabblab::candidate made = tested;
-    made.make_global = [=, make = tested.make_global](aabb::instrumentation counted) {
+    aabblab::candidate recording_candidate = tested;
+    recording_candidate.make_global = [=, make = tested.make_global](aabb::instrumentation counted) {
         std::ofstream(file, std::ios::app) << name;
         return make(counted);
     };
-    return made;
+    return recording_candidate;
 }
 
 const aabblab::scene_choice scene{"brownian", {{"objects", "200"}, {"frames", "24"}}, {}, 1, {}};
@@ -369,7 +369,7 @@ TEST_CASE("Order and ratio of finalists are of what they took in the same repeat
 }
 
 TEST_CASE("What would change the answer of a race is told where the repeats show it") {
-    const std::string nobody = "; no other candidate is shown to be faster with fewer or more frames.";
+    const std::string none_faster = "; no other candidate is shown to be faster with fewer or more frames.";
     // The sentence that says what to use ends so.
     const auto ends_so = [](std::vector<racer> finalists, const std::string& end, std::size_t frames = 100) {
         return aabblab::advice_of(ended(std::move(finalists), frames)).front().ends_with(end);
@@ -382,14 +382,14 @@ TEST_CASE("What would change the answer of a race is told where the repeats show
     CHECK(ends_so({winner, finished("patient", 160, 0.5)}, "; above about 300 frames, patient would be faster."));
     CHECK(ends_so({winner, finished("patient", 160, 0.5), finished("sooner", 130, 0.2)},
                   "; above about 150 frames, sooner would be faster."));
-    CHECK(ends_so({winner, finished("slower", 20, 2)}, nobody));
+    CHECK(ends_so({winner, finished("slower", 20, 2)}, none_faster));
     // It may be slower a frame, or not.
-    CHECK(ends_so({winner, finished("noisy", 5, 1.07, true)}, nobody));
+    CHECK(ends_so({winner, finished("noisy", 5, 1.07, true)}, none_faster));
     // Over one frame, or alone.
     for (const std::string& use : {aabblab::advice_of(ended({winner, finished("quick", 0, 2)}, 1)).front(),
                                    aabblab::advice_of(ended({winner})).front()}) {
         CHECK_FALSE(holds(use, " would be faster"));
-        CHECK(!use.ends_with(nobody));
+        CHECK(!use.ends_with(none_faster));
     }
 }
 

@@ -114,14 +114,14 @@ bool is_lossless(const strategy_choice& tree) {
 
 void check(const local_stage& stage, const composition& c, const mesh& m) {
     INFO(text_of_local(c) << ", " << m.triangle_count() << " triangles");
-    const std::optional<tree_validation> found = stage.validate_tree(0);
-    REQUIRE(found.has_value());
-    CHECK(found->fault.empty());
-    if (is_lossless(c[strategy_kind::tree])) CHECK(found->tight);
-    CHECK(found->area_inflation >= 0);
+    const std::optional<tree_validation> validated = stage.validate_tree(0);
+    REQUIRE(validated.has_value());
+    CHECK(validated->fault.empty());
+    if (is_lossless(c[strategy_kind::tree])) CHECK(validated->tight);
+    CHECK(validated->area_inflation >= 0);
     const auto least = static_cast<std::size_t>(std::bit_width(m.triangle_count() - 1U));
-    CHECK(found->depth >= least);
-    if (c[strategy_kind::build].name == "median") CHECK(found->depth == least);
+    CHECK(validated->depth >= least);
+    if (c[strategy_kind::build].name == "median") CHECK(validated->depth == least);
 }
 
 bool same_nodes(const implicit_tree& one, const implicit_tree& other) {

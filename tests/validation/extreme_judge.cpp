@@ -23,8 +23,9 @@ extreme_result judged(const extreme_judge& judge, std::function<void(pair_list&)
     });
 }
 
-extreme_result judged(const extreme_judge& judge, const alterations& made) {
-    return judge.judge([&made]() -> std::unique_ptr<local_stage> { return std::make_unique<altered_meshes>(made); });
+extreme_result judged(const extreme_judge& judge, const alterations& changes) {
+    return judge.judge(
+        [&changes]() -> std::unique_ptr<local_stage> { return std::make_unique<altered_meshes>(changes); });
 }
 
 void reject() {
@@ -52,12 +53,12 @@ TEST_CASE("the judge catches a global search that loses, invents, repeats, refus
                  {[](pair_list&) { reject(); }, verdict::rejected, 0, 0, "not today"},
                  {[](pair_list&) { throw std::runtime_error("no more"); }, verdict::wrong, 0, 0, "fails: no more"}};
     for (const auto& [change, outcome, false_negatives, false_positives, reason] : wrong) {
-        const extreme_result made = judged(judge, change);
-        CHECK(made.outcome == outcome);
-        CHECK(made.false_negatives == false_negatives);
-        CHECK(made.false_positives == false_positives);
-        CHECK(made.reason == reason);
-        CHECK_FALSE(is_as_expected(judge.scene(), made));
+        const extreme_result judged_stage = judged(judge, change);
+        CHECK(judged_stage.outcome == outcome);
+        CHECK(judged_stage.false_negatives == false_negatives);
+        CHECK(judged_stage.false_positives == false_positives);
+        CHECK(judged_stage.reason == reason);
+        CHECK_FALSE(is_as_expected(judge.scene(), judged_stage));
     }
     // One that need not be exact may be wrong.
     CHECK(is_as_expected(judge.scene(), judged(judge, wrong[0].change), false));
@@ -66,12 +67,12 @@ TEST_CASE("the judge catches a global search that loses, invents, repeats, refus
 TEST_CASE("the judge hears of a pair that is lost in a later frame only") {
     const extreme_judge judge = judge_of("all_leave");
     int searches = 0;
-    const extreme_result made = judged(judge, [&](pair_list& pairs) {
+    const extreme_result judged_stage = judged(judge, [&](pair_list& pairs) {
         if (++searches == 6) pairs.pop_back();
     });
     CHECK(searches == 6);
-    CHECK(made.false_negatives == 1);
-    CHECK(made.reason.starts_with("frame 5: the pair "));
+    CHECK(judged_stage.false_negatives == 1);
+    CHECK(judged_stage.reason.starts_with("frame 5: the pair "));
 }
 
 TEST_CASE("the judge catches a local detection that is wrong in any query") {
@@ -87,7 +88,7 @@ TEST_CASE("the judge catches a local detection that is wrong in any query") {
     CHECK(classified == 2);
     const extreme_result twice = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.push_back(pairs[0]); }});
     CHECK(twice.false_positives == 2);
-    for (const extreme_result& made : {lost, twice}) CHECK_FALSE(is_as_expected(judge.scene(), made));
+    for (const extreme_result& judged_stage : {lost, twice}) CHECK_FALSE(is_as_expected(judge.scene(), judged_stage));
     const std::pair<alterations, std::string> others[] = {
         {{.first_pair = [](auto& first) { first.reset(); }}, "frame 0: first_pair finds none, but there is one"},
         {{.first_pair = [](auto& first) { first = {0, 4711}; }},
@@ -96,10 +97,10 @@ TEST_CASE("the judge catches a local detection that is wrong in any query") {
         {{.self_pairs = [](pair_list& pairs) { pairs.pop_back(); }}, "self_pairs: the pair "},
         {{.all_pairs = [](pair_list&) { reject(); }}, "not today"}};
     for (const auto& [change, reason] : others) {
-        const extreme_result made = judged(judge, change);
-        CHECK(made.reason.starts_with(reason));
-        CHECK((made.outcome == verdict::rejected) == (reason == "not today"));
-        CHECK_FALSE(is_as_expected(judge.scene(), made));
+        const extreme_result judged_stage = judged(judge, change);
+        CHECK(judged_stage.reason.starts_with(reason));
+        CHECK((judged_stage.outcome == verdict::rejected) == (reason == "not today"));
+        CHECK_FALSE(is_as_expected(judge.scene(), judged_stage));
     }
 }
 
@@ -132,10 +133,10 @@ TEST_CASE("a stage that answers in other arithmetic is wrong, whichever query it
     if (can_flush_denormals()) names.push_back("flushed_boxes");
     for (const char* name : names) {
         const extreme_judge judge = judge_of(name);
-        const extreme_result made =
+        const extreme_result judged_stage =
             judge.judge([]() -> std::unique_ptr<global_stage> { return std::make_unique<careless>(); });
-        CHECK(made.outcome == verdict::wrong);
-        CHECK(made.reason == "search returns a result, but must reject the scene");
+        CHECK(judged_stage.outcome == verdict::wrong);
+        CHECK(judged_stage.reason == "search returns a result, but must reject the scene");
     }
 }
 
@@ -156,14 +157,14 @@ TEST_CASE("other arithmetic is that of a thread of its own") {
 TEST_CASE("more memory than a scene states is wrong") {
     extreme_scene scene;
     scene.most_bytes = 100;
-    extreme_result made;
-    made.bytes = 100;
-    require_stated_memory(scene, made);
-    CHECK(made.outcome == verdict::exact);
-    made.bytes = 101;
-    require_stated_memory(scene, made);
-    CHECK(made.outcome == verdict::wrong);
-    CHECK(made.reason == "holds 101 bytes, more than the limit of 100");
+    extreme_result judged_stage;
+    judged_stage.bytes = 100;
+    require_stated_memory(scene, judged_stage);
+    CHECK(judged_stage.outcome == verdict::exact);
+    judged_stage.bytes = 101;
+    require_stated_memory(scene, judged_stage);
+    CHECK(judged_stage.outcome == verdict::wrong);
+    CHECK(judged_stage.reason == "holds 101 bytes, more than the limit of 100");
 }
 
 TEST_CASE("the exact answer is that of the definition") {

@@ -14,9 +14,10 @@ std::vector<extreme_judge> judges() {
     return all;
 }
 
-void require_expected(const extreme_scene& scene, const extreme_result& made, bool must_be_exact = true) {
-    INFO(scene.name << ": " << verdict_names[static_cast<std::size_t>(made.outcome)] << " " << made.reason);
-    CHECK(is_as_expected(scene, made, must_be_exact));
+void require_expected(const extreme_scene& scene, const extreme_result& judged_stage, bool must_be_exact = true) {
+    INFO(scene.name << ": " << verdict_names[static_cast<std::size_t>(judged_stage.outcome)] << " "
+                    << judged_stage.reason);
+    CHECK(is_as_expected(scene, judged_stage, must_be_exact));
 }
 
 }  // namespace
@@ -52,9 +53,9 @@ TEST_CASE("every local detection is exact on every extreme scene, or refuses wha
         }
         for (const aabb::composition& c : exact_local_compositions()) {
             INFO(text_of_local(c));
-            extreme_result made = judge.judge([&] { return local_of(c); });
-            require_stated_memory(judge.scene(), made);
-            require_expected(judge.scene(), made);
+            extreme_result judged_stage = judge.judge([&] { return local_of(c); });
+            require_stated_memory(judge.scene(), judged_stage);
+            require_expected(judge.scene(), judged_stage);
         }
     }
 }

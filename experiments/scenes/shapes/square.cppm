@@ -13,7 +13,7 @@ struct square {
     using config = shape_size<2>;
     static constexpr auto parameters = config::parameters(2, "about how many triangles");
 
-    /// Divides the square into n² smaller ones, as many as the number of triangles allows.
+    /// Divides the square into n² smaller ones, with the greatest n that the number of triangles allows.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         constexpr float side = 100;
         std::uint32_t n = 1;
