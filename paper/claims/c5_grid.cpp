@@ -40,14 +40,14 @@ public:
         }
     }
 
-    /// The sizes that give a grid in all scenes. The safest size is one of these.
+    /// The sizes that give a grid in all scenes. The best single size is one of these.
     [[nodiscard]] const std::vector<std::string>& sizes() const { return sizes_in_all_scenes_; }
 
     /// The regret in a scene is the logarithm of a time over that of the best cell size there.
     [[nodiscard]] double worst_regret_of_cut(const resample& d) const {
         return worst([&](const auto& scene) { return -best(scene, d); });
     }
-    /// The worst regret of the safest cell size.
+    /// The worst regret of the best single cell size.
     [[nodiscard]] double least_worst_regret(const resample& d) const {
         return least_of(sizes_in_all_scenes_, [&](const std::string& size) {
             return worst([&](const auto& scene) { return d.mean_of(scene.at(size)) - best(scene, d); });
@@ -116,8 +116,7 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
     for (const auto& [label, size, text] :
          {std::tuple{"cells of 2", "2", "cells of edge 2"}, {"cells chosen anew", "auto", "the automatic cell size"}}) {
         const selection tested = grid(size);
-        const std::string subject = fmt::format(
-            "a grid with {}, its cost divided by the cut's, in the smallest world relative to the largest", text);
+        const std::string subject = fmt::format("a grid with {}, the smallest world compared with the largest", text);
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large", subject,
             small.log_ratios(tested, cut, measured("frame_cpu_ms")),
             large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::relative_time, expectation::less);
@@ -175,20 +174,20 @@ figure world_figure(const std::string& name, const std::string& quantity_name, c
 
 }  // namespace
 
-/// Claim C5: the worst slowdown of the axial cut over that of the safest cell size, which is the cell size with the
+/// Claim C5: the worst slowdown of the axial cut over that of the best single cell size, which is the one with the
 /// least worst slowdown, and growth with the world. A regret is the logarithm of a slowdown.
 draft c5_claim(const measurements& m) {
-    const std::string over_safest = "axial_cut over the safest cell size";
+    const std::string over_best_single = "axial_cut over the best single cell size";
     draft c5{
         .claim = {.claim = "No cell size suits every scene, the axial cut does; a grid's memory and time grow with the "
                            "world",
                   .measured =
-                      "the worst slowdown of axial_cut over that of the safest cell size; a slowdown is relative "
+                      "the worst slowdown of axial_cut over that of the best single cell size; a slowdown is relative "
                       "to the best cell size of a scene, the worst is that over four scenes with the same number "
                       "of objects, and grids with a single cell are left out",
                   .experiments = {"c5", "c5_world"}},
-        .primary = {{{"objects", "1000"}, {"comparison", over_safest}},
-                    {{"objects", "10000"}, {"comparison", over_safest}}}};
+        .primary = {{{"objects", "1000"}, {"comparison", over_best_single}},
+                    {{"objects", "10000"}, {"comparison", over_best_single}}}};
     std::map<double, std::vector<const condition*>> by_objects;
     for (const condition& c : m.conditions_of("c5")) by_objects[number_of(c.scene(), "objects")].push_back(&c);
     for (const auto& [number, conditions] : by_objects) {
@@ -208,10 +207,10 @@ draft c5_claim(const measurements& m) {
                     .source = "c5: regret"});
         };
         add(
-            over_safest,
-            "worst slowdown over four scenes relative to the best cell size of each, that of the cut over that of the "
-            "safest "
-            "cell size",
+            over_best_single,
+            "slowdown in the worst of four scenes relative to the best cell size of each, the cut compared with the "
+            "best "
+            "single cell size",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(
@@ -220,7 +219,7 @@ draft c5_claim(const measurements& m) {
             [&](const resample& d) { return scenes.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
         const resample as_measured(size.processes, size.seeds, level::none, 0);
         c5.claim.remark = fmt::format(
-            "With {} objects the safest cell size takes {:.1f} times as long as the best one in its worst scene.",
+            "With {} objects the best single cell size takes {:.1f} times as long as the best one in its worst scene.",
             number_text(objects), std::exp(scenes.least_worst_regret(as_measured)));
     }
     const std::vector<condition>& worlds = m.conditions_of("c5_world");

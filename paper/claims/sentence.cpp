@@ -14,7 +14,7 @@ constexpr double equality_threshold = 1.1;
 
 /// Empty for quantities that labels name.
 std::string noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "", "", "time relative to the cut"};
+    constexpr std::array nouns{"time", "bytes", "box tests", "", "", "time in units of the cut's"};
     return nouns[static_cast<std::size_t>(compared)];
 }
 

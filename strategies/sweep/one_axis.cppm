@@ -10,7 +10,7 @@ export namespace aabb {
 class one_axis_sweep {
 public:
     static constexpr std::string_view name = "one_axis";
-    static constexpr std::string_view summary = "sorts along one axis and tests the other two";
+    static constexpr std::string_view summary = "sweeps along one axis and tests the other two";
 
     enum class axis_choice : std::uint8_t { automatic, x, y, z };
     struct config {

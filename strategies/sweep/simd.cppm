@@ -13,7 +13,7 @@ export namespace aabb {
 class simd_sweep {
 public:
     static constexpr std::string_view name = "simd";
-    static constexpr std::string_view summary = "sorts along one axis and tests a vector of boxes at a time";
+    static constexpr std::string_view summary = "sweeps along one axis and tests a vector of boxes at a time";
 
     /// @throws input_error if there are more objects than the index bits of an entry can represent.
     axis_set axes(std::span<const box> boxes, const membership& objects) {

@@ -373,7 +373,7 @@ def regret(results, where):
         return max(found)
 
     def statistic(draw):
-        if where["comparison"] == "axial_cut over the safest cell size":
+        if where["comparison"] == "axial_cut over the best single cell size":
             return worst(draw, None) - min(worst(draw, size) for size in sizes)
         return worst(draw, None)
 
