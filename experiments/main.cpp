@@ -18,8 +18,8 @@ namespace {
 
 constexpr int check_failed = 1, bad_input = 2;
 
-/// Parses the command line, which also runs the command; the parser reports --version and --help by exceptions.
-void parse_and_run(CLI::App& program, int argc, char** argv) {
+/// Parses the command line; the parser reports --version and --help by exceptions.
+void parse(CLI::App& program, int argc, char** argv) {
     try {
         program.parse(argc, argv);
         require_command(program);
@@ -30,7 +30,6 @@ void parse_and_run(CLI::App& program, int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         throw aabb::input_error(rejection_of(program, error));
     }
-    flush_output();
 }
 
 /// Opens closed standard streams as /dev/null; else a file opened later would take their number and get their output.
@@ -70,7 +69,8 @@ int run_program(int argc, char** argv) {
         program.set_help_flag("-h,--help", "Print this help");
         program.require_subcommand(0, 1);
         wrap_help(program);
-        add_commands({program, status});
+        std::function<int()> run_command;  // empty if the command line asks for help or the version
+        add_commands({program, run_command});
         // Set last, so that commands do not inherit it.
         program.footer(
             "Further commands of the script aabblab at the root of the source tree:\n"
@@ -84,7 +84,9 @@ int run_program(int argc, char** argv) {
         program.parse_complete_callback([&] {
             if (!program.got_subcommand("calibrate")) use_calibrated_costs();
         });
-        parse_and_run(program, argc, argv);
+        parse(program, argc, argv);
+        if (run_command) status = run_command();
+        flush_output();
         return status;
     } catch (const output_closed&) {
         return status;

@@ -33,6 +33,11 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
         const aabb::model<aabb::implicit_tree> built(m, aabb::as_tree_builder(by));
         benchmark::DoNotOptimize(&built);
     };
+    const auto ms_of = [](const auto& work) {
+        const wall_stopwatch watch;
+        work();
+        return watch.ms();
+    };
     // Warm-up: starts the threads. TBB determines the available processors on its first use.
     build(by_two);
     std::vector<double> two_threads, two_builds;
@@ -40,12 +45,12 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
         double total = 0;
         for (int turn = 0; turn < turns; ++turn) {
             // The build by two threads comes last, as its threads linger.
-            const double one_thread = milliseconds_of([&] { build(by_one); });
-            two_builds.push_back(2 * one_thread / milliseconds_of([&] {
+            const double one_thread = ms_of([&] { build(by_one); });
+            two_builds.push_back(2 * one_thread / ms_of([&] {
                                      const std::jthread other([&] { build(by_one); });
                                      build(by_one);
                                  }));
-            two_threads.push_back(one_thread / milliseconds_of([&] { build(by_two); }));
+            two_threads.push_back(one_thread / ms_of([&] { build(by_two); }));
             total += one_thread;
         }
         state.SetIterationTime(total / turns / 1000);

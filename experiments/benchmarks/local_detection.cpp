@@ -264,7 +264,7 @@ struct rotated_box_15_test {
     std::vector<std::uint32_t> triangles;
     std::vector<walked_tree::cursor> open{node};
     while (!open.empty()) {
-        const walked_tree::cursor node = open.back();
+        node = open.back();
         open.pop_back();
         if (m.tree().is_leaf(node))
             triangles.push_back(m.tree().triangle(node));

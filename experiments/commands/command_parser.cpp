@@ -148,11 +148,11 @@ command_parser command_parser::add_command(const std::string& name, const std::s
         subcommand->preparse_callback(
             [parent = command_, subcommand](std::size_t) { reject_outer_options(*parent, *subcommand); });
     }
-    return {*subcommand, *status_};
+    return {*subcommand, *action_};
 }
 
 command_parser command_parser::command(const std::string& name) const {
-    return {*command_->get_subcommand(name), *status_};
+    return {*command_->get_subcommand(name), *action_};
 }
 
 /// Adds an option whose value is stored in a variable or passed to a function.
@@ -182,8 +182,8 @@ void command_parser::footer(const std::variant<std::string, std::function<std::s
 
 void command_parser::callback(const std::function<int()>& act) const {
     // If a subcommand is given, only that runs.
-    command_->callback([command = command_, status = status_, act] {
-        if (command->get_subcommands().empty()) *status = act();
+    command_->callback([command = command_, action = action_, act] {
+        if (command->get_subcommands().empty()) *action = act;
     });
 }
 

@@ -38,15 +38,15 @@ private:
 /// Declares what a command or the program takes. It hides the parser's header, which takes long to compile.
 class command_parser {
 public:
-    /// @param status the program's exit status, which a command sets: 0, or 1 if a check failed
-    command_parser(CLI::App& command, int& status) : command_(&command), status_(&status) {}
+    /// @param action receives the given command's action, which returns the exit status: 0, or 1 if a check failed
+    command_parser(CLI::App& command, std::function<int()>& action) : command_(&command), action_(&action) {}
 
     command_parser add_command(const std::string& name, const std::string& help) const;
     /// A command that was added before. It can have subcommands, which exclude its own options and arguments.
     [[nodiscard]] command_parser command(const std::string& name) const;
 
-    /// Sets the action of the command, which receives the request after the whole command line has been parsed. Invalid
-    /// input throws aabb::input_error, which ends the program with status 2.
+    /// Sets the action of the command, which receives the request. Invalid input throws aabb::input_error, which ends
+    /// the program with status 2.
     template <class Request, class Result>
     Request& set_action(Result (*act)(const Request&)) const {
         const auto request = std::make_shared<Request>();
@@ -79,7 +79,7 @@ private:
     void callback(const std::function<int()>& act) const;
 
     CLI::App* command_;
-    int* status_;
+    std::function<int()>* action_;
 };
 
 /// Adds every command of the program, in the order of its help.

@@ -37,7 +37,7 @@ public:
     bool next(std::vector<aabb::box>& boxes) override {
         if (!scene_.next()) return false;
         if (motion_) motion_->add(scene_.poses());
-        scene_.in_frame([&] { world_.update(scene_.poses()); });
+        scene_.place(world_);
         if (finder_) {
             finder_->update();
             finder_->search();

@@ -89,8 +89,6 @@ void write_recording(aabb::box_scene& scene, const std::string& name, const std:
 class output_file {
 public:
     explicit output_file(const std::filesystem::path& file);
-    output_file(const output_file&) = delete;
-    output_file& operator=(const output_file&) = delete;
     ~output_file();
     /// Rejects output for which the disk has no space before anything is written.
     void require_space(double bytes) const;

@@ -18,9 +18,6 @@ struct output_file::state {
     std::string part;       // the temporary name in the folder, if any
     file_handle file;
 
-    state() = default;
-    state(const state&) = delete;
-    state& operator=(const state&) = delete;
     ~state() {
         if (!part.empty()) unlinkat(folder, part.c_str(), 0);
         if (folder >= 0) close(folder);

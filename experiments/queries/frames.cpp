@@ -96,7 +96,9 @@ frames_result search_frames(scene_frames& scene, search_method& method, number_t
     frames_result result;
     result.objects = scene.objects();
     std::optional<stage_runner> searcher;
-    result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(method.run_stages), scene); });
+    const wall_stopwatch building;
+    searcher.emplace(std::move(method.run_stages), scene);
+    result.build_ms = building.ms();
     progress shown("frames searched", scene.frames());
     tally totals(meshes);
     run_frames(scene, *searcher, [&](const searched_frame& frame) {

@@ -239,7 +239,9 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     mesh_result result;
     result.method = method_of(choice, traits);
     std::optional<stage_runner> searcher;
-    result.build_ms = milliseconds_of([&] { searcher.emplace(std::move(result.method.run_stages), scene); });
+    const wall_stopwatch building;
+    searcher.emplace(std::move(result.method.run_stages), scene);
+    result.build_ms = building.ms();
     for (const aabb::mesh& m : scene.meshes()->meshes) result.triangles.push_back(m.triangle_count());
     // Within one mesh, pairs that share a vertex may dominate: n triangles around one vertex have n²/2 of them. They
     // are stored only if they are reported and an inexact method may have missed some; with an exact method, they
@@ -251,10 +253,9 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
         try {
             searcher->update();
             searcher->search();
-            const auto ask = [&] {
-                hits = result_of(*searcher, query, scene.meshes()->meshes.front(), neighbours_too);
-            };
-            result.query_ms.push_back(milliseconds_of(ask));
+            const wall_stopwatch searching;
+            hits = result_of(*searcher, query, scene.meshes()->meshes.front(), neighbours_too);
+            result.query_ms.push_back(searching.ms());
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(
                 fmt::format("{}{}: {}", poses_b.place_of(frame % poses), query.between, error.what()));

@@ -1,5 +1,6 @@
 export module aabblab.stepping:dynamics;
 
+import aabb.base;
 import :contact_law;
 
 export namespace aabblab {
@@ -58,13 +59,8 @@ using acceleration_of = std::function<void(const std::vector<double>& position, 
                                            std::vector<double>& acceleration)>;
 
 /// Integrates one trajectory: later calls must pass the state that the previous one left, and the same acceleration.
-class integrator {
+class integrator : public aabb::kept_in_place {
 public:
-    integrator() = default;
-    integrator(const integrator&) = delete;
-    integrator& operator=(const integrator&) = delete;
-    virtual ~integrator() = default;
-
     /// Advances the state by `step`, s; an adaptive integrator divides it into steps of its own choice.
     /// @throws aabb::input_error if it fails.
     virtual void advance(const acceleration_of& acceleration, motion_state& state, double step) = 0;

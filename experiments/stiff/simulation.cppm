@@ -73,11 +73,11 @@ private:
         bodies_->move_to(position);
         detected_position_.assign(position.begin(), position.end());
         frames_.next();
-        detection_ms_ += milliseconds_of([&] {
-            runner_.update();
-            runner_.search();
-            runner_.detect();
-        });
+        const wall_stopwatch watch;
+        runner_.update();
+        runner_.search();
+        runner_.detect();
+        detection_ms_ += watch.ms();
         ++detections_;
         return runner_.sorted_contacts();
     }

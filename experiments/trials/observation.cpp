@@ -28,9 +28,9 @@ template <class Query>
 elapsed mean_time(const Query& query, bool cold) {
     const int repeats = cold ? 1 : 16;
     if (!cold) query();
-    const elapsed sum = elapsed_in([&] {
-        for (int i = 0; i < repeats; ++i) query();
-    });
+    stopwatch watch;
+    for (int i = 0; i < repeats; ++i) query();
+    const elapsed sum = watch.lap();
     return {sum.wall_ms / repeats, sum.cpu_ms / repeats};
 }
 
@@ -60,7 +60,9 @@ elapsed time_query(stage_runner& runner, const query_settings& query, std::strin
 observation observe(scene_frames& scene, const candidate& tested, const protocol& settings) {
     observation result;
     std::optional<stage_runner> runner;
-    result.build = elapsed_in([&] { runner.emplace(tested, scene, settings.counted); });
+    stopwatch building;
+    runner.emplace(tested, scene, settings.counted);
+    result.build = building.lap();
     tally totals(scene.meshes() != nullptr);
     const auto add_frame = [&](const searched_frame& frame) {
         totals.add(frame.pairs, frame.contacts);

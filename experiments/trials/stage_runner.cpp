@@ -29,6 +29,17 @@ void scene_frames::take_results(std::span<const aabb::index_pair> pairs, std::sp
         box_scene_->take_pairs(pairs);
 }
 
+void scene_frames::rethrow(const aabb::input_error& error) const {
+    if (poses_file_.empty()) throw;
+    throw aabb::input_error(poses_file_ + ": frame " + std::to_string(frames_run_ - 1) + ": " + error.what());
+}
+
+void scene_frames::place(aabb::posed_boxes& boxes) const try {
+    boxes.update(poses_);
+} catch (const aabb::input_error& error) {
+    rethrow(error);
+}
+
 /// Compares the presence of every object with the previous frame, so that only changed objects are inserted or removed.
 void scene_frames::note_changes(std::span<const std::uint8_t> present) {
     arrivals_.clear();
@@ -55,21 +66,25 @@ stage_runner::stage_runner(stages given, const scene_frames& scene) : scene_(sce
         pipeline_.emplace(*scene.meshes(), *stages_.local);
 }
 
-void stage_runner::update() {
-    if (pipeline_) return scene_.in_frame([&] { pipeline_->update(scene_.poses()); });
+void stage_runner::update() try {
+    if (pipeline_) return pipeline_->update(scene_.poses());
     for (const std::uint32_t object : scene_.departures()) stages_.global->remove(object);
     for (const std::uint32_t object : scene_.arrivals()) stages_.global->insert(object);
     stages_.global->update(scene_.boxes());
+} catch (const aabb::input_error& error) {
+    scene_.rethrow(error);
 }
 
 void stage_runner::search() {
-    if (pipeline_) return scene_.in_frame([&] { pipeline_->search(); });
+    if (pipeline_) return pipeline_->search();
     pairs_.clear();
     stages_.global->search(pairs_);
 }
 
-void stage_runner::detect() {
-    if (pipeline_) scene_.in_frame([&] { pipeline_->detect(); });
+void stage_runner::detect() try {
+    if (pipeline_) pipeline_->detect();
+} catch (const aabb::input_error& error) {
+    scene_.rethrow(error);
 }
 
 const std::vector<aabb::index_pair>& stage_runner::sorted_pairs() {
@@ -134,14 +149,21 @@ std::optional<double> stage_runner::box_inflation() const {
 }
 
 elapsed time_detection(stage_runner& runner) {
-    return elapsed_in([&] { runner.detect(); });
+    stopwatch watch;
+    runner.detect();
+    return watch.lap();
 }
 
 /// Times the phases of each frame and passes its results to the scene, whose bodies may react to their contacts.
 void run_frames(scene_frames& scene, stage_runner& runner, const std::function<void(const searched_frame&)>& on_frame,
                 std::size_t most_frames, const timed_detection& detect) {
     for (std::uint32_t frame = 0; frame < most_frames && scene.next(); ++frame) {
-        phases took{elapsed_in([&] { runner.update(); }), elapsed_in([&] { runner.search(); }), {}};
+        phases took;
+        stopwatch watch;
+        runner.update();
+        took.update = watch.lap();
+        runner.search();
+        took.search = watch.lap();
         // Some broad phases sort during the search; this counts as update, where other strategies sort.
         const double share = runner.share_of_update();
         const elapsed sorting{share * took.search.wall_ms, share * took.search.cpu_ms};

@@ -58,16 +58,10 @@ public:
     bool next();
     /// Passes the sorted results of this frame to the scene, which may react to them; contacts exist only for meshes.
     void take_results(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts);
-    /// Runs work on this frame. Invalid poses are found when they are used; messages on a file's poses name the frame.
-    template <class Work>
-    void in_frame(Work work) const {
-        try {
-            work();
-        } catch (const aabb::input_error& error) {
-            if (poses_file_.empty()) throw;
-            throw aabb::input_error(poses_file_ + ": frame " + std::to_string(frames_run_ - 1) + ": " + error.what());
-        }
-    }
+    /// Must be called by the handler of an error in this frame: if its poses come from a file, adds file and frame.
+    [[noreturn]] void rethrow(const aabb::input_error& error) const;
+    /// Computes the boxes of a frame of meshes; throws aabb::input_error on an invalid pose, with its file and frame.
+    void place(aabb::posed_boxes& boxes) const;
     /// Null for a scene of boxes.
     [[nodiscard]] const aabb::mesh_scene* meshes() const { return meshes_.get(); }
     [[nodiscard]] std::span<const aabb::box> boxes() const { return boxes_; }

@@ -182,7 +182,7 @@ scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
     progress shown("validating " + choice.kind, scene.frames() * (candidates.size() + 1));
     std::size_t finished_runs = 0;
     for (std::size_t frame = 0; scene.next(); ++frame) {
-        if (posed) scene.in_frame([&] { posed->update(scene.poses()); });
+        if (posed) scene.place(*posed);
         if (posed)
             truth.compute({posed->boxes(), scene.poses(), /*arrivals=*/{}, /*departures=*/{}});
         else

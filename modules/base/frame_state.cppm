@@ -59,17 +59,22 @@ private:
     state state_ = state::none;
 };
 
-/// Calls `append`, which appends to a list; if it throws, the list is restored.
-template <class T, class Allocator, class Append>
-void append_or_restore(std::vector<T, Allocator>& list, Append append) {
-    const std::size_t before = list.size();
-    try {
-        append();
-    } catch (...) {
-        list.resize(before);
-        throw;
+/// Removes what was appended to a list since its construction, unless `keep` was called, as after an exception.
+template <class List>
+class append_guard {
+public:
+    explicit append_guard(List& list) : list_(&list), before_(list.size()) {}
+    append_guard(const append_guard&) = delete;
+    append_guard& operator=(const append_guard&) = delete;
+    ~append_guard() {
+        if (list_ != nullptr) list_->resize(before_);
     }
-    assert(list.size() >= before);
-}
+
+    void keep() noexcept { list_ = nullptr; }
+
+private:
+    List* list_;
+    std::size_t before_;
+};
 
 }  // namespace aabb

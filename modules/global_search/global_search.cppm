@@ -84,14 +84,12 @@ public:
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_or_restore(pairs, [&] {
-            if constexpr (cuts) {
-                for (std::uint32_t s = 0; s < subsets_.size(); ++s)
-                    sweep_.sweep(subsets_.subset(s, boxes_), pairs, counters_);
-                if (subsets_.size() > 0) return;
-            }
-            sweep_.sweep(lists_.all(boxes_), pairs, counters_);
-        });
+        append_guard guard(pairs);
+        if constexpr (cuts)
+            for (std::uint32_t s = 0; s < subsets_.size(); ++s)
+                sweep_.sweep(subsets_.subset(s, boxes_), pairs, counters_);
+        if (subsets_.size() == 0) sweep_.sweep(lists_.all(boxes_), pairs, counters_);
+        guard.keep();
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
@@ -150,7 +148,9 @@ public:
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_or_restore(pairs, [&] { sweep_.search(pairs); });
+        append_guard guard(pairs);
+        sweep_.search(pairs);
+        guard.keep();
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
@@ -195,7 +195,9 @@ public:
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_or_restore(pairs, [&] { search_.search(pairs, counters_); });
+        append_guard guard(pairs);
+        search_.search(pairs, counters_);
+        guard.keep();
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }

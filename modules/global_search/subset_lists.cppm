@@ -94,6 +94,8 @@ private:
 };
 
 /// Replaces `subset_lists` in a search without partition.
-struct no_subsets {};
+struct no_subsets {
+    [[nodiscard]] static constexpr std::size_t size() noexcept { return 0; }
+};
 
 }  // namespace aabb

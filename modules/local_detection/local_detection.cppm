@@ -37,12 +37,12 @@ public:
     /// Appends every pair of intersecting triangles (a of A, b of B) once, in unspecified order.
     void all_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
-        append_or_restore(pairs, [&] {
-            walk(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
-                pairs.insert(pairs.end(), batch.begin(), batch.end());
-                return false;
-            });
+        append_guard guard(pairs);
+        walk(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
+            pairs.insert(pairs.end(), batch.begin(), batch.end());
+            return false;
         });
+        guard.keep();
     }
 
     [[nodiscard]] std::uint64_t count_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
@@ -68,7 +68,9 @@ public:
 
     /// Appends every pair of intersecting triangles a < b of one mesh, including neighbours that share a vertex.
     void self_pairs(const model<Tree>& m, std::vector<index_pair>& pairs) {
-        append_or_restore(pairs, [&] { each_self_pair(m, [&](index_pair pair) { pairs.push_back(pair); }); });
+        append_guard guard(pairs);
+        each_self_pair(m, [&](index_pair pair) { pairs.push_back(pair); });
+        guard.keep();
     }
 
     /// Passes each of the same pairs to `take` as it is found, without storing any.

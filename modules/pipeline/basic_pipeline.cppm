@@ -77,20 +77,20 @@ public:
     void detect() {
         contacts_.clear();
         require_searched();
-        append_or_restore(contacts_, [&] {
-            for (std::size_t i = 0; i < candidates_.size(); ++i) {
-                const auto [a, b] = models_of(i);
-                triangle_pairs_.clear();
-                local_.all_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b], triangle_pairs_);
-                if (parts_) parts_->map_triangles({a, b}, triangle_pairs_);
-                // Resizing once is faster than `push_back`, whose capacity checks take longer than the writes.
-                const std::size_t before = contacts_.size();
-                contacts_.resize(before + triangle_pairs_.size());
-                contact* to = contacts_.data() + before;
-                const index_pair objects = candidates_[i];
-                for (const auto [t, u] : triangle_pairs_) *to++ = {objects.a, objects.b, t, u};
-            }
-        });
+        append_guard guard(contacts_);
+        for (std::size_t i = 0; i < candidates_.size(); ++i) {
+            const auto [a, b] = models_of(i);
+            triangle_pairs_.clear();
+            local_.all_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b], triangle_pairs_);
+            if (parts_) parts_->map_triangles({a, b}, triangle_pairs_);
+            // Resizing once is faster than `push_back`, whose capacity checks take longer than the writes.
+            const std::size_t before = contacts_.size();
+            contacts_.resize(before + triangle_pairs_.size());
+            contact* to = contacts_.data() + before;
+            const index_pair objects = candidates_[i];
+            for (const auto [t, u] : triangle_pairs_) *to++ = {objects.a, objects.b, t, u};
+        }
+        guard.keep();
     }
 
     /// Alternatives to `detect`, which throw likewise. Some contact, if there is one.

@@ -161,12 +161,9 @@ public:
         workers_.push_back({{std::move(sort), std::move(sweep)}, {}});
         workers_.resize(threads_.count(), workers_.front());
     }
-    // The members refer to each other, so copies would dangle.
-    column_search(const column_search&) = delete;
-    column_search& operator=(const column_search&) = delete;
+    // Not copyable, since the members refer to each other.
     column_search(column_search&&) = default;
     column_search& operator=(column_search&&) = default;
-    ~column_search() = default;
 
     /// Starts a frame: keeps the pairs if nothing moved, prepares brute force for few boxes, or cuts the boxes.
     /// @throws input_error as `global_search::update`.

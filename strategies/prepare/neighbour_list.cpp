@@ -109,7 +109,9 @@ public:
             case state::watching: search_->search(pairs); break;
             case state::resting: pairs.insert(pairs.end(), list_.pairs().begin(), list_.pairs().end()); break;
             case state::listing:
-                append_or_restore(pairs, [&] { count_tests(list_.append_to(pairs, boxes_, certain_pairs_hold())); });
+                append_guard guard(pairs);
+                count_tests(list_.append_to(pairs, boxes_, certain_pairs_hold()));
+                guard.keep();
                 break;
         }
         estimate_.pairs = pairs.size() - before;

@@ -59,10 +59,10 @@ public:
         if (splits_.empty()) return search_->search(pairs);
         piece_pairs_.clear();
         search_->search(piece_pairs_);
-        append_or_restore(pairs, [&] {
-            for (const auto [a, b] : piece_pairs_)
-                if (owns_pair(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
-        });
+        append_guard guard(pairs);
+        for (const auto [a, b] : piece_pairs_)
+            if (owns_pair(a, b)) pairs.push_back(ordered_pair(object_of(a), object_of(b)));
+        guard.keep();
     }
 
     [[nodiscard]] double share_of_update() const override { return search_->share_of_update(); }

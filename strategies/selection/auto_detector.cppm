@@ -28,9 +28,6 @@ public:
     /// @throws input_error as the other constructor, on an invalid mesh index, and as `require_valid`
     auto_detector(std::vector<mesh> meshes, std::vector<std::uint32_t> mesh_of,
                   const std::vector<std::string>& named = {}, std::size_t frames = many_frames);
-    // Not copyable, since its members refer to each other.
-    auto_detector(const auto_detector&) = delete;
-    auto_detector& operator=(const auto_detector&) = delete;
     ~auto_detector();
 
     /// Inserts or removes an object; throws input_error as the `detector` of boxes or of meshes.

@@ -30,7 +30,9 @@ public:
     void search(std::vector<index_pair>& pairs) final {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_or_restore(pairs, [&] { find_pairs(pairs); });
+        append_guard guard(pairs);
+        find_pairs(pairs);
+        guard.keep();
     }
 
     [[nodiscard]] work_counters counters() const final { return {}; }

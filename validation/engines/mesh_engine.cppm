@@ -37,7 +37,9 @@ class mesh_engine : public local_stage {
 public:
     void all_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b, const pose& pose_b,
                    std::vector<index_pair>& pairs) final {
-        append_or_restore(pairs, [&] { find_pairs(model_a, pose_a, model_b, pose_b, pairs); });
+        append_guard guard(pairs);
+        find_pairs(model_a, pose_a, model_b, pose_b, pairs);
+        guard.keep();
     }
     [[nodiscard]] std::uint64_t count_pairs(std::uint32_t model_a, const pose& pose_a, std::uint32_t model_b,
                                             const pose& pose_b) final {
@@ -49,10 +51,10 @@ public:
     void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final {
         std::vector<index_pair> both_ways;
         all_pairs(model, {}, model, {}, both_ways);
-        append_or_restore(pairs, [&] {
-            for (const index_pair pair : both_ways)
-                if (pair.a < pair.b) pairs.push_back(pair);
-        });
+        append_guard guard(pairs);
+        for (const index_pair pair : both_ways)
+            if (pair.a < pair.b) pairs.push_back(pair);
+        guard.keep();
     }
     [[nodiscard]] std::optional<tree_validation> validate_tree(std::uint32_t) const final { return std::nullopt; }
     [[nodiscard]] work_counters counters() const final { return {}; }
