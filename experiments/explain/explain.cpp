@@ -52,8 +52,8 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
     const candidate_name& name = tested.name;
     std::string text;
     if (scene.frames() > frames_before_bytes)
-        text = fmt::format("    bytes after {} of {} frames (aabblab run: after the last)\n", frames_before_bytes,
-                           grouped(scene.frames()));
+        text = fmt::format("    bytes after {} of {} frames; aabblab run reports them after the last\n",
+                           frames_before_bytes, grouped(scene.frames()));
     text += text_of("broad phase", text_of(name, aabb::stage::global_search), runner.global_bytes());
     text += text_of(scene.meshes() ? "between phases" : "found pairs", "", {{"buffers", runner.buffer_bytes()}});
     if (scene.meshes())

@@ -55,7 +55,7 @@ draft c11_claim(const measurements& m) {
                 "objects");
         if (matches(c.scene(), large_crowd))
             claim.remark =
-                "The broad phase takes " + share_text(c) + " of the traditional method's time where models touch";
+                "The traditional method spends " + share_text(c) + " of its time in the broad phase where models touch";
         else if (matches(c.scene(), far_apart) && !claim.remark.empty())
             claim.remark += ", and " + share_text(c) + " with 100,000 simple ones far apart";
     }

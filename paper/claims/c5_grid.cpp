@@ -208,9 +208,8 @@ draft c5_claim(const measurements& m) {
         };
         add(
             over_best_single,
-            "slowdown in the worst of four scenes relative to the best cell size of each, the cut compared with the "
-            "best "
-            "single cell size",
+            "slowdown (time over that of a scene's best cell size) in the worst of four scenes, the cut's over that of "
+            "the best single cell size",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(

@@ -14,7 +14,7 @@ constexpr double equality_threshold = 1.1;
 
 /// Empty for quantities that labels name.
 std::string noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "", "", "time in units of the cut's"};
+    constexpr std::array nouns{"time", "bytes", "box tests", "", "", "time (divided by the cut's)"};
     return nouns[static_cast<std::size_t>(compared)];
 }
 
@@ -36,7 +36,7 @@ std::string span_text(const std::string& low, const std::string& high) {
 }
 
 /// The size of ratios that all lie on one side of 1, in one unit for each quantity: "up to 2.1 times as fast", "1.27
-/// times as long", "34 to 36 % of the bytes". A wide range of factors is reported by the one farthest from 1.
+/// times as long", "34 to 36 % of the bytes".
 std::string size_text(std::span<const endpoint> endpoints) {
     const auto [least, greatest] = std::ranges::minmax_element(endpoints, {}, &endpoint::ratio);
     const double low = least->ratio, high = greatest->ratio;
@@ -48,7 +48,6 @@ std::string size_text(std::span<const endpoint> endpoints) {
     const double mild = is_faster ? 1 / high : low;
     const double strong = is_faster ? 1 / low : high;
     const std::string unit = is_faster ? " times as fast" : " times as long";
-    if (mild < factor_threshold && strong >= factor_threshold) return "up to " + times_text(strong) + unit;
     if (mild >= factor_threshold && strong / mild <= equality_threshold)
         return times_text(std::sqrt(mild * strong)) + unit;
     return span_text(times_text(mild), times_text(strong)) + unit;
@@ -94,7 +93,7 @@ std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
     if (factor == "objects") return " with " + values + (values == "1" ? " object" : " objects");
     if (factor == "axes") return " on " + values + (values == "1" ? " axis" : " axes");
     if (factor == "inversions") return " at " + values + " inversions per element";
-    return " at a " + factor + " of " + values;
+    return " at a " + (factor == "ratio" ? "size ratio" : factor) + " of " + values;
 }
 
 /// Reports ordered endpoints by stretches: "1.30 times as long with 100 objects, 2.0 times as fast with 1,000 or more".

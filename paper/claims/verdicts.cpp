@@ -100,12 +100,8 @@ table verdict_table(const reproduction& results) {
 }
 
 table brief_table(const reproduction& results) {
-    table t{{{"", false}, {"claim", false}, {"verdict", false}, {"primary ratios", false}}, {}};
-    for (const claim_result& c : results.claims) {
-        std::string ratios;
-        for (const endpoint& e : primaries_of(c)) ratios += (ratios.empty() ? "" : ", ") + ratio_digits_of(e.ratio);
-        t.rows.push_back({c.id, c.claim, text_of(c.verdict), ratios.empty() ? "-" : ratios});
-    }
+    table t{{{"", false}, {"claim", false}, {"verdict", false}}, {}};
+    for (const claim_result& c : results.claims) t.rows.push_back({c.id, c.claim, text_of(c.verdict)});
     return t;
 }
 

@@ -15,7 +15,7 @@ export namespace aabb {
 class columns_partition {
 public:
     static constexpr std::string_view name = "columns";
-    static constexpr std::string_view summary = "cuts boxes into columns before it sorts them";
+    static constexpr std::string_view summary = "distributes boxes over columns of space, and sorts within each";
 
     struct config {
         /// Number of the two perpendicular axes that are cut into columns.

@@ -78,7 +78,7 @@ TEST_CASE("One's own recordings and motion stand in one table with engines, and 
     }
     const std::string explained = run_well({"explain", config}).out;
     CHECK(holds(explained, "motion (file=" + motion));
-    CHECK(holds(explained, "bytes after 2 of 4 frames (aabblab run: after the last)\n"));
+    CHECK(holds(explained, "bytes after 2 of 4 frames; aabblab run reports them after the last\n"));
     const auto manifest = nlohmann::json::parse(bytes_of_file(folder / "out/manifest.json"));
     for (const auto& scene : manifest["scenes"]) {
         const auto& parameters = scene["parameters"];

@@ -154,7 +154,7 @@ std::string heading_of(const scene_summary& scene) {
     for (const shared_column& c : shared_columns(scene, ranking))
         if (c.is_constant())
             constant += (constant.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
-    if (!constant.empty()) text += "all lines, over all frames: " + constant + "\n";
+    if (!constant.empty()) text += "all lines of the table, over all frames: " + constant + "\n";
     if (!scene.digest.empty()) text += "digest of the ground truth: " + scene.digest + "\n";
     const bool inexact = std::ranges::any_of(scene.candidates, [](const auto& c) { return c.status != "exact"; });
     const auto with_errors = std::ranges::find_if(

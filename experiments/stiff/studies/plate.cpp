@@ -73,8 +73,8 @@ private:
 
 }  // namespace
 
-/// Shoots the body from phases spread evenly over a step, with several lengths of a step and both kinds of boxes, and
-/// compares the share of shots that pass the plate undetected with the closed form.
+/// Shoots the body at start times spread evenly over a step, with several lengths of a step and both kinds of boxes,
+/// and compares the share of shots that pass the plate undetected with the closed form.
 stiff_result run_plate(const stiff_setting& setting) {
     stiff_result result;
     const std::size_t shots = setting.quick ? 200 : 2000;
@@ -102,7 +102,8 @@ stiff_result run_plate(const stiff_setting& setting) {
 stiff_study plate_study() {
     return {
         "plate",
-        "A body of 100 mm is shot through a mesh plate of 10 mm, from phases spread evenly over a step. Plain boxes "
+        "A body of 100 mm is shot through a mesh plate of 10 mm, at start times spread evenly over a time step. Plain "
+        "boxes "
         "bound the body at the end of a step. Swept boxes bound it from step to step; if they overlap, the step is "
         "tested in parts that are too short for the body to tunnel",
         "1 - extent/displacement if the displacement per step exceeds the extent of body and plate together; none with "
