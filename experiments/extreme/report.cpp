@@ -206,7 +206,7 @@ std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
         std::size_t most = 0;
         for (const extreme_row* row : of_scene) most = std::max(most, row->result.bytes);
         sentences.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions hold at most " + grouped(most) +
-                            " bytes; the bound in GUARANTEES is " + grouped(of_scene.front()->stated_bytes));
+                            " bytes; the limit is " + grouped(of_scene.front()->stated_bytes));
     }
     return sentences;
 }

@@ -63,8 +63,7 @@ std::vector<std::string> legend() {
     return {
         "all ms: build ms, first ms (frame 0) and all further frames. Times are of the repeat with the median all ms.",
         ratio_text, ms_per_frame_text, build_ms_text,
-        "KiB: memory without meshes. A break-even number of frames, if any, follows from median differences in a "
-        "repeat."};
+        "KiB: memory without meshes. Any break-even number of frames follows from median differences in a repeat."};
 }
 
 /// The report as HTML: the advice, then what it rests on: ranking, measures of the scene, dropped candidates, machine.

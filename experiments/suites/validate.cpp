@@ -23,7 +23,7 @@ std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
          scene_table(rows, row_group::meshes)},
         {"extreme_tests", "Meshes, by inexact triangle tests", inexact_scene_table(rows)},
         {"extreme_classes", "The same by class", class_table(rows)},
-        {"extreme_cases", "Hard pairs of triangles, by exact tests, and as two meshes: three queries per case",
+        {"extreme_cases", "Hard pairs of triangles, by exact tests, and as two meshes in three queries",
          case_table(rows)},
         {"extreme_case_tests", "The same by inexact triangle tests, in every order of corners, float and double",
          inexact_case_table(rows)}};

@@ -136,7 +136,7 @@ TEST_CASE("boxes move by the displacement, in either unit") {
                 play(info.name, {{"unit", unit}, {"objects", objects}, {"frames", "3"}});
         }
     }
-    REQUIRE(moving == 12);
+    REQUIRE(moving >= 12);
 }
 
 TEST_CASE("overlapping pairs grow with the number of boxes, not with its square") {

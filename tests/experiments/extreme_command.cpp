@@ -53,7 +53,7 @@ TEST_CASE("Scenes that are not answered as they must be stand in the table, and 
     const std::vector<std::string> memory = aabblab::memory_in(rows);
     REQUIRE(memory.size() == 1);
     CHECK(memory[0].starts_with("many_against_one, "));
-    CHECK(memory[0].ends_with(" bytes; the stated bound is 1,000"));
+    CHECK(memory[0].ends_with(" bytes; the limit is 1,000"));
 
     // All of that comes from rows as they are kept, too.
     const temporary_folder folder;

@@ -177,7 +177,7 @@ TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those
     CHECK(holds(aabblab::heading_of(scene),
                 "in ascending order of ratio, exact results before inexact ones\nratio: ms/frame relative to"));
     CHECK(holds(aabblab::heading_of(scene), " confidence interval\nbaseline: slow\n"));
-    CHECK(holds(aabblab::heading_of(scene), "all lines, over all frames: 1,234,567 pairs of boxes\n"));
+    CHECK(holds(aabblab::heading_of(scene), "all lines of the table, over all frames: 1,234,567 pairs of boxes\n"));
     CHECK(holds(aabblab::heading_of(scene), "a result -3 +5 has 3 false negatives and 5 false positives\n"));
     rows[1].false_negatives = 12;
     rows[1].false_positives = 0;

@@ -22,7 +22,7 @@ store_help() {
     "$program" "$@" --help >"$file.txt"
     while read -r inner; do
         [[ ! $inner ]] || store_help "$@" "$inner"
-    done <<<"$(sed -nE '/^Subcommands:/,/^$/s/^  ([a-z]+).*/\1/p' "$file.txt")"
+    done <<<"$(sed -nE '/^Subcommands:/,/^$/s/^  ([a-z_]+).*/\1/p' "$file.txt")"
 }
 store_help
 "$program" list >"$printed/list.txt"

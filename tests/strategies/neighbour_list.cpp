@@ -874,7 +874,7 @@ TEST_CASE("a few boxes are not watched") {
         const auto stage = listing_stage(n);
         std::vector<box> boxes(n, cube(0));
         (void)found_by(*stage, boxes);
-        const omission few{absence::neighbour_list, "searching so few boxes costs no more than tracking them"};
+        const omission few{absence::neighbour_list, "not worth its cost for so few boxes"};
         CHECK(std::ranges::count(stage->left_out(), few) == (n == 2 * simd::width ? 1 : 0));
         // A margin that is named is kept to.
         const auto named = search_of(composed({{strategy_kind::prepare, "neighbour_list:margin=1"}}), n);
