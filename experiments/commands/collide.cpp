@@ -187,7 +187,7 @@ void add_collide(const command_parser& program) {
         request.repeats =
             parse_whole(text, 1, 1'000'000, "--repeat is the number of searches: a whole number from 1 to 1,000,000");
     };
-    command.option("--repeat N", take_repeats, "Search N times, at all poses in turn; --json lists the time of each");
+    command.option("--repeat N", take_repeats, "Search N times at each pose; --json lists the time of every search");
     command.option("--out FILE", &request.out,
                    "CSV file for pairs: a,b; with --self a,b,shared_vertices; --self=apart a,b; --poses pose,a,b");
     command.flag("--geometry", &request.geometry,

@@ -12,7 +12,7 @@ void add_recommend(const command_parser& program) {
     command.argument("WHAT", &request.what, scene_arguments_help);
     command.option(
         "--seconds S", [&request](const std::string& text) { request.seconds = seconds_of(text, "run"); },
-        "Time for all runs (default 60); ends after twice this, or 2 s after reading the scene, whichever is later");
+        "Time for the runs (default 60); the ground truth may take as long again");
     command.option("--report FILE.html", &request.report, "Also write the results as a page");
 }
 

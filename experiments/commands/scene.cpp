@@ -200,7 +200,7 @@ void add_parameters(const command_parser& command, scene_request& request) {
             if (const auto [at, is_new] = request.settings.try_emplace(p.name); is_new)
                 command.option(option_names(p.name) + " V", &at->second, "").hidden();
     command.footer(
-        "`aabblab list scenes` shows all scenes and their parameters, which are options: --n 500 or --objects 500.");
+        "`aabblab list scenes` shows all scenes and their parameters, which are options; --n 500 means --objects 500.");
 }
 
 }  // namespace

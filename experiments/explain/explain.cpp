@@ -19,7 +19,8 @@ namespace {
 std::string text_of(std::string_view stage, const std::string& strategies, const std::vector<aabb::part_bytes>& parts) {
     std::string text = fmt::format("    {}{}{}\n", stage, strategies.empty() ? "" : ": ", strategies);
     for (const aabb::part_bytes& part : parts)
-        text += fmt::format("      {:<12}{:>14} bytes\n", part.part, grouped(part.bytes));
+        text += fmt::format("      {:<16}{:>14} bytes\n", part.part == "projections" ? "projections, ids" : part.part,
+                            grouped(part.bytes));
     return text;
 }
 

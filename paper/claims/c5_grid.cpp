@@ -113,8 +113,8 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
                 .source = "c5_world: growth"});
     };
     const row_value bytes = all_bytes();
-    for (const auto& [label, size, text] :
-         {std::tuple{"cells of 2", "2", "cells of edge 2"}, {"cells chosen anew", "auto", "the automatic cell size"}}) {
+    for (const auto& [label, size, text] : {std::tuple{"cells of 2", "2", "cells of two box edges"},
+                                            {"cells chosen anew", "auto", "the automatic cell size"}}) {
         const selection tested = grid(size);
         const std::string subject = fmt::format("a grid with {}, the smallest world compared with the largest", text);
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large", subject,

@@ -136,7 +136,7 @@ draft c6_claim(const measurements& m) {
     add_test("triangle_box_moller", "box", "with M\u00f6ller's original test, compared with a transformed box");
     add_test("triangle_box_moller", "rotated_box_15",
              "with M\u00f6ller's original test, compared with an oriented box on fifteen axes");
-    add_test("triangle_aabb", "box", "with its box, computed on the fly, compared with a transformed box");
+    add_test("triangle_aabb", "box", "computing its box and testing that, compared with a transformed box");
     for (const char* test : {"triangle_box", "triangle_aabb"})
         add_test(test, "box", "compared with its box, neither transformed", std::string(frame_a_suffix));
     const std::pair<std::string, const char*> queries[] = {

@@ -58,7 +58,7 @@ std::string outcome_text(std::span<const endpoint> endpoints, wording form) {
     if (form == wording::less || form == wording::more) return size_text(endpoints);
     const quantity compared = endpoints.front().compared;
     const std::string noun = noun_of(compared);
-    if (form == wording::not_more) return "no more" + (noun.empty() ? "" : " " + noun);
+    if (form == wording::not_more) return "at most the same" + (noun.empty() ? "" : " " + noun);
     return (form == wording::same ? "no difference" : "undecided") +
            (noun.empty() || compared == quantity::time ? "" : " in the " + noun);
 }
@@ -81,18 +81,20 @@ std::vector<stretch> stretches_of(std::span<const endpoint> endpoints) {
 
 /// The range of a stretch: "with 100 objects", "with up to 1,000 objects", "on 2 or more axes".
 std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
-    if (stretches.size() == 1) return "";
     const std::vector<endpoint>& endpoints = stretches[i].endpoints;
     const std::string& factor = endpoints.front().along;
     const std::string first = number_text(value_of(factors_of(endpoints.front()), factor));
     const std::string last = number_text(value_of(factors_of(endpoints.back()), factor));
+    if (stretches.size() == 1 && first == last) return "";
     const std::string values = first == last               ? last
+                               : stretches.size() == 1     ? first + " to " + last
                                : i == 0                    ? "up to " + last
                                : i + 1 == stretches.size() ? first + " or more"
                                                            : first + " to " + last;
     if (factor == "objects") return " with " + values + (values == "1" ? " object" : " objects");
     if (factor == "axes") return " on " + values + (values == "1" ? " axis" : " axes");
     if (factor == "inversions") return " at " + values + " inversions per element";
+    if (factor == "displacement") return " at " + values + (values == "1" ? " extent" : " extents") + " per frame";
     return " at a " + (factor == "ratio" ? "size ratio" : factor) + " of " + values;
 }
 
