@@ -21,23 +21,23 @@ struct entry {
     std::string target{};  ///< of a link
 };
 
-/// As somebody with bad intentions packs it.
+/// Packs an archive that may be malicious.
 std::filesystem::path packed(const temporary_folder& folder, const std::vector<entry>& entries) {
     const std::filesystem::path file = folder / "foreign.tar.xz";
     archive* out = archive_write_new();
     archive_write_add_filter_xz(out);
     archive_write_set_format_pax_restricted(out);
     REQUIRE(archive_write_open_filename(out, file.c_str()) == ARCHIVE_OK);
-    for (const entry& one : entries) {
+    for (const entry& item : entries) {
         archive_entry* e = archive_entry_new();
-        archive_entry_set_pathname(e, one.name.c_str());
-        archive_entry_set_filetype(e, one.type);
+        archive_entry_set_pathname(e, item.name.c_str());
+        archive_entry_set_filetype(e, item.type);
         archive_entry_set_perm(e, 0755);
-        archive_entry_set_size(e, static_cast<la_int64_t>(one.content.size()));
-        if (one.type == AE_IFLNK) archive_entry_set_symlink(e, one.target.c_str());
-        if (one.type == AE_IFREG && !one.target.empty()) archive_entry_set_hardlink(e, one.target.c_str());
+        archive_entry_set_size(e, static_cast<la_int64_t>(item.content.size()));
+        if (item.type == AE_IFLNK) archive_entry_set_symlink(e, item.target.c_str());
+        if (item.type == AE_IFREG && !item.target.empty()) archive_entry_set_hardlink(e, item.target.c_str());
         REQUIRE(archive_write_header(out, e) == ARCHIVE_OK);
-        archive_write_data(out, one.content.data(), one.content.size());
+        archive_write_data(out, item.content.data(), item.content.size());
         archive_entry_free(e);
     }
     REQUIRE(archive_write_close(out) == ARCHIVE_OK);
@@ -50,7 +50,7 @@ void is_rejected(const std::filesystem::path& file, const std::string& sentence,
                          MessageMatches(ContainsSubstring(sentence)));
 }
 
-/// What no compression makes smaller.
+/// Incompressible bytes.
 std::string noise(std::size_t bytes) {
     std::mt19937 random(1);
     std::string text;
@@ -60,7 +60,7 @@ std::string noise(std::size_t bytes) {
 
 }  // namespace
 
-TEST_CASE("What was packed comes out as it was, and the same files make the same bytes") {
+TEST_CASE("Packing and unpacking round-trips, and packing is deterministic") {
     const temporary_folder folder;
     (void)folder.write("a/one.csv", "1,2\r\n");
     (void)folder.write("a/sub/two.json", noise(200'000));
@@ -71,18 +71,18 @@ TEST_CASE("What was packed comes out as it was, and the same files make the same
     std::filesystem::permissions(folder / "a/one.csv", std::filesystem::perms::owner_all);
     aabblab::write_archive(folder / "second.tar.xz", "results", folder / "a", files);
     CHECK(bytes_of_file(folder / "first.tar.xz") == bytes_of_file(folder / "second.tar.xz"));
-    std::filesystem::path place;
+    std::filesystem::path extracted;
     {
         const unpacked_archive unpacked(folder / "first.tar.xz", "results");
-        place = unpacked.folder();
+        extracted = unpacked.folder();
         for (const std::filesystem::path& file : files)
-            CHECK(bytes_of_file(place / file) == bytes_of_file(folder / "a" / file));
-        CHECK(!std::filesystem::exists(place / "left.log"));
+            CHECK(bytes_of_file(extracted / file) == bytes_of_file(folder / "a" / file));
+        CHECK(!std::filesystem::exists(extracted / "left.log"));
     }
-    CHECK(!std::filesystem::exists(place));
+    CHECK(!std::filesystem::exists(extracted));
 }
 
-TEST_CASE("An archive that leads out of its folder, or has more than files, is refused") {
+TEST_CASE("Archives with paths outside their folder, links or pipes are rejected") {
     const temporary_folder folder;
     for (const char* name :
          {"/etc/passwd", "results/../../out", "../results/x", "other/x", "x", "results/./x", "results/../results/x"}) {
@@ -97,14 +97,14 @@ TEST_CASE("An archive that leads out of its folder, or has more than files, is r
     is_rejected(packed(folder, {{"results/a", "1"}, {"results/a", "2"}}), "has the file 'a' twice");
     is_rejected(packed(folder, {{"results/a", "1"}, {"results/a/b", "2"}}), "cannot be unpacked");
     is_rejected(packed(folder, {{"results/", "", AE_IFDIR}}), "is empty");
-    // Folders of their own are what other programs pack.
-    const unpacked_archive fine(
+    // Other programs also pack entries for folders.
+    const unpacked_archive valid(
         packed(folder, {{"results/", "", AE_IFDIR}, {"results/a/", "", AE_IFDIR}, {"results/a/b", "content"}}),
         "results");
-    CHECK(bytes_of_file(fine.folder() / "a/b") == "content");
+    CHECK(bytes_of_file(valid.folder() / "a/b") == "content");
 }
 
-TEST_CASE("An archive that unpacks to more than any results is refused before it fills the disk") {
+TEST_CASE("Archives beyond the limits on bytes, files or folders are rejected") {
     const temporary_folder folder;
     const aabblab::archive_limits limits{.files = 3, .bytes = std::uint64_t{1} << 20U};
     const auto bomb = packed(folder, {{"results/a", std::string(std::size_t{64} << 20U, '0')}});
@@ -112,13 +112,13 @@ TEST_CASE("An archive that unpacks to more than any results is refused before it
     is_rejected(bomb, "unpacks to more than 1 MiB, the limit for results", limits);
     is_rejected(packed(folder, {{"results/a"}, {"results/b"}, {"results/c"}, {"results/d"}}),
                 "has more than 3 files, the limit for results", limits);
-    // Also where the same folder comes again and again, as one of 40 million does.
+    // A folder counts each time that it is listed: an archive may list it 40 million times.
     const entry one_folder{"results/a/", "", AE_IFDIR};
     is_rejected(packed(folder, {one_folder, one_folder, one_folder, one_folder}),
                 "has more than 3 folders, the limit for results", limits);
 }
 
-TEST_CASE("An archive that is cut off, damaged or of another kind is refused") {
+TEST_CASE("Truncated, damaged and foreign archives are rejected") {
     const temporary_folder folder;
     const std::string whole = bytes_of_file(packed(folder, {{"results/a", noise(300'000)}, {"results/b", "content"}}));
     for (const double share : {0.3, 0.9, 0.999}) {

@@ -14,7 +14,7 @@ using aabblab::atlas_time;
 
 namespace {
 
-atlas_candidate line(const std::string& label, double ms, bool is_automatic = false) {
+atlas_candidate timed(const std::string& label, double ms, bool is_automatic = false) {
     return {label, is_automatic, {ms, ms * 1.01, ms * 0.99}, {2 * ms, 2 * ms, 2 * ms}};
 }
 
@@ -33,26 +33,26 @@ std::string cell(const aabblab::table& t, const std::string& tested, const std::
 }
 
 aabblab::judged_statement judged(const std::vector<atlas_scene>& atlas, const std::string& id) {
-    const auto all = judged_statements(atlas);
-    return *std::ranges::find(all, id, &aabblab::judged_statement::id);
+    const auto statements = judged_statements(atlas);
+    return *std::ranges::find(statements, id, &aabblab::judged_statement::id);
 }
 
-/// a is as fast as b at 0.1: (log 2 below, log 2 above) half way between 0.01 and 1.
+/// The times of a and b cross at 0.1: their ratio is 1/2 at 0.01 and 2 at 1, and is interpolated in logarithms.
 std::vector<atlas_scene> two_scenes() {
-    return {cloud("0.01", {line("a", 1), line("b", 2), line("auto", 1.5, true)}),
-            cloud("1", {line("a", 2), line("b", 1), line("auto", 1, true)})};
+    return {cloud("0.01", {timed("a", 1), timed("b", 2), timed("auto", 1.5, true)}),
+            cloud("1", {timed("a", 2), timed("b", 1), timed("auto", 1, true)})};
 }
 
 }  // namespace
 
-TEST_CASE("The atlas counts who wins, and what it costs to use one everywhere") {
+TEST_CASE("The atlas counts wins and the regret of each candidate") {
     const std::vector<atlas_scene> atlas = two_scenes();
     const aabblab::table winners = winners_table(atlas);
     for (const char* tested : {"a", "b"}) {
         CHECK(cell(winners, tested, "fastest in") == "1");
         CHECK(cell(winners, tested, "shown in") == "1");
     }
-    // auto is as fast as the fastest of the second scene, but is no composition that could be the fastest.
+    // auto ties with the fastest candidate of the second scene, but does not itself count as the fastest.
     CHECK(cell(winners, "auto", "fastest in") == "0");
     CHECK(cell(winners, "auto", "as fast in") == "1");
     const aabblab::table regrets = regrets_table(atlas, atlas_time::per_frame);
@@ -60,15 +60,15 @@ TEST_CASE("The atlas counts who wins, and what it costs to use one everywhere") 
     CHECK(cell(regrets, "a", "median") == "1.50");
     CHECK(cell(regrets, "auto", "worst") == "1.50");
     CHECK(cell(regrets, "auto", "over 1.3") == "1");
-    // auto may itself be the fastest.
-    std::vector<atlas_scene> won = atlas;
-    won[1].candidates[2] = line("auto", 0.5, true);
-    const aabblab::table others = regrets_table(won, atlas_time::per_frame);
-    CHECK(cell(others, "b", "worst") == "2.00");
-    CHECK(cell(others, "a", "worst") == "4.00");
+    // Regrets are relative to auto where it is the fastest.
+    std::vector<atlas_scene> auto_wins = atlas;
+    auto_wins[1].candidates[2] = timed("auto", 0.5, true);
+    const aabblab::table updated = regrets_table(auto_wins, atlas_time::per_frame);
+    CHECK(cell(updated, "b", "worst") == "2.00");
+    CHECK(cell(updated, "a", "worst") == "4.00");
 }
 
-TEST_CASE("A border lies where two take the same time, between two scenes that differ in one parameter") {
+TEST_CASE("A border is where two candidates take the same time as one parameter varies") {
     std::vector<atlas_scene> atlas = two_scenes();
     const std::vector<aabblab::border> borders = borders_of(atlas);
     REQUIRE(borders.size() == 1);
@@ -89,12 +89,12 @@ TEST_CASE("A border lies where two take the same time, between two scenes that d
     CHECK(borders_of(atlas).empty());
 }
 
-TEST_CASE("Lists of several margins have one border, that of the fastest of them") {
+TEST_CASE("Verlet lists of several margins share the border of the fastest") {
     const std::string wide = "neighbour_list:margin=0.3 + radix";
     const std::string narrow = "neighbour_list:margin=0.03 + radix";
-    const std::vector<atlas_scene> atlas{cloud("0.01", {line(narrow, 1), line(wide, 2), line("radix", 4)}),
-                                         cloud("0.1", {line(narrow, 4), line(wide, 1), line("radix", 2)}),
-                                         cloud("1", {line(narrow, 8), line(wide, 2), line("radix", 1)})};
+    const std::vector<atlas_scene> atlas{cloud("0.01", {timed(narrow, 1), timed(wide, 2), timed("radix", 4)}),
+                                         cloud("0.1", {timed(narrow, 4), timed(wide, 1), timed("radix", 2)}),
+                                         cloud("1", {timed(narrow, 8), timed(wide, 2), timed("radix", 1)})};
     const std::vector<aabblab::border> borders = borders_of(atlas);
     REQUIRE(borders.size() == 1);
     CHECK(borders[0].before == "neighbour_list + radix");
@@ -102,27 +102,27 @@ TEST_CASE("Lists of several margins have one border, that of the fastest of them
     CHECK(std::abs(borders[0].position - std::sqrt(0.1)) < 1e-3);
 }
 
-TEST_CASE("A border between single repeats is as sure as the repeats of others make it") {
+TEST_CASE("The interval of a border between single repeats comes from the repeats of other candidates") {
     std::vector<atlas_scene> atlas = two_scenes();
     for (atlas_scene& scene : atlas)
-        for (atlas_candidate& one : scene.candidates) one.frame_ms.resize(1);
+        for (atlas_candidate& candidate : scene.candidates) candidate.frame_ms.resize(1);
     CHECK(borders_of(atlas).empty());
-    for (atlas_scene& scene : atlas) scene.candidates.push_back(line("another", 9));
+    for (atlas_scene& scene : atlas) scene.candidates.push_back(timed("another", 9));
     const std::vector<aabblab::border> borders = borders_of(atlas);
     REQUIRE(borders.size() == 1);
     CHECK(borders[0].range.low < 0.0999);
     CHECK(borders[0].range.high > 0.1001);
 }
 
-TEST_CASE("A model of a line's times is fitted to the map, and judged by the scenes beside it") {
+TEST_CASE("Time models are fitted to the map and evaluated on held-out scenes") {
     std::vector<atlas_scene> atlas;
     for (std::size_t objects = 100; objects <= 25600; objects *= 2)
         for (const bool is_held_out : {false, true})
             for (const double pairs_per_object : {0.1, 2.0}) {
-                // 10 ns a box and 5 a pair; beside the map, half as much again.
+                // 10 ns per box and 5 ns per pair; half as much again in held-out scenes.
                 const double n = static_cast<double>(objects);
                 const double ms = (10 * n + 5 * n * pairs_per_object) * (is_held_out ? 1.5e-6 : 1e-6);
-                atlas.push_back(cloud("0.1", {line("linear", ms), line("slow", 1e-6 * n * n)}, is_held_out));
+                atlas.push_back(cloud("0.1", {timed("linear", ms), timed("slow", 1e-6 * n * n)}, is_held_out));
                 atlas.back().scene.settings[0].value = std::to_string(objects);
                 atlas.back().measures.objects = objects;
                 atlas.back().measures.pairs_per_object = pairs_per_object;
@@ -138,7 +138,7 @@ TEST_CASE("A model of a line's times is fitted to the map, and judged by the sce
     for (const double regret : regrets) CHECK(regret < 1.2);
 }
 
-TEST_CASE("A statement is judged by the ratios that it speaks of, and undecided without them") {
+TEST_CASE("A statement is decided by its own ratios, and undecided without them") {
     std::vector<atlas_scene> atlas;
     for (const char* objects : {"1000", "10000"})
         for (const char* displacement : {"0.001", "0.1", "1"})
@@ -147,7 +147,7 @@ TEST_CASE("A statement is judged by the ratios that it speaks of, and undecided 
                     {{"cloud", {{"objects", objects}, {"displacement", displacement}, {"density", density}}, {}, 1},
                      false,
                      {},
-                     {line("embree", 2), line("embree_refit", 1)}});
+                     {timed("embree", 2), timed("embree_refit", 1)}});
     const auto verdict = [&](const std::string& id) { return judged(atlas, id).verdict; };
     CHECK(verdict("B9") == aabblab::verdict_kind::does_not_hold);
     CHECK(verdict("B1") == aabblab::verdict_kind::undecided);
@@ -155,16 +155,16 @@ TEST_CASE("A statement is judged by the ratios that it speaks of, and undecided 
     CHECK(verdict("B9") == aabblab::verdict_kind::holds);
 }
 
-TEST_CASE("A single ratio of single repeats is as sure as the repeats of others make it, and never surer") {
+TEST_CASE("The interval of a ratio of single repeats comes from the repeats of other candidates") {
     std::vector<atlas_scene> atlas{{{"cloud", {{"objects", "10000"}, {"moving", "0"}}, {}, 1},
                                     false,
                                     {},
-                                    {line("insertion + incremental", 8), line("bucket + columns + simd", 1)}}};
+                                    {timed("insertion + incremental", 8), timed("bucket + columns + simd", 1)}}};
     std::vector<atlas_candidate>& candidates = atlas[0].candidates;
-    for (atlas_candidate& one : candidates) one.frame_ms.resize(1);
+    for (atlas_candidate& candidate : candidates) candidate.frame_ms.resize(1);
     const auto ratios = [&] { return judged(atlas, "B2").ratios; };
     CHECK(ratios().empty());
-    candidates.push_back(line("another", 3));
+    candidates.push_back(timed("another", 3));
     REQUIRE(ratios().size() == 1);
     CHECK(ratios()[0].range.low < 7.99);
     CHECK(ratios()[0].range.high > 8.01);
@@ -173,36 +173,36 @@ TEST_CASE("A single ratio of single repeats is as sure as the repeats of others 
     CHECK(ratios()[0].verdict == aabblab::support::undecided);
 }
 
-TEST_CASE("Whoever a statement speaks of plays in the map") {
-    std::set<std::string> runners;
+TEST_CASE("The config of the atlas runs every candidate that a statement names") {
+    std::set<std::string> labels;
     const auto e = aabblab::read_experiment(AABBLAB_CONFIGS "/atlas/atlas.toml", aabblab::experiment_size::full);
-    for (const std::string& engine : e.engines) runners.insert(engine);
+    for (const std::string& engine : e.engines) labels.insert(engine);
     for (const aabb::composition& c : e.compositions) {
         std::string label;
         for (const aabb::strategy_kind kind : aabb::strategy_kinds)
             if (info_of(kind).stage == aabb::stage::global_search && to_text(c[kind]) != "none")
                 label += (label.empty() ? "" : " + ") + to_text(c[kind]);
-        runners.insert(label);
+        labels.insert(label);
     }
     for (const std::string& label : aabblab::labels_in_statements()) {
         INFO(label);
-        CHECK(runners.contains(label));
+        CHECK(labels.contains(label));
     }
 }
 
-TEST_CASE("atlas --judge makes maps of results that are there, and says where there are none") {
+TEST_CASE("atlas --judge draws maps from existing results and reports missing ones") {
     const temporary_folder folder;
-    const program_result nothing = run_program({"atlas", "--judge", "--out", folder / "none"});
-    CHECK(nothing.status == 2);
-    CHECK(holds(nothing.err, "there are no results of an atlas in"));
+    const program_result missing = run_program({"atlas", "--judge", "--out", folder / "none"});
+    CHECK(missing.status == 2);
+    CHECK(holds(missing.err, "there are no results of an atlas in"));
     folder.write("small.toml",
                  "name = \"atlas\"\n[[scene]]\nkind = \"cloud\"\nobjects = 50\ndisplacement = [0.01, 1]\n"
                  "frames = 3\n[[compose]]\nauto = true\n[[compose]]\nsort = [\"std\", \"radix\"]\n"
                  "[measure]\nrepeats = 2\n");
     run_well({"run", folder / "small.toml", "--out", folder / "map/atlas"});
-    const program_result made = run_well({"atlas", "--judge", "--out", folder / "map"});
-    CHECK(holds(made.err, "atlas_large has not been run yet"));
-    for (const std::string& line : lines_of(made.out.substr(made.out.find("B1: ")))) {
+    const program_result mapped = run_well({"atlas", "--judge", "--out", folder / "map"});
+    CHECK(holds(mapped.err, "atlas_large has not been run yet"));
+    for (const std::string& line : lines_of(mapped.out.substr(mapped.out.find("B1: ")))) {
         INFO(line);
         CHECK((line.size() <= 80 || line.starts_with("Maps, borders")));
     }
@@ -211,7 +211,7 @@ TEST_CASE("atlas --judge makes maps of results that are there, and says where th
         INFO(file);
         CHECK(std::filesystem::exists(folder / "map" / file));
     }
-    // As `reproduce --judge` takes them: another folder's, those of a reproduction, and of an archive of one.
+    // Like `reproduce --judge`, it accepts another folder, that of a reproduction, and the archive of one.
     std::filesystem::create_directories(folder / "run/atlas");
     std::filesystem::copy(folder / "map/atlas", folder / "run/atlas/atlas", std::filesystem::copy_options::recursive);
     aabblab::write_archive(folder / "run.tar.xz", "reproduction", folder / "run",

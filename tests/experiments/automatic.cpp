@@ -1,4 +1,4 @@
-// `auto` in configs and commands, and what explain says of a scene.
+// `auto` in configs and commands, and what explain reports about a scene.
 
 #include "program.hpp"
 
@@ -27,27 +27,27 @@ bool is_near(double a, double b) {
 
 }  // namespace
 
-TEST_CASE("A config leaves all to auto, or what it does not name") {
-    const aabblab::experiment whole = parsed("compose = \"auto\"");
-    CHECK(whole.compositions.empty());
-    REQUIRE(aabblab::candidates_for(whole, whole.scenes[0]).size() == 1);
-    const aabblab::candidate tested = aabblab::candidates_for(whole, whole.scenes[0])[0];
+TEST_CASE("A config may leave every strategy to auto, or only the unnamed ones") {
+    const aabblab::experiment automatic = parsed("compose = \"auto\"");
+    CHECK(automatic.compositions.empty());
+    REQUIRE(aabblab::candidates_for(automatic, automatic.scenes[0]).size() == 1);
+    const aabblab::candidate tested = aabblab::candidates_for(automatic, automatic.scenes[0])[0];
     CHECK(aabblab::text_of(tested.name) == "auto");
     CHECK(tested.exact);
-    const aabblab::experiment some = parsed("[[compose]]\nauto = true\nsort = [\"radix\", \"std\"]\n[[compose]]\n");
-    const auto all = aabblab::candidates_for(some, some.scenes[0]);
-    REQUIRE(all.size() == 3);
-    CHECK(aabblab::text_of(all[0].name) == "bucket + columns + simd");
-    CHECK(aabblab::text_of(all[1].name) == "auto + radix");
-    CHECK(aabblab::text_of(all[2].name) == "auto + std");
-    const aabblab::experiment without = parsed("[[compose]]\nauto = true\nprepare = \"none\"\n");
-    CHECK(aabblab::text_of(aabblab::candidates_for(without, without.scenes[0])[0].name) == "auto + prepare none");
-    CHECK(hash_of(whole) != hash_of(some));
-    CHECK(hash_of(whole) != hash_of(parsed("compose = \"auto\"\nengines = [\"cgal\"]")));
+    const aabblab::experiment partial = parsed("[[compose]]\nauto = true\nsort = [\"radix\", \"std\"]\n[[compose]]\n");
+    const auto candidates = aabblab::candidates_for(partial, partial.scenes[0]);
+    REQUIRE(candidates.size() == 3);
+    CHECK(aabblab::text_of(candidates[0].name) == "bucket + columns + simd");
+    CHECK(aabblab::text_of(candidates[1].name) == "auto + radix");
+    CHECK(aabblab::text_of(candidates[2].name) == "auto + std");
+    const aabblab::experiment unprepared = parsed("[[compose]]\nauto = true\nprepare = \"none\"\n");
+    CHECK(aabblab::text_of(aabblab::candidates_for(unprepared, unprepared.scenes[0])[0].name) == "auto + prepare none");
+    CHECK(hash_of(automatic) != hash_of(partial));
+    CHECK(hash_of(automatic) != hash_of(parsed("compose = \"auto\"\nengines = [\"cgal\"]")));
     CHECK(parsed("[[compose]]\nauto = false").automatic.empty());
 }
 
-TEST_CASE("What is wrong with auto in a config is said with its line") {
+TEST_CASE("Errors in the use of auto in a config are reported with their line") {
     CHECK(rejection_of("compose = \"best\"") == "a.toml:2: compose must be a table or \"auto\", not \"best\"");
     CHECK(
         rejection_of("compose = \"auto\"\n[[compose]]\nsort = \"std\"") ==
@@ -65,7 +65,7 @@ TEST_CASE("What is wrong with auto in a config is said with its line") {
     CHECK(rejection_of("[[compose]]\nautos = true").starts_with("a.toml:3: unknown key of [compose] 'autos'"));
 }
 
-TEST_CASE("auto finds the exact pairs in a run, and is one line of every table") {
+TEST_CASE("auto finds the exact pairs in a run and is a row of every table") {
     const temporary_folder folder;
     const std::filesystem::path config = folder.write(
         "a.toml",
@@ -75,12 +75,12 @@ TEST_CASE("auto finds the exact pairs in a run, and is one line of every table")
     const program_result run = run_well({"run", config.string(), "--out", folder / "r"});
     CHECK(holds(run.out, "3 scenes with the baseline std + none + one_axis"));
     CHECK(holds(run.out, "regret"));
-    // A line for each scene, and one for all.
+    // A row per scene, and one in the summary.
     CHECK(count_of("\n1  auto ", run.out) + count_of("\n2  auto ", run.out) == 4);
 }
 
-TEST_CASE("Boxes are measured: spread, sizes, pairs expected") {
-    // On x all overlap, on y two and two; the pairs expected are those of all on x and z.
+TEST_CASE("measure_boxes gives overlaps per axis, size ratio and expected pairs") {
+    // All overlap on x and z, two pairs on y; of the six pairs on x and z, a fifth is expected to overlap on y.
     const std::vector<aabb::box> boxes{cube(0, 0, 0), cube(0, 0.5F, 0), cube(0, 8, 0), cube(0, 9, 0)};
     const aabblab::box_measures m = aabblab::measure_boxes(boxes);
     CHECK(is_near(m.typical_extent, 1));
@@ -93,15 +93,15 @@ TEST_CASE("Boxes are measured: spread, sizes, pairs expected") {
     one_long[3].max[2] = 5;
     CHECK(is_near(aabblab::measure_boxes(one_long).size_ratio.value(), 5));
     CHECK(aabblab::measure_boxes({}).expected_pairs == 0);
-    // Edges beyond the greatest float.
-    constexpr float most = std::numeric_limits<float>::max();
-    const std::vector<aabb::box> huge(3, {{-most, -most, 0}, {most, most, 0}});
+    // Edges longer than the largest float.
+    constexpr float largest = std::numeric_limits<float>::max();
+    const std::vector<aabb::box> huge(3, {{-largest, -largest, 0}, {largest, largest, 0}});
     CHECK(aabblab::measure_boxes(huge).size_ratio == 1);
     const aabb::box point{{1, 1, 1}, {1, 1, 1}};
     CHECK_FALSE(aabblab::measure_boxes(std::vector{point, point, boxes[0]}).size_ratio.has_value());
 }
 
-TEST_CASE("Measures are told with their digits grouped, and what cannot be told as a dash") {
+TEST_CASE("The table of measures groups digits and shows unknown values as a dash") {
     aabblab::scene_measures m;
     m.objects = 1200;
     m.triangles = 12'345;
@@ -111,38 +111,38 @@ TEST_CASE("Measures are told with their digits grouped, and what cannot be told 
         CHECK(holds(text, line));
 }
 
-TEST_CASE("A flat axis is one on which those overlap that are there") {
+TEST_CASE("An axis is flat if all present objects overlap on it") {
     const auto m = aabblab::measure_scene({"population", {{"objects", "60"}, {"frames", "6"}}, {}, 1, {}});
     CHECK_BETWEEN(0, m.present, m.objects);
     aabblab::scene_measures flat = m;
     flat.boxes.overlaps[2] = static_cast<double>(flat.present - 1);
-    const auto tells_flat_axis = [](const aabblab::scene_measures& of) {
-        return std::ranges::any_of(aabblab::measures_table(of).rows,
+    const auto shows_flat_axis = [](const aabblab::scene_measures& measures) {
+        return std::ranges::any_of(aabblab::measures_table(measures).rows,
                                    [](const auto& row) { return row[0] == "flat axis"; });
     };
-    CHECK(tells_flat_axis(flat));
-    CHECK_FALSE(tells_flat_axis(m));
+    CHECK(shows_flat_axis(flat));
+    CHECK_FALSE(shows_flat_axis(m));
 }
 
-TEST_CASE("Motion is measured: the way, what is not alike, rest, inversions") {
+TEST_CASE("measure_motion gives displacement, relative displacement, rest and inversions") {
     const std::vector<aabb::box> before{cube(0, 0, 0), cube(2, 0, 0), cube(4, 0, 0), cube(6, 0, 0)};
-    std::vector<aabb::box> all_alike;
-    for (const aabb::box& b : before) all_alike.push_back(cube(b.min[0] + 3, 4, 0));
-    const aabblab::motion_measures alike = aabblab::measure_motion(before, all_alike, 0);
-    CHECK(is_near(alike.displacement, 5));
-    CHECK(is_near(alike.relative_displacement, 0));
-    CHECK(is_near(alike.at_rest, 0));
-    CHECK(is_near(alike.inversions, 0));
-    std::vector<aabb::box> one_passes = before;
-    one_passes[0] = cube(5, 0, 0);
-    const aabblab::motion_measures passing = aabblab::measure_motion(before, one_passes, 0);
+    std::vector<aabb::box> shifted;
+    for (const aabb::box& b : before) shifted.push_back(cube(b.min[0] + 3, 4, 0));
+    const aabblab::motion_measures uniform = aabblab::measure_motion(before, shifted, 0);
+    CHECK(is_near(uniform.displacement, 5));
+    CHECK(is_near(uniform.relative_displacement, 0));
+    CHECK(is_near(uniform.at_rest, 0));
+    CHECK(is_near(uniform.inversions, 0));
+    std::vector<aabb::box> overtaking = before;
+    overtaking[0] = cube(5, 0, 0);
+    const aabblab::motion_measures passing = aabblab::measure_motion(before, overtaking, 0);
     CHECK(is_near(passing.displacement, 1.25));
     CHECK(is_near(passing.relative_displacement, 2.5));
     CHECK(is_near(passing.at_rest, 0.75));
     CHECK(is_near(passing.inversions, 0.5));
 }
 
-TEST_CASE("explain says of a recording what was measured, selected and saved") {
+TEST_CASE("explain reports what it measured and selected for a recording, and what that saves") {
     const temporary_folder folder;
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "200", "--frames", "80", "--out", file});
@@ -154,7 +154,7 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
                              "split_large", "axial_cut", "build, tree, triangle do not apply to this scene"})
         CHECK(holds(reported.out, part));
     CHECK_FALSE(holds(reported.out, "canonical"));
-    // columns take no other sweep.
+    // No other sweep can be combined with columns.
     for (const char* part :
          {"\nsweep: no other strategy can be composed with the rest.\n", "\nratio: ms/frame relative",
           "\nms/frame: the mean time per frame", "\nbuild ms: the time to create"})
@@ -163,7 +163,7 @@ TEST_CASE("explain says of a recording what was measured, selected and saved") {
     CHECK(holds(run_program({"explain", file, file}).err, "a recording is a scene of its own"));
 }
 
-TEST_CASE("explain says what all that is left out saves, with whom it is had, or that nobody has it") {
+TEST_CASE("explain reports what each omitted part saves and which strategy has it, if any") {
     const temporary_folder folder;
     const std::string file = folder / "p.aabbs";
     const auto table_of = [&](const char* scene, const char* objects) {
@@ -185,7 +185,7 @@ TEST_CASE("explain says what all that is left out saves, with whom it is had, or
         CHECK(line_of(table, what).size() > 30);
         CHECK_FALSE(line_of(table, what).ends_with("-"));
     }
-    // Of so few boxes nobody keeps one without being told to, and none is large.
+    // With so few boxes only an explicit neighbour_list keeps a Verlet list, and no box is large.
     CHECK(holds(line_of(table, "Verlet list"), "neighbour_list:margin=0.1 "));
     CHECK(line_of(table, "division of large objects").ends_with(" -"));
     CHECK(holds(line_of(table, "work counters"), "counters of all work "));
@@ -195,13 +195,13 @@ TEST_CASE("explain says what all that is left out saves, with whom it is had, or
     CHECK(holds(line_of(table_of("one_huge", "100"), "division of large objects"), "split_large "));
 }
 
-TEST_CASE("explain takes meshes, and a motion with its meshes") {
+TEST_CASE("explain accepts meshes, and a motion file with its meshes") {
     const temporary_folder folder;
     const std::string motion = folder / "m.txt";
     run_well({"scene", "mesh_swarm", "--n", "4", "--frames", "4", "--normalise", "no", "--mesh",
               "icosphere:triangles=80", "--motion", motion});
     CHECK(holds(run_well({"explain", motion, "icosphere:triangles=80"}).out, "triangles     80 in the meshes\n"));
-    // The name of what is selected is long.
+    // The selected composition has a long name.
     run_well({"scene", "mesh_swarm", "--n", "2", "--frames", "5", "--normalise", "no", "--mesh",
               "torus_knot:triangles=20000", "--motion", motion});
     const program_result large = run_well({"explain", motion, "torus_knot:triangles=20000"});
@@ -214,9 +214,9 @@ TEST_CASE("explain takes meshes, and a motion with its meshes") {
                 "more than two meshes need a motion file"));
 }
 
-TEST_CASE("explain says what it did not get to in its time") {
+TEST_CASE("explain reports what it could not measure in the given time") {
     const temporary_folder folder;
-    // Each with each other.
+    // Every pair of boxes overlaps.
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "brownian", "--n", "4000", "--frames", "4", "--density", "1e6", "--out", file});
     const program_result reported = run_well({"explain", file, "--seconds", "0.01"});
@@ -226,7 +226,7 @@ TEST_CASE("explain says what it did not get to in its time") {
     CHECK(holds(run_program({"explain", file, "--seconds", "0"}).err, "is how long to run: a number above 0"));
 }
 
-TEST_CASE("explain says what is wrong with a name before anything else") {
+TEST_CASE("explain rejects a wrong name before it measures anything") {
     const temporary_folder folder;
     const std::string text = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
     const std::string cut = folder.write("cut.aabbs", "no recording");
@@ -236,7 +236,7 @@ TEST_CASE("explain says what is wrong with a name before anything else") {
                                 {{cut}, cut}});
 }
 
-TEST_CASE("explain has no heading of what is left out where that is nothing") {
+TEST_CASE("explain prints no empty section") {
     const temporary_folder folder;
     const std::string config = folder.write("a.toml",
                                             "name = \"a\"\nengines = [\"cgal\"]\n[[scene]]\nkind = \"mesh_pair\"\n"
@@ -247,13 +247,13 @@ TEST_CASE("explain has no heading of what is left out where that is nothing") {
     CHECK_FALSE(holds(reported.out, "left out\n\n"));
 }
 
-TEST_CASE("pairs and collide say what they selected") {
+TEST_CASE("pairs and collide report what auto selected") {
     const temporary_folder folder;
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "50", "--frames", "6", "--out", file});
     CHECK(holds(run_program({"pairs", file}).out, "neighbour_list + bucket + columns + simd: "));
     CHECK(holds(run_program({"pairs", file, "--prepare", "none"}).out, "\nbucket + columns + simd: "));
-    // The usual sort does not go with it.
+    // The default sort cannot be combined with it.
     CHECK(holds(run_program({"pairs", file, "--sweep", "incremental"}).out, "insertion + none + incremental: "));
     CHECK(holds(run_program({"pairs", file, "--sort", "auto"}).err, "--sort auto: omit the option"));
     const std::vector<std::string> meshes{"icosphere:triangles=80", "torus_knot:triangles=96"};

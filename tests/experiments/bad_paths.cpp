@@ -7,15 +7,15 @@ namespace {
 using arguments = std::vector<std::string>;
 using command_with = std::function<arguments(const std::string& path)>;
 
-/// What every command needs beside the path in question.
-class inputs {
+/// Valid arguments of every command, but for the path under test.
+class command_fixture {
 public:
-    inputs() { run_well(joined(small_, {"--out", recording_})); }
+    command_fixture() { run_well(joined(scene_, {"--out", recording_})); }
 
     [[nodiscard]] const temporary_folder& folder() const { return folder_; }
     [[nodiscard]] const std::string& recording() const { return recording_; }
 
-    /// Commands that read a file of the user's.
+    /// Commands that read a user's file.
     [[nodiscard]] std::vector<command_with> readers() const {
         return {
             [&](const std::string& path) { return arguments{"pairs", path}; },
@@ -48,8 +48,8 @@ public:
             [&](const std::string& path) { return arguments{"pairs", recording_, "--out", path}; },
             [&](const std::string& path) { return arguments{"collide", mesh_, mesh_, "--out", path}; },
             [&](const std::string& path) { return arguments{"contacts", motion_, mesh_, "--out", path}; },
-            [&](const std::string& path) { return joined(small_, {"--out", path}); },
-            [&](const std::string& path) { return joined(small_, {"--picture", path}); },
+            [&](const std::string& path) { return joined(scene_, {"--out", path}); },
+            [&](const std::string& path) { return joined(scene_, {"--picture", path}); },
             [&](const std::string& path) {
                 return arguments{"scene", "mesh_pair", "--frames", "1",        "--normalise",
                                  "no",    "--mesh",    mesh_,      "--motion", path};
@@ -77,106 +77,106 @@ private:
     std::string motion_ = folder_.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
     std::string config_ = folder_.write("c.toml", config_of("brownian", ""));
     std::string recording_ = folder_ / "s.aabbs";
-    const arguments small_ = {"scene", "brownian", "--n", "20", "--frames", "1"};
+    const arguments scene_ = {"scene", "brownian", "--n", "20", "--frames", "1"};
 };
 
-void require_refused(const arguments& command, const std::string& path) {
+void require_rejected(const arguments& command, const std::string& path) {
     check_refused(command, {{{}, path}});
 }
 
 }  // namespace
 
-TEST_CASE("A path that leads to no file gets one sentence that names it, in every command") {
-    const inputs all;
-    const temporary_folder& folder = all.folder();
+TEST_CASE("Every command rejects an unusable path in one sentence that names it") {
+    const command_fixture fixture;
+    const temporary_folder& folder = fixture.folder();
     std::filesystem::create_directory(folder / "folder.off");
     std::filesystem::create_symlink("absent", folder / "dangling");
     std::filesystem::create_symlink("loop", folder / "loop");
     const std::string too_long(300, 'n');
-    std::vector<std::string> nowhere = {repeated("long/", 1000) + "n"};
-    std::vector<std::string> unwritable = {nowhere[0], "/proc/self/b"};
+    std::vector<std::string> unreadable = {repeated("long/", 1000) + "n"};
+    std::vector<std::string> unwritable = {unreadable[0], "/proc/self/b"};
     for (const std::string& name : {too_long, std::string("a.off/b"), std::string("loop"), std::string("loop/b")})
-        for (auto* paths : {&nowhere, &unwritable}) paths->push_back(folder / name);
-    for (const char* name : {"absent", "dangling"}) nowhere.push_back(folder / name);
-    for (const command_with& command : all.readers())
-        for (const std::string& path : nowhere) require_refused(command(path), path);
+        for (auto* paths : {&unreadable, &unwritable}) paths->push_back(folder / name);
+    for (const char* name : {"absent", "dangling"}) unreadable.push_back(folder / name);
+    for (const command_with& command : fixture.readers())
+        for (const std::string& path : unreadable) require_rejected(command(path), path);
     for (const std::string& path : unwritable) {
-        for (const command_with& command : all.writers()) require_refused(command(path), path);
-        for (const command_with& command : all.folder_writers()) require_refused(command(path), path);
+        for (const command_with& command : fixture.writers()) require_rejected(command(path), path);
+        for (const command_with& command : fixture.folder_writers()) require_rejected(command(path), path);
     }
-    for (const command_with& command : all.writers()) {
+    for (const command_with& command : fixture.writers()) {
         for (const std::filesystem::path& path : {folder / "folder.off", folder / "absent" / "b", folder / "dangling"})
-            require_refused(command(path), path);
-        require_refused(command(""), "");
+            require_rejected(command(path), path);
+        require_rejected(command(""), "");
     }
-    for (const command_with& command : all.folder_writers()) {
-        require_refused(command(folder / "a.off"), "a.off");
-        require_refused(command(""), "");
+    for (const command_with& command : fixture.folder_writers()) {
+        require_rejected(command(folder / "a.off"), "a.off");
+        require_rejected(command(""), "");
     }
-    for (const command_with& command : all.readers()) {
-        require_refused(command(folder / "folder.off"), "folder.off");
-        require_refused(command(""), "");
+    for (const command_with& command : fixture.readers()) {
+        require_rejected(command(folder / "folder.off"), "folder.off");
+        require_rejected(command(""), "");
     }
 }
 
-TEST_CASE("A pipe or a device where a file is expected is refused, not waited for") {
-    const inputs all;
-    const std::string pipe = all.folder() / "pipe.off";
+TEST_CASE("A pipe or device in place of a file is rejected without blocking") {
+    const command_fixture fixture;
+    const std::string pipe = fixture.folder() / "pipe.off";
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
     for (const std::string& path : {pipe, std::string("/dev/null")})
         for (const arguments& command : {arguments{"pairs", path},
                                          {"collide", path, "icosphere"},
                                          {"contacts", path, "icosphere"},
                                          {"compare", path, path},
-                                         {"scene", "mesh_pair", "--mesh", path, "--out", all.folder() / "x"}})
-            require_refused(command, path);
+                                         {"scene", "mesh_pair", "--mesh", path, "--out", fixture.folder() / "x"}})
+            require_rejected(command, path);
 }
 
-TEST_CASE("A named pipe that nobody writes into ends what would wait for it") {
-    const inputs all;
-    const std::string pipe = all.folder() / "pipe.toml";
+TEST_CASE("A named pipe without a writer is rejected") {
+    const command_fixture fixture;
+    const std::string pipe = fixture.folder() / "pipe.toml";
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-    const std::string mesh = all.folder() / "a.off";
+    const std::string mesh = fixture.folder() / "a.off";
     for (const arguments& command :
          {arguments{"classify", pipe}, {"run", pipe}, {"collide", mesh, mesh, "--poses", pipe}}) {
-        require_refused(command, pipe);
+        require_rejected(command, pipe);
         CHECK(run_program(command).err.ends_with("pipe.toml: is a named pipe with no writer\n"));
     }
     for (const char* command : {"reproduce", "atlas"}) {
-        const program_result rejected = run_program({command, "--judge", pipe, "--out", all.folder() / "judged"});
+        const program_result rejected = run_program({command, "--judge", pipe, "--out", fixture.folder() / "judged"});
         CHECK(rejected.status == 2);
         CHECK(rejected.err.ends_with("pipe.toml is not a regular file\n"));
     }
-    // Costs are read at the start of every command: nothing is waited for.
-    const std::filesystem::path costs = all.folder() / "aabblab/costs.toml";
-    std::filesystem::create_directory(all.folder() / "aabblab");
+    // Every command reads the costs at its start, and must not block on a pipe.
+    const std::filesystem::path costs = fixture.folder() / "aabblab/costs.toml";
+    std::filesystem::create_directory(fixture.folder() / "aabblab");
     REQUIRE(mkfifo(costs.c_str(), 0600) == 0);
-    const program_result listed =
-        as_refused(run_command({"env", "XDG_CONFIG_HOME=" + all.folder().path().string(), AABBLAB_UNDER_TEST, "list"}));
+    const program_result listed = as_refused(
+        run_command({"env", "XDG_CONFIG_HOME=" + fixture.folder().path().string(), AABBLAB_UNDER_TEST, "list"}));
     CHECK(holds(listed.err, "costs.toml: is not a regular file; aabblab calibrate --reset removes it"));
 }
 
-TEST_CASE("A pipe that is written into is read as a file is, however late the writer comes") {
-    const inputs all;
-    const std::string pipe = all.folder() / "pipe.txt";
+TEST_CASE("A pipe is read like a file, however late its writer starts") {
+    const command_fixture fixture;
+    const std::string pipe = fixture.folder() / "pipe.txt";
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
     const auto shell = [&](const std::string& line) {
-        return run_command({"bash", "-c", line, AABBLAB_UNDER_TEST, pipe, all.folder() / "a.off"});
+        return run_command({"bash", "-c", line, AABBLAB_UNDER_TEST, pipe, fixture.folder() / "a.off"});
     };
     const std::string pair = "echo 0 0 0 1 0 0 0 1 0 .2 .2 -1 .2 .2 1 .3 .3 1";
     CHECK(shell("(sleep 0.5; " + pair + " > \"$1\") & \"$0\" classify \"$1\"").out == "1\n");
     CHECK(shell("(" + pair + " > \"$1\") & \"$0\" classify \"$1\"").out == "1\n");
     CHECK(shell("(sleep 0.2; " + pair + "; sleep 0.2; " + pair + ") | \"$0\" classify -").out == "1\n1\n");
     CHECK(shell("\"$0\" classify <(sleep 0.2; " + pair + ")").out == "1\n");
-    const program_result nothing = shell("\"$0\" classify <(true)");
-    CHECK(nothing.status == 0);
-    CHECK(nothing.out.empty());
+    const program_result no_input = shell("\"$0\" classify <(true)");
+    CHECK(no_input.status == 0);
+    CHECK(no_input.out.empty());
     CHECK(shell("\"$0\" collide \"$2\" \"$2\" --poses <(echo 1 0 0 0 0 1 0 0 0 0 1 0)").status == 0);
 }
 
-TEST_CASE("A file that cannot be read is refused in a sentence") {
-    const inputs all;
-    const temporary_folder& folder = all.folder();
+TEST_CASE("An unreadable file is rejected in one sentence") {
+    const command_fixture fixture;
+    const temporary_folder& folder = fixture.folder();
     const std::string unreadable = folder / "unreadable.toml";
     std::filesystem::create_symlink("/proc/self/mem", unreadable);
     const std::string mesh = folder / "a.off";
@@ -184,34 +184,34 @@ TEST_CASE("A file that cannot be read is refused in a sentence") {
                                      {"run", unreadable},
                                      {"validate", unreadable},
                                      {"collide", mesh, mesh, "--poses", unreadable}})
-        require_refused(command, "unreadable.toml");
+        require_rejected(command, "unreadable.toml");
 }
 
-TEST_CASE("A folder in the place of a file of results is refused in a sentence") {
-    const inputs all;
-    const temporary_folder& folder = all.folder();
+TEST_CASE("A folder in place of a results file is rejected in one sentence") {
+    const command_fixture fixture;
+    const temporary_folder& folder = fixture.folder();
     const std::string config = folder / "c.toml";
     const std::string out = folder / "out";
     run_well({"run", config, "--out", out});
     for (const std::string name : {"results.csv", "manifest.json", "differences.csv"}) {
         INFO(name);
         const std::filesystem::path file = std::filesystem::path(out) / name;
-        const std::filesystem::path aside = folder / "aside";
-        const bool was_there = std::filesystem::exists(file);
-        if (was_there) std::filesystem::rename(file, aside);
+        const std::filesystem::path backup = folder / "aside";
+        const bool existed = std::filesystem::exists(file);
+        if (existed) std::filesystem::rename(file, backup);
         std::filesystem::create_directory(file);
-        require_refused({"run", config, "--resume", "--out", out}, name);
-        if (name == "manifest.json") require_refused({"compare", out, out}, name);
+        require_rejected({"run", config, "--resume", "--out", out}, name);
+        if (name == "manifest.json") require_rejected({"compare", out, out}, name);
         std::filesystem::remove(file);
-        if (was_there) std::filesystem::rename(aside, file);
+        if (existed) std::filesystem::rename(backup, file);
     }
 }
 
-TEST_CASE("A name that is not UTF-8 names a file like any other, and is shown with its bytes") {
-    const inputs all;
-    const temporary_folder& folder = all.folder();
+TEST_CASE("File names that are not UTF-8 work, and their bytes are shown escaped") {
+    const command_fixture fixture;
+    const temporary_folder& folder = fixture.folder();
     const std::string out = folder / "x\xff";
-    for (const command_with& command : all.writers()) {
+    for (const command_with& command : fixture.writers()) {
         run_well(command(out));
         CHECK(std::filesystem::is_regular_file(out));
         std::filesystem::remove(out);
@@ -223,25 +223,25 @@ TEST_CASE("A name that is not UTF-8 names a file like any other, and is shown wi
     run_well({"scene", "mesh_pair", "--frames", "1", "--mesh", mesh, "--picture", picture});
     CHECK(holds(bytes_of_file(picture), "m\\xff.off"));
 
-    const std::string config = folder.write("c\xff.toml", inputs::config_of("brownian", ""));
+    const std::string config = folder.write("c\xff.toml", command_fixture::config_of("brownian", ""));
     run_well({"run", config, "--out", folder / "r\xff"});
     CHECK(holds(bytes_of_file(folder / "r\xff/manifest.json"), "/c\xef\xbf\xbd.toml"));
     run_well({"run", config, "--resume", "--out", folder / "r\xff"});
     run_well({"compare", folder / "r\xff", folder / "r\xff"});
-    require_refused({"pairs", folder / "absent\xff"}, "/absent\\xff: no such file");
+    require_rejected({"pairs", folder / "absent\xff"}, "/absent\\xff: no such file");
 }
 
-TEST_CASE("What a terminal would obey is shown instead") {
-    const inputs all;
-    const temporary_folder& folder = all.folder();
-    const std::string name = "a\x1b[31m\nb\x7f\xc2\x9bz\xc3\xa9.off";  // the last but one is é
+TEST_CASE("Control characters in names and files are shown escaped") {
+    const command_fixture fixture;
+    const temporary_folder& folder = fixture.folder();
+    const std::string name = "a\x1b[31m\nb\x7f\xc2\x9bz\xc3\xa9.off";  // the last letter is é
     const std::string shown = "a\\x1b[31m\\x0ab\\x7f\\xc2\\x9bz\xc3\xa9.off";
-    std::vector<command_with> readers = all.readers();
-    readers.pop_back();  // TOML takes no such names as they are
-    for (const command_with& command : readers) require_refused(command(folder / name), shown);
-    require_refused({"collide", folder.write("b.off", "OFF\n\x1b[2J 1 0\n"), "icosphere"}, "found '\\x1b[2J'");
-    require_refused({"explain", folder.write("c.toml", inputs::config_of("mesh_pair", "x\\u001b\\n.off"))},
-                    "'x\\x1b\\x0a.off'");
+    std::vector<command_with> readers = fixture.readers();
+    readers.pop_back();  // TOML cannot contain such names unescaped
+    for (const command_with& command : readers) require_rejected(command(folder / name), shown);
+    require_rejected({"collide", folder.write("b.off", "OFF\n\x1b[2J 1 0\n"), "icosphere"}, "found '\\x1b[2J'");
+    require_rejected({"explain", folder.write("c.toml", command_fixture::config_of("mesh_pair", "x\\u001b\\n.off"))},
+                     "'x\\x1b\\x0a.off'");
 
     const std::string mesh = folder.write(name, tetrahedron);
     const arguments printed[] = {{"collide", mesh, mesh},
@@ -249,5 +249,5 @@ TEST_CASE("What a terminal would obey is shown instead") {
                                  {"contacts", folder.write("\x1b.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n"), mesh}};
     CHECK(holds(run_program(printed[0]).out, shown + " (4 triangles) against"));
     CHECK(holds(run_program(printed[2]).out, "/\\x1b.txt: 1 object, "));
-    require_refused(printed[1], shown);  // it would overwrite the mesh
+    require_rejected(printed[1], shown);  // it would overwrite the mesh
 }

@@ -6,7 +6,7 @@ import aabb;
 import aabb.validation;
 import aabblab.scenes;
 
-// What each kind of scene promises, measured on the boxes that it plays.
+// The documented properties of each kind of scene, measured on its boxes.
 namespace {
 
 using aabblab::scene_choice;
@@ -18,7 +18,7 @@ struct frame {
     [[nodiscard]] bool has(std::size_t i) const { return present.empty() || present[i] != 0; }
 };
 
-std::vector<frame> play(const std::string& kind, const std::vector<aabb::setting>& settings = {}) {
+std::vector<frame> frames_of(const std::string& kind, const std::vector<aabb::setting>& settings = {}) {
     const auto scene = aabblab::make_box_scene({kind, settings, {}, 1});
     std::vector<frame> frames;
     for (std::vector<aabb::box> boxes; scene->next(boxes);)
@@ -27,7 +27,7 @@ std::vector<frame> play(const std::string& kind, const std::vector<aabb::setting
     return frames;
 }
 
-/// Every pair of overlapping boxes, of objects that are present or of all.
+/// The overlapping pairs of boxes, of all objects or of those present.
 std::vector<aabb::index_pair> pairs_of(const frame& f, bool only_present) {
     const auto search = aabb::make_box_engine("brute_force");
     for (std::uint32_t i = 0; i < f.boxes.size(); ++i)
@@ -46,7 +46,7 @@ double edge(const aabb::box& b, int k = 0) {
     return double{b.max[k]} - double{b.min[k]};
 }
 
-double way(const aabb::box& from, const aabb::box& to) {
+double center_distance(const aabb::box& from, const aabb::box& to) {
     double square = 0;
     for (int k = 0; k < 3; ++k) {
         const double moved = (double{to.min[k]} + double{to.max[k]} - double{from.min[k]} - double{from.max[k]}) / 2;
@@ -55,23 +55,23 @@ double way(const aabb::box& from, const aabb::box& to) {
     return std::sqrt(square);
 }
 
-struct ways {
+struct motion {
     double mean = 0;
     double longest = 0;
 };
-ways ways_in(const std::vector<frame>& frames) {
-    ways all;
+motion motion_in(const std::vector<frame>& frames) {
+    motion moved;
     std::size_t count = 0;
     for (std::size_t f = 1; f < frames.size(); ++f)
         for (std::size_t i = 0; i < frames[f].boxes.size(); ++i) {
             if (!frames[f].has(i) || !frames[f - 1].has(i)) continue;
-            const double one = way(frames[f - 1].boxes[i], frames[f].boxes[i]);
-            all.mean += one;
-            all.longest = std::max(all.longest, one);
+            const double distance = center_distance(frames[f - 1].boxes[i], frames[f].boxes[i]);
+            moved.mean += distance;
+            moved.longest = std::max(moved.longest, distance);
             ++count;
         }
-    all.mean /= static_cast<double>(count);
-    return all;
+    moved.mean /= static_cast<double>(count);
+    return moved;
 }
 
 aabb::box world_of(const std::vector<frame>& frames) {
@@ -83,10 +83,10 @@ aabb::box world_of(const std::vector<frame>& frames) {
 }
 
 bool is_flat(const std::vector<frame>& frames, int k) {
-    const aabb::box& some = frames[0].boxes[0];
+    const aabb::box& first = frames[0].boxes[0];
     return std::ranges::all_of(frames, [&](const frame& f) {
         return std::ranges::all_of(
-            f.boxes, [&](const aabb::box& b) { return b.min[k] == some.min[k] && b.max[k] == some.max[k]; });
+            f.boxes, [&](const aabb::box& b) { return b.min[k] == first.min[k] && b.max[k] == first.max[k]; });
     });
 }
 
@@ -115,62 +115,62 @@ double mean_extent(const frame& f) {
 
 }  // namespace
 
-TEST_CASE("boxes move by the displacement, in either unit") {
+TEST_CASE("boxes move by the displacement in either unit") {
     std::size_t moving = 0;
     for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
         if (std::ranges::find(info.parameters, "unit", &aabb::parameter_info::name) == info.parameters.end()) continue;
         ++moving;
-        const bool is_longest = info.name == "free_fall";
+        const bool is_free_fall = info.name == "free_fall";
         for (const std::string unit : {"extent", "spacing"}) {
             CAPTURE(info.name, unit);
-            // The longest way is that of the highest box when it meets the floor.
-            const double fraction = is_longest ? 0.2 : 0.05;
-            const auto frames = play(
+            // The longest displacement is that of the highest box as it hits the floor.
+            const double fraction = is_free_fall ? 0.2 : 0.05;
+            const auto frames = frames_of(
                 info.name,
-                {{"displacement", std::to_string(fraction)}, {"unit", unit}, {"frames", is_longest ? "150" : "3"}});
+                {{"displacement", std::to_string(fraction)}, {"unit", unit}, {"frames", is_free_fall ? "150" : "3"}});
             const double length = unit == "extent" ? mean_extent(frames[0]) : measured_spacing(frames);
-            const ways all = ways_in(frames);
-            CHECK(all.longest < 1.06 * fraction * length);
-            CHECK((is_longest ? all.longest : all.mean) > 0.95 * fraction * length);
+            const motion moved = motion_in(frames);
+            CHECK(moved.longest < 1.06 * fraction * length);
+            CHECK((is_free_fall ? moved.longest : moved.mean) > 0.95 * fraction * length);
             for (const std::string objects : {"0", "1", "2"})
-                play(info.name, {{"unit", unit}, {"objects", objects}, {"frames", "3"}});
+                frames_of(info.name, {{"unit", unit}, {"objects", objects}, {"frames", "3"}});
         }
     }
     REQUIRE(moving >= 12);
 }
 
-TEST_CASE("overlapping pairs grow with the number of boxes, not with its square") {
+TEST_CASE("overlapping pairs grow linearly with the number of boxes") {
     for (const aabblab::scene_info& info : aabblab::scene_kinds()) {
         if (info.has_meshes || info.reads_file) continue;
         CAPTURE(info.name);
-        const double few = neighbours_in(play(info.name, {{"objects", "1000"}, {"frames", "0"}})[0]);
-        const double many = neighbours_in(play(info.name, {{"objects", "8000"}, {"frames", "0"}})[0]);
+        const double few = neighbours_in(frames_of(info.name, {{"objects", "1000"}, {"frames", "0"}})[0]);
+        const double many = neighbours_in(frames_of(info.name, {{"objects", "8000"}, {"frames", "0"}})[0]);
         CHECK_BETWEEN(0.3, few, 22);
         CHECK_BETWEEN(0.8 * few, many, 1.3 * few);
     }
 }
 
-TEST_CASE("cloud has the density, the sizes, the clouds and the motion that are set, one by one") {
+TEST_CASE("cloud follows each of its parameters") {
     const std::vector<aabb::setting> settings{{"frames", "3"}, {"displacement", "0.2"}};
-    const auto with = [&](std::vector<aabb::setting> others) {
-        others.insert(others.end(), settings.begin(), settings.end());
-        return play("cloud", others);
+    const auto with = [&](std::vector<aabb::setting> changes) {
+        changes.insert(changes.end(), settings.begin(), settings.end());
+        return frames_of("cloud", changes);
     };
-    const auto even = with({});
-    CHECK(std::abs(ways_in(even).mean - 0.2) < 0.02);
-    // A corner lies within 1 of another's on each axis: eight cubes' volumes at a density of 0.1.
-    CHECK(std::abs(neighbours_in(even[0]) - 0.8) < 0.25);
-    CHECK(neighbours_in(with({{"density", "0.4"}})[0]) > 2 * neighbours_in(even[0]));
+    const auto base = with({});
+    CHECK(std::abs(motion_in(base).mean - 0.2) < 0.02);
+    // Two cubes overlap if their corners are within 1 on each axis: in a volume of 8, at a density of 0.1.
+    CHECK(std::abs(neighbours_in(base[0]) - 0.8) < 0.25);
+    CHECK(neighbours_in(with({{"density", "0.4"}})[0]) > 2 * neighbours_in(base[0]));
     const auto clouds = with({{"clouds", "20"}});
-    CHECK(edge(world_of({clouds[0]})) > 3 * edge(world_of({even[0]})));
-    CHECK(neighbours_in(clouds[0]) > neighbours_in(even[0]) / 2);
+    CHECK(edge(world_of({clouds[0]})) > 3 * edge(world_of({base[0]})));
+    CHECK(neighbours_in(clouds[0]) > neighbours_in(base[0]) / 2);
     const auto sizes = with({{"ratio", "10"}});
     const auto edges = std::ranges::minmax(sizes[0].boxes, {}, [](const aabb::box& b) { return edge(b); });
     CHECK(std::abs(edge(edges.max) / edge(edges.min) - 10) < 0.01);
-    const auto some = with({{"moving", "0.25"}});
+    const auto mixed = with({{"moving", "0.25"}});
     std::size_t moved = 0;
-    for (std::size_t i = 0; i < some[0].boxes.size(); ++i) moved += some[3].boxes[i] == some[0].boxes[i] ? 0 : 1;
-    CHECK(moved == some[0].boxes.size() / 4);
+    for (std::size_t i = 0; i < mixed[0].boxes.size(); ++i) moved += mixed[3].boxes[i] == mixed[0].boxes[i] ? 0 : 1;
+    CHECK(moved == mixed[0].boxes.size() / 4);
     const auto parked = with({{"clouds", "3"}, {"parked", "0.5"}, {"apart", "1000"}});
     const std::size_t half = parked[0].boxes.size() / 2;
     const auto longest = [](const aabb::box& b) { return std::max({edge(b, 0), edge(b, 1), edge(b, 2)}); };
@@ -185,18 +185,18 @@ TEST_CASE("cloud has the density, the sizes, the clouds and the motion that are 
     }
 }
 
-TEST_CASE("explosion creeps, flies and stands still, a third of the frames each") {
-    const auto frames = play("explosion", {{"frames", "9"}, {"displacement", "0.5"}});
+TEST_CASE("explosion creeps, flies and rests for a third of the frames each") {
+    const auto frames = frames_of("explosion", {{"frames", "9"}, {"displacement", "0.5"}});
     REQUIRE(frames.size() == 10);
     for (std::size_t f = 1; f < frames.size(); ++f) {
         INFO("frame " << f);
-        CHECK(std::abs(ways_in({frames[f - 1], frames[f]}).mean - (f <= 3 ? 0.005 : f <= 6 ? 0.5 : 0)) < 1e-4);
+        CHECK(std::abs(motion_in({frames[f - 1], frames[f]}).mean - (f <= 3 ? 0.005 : f <= 6 ? 0.5 : 0)) < 1e-4);
     }
     CHECK(neighbours_in(frames[9]) < neighbours_in(frames[0]));
 }
 
-TEST_CASE("free_fall comes down along z alone, bounces and gathers at the floor") {
-    const auto frames = play("free_fall");
+TEST_CASE("free_fall boxes fall along z, bounce and come to rest on the floor") {
+    const auto frames = frames_of("free_fall");
     std::size_t rising = 0;
     for (std::size_t f = 1; f < frames.size(); ++f)
         for (std::size_t i = 0; i < 1000; ++i) {
@@ -212,37 +212,37 @@ TEST_CASE("free_fall comes down along z alone, bounces and gathers at the floor"
     REQUIRE(edge(world_of({frames.back()}), 2) == 1);
 }
 
-TEST_CASE("free_fall loses height with each bounce, whatever the displacement") {
+TEST_CASE("free_fall bounces lose height at every displacement") {
     for (const std::string displacement : {"0.01", "3", "1e9"}) {
         CAPTURE(displacement);
-        const aabb::box world = world_of(play("free_fall", {{"displacement", displacement}, {"frames", "200"}}));
+        const aabb::box world = world_of(frames_of("free_fall", {{"displacement", displacement}, {"frames", "200"}}));
         REQUIRE(world.min[2] >= 0);
         REQUIRE(world.max[2] <= 11);
     }
 }
 
-TEST_CASE("pile boxes have the neighbours asked for and stay in their heap on the floor") {
+TEST_CASE("pile boxes have the set number of neighbours and stay in a heap on the floor") {
     const auto neighbours = GENERATE(10, 20, 50);
     const auto objects = GENERATE("1000", "4000");
     CAPTURE(neighbours, objects);
-    const auto frames = play("pile", {{"objects", objects}, {"neighbours", std::to_string(neighbours)}});
+    const auto frames = frames_of("pile", {{"objects", objects}, {"neighbours", std::to_string(neighbours)}});
     for (const frame* f : {&frames.front(), &frames.back()})
         CHECK_BETWEEN(0.75 * neighbours, neighbours_in(*f), 1.25 * neighbours);
     REQUIRE(world_of(frames).min[2] >= 0);
     for (std::size_t i = 0; i < frames[0].boxes.size(); ++i)
-        REQUIRE(way(frames.front().boxes[i], frames.back().boxes[i]) < 0.15);
-    // Narrower above than below.
-    std::array<std::vector<float>, 2> across;
+        REQUIRE(center_distance(frames.front().boxes[i], frames.back().boxes[i]) < 0.15);
+    // The heap is narrower at the top.
+    std::array<std::vector<float>, 2> offsets;
     const float middle = world_of(frames).max[2] / 2;
-    for (const aabb::box& b : frames[0].boxes) across[b.min[2] > middle].push_back(std::abs(b.min[0]));
-    REQUIRE(across[0].size() > 2 * across[1].size());
-    REQUIRE(*std::ranges::max_element(across[0]) > 1.7 * *std::ranges::max_element(across[1]));
+    for (const aabb::box& b : frames[0].boxes) offsets[b.min[2] > middle].push_back(std::abs(b.min[0]));
+    REQUIRE(offsets[0].size() > 2 * offsets[1].size());
+    REQUIRE(*std::ranges::max_element(offsets[0]) > 1.7 * *std::ranges::max_element(offsets[1]));
 }
 
 TEST_CASE("clustered boxes stay in tight clusters far apart") {
     for (const std::size_t clusters : {1, 7, 64}) {
         CAPTURE(clusters);
-        const auto frames = play("clustered", {{"clusters", std::to_string(clusters)}, {"displacement", "1"}});
+        const auto frames = frames_of("clustered", {{"clusters", std::to_string(clusters)}, {"displacement", "1"}});
         std::vector<aabb::box> spans(clusters, aabb::empty_box());
         for (const frame& f : frames)
             for (std::size_t i = 0; i < 1000; ++i) spans[i % clusters] = aabb::merged(spans[i % clusters], f.boxes[i]);
@@ -262,29 +262,29 @@ TEST_CASE("clustered boxes stay in tight clusters far apart") {
     }
 }
 
-TEST_CASE("mixed_sizes reach their ratio, evenly in the logarithm") {
+TEST_CASE("mixed_sizes spans its ratio with log-spaced edges") {
     for (const std::string ratio : {"10", "100", "1e6"}) {
         CAPTURE(ratio);
-        const auto frames = play("mixed_sizes", {{"ratio", ratio}});
+        const auto frames = frames_of("mixed_sizes", {{"ratio", ratio}});
         std::vector<double> edges;
         for (const aabb::box& b : frames[0].boxes) edges.push_back(edge(b));
-        const double most = std::stod(ratio);
-        // Far from the origin a float is off by up to an eighth.
-        const auto about = [](double value, double wanted) { return std::abs(value - wanted) <= 0.13 * wanted; };
+        const double largest = std::stod(ratio);
+        // Far from the origin, rounding to float is off by up to an eighth.
+        const auto is_near = [](double value, double target) { return std::abs(value - target) <= 0.13 * target; };
         for (std::size_t i = 0; i < 1000; ++i) {
-            REQUIRE(about(edges[i], std::pow(most, static_cast<double>(i) / 999)));
-            for (int k = 1; k < 3; ++k) REQUIRE(about(edge(frames[0].boxes[i], k), edges[i]));
+            REQUIRE(is_near(edges[i], std::pow(largest, static_cast<double>(i) / 999)));
+            for (int k = 1; k < 3; ++k) REQUIRE(is_near(edge(frames[0].boxes[i], k), edges[i]));
         }
-        REQUIRE(about(edges.front(), 1));
-        REQUIRE(std::abs(edges.back() - most) < 1e-5 * most);
+        REQUIRE(is_near(edges.front(), 1));
+        REQUIRE(std::abs(edges.back() - largest) < 1e-5 * largest);
         CHECK_BETWEEN(1, neighbours_in(frames[0]), 4);
     }
 }
 
-TEST_CASE("one_huge is object 0 and spans what it is told") {
+TEST_CASE("one_huge makes object 0 span the set share of the world") {
     for (const std::string span : {"0.2", "0.5", "1"}) {
         CAPTURE(span);
-        const auto frames = play("one_huge", {{"span", span}});
+        const auto frames = frames_of("one_huge", {{"span", span}});
         const aabb::box world = world_of(frames);
         for (int k = 0; k < 3; ++k)
             REQUIRE(std::abs(edge(frames[0].boxes[0], k) / edge(world, k) - std::stod(span)) < 0.01);
@@ -292,50 +292,50 @@ TEST_CASE("one_huge is object 0 and spans what it is told") {
         const auto touched =
             std::ranges::count_if(pairs_of(frames[0], false), [](const aabb::index_pair& p) { return p.a == 0; });
         REQUIRE(static_cast<double>(touched) > 900 * std::pow(std::stod(span), 3));
-        REQUIRE((span == "1") == (way(frames.front().boxes[0], frames.back().boxes[0]) == 0));
+        REQUIRE((span == "1") == (center_distance(frames.front().boxes[0], frames.back().boxes[0]) == 0));
     }
 }
 
-TEST_CASE("flat and line move on two axes and on one; the others tell nothing") {
-    const auto flat = play("flat");
+TEST_CASE("flat varies on two axes and line on one") {
+    const auto flat = frames_of("flat");
     REQUIRE((!is_flat(flat, 0) && !is_flat(flat, 1) && is_flat(flat, 2)));
-    const auto line = play("line");
+    const auto line = frames_of("line");
     REQUIRE((!is_flat(line, 0) && is_flat(line, 1) && is_flat(line, 2)));
     for (const auto* frames : {&flat, &line}) REQUIRE(std::abs(edge(frames->back().boxes[7], 2) - 1) < 1e-6);
 }
 
-TEST_CASE("needles are as long as told on one axis, a third of them on each") {
+TEST_CASE("needles have the set length on one axis, a third of them on each") {
     for (const std::string length : {"1.5", "7", "20"}) {
         CAPTURE(length);
-        const auto frames = play("needles", {{"length", length}});
+        const auto frames = frames_of("needles", {{"length", length}});
         for (std::size_t i = 0; i < 1000; ++i)
             for (int k = 0; k < 3; ++k) {
-                const double wanted = i % 3 == static_cast<std::size_t>(k) ? std::stod(length) : 1;
-                REQUIRE(std::abs(edge(frames.back().boxes[i], k) - wanted) < 1e-4);
+                const double expected = i % 3 == static_cast<std::size_t>(k) ? std::stod(length) : 1;
+                REQUIRE(std::abs(edge(frames.back().boxes[i], k) - expected) < 1e-4);
             }
         CHECK_BETWEEN(1, neighbours_in(frames[0]), 3);
     }
 }
 
-TEST_CASE("hollow_sphere is a sphere with nothing inside, wherever its cubes drift") {
-    const auto frames = play("hollow_sphere", {{"displacement", "1"}});
+TEST_CASE("hollow_sphere cubes stay on the sphere as they drift") {
+    const auto frames = frames_of("hollow_sphere", {{"displacement", "1"}});
     const double radius = (edge(world_of(frames)) - 1) / 2;
     REQUIRE(radius > 10);
     for (const frame& f : frames)
-        for (const aabb::box& b : f.boxes) REQUIRE(std::abs(way(b, {}) - radius) < 0.01 * radius);
+        for (const aabb::box& b : f.boxes) REQUIRE(std::abs(center_distance(b, {}) - radius) < 0.01 * radius);
     CHECK_BETWEEN(1.7, neighbours_in(frames.back()), 2.3);
-    // No step is longer than the sphere is wide, and none is lost.
-    REQUIRE(std::abs(ways_in(play("hollow_sphere", {{"displacement", "1e9"}})).mean / (2 * radius) - 1) < 0.01);
+    // Displacements are limited to the diameter.
+    REQUIRE(std::abs(motion_in(frames_of("hollow_sphere", {{"displacement", "1e9"}})).mean / (2 * radius) - 1) < 0.01);
 }
 
-TEST_CASE("far lies as far from the origin as told, and its cubes touch where floats are coarse") {
-    const auto frames = play("far", {{"distance", "1e6"}});
+TEST_CASE("far cubes are at the set distance and touch where floats are coarse") {
+    const auto frames = frames_of("far", {{"distance", "1e6"}});
     const aabb::box world = world_of(frames);
     for (int k = 0; k < 3; ++k) {
         REQUIRE(world.min[k] >= 1e6F);
         REQUIRE(world.max[k] < 1e6F + 20);
     }
-    // Floats are a sixteenth apart there.
+    // Adjacent floats differ by a sixteenth there.
     std::size_t touching = 0;
     for (const aabb::index_pair& p : pairs_of(frames[0], false)) {
         const aabb::box& a = frames[0].boxes[p.a];
@@ -346,25 +346,25 @@ TEST_CASE("far lies as far from the origin as told, and its cubes touch where fl
     REQUIRE(std::abs(neighbours_in(frames[0]) - 2) < 0.7);
 }
 
-TEST_CASE("teleport leaves nothing where it was") {
-    const auto frames = play("teleport");
+TEST_CASE("teleport moves every box in every frame") {
+    const auto frames = frames_of("teleport");
     const double side = edge(world_of(frames));
-    // Two random points of a cube are 0.66 of its side apart.
-    REQUIRE(std::abs(ways_in(frames).mean / (side - 1) - 0.66) < 0.02);
+    // The mean distance of two random points in a cube is 0.66 of its side.
+    REQUIRE(std::abs(motion_in(frames).mean / (side - 1) - 0.66) < 0.02);
     for (std::size_t f = 1; f < frames.size(); ++f)
         for (std::size_t i = 0; i < 1000; ++i) REQUIRE(frames[f].boxes[i] != frames[f - 1].boxes[i]);
 }
 
-TEST_CASE("still never moves") {
-    const auto frames = play("still");
+TEST_CASE("still boxes never move") {
+    const auto frames = frames_of("still");
     REQUIRE(frames.size() == 21);
     for (const frame& f : frames) REQUIRE(f.boxes == frames[0].boxes);
 }
 
-TEST_CASE("population comes and goes as told, and the absent overlap nothing") {
+TEST_CASE("population follows its turnover, and absent objects overlap nothing") {
     for (const std::string turnover : {"0.02", "0.3", "1"}) {
         CAPTURE(turnover);
-        const auto frames = play("population", {{"turnover", turnover}});
+        const auto frames = frames_of("population", {{"turnover", turnover}});
         double changes = 0;
         for (std::size_t f = 0; f < frames.size(); ++f) {
             REQUIRE(frames[f].present.size() == 1000);
@@ -381,13 +381,13 @@ TEST_CASE("population comes and goes as told, and the absent overlap nothing") {
     }
 }
 
-TEST_CASE("who is absent is said by population alone") {
+TEST_CASE("only population reports absent objects") {
     for (const aabblab::scene_info& info : aabblab::scene_kinds())
         if (!info.has_meshes && !info.reads_file)
-            REQUIRE(play(info.name, {{"frames", "1"}})[1].present.empty() == (info.name != "population"));
+            REQUIRE(frames_of(info.name, {{"frames", "1"}})[1].present.empty() == (info.name != "population"));
 }
 
-TEST_CASE("mean spacing is the edge of what each object has for itself") {
+TEST_CASE("mean spacing is the edge of each object's share of the volume") {
     REQUIRE(aabblab::mean_spacing({4, 8, 2}, 8) == 2);
     REQUIRE(aabblab::mean_spacing({4, 0, 9}, 4) == 3);
     REQUIRE(aabblab::mean_spacing({0, 5, 0}, 10) == 0.5);

@@ -1,8 +1,8 @@
-// On a clock that is too coarse nothing is timed.
+// Nothing is timed with a clock that is too coarse.
 
 #include "program.hpp"
 
-TEST_CASE("On a clock that goes in steps of 15 ms, what is to be timed is refused, and nothing is written") {
+TEST_CASE("Commands that time reject a clock of 15 ms resolution and write nothing") {
     const temporary_folder folder;
     const std::string config = folder.write("a.toml",
                                             "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 5\nframes = 1\n"
@@ -12,7 +12,7 @@ TEST_CASE("On a clock that goes in steps of 15 ms, what is to be timed is refuse
     const std::size_t files = folder.files();
     const std::string out = folder / "out";
     const auto on_coarse_clock = [](const std::vector<std::string>& arguments) {
-        // The address sanitizer is to come second.
+        // The address sanitizer is preloaded second.
         return run_command(joined({"env", "ASAN_OPTIONS=verify_asan_link_order=0",
                                    std::string("LD_PRELOAD=") + AABBLAB_COARSE_CLOCK, AABBLAB_UNDER_TEST},
                                   arguments));
@@ -33,7 +33,7 @@ TEST_CASE("On a clock that goes in steps of 15 ms, what is to be timed is refuse
                                  "these times; at most 0.0100 ms is required\n"));
         CHECK(folder.files() == files);
     }
-    // Whose times are not what is asked for.
+    // These commands do not need times.
     CHECK(on_coarse_clock({"pairs", scene}).status == 0);
     CHECK(on_coarse_clock({"validate", config}).status == 0);
 }

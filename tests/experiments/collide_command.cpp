@@ -17,7 +17,7 @@ struct two_files {
 
 }  // namespace
 
-TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
+TEST_CASE("collide finds the same triangle pairs with every tree and build") {
     const two_files files;
     const auto& [folder, a, b] = files;
     const std::vector<std::string> base = {"collide", a, b, "--json", "--pose-b", "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
@@ -27,7 +27,7 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
                                "compressed:leaf_test=triangle_box", "quantized:bits=5");
     const auto build = GENERATE("median", "sah");
     const auto result = run_well(joined(base, {"--tree", tree, "--build", build, "--out", folder / "pairs.csv"}));
-    REQUIRE(holds(result.err, "b.off: "));  // a polygon was fanned
+    REQUIRE(holds(result.err, "b.off: "));  // a polygon was triangulated
     const auto summary = nlohmann::json::parse(result.out);
     REQUIRE(summary["triangles"] == std::vector{4, 6});
     REQUIRE(summary["pairs"] == reference["pairs"]);
@@ -56,10 +56,10 @@ TEST_CASE("collide gives one set of triangle pairs whatever finds it") {
     REQUIRE(holds(rows, "\n" + bytes_of_file(folder / "first.csv").substr(4)));
 }
 
-TEST_CASE("collide finds neighbours around a vertex of many triangles in the mesh itself") {
+TEST_CASE("collide --self finds all neighbours around a vertex of many triangles") {
     const temporary_folder folder;
     constexpr int triangles = 200;
-    // Every third has a vertex of its own at the apex, and one triangle goes through some of the others.
+    // Every third triangle has its own vertex at the apex, and one triangle intersects some of the others.
     std::string vertices = "0 0 0\n";
     std::string faces;
     int next = 1;
@@ -83,19 +83,19 @@ TEST_CASE("collide finds neighbours around a vertex of many triangles in the mes
     const auto exact = summary({"--out", folder / "exact.csv", "--engine", "brute_force"});
     CHECK(exact["neighbours"] == triangles * (triangles - 1) / 2);
     CHECK(exact["pairs"] > 0);
-    const auto found = summary({"--out", folder / "found.csv"});
-    // It stores them, since it need not find them all.
+    const auto by_tree = summary({"--out", folder / "found.csv"});
+    // An inexact test stores neighbours, as it may miss some.
     const auto inexact = summary({"--out", folder / "inexact.csv", "--triangle", "moller"});
-    for (const char* member : {"pairs", "neighbours", "digest"}) CHECK(found[member] == exact[member]);
+    for (const char* member : {"pairs", "neighbours", "digest"}) CHECK(by_tree[member] == exact[member]);
     CHECK(bytes_of_file(folder / "found.csv") == bytes_of_file(folder / "exact.csv"));
     CHECK(std::ranges::count(bytes_of_file(folder / "inexact.csv"), '\n') ==
           1 + inexact["pairs"].get<std::ptrdiff_t>() + inexact["neighbours"].get<std::ptrdiff_t>());
     CHECK(summary({"--count"})["neighbours"] == exact["neighbours"]);
 }
 
-TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
+TEST_CASE("collide --self reports neighbours separately") {
     const temporary_folder folder;
-    // Two tetrahedra through each other, and a triangle that shares a corner with the first by position only.
+    // Two intersecting tetrahedra, and a triangle that shares a corner with the first by position only.
     const std::string mesh =
         folder.write("two.off",
                      "OFF\n11 9 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
@@ -121,55 +121,55 @@ TEST_CASE("collide holds a mesh against itself and tells neighbours apart") {
     REQUIRE(counted["pairs"] == summary["pairs"]);
     REQUIRE(counted["neighbours"] == summary["neighbours"]);
     REQUIRE(counted["digest"].is_null());
-    // Neighbours left out: only the rest are pairs, and they are still counted.
-    const auto apart =
+    // Without neighbours only the other pairs are written, and neighbours are still counted.
+    const auto excluded =
         json_of({"collide", mesh, "--self=apart", "--json", "--tree", tree, "--out", folder / "apart.csv"});
-    REQUIRE(apart["pairs"] == summary["pairs"]);
-    REQUIRE(apart["neighbours"] == summary["neighbours"]);
-    REQUIRE(apart["digest"] != summary["digest"]);
-    std::string without = "a,b\n";
+    REQUIRE(excluded["pairs"] == summary["pairs"]);
+    REQUIRE(excluded["neighbours"] == summary["neighbours"]);
+    REQUIRE(excluded["digest"] != summary["digest"]);
+    std::string expected = "a,b\n";
     for (const std::string& row : lines_of(rows))
-        if (row.ends_with(",0")) without += row.substr(0, row.size() - 2) + "\n";
-    REQUIRE(bytes_of_file(folder / "apart.csv") == without);
+        if (row.ends_with(",0")) expected += row.substr(0, row.size() - 2) + "\n";
+    REQUIRE(bytes_of_file(folder / "apart.csv") == expected);
     REQUIRE(holds(run_program({"collide", mesh, "--self"}).out, "15 more among triangles that share a vertex"));
 }
 
-TEST_CASE("collide writes what the triangles of each pair have in common, in the world") {
+TEST_CASE("collide --geometry writes each intersection in world coordinates") {
     const two_files files;
     const auto& [folder, a, b] = files;
     const auto rows_of = [&](const std::vector<std::string>& options) {
         run_well(joined({"collide", a, b, "--geometry", "--out", folder / "pairs.csv"}, options));
         return fields_of(bytes_of_file(folder / "pairs.csv"));
     };
-    const auto here = rows_of({"--pose-b", "1,0,0,0.4, 0,1,0,0.2, 0,0,1,-0.1"});
-    REQUIRE(here.size() > 3);
-    CHECK(here[0] == std::vector<std::string>{"a",  "b",  "kind", "corners", "error_x", "error_y", "error_z",
+    const auto base = rows_of({"--pose-b", "1,0,0,0.4, 0,1,0,0.2, 0,0,1,-0.1"});
+    REQUIRE(base.size() > 3);
+    CHECK(base[0] == std::vector<std::string>{"a",  "b",  "kind", "corners", "error_x", "error_y", "error_z",
                                               "x1", "y1", "z1",   "x2",      "y2",      "z2",      "x3",
                                               "y3", "z3", "x4",   "y4",      "z4",      "x5",      "y5",
                                               "z5", "x6", "y6",   "z6"});
-    // Both meshes turned about z by a quarter and taken away: y is where x was, and x where -y was.
+    // Both meshes are rotated by 90 degrees about z and translated: y comes from x, and x from -y.
     REQUIRE(json_of({"collide", a, b, "--json", "--pose-a", "1,0,0,100, 0,1,0,200, 0,0,1,300", "--pose-b",
                      "1,0,0,100, 0,1,0,200, 0,0,1,300"})["digest"] == json_of({"collide", a, b, "--json"})["digest"]);
-    const auto there =
+    const auto moved =
         rows_of({"--pose-a", "0,-1,0,100, 1,0,0,200, 0,0,1,300", "--pose-b", "0,-1,0,99.8, 1,0,0,200.4, 0,0,1,299.9"});
-    REQUIRE(there.size() == here.size());
-    for (std::size_t i = 1; i < here.size(); ++i) {
+    REQUIRE(moved.size() == base.size());
+    for (std::size_t i = 1; i < base.size(); ++i) {
         INFO("row " << i);
-        REQUIRE(here[i].size() == here[0].size());
-        for (std::size_t k = 0; k < 4; ++k) CHECK(there[i][k] == here[i][k]);
-        const std::size_t corners = std::stoul(here[i][3]);
+        REQUIRE(base[i].size() == base[0].size());
+        for (std::size_t k = 0; k < 4; ++k) CHECK(moved[i][k] == base[i][k]);
+        const std::size_t corners = std::stoul(base[i][3]);
         const auto number = [&](const auto& rows, std::size_t cell) { return std::stod(rows[i][cell]); };
         for (std::size_t c = 0; c < 6; ++c) {
             const std::size_t x = 7 + 3 * c;
-            CHECK(here[i][x].empty() == (c >= corners));
+            CHECK(base[i][x].empty() == (c >= corners));
             if (c >= corners) continue;
             // The translations differ in the last place, which rounding to float mostly hides.
-            CHECK(std::abs(number(there, x) - (100 - number(here, x + 1))) < 1e-6);
-            CHECK(std::abs(number(there, x + 1) - (200 + number(here, x))) < 1e-6);
-            CHECK(std::abs(number(there, x + 2) - (300 + number(here, x + 2))) < 1e-6);
+            CHECK(std::abs(number(moved, x) - (100 - number(base, x + 1))) < 1e-6);
+            CHECK(std::abs(number(moved, x + 1) - (200 + number(base, x))) < 1e-6);
+            CHECK(std::abs(number(moved, x + 2) - (300 + number(base, x + 2))) < 1e-6);
         }
-        // Some roundings at 100.
-        for (std::size_t k = 4; k < 7; ++k) CHECK_BETWEEN(1e-14, number(there, k), 1e-12);
+        // A few rounding errors of coordinates near 100.
+        for (std::size_t k = 4; k < 7; ++k) CHECK_BETWEEN(1e-14, number(moved, k), 1e-12);
     }
     const program_result first = run_program({"collide", a, b, "--first", "--geometry"});
     CHECK(holds(first.out, " intersect: "));
@@ -178,7 +178,7 @@ TEST_CASE("collide writes what the triangles of each pair have in common, in the
                                std::to_string(json["geometry"]["corners"].size()) + " "));
     CHECK(json["geometry"]["error"].size() == 3);
     CHECK(holds(first.out, "triangles " + json["first"][0].dump() + " and " + json["first"][1].dump() + " intersect"));
-    // With poses, a line each where something intersects.
+    // With --poses, each intersecting pose has a line.
     const std::string poses = folder.write("poses.txt", "1,0,0,-9,0,1,0,0,0,0,1,0\n1,0,0,0,0,1,0,0,0,0,1,0\n");
     const std::vector<std::string> posed{"collide", a, b, "--first", "--geometry", "--poses", poses};
     const std::string lines = run_program(posed).out;
@@ -193,7 +193,7 @@ TEST_CASE("collide writes what the triangles of each pair have in common, in the
     CHECK(holds(run_program({"collide", a, b, "--first", "--geometry", "--pose-a", away}).out, "0 intersecting"));
 }
 
-TEST_CASE("neighbours in a mesh have an edge or a corner in common") {
+TEST_CASE("neighbours in a mesh intersect in their shared edge or vertex") {
     const two_files files;
     const auto& [folder, a, b] = files;
     for (const auto& [mesh, edges, points] : {std::tuple(a, 6, 0), std::tuple(b, 9, 6)}) {
@@ -208,7 +208,7 @@ TEST_CASE("neighbours in a mesh have an edge or a corner in common") {
     }
 }
 
-TEST_CASE("pairs, collide and contacts speak of one as of one") {
+TEST_CASE("collide and contacts use the singular for a count of one") {
     const temporary_folder folder;
     const std::string mesh = folder.write("one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0 0 1 0 0 0 0 1 0\n");
@@ -219,7 +219,7 @@ TEST_CASE("pairs, collide and contacts speak of one as of one") {
                 "\n1 contact of triangles in 1 contact of objects (1 pair of boxes), "));
 }
 
-TEST_CASE("collide takes many poses in one call, each as in a call of its own") {
+TEST_CASE("collide gives the same results for many poses in one call as in separate calls") {
     const two_files files;
     const auto& [folder, a, b] = files;
     const std::vector<std::string> poses{"1,0,0,0.4,0,1,0,0.2,0,0,1,-0.1", "1 0 0 9 0 1 0 0 0 0 1 0",
@@ -228,34 +228,34 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
         folder.write("poses.txt", "# of b\n" + poses[0] + "\n\n" + poses[1] + " # far away\r\n" + poses[2]);
     const auto tested = GENERATE(std::vector<std::string>{}, std::vector<std::string>{"--tree", "canonical"},
                                  std::vector<std::string>{"--engine", "cgal"});
-    const auto all = [&](const std::vector<std::string>& options) {
+    const auto batch = [&](const std::vector<std::string>& options) {
         return json_of(joined(joined({"collide", a, b, "--json", "--poses", file}, tested), options));
     };
     std::string rows = "pose,a,b\n";
     std::vector<std::size_t> counts;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const std::string out = folder / "one.csv";
-        const auto one = json_of(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, tested));
-        counts.push_back(one["pairs"]);
+        const auto single = json_of(joined({"collide", a, b, "--json", "--pose-b", poses[i], "--out", out}, tested));
+        counts.push_back(single["pairs"]);
         for (const std::string& line : lines_of(bytes_of_file(out)))
             if (line != "a,b") rows += std::to_string(i) + "," + line + "\n";
     }
     REQUIRE(counts[0] > 0);
     REQUIRE(counts[1] == 0);
     REQUIRE(counts[2] > 0);
-    const auto found = all({"--out", folder / "all.csv"});
-    CHECK(found["pairs"] == counts);
-    CHECK(found["query_ms"].size() == 3);
+    const auto result = batch({"--out", folder / "all.csv"});
+    CHECK(result["pairs"] == counts);
+    CHECK(result["query_ms"].size() == 3);
     CHECK(bytes_of_file(folder / "all.csv") == rows);
-    // Again and again the same, told once.
-    const auto again = all({"--repeat", "4", "--out", folder / "again.csv"});
+    // Repeats find the same pairs, which are written once.
+    const auto again = batch({"--repeat", "4", "--out", folder / "again.csv"});
     CHECK(again["pairs"] == counts);
-    CHECK(again["digest"] == found["digest"]);
+    CHECK(again["digest"] == result["digest"]);
     CHECK(again["query_ms"].size() == 12);
     CHECK(bytes_of_file(folder / "again.csv") == rows);
-    CHECK(all({"--count"})["pairs"] == counts);
-    // Which pair comes first is any, but one of that pose; in words, too.
-    const auto first = all({"--first"});
+    CHECK(batch({"--count"})["pairs"] == counts);
+    // Any pair of the pose may come first; the text reports it too.
+    const auto first = batch({"--first"});
     CHECK(first["pairs"] == std::vector{1, 0, 1});
     REQUIRE(first["first"].size() == 3);
     CHECK(first["first"][1].is_null());
@@ -269,24 +269,24 @@ TEST_CASE("collide takes many poses in one call, each as in a call of its own") 
     }
 }
 
-TEST_CASE("collide searches as often as it is asked to, and tells each time") {
+TEST_CASE("collide --repeat repeats the search and reports each time") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
-    const auto hold_to_one = [&](const std::vector<std::string>& options) {
+    const auto check_repeats = [&](const std::vector<std::string>& options) {
         const auto once = json_of(joined({"collide", a, "--json"}, options));
-        const auto often = json_of(joined({"collide", a, "--json", "--repeat", "5"}, options));
+        const auto five_times = json_of(joined({"collide", a, "--json", "--repeat", "5"}, options));
         CHECK(once["query_ms"].is_number());
-        CHECK(often["query_ms"].size() == 5);
-        CHECK(often["pairs"] == once["pairs"]);
-        CHECK(often["digest"] == once["digest"]);
+        CHECK(five_times["query_ms"].size() == 5);
+        CHECK(five_times["pairs"] == once["pairs"]);
+        CHECK(five_times["digest"] == once["digest"]);
     };
-    hold_to_one({a});
-    hold_to_one({"--self"});
+    check_repeats({a});
+    check_repeats({"--self"});
     CHECK_FALSE(holds(run_program({"collide", "--help"}).out, "{together}"));
     CHECK(holds(run_program({"collide", a, a, "--repeat", "5"}).out, " ms (median of 5)"));
 }
 
-TEST_CASE("collide ends with status 1 where anything intersects, if it is asked to") {
+TEST_CASE("collide --exit-code exits with status 1 if anything intersects") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
     const std::string elsewhere = "1,0,0,100,0,1,0,0,0,0,1,0";
@@ -301,7 +301,7 @@ TEST_CASE("collide ends with status 1 where anything intersects, if it is asked 
     CHECK(status_of({a, "--exit-code", "--poses", folder.write("apart.txt", elsewhere + "\n")}) == 0);
     CHECK(status_of({a, "--exit-code", "--poses",
                      folder.write("both.txt", elsewhere + "\n1 0 0 0 0 1 0 0 0 0 1 0\n" + elsewhere + "\n")}) == 1);
-    // Its triangles share vertices.
+    // Neighbours do not count.
     CHECK(status_of({"--self", "--exit-code"}) == 0);
     CHECK(status_of({folder / "absent.off", "--exit-code"}) == 2);
 }

@@ -18,15 +18,15 @@ scene_choice brownian(std::uint64_t seed) {
     return {"brownian", {{"objects", "10"}, {"frames", "3"}}, {}, seed};
 }
 
-/// Synthetic results: what plays a scene, and how long a frame takes it.
+/// Synthetic results: the sorts that run a scene, with their times per frame.
 struct measured {
     std::vector<std::pair<std::string, double>> sorts = {{"insertion", 1}, {"std", 2}, {"shell", 0.5}};
-    double machine = 1;   ///< how slow it is
-    double noise = 0.01;  ///< relative, of each time by itself
-    double drift = 1;     ///< by how much of itself the machine gets slower with each repeat
+    double machine = 1;   ///< its relative slowness
+    double noise = 0.01;  ///< relative, independent for each time
+    double drift = 1;     ///< relative slowdown of the machine per repeat
     std::uint64_t seeds = 3, repeats = 9;
     std::string experiment = "test";
-    std::uint32_t hour = 1;  ///< other noise at another
+    std::uint32_t hour = 1;  ///< seeds the noise
 };
 
 std::vector<row> rows_of(const measured& m) {
@@ -64,11 +64,11 @@ aabblab::run_results run_of(const measured& m) {
 
 /// The outcomes of the ratios of two runs, in order.
 std::vector<outcome> outcomes_of(const measured& a, const measured& b) {
-    const aabblab::comparison found = compare(run_of(a), run_of(b), aabblab::compared::ratios);
-    REQUIRE(found.scenes.size() == 1);  // whatever the seeds
-    std::vector<outcome> all;
-    for (const aabblab::compared_time& time : found.scenes[0].ratios) all.push_back(time.verdict);
-    return all;
+    const aabblab::comparison result = compare(run_of(a), run_of(b), aabblab::compared::ratios);
+    REQUIRE(result.scenes.size() == 1);  // seeds are pooled
+    std::vector<outcome> outcomes;
+    for (const aabblab::compared_time& time : result.scenes[0].ratios) outcomes.push_back(time.verdict);
+    return outcomes;
 }
 
 std::string write_results(const std::filesystem::path& folder, const std::vector<row>& rows) {
@@ -90,11 +90,11 @@ void change_processor(const std::filesystem::path& folder, const nlohmann::order
 
 }  // namespace
 
-TEST_CASE("What has not changed is found to be the same, though every time is another") {
+TEST_CASE("Unchanged ratios compare as the same despite noise") {
     REQUIRE(outcomes_of({}, {.hour = 2}) == std::vector{outcome::same, outcome::same});
 }
 
-TEST_CASE("What became slower against its base is found, though the machine is twice as slow in everything") {
+TEST_CASE("A slower ratio is found although the whole machine is twice as slow") {
     const measured b{.sorts = {{"insertion", 1}, {"std", 2.4}, {"shell", 0.5}}, .machine = 2, .hour = 2};
     REQUIRE(outcomes_of({}, b) == std::vector{outcome::more, outcome::same});
     REQUIRE(outcomes_of(b, {}) == std::vector{outcome::less, outcome::same});
@@ -111,18 +111,18 @@ TEST_CASE("What became slower against its base is found, though the machine is t
     for (const aabblab::compared_time& time : scene.times) CHECK(time.change > 1.9);
 }
 
-TEST_CASE("Few noisy repeats leave it open, and so few that nothing could show it say so") {
+TEST_CASE("Few noisy repeats are undecided, and too few are reported as such") {
     const measured slower{.sorts = {{"insertion", 1}, {"std", 2.2}}, .noise = 0.2, .seeds = 1, .repeats = 6, .hour = 2};
     measured a = slower;
     a.sorts[1].second = 2;
     a.hour = 1;
     REQUIRE(outcomes_of(a, slower) == std::vector{outcome::undecided});
-    // One repeat has no noise to be seen, so that anything would seem to be beyond it.
+    // A single repeat shows no noise, so any change would seem to exceed it.
     const measured once{.noise = 0, .seeds = 1, .repeats = 1};
     measured twice_as_slow = once;
     twice_as_slow.sorts[1].second = 4;
-    const auto found = compare(run_of(once), run_of(twice_as_slow), aabblab::compared::ratios);
-    for (const aabblab::compared_time& time : found.scenes.at(0).ratios) {
+    const auto result = compare(run_of(once), run_of(twice_as_slow), aabblab::compared::ratios);
+    for (const aabblab::compared_time& time : result.scenes.at(0).ratios) {
         CHECK(time.verdict == outcome::undecided);
         CHECK(time.lacks_repeats);
     }
@@ -130,26 +130,26 @@ TEST_CASE("Few noisy repeats leave it open, and so few that nothing could show i
     CHECK_FALSE(enough.scenes.at(0).ratios.at(0).lacks_repeats);
 }
 
-TEST_CASE("One change among hundreds of lines is found") {
+TEST_CASE("One change among hundreds of ratios is found") {
     measured a;
     for (int i = 0; i < 300; ++i) a.sorts.emplace_back("sort" + std::to_string(i), 1);
     measured b = a;
     b.hour = 2;
     b.sorts[7].second *= 1.2;
-    const std::vector<outcome> found = outcomes_of(a, b);
-    REQUIRE(found.size() == 302);
-    REQUIRE(found[6] == outcome::more);
-    REQUIRE(std::ranges::count(found, outcome::same) == 301);
+    const std::vector<outcome> outcomes = outcomes_of(a, b);
+    REQUIRE(outcomes.size() == 302);
+    REQUIRE(outcomes[6] == outcome::more);
+    REQUIRE(std::ranges::count(outcomes, outcome::same) == 301);
 }
 
-TEST_CASE("What is the same by its own interval is so among hundreds of lines, and the noise changes none") {
+TEST_CASE("Noise alone changes none of hundreds of ratios") {
     measured a{.noise = 0.05};
     for (int i = 0; i < 300; ++i) a.sorts.emplace_back("sort" + std::to_string(i), 1);
     measured b = a;
     b.hour = 2;
-    const auto found = compare(run_of(a), run_of(b), aabblab::compared::ratios);
+    const auto result = compare(run_of(a), run_of(b), aabblab::compared::ratios);
     std::size_t same = 0;
-    for (const aabblab::compared_time& time : found.scenes.at(0).ratios) {
+    for (const aabblab::compared_time& time : result.scenes.at(0).ratios) {
         const bool within = time.change_range.low > 1 / 1.05 && time.change_range.high < 1.05;
         CHECK((time.verdict == outcome::same) == within);
         CHECK((time.verdict == outcome::same || time.verdict == outcome::undecided));
@@ -158,21 +158,21 @@ TEST_CASE("What is the same by its own interval is so among hundreds of lines, a
     CHECK_BETWEEN(0, same, 302);
 }
 
-TEST_CASE("The base is the first in A that both have, and what only one has is counted") {
+TEST_CASE("The baseline is the first candidate in both runs, and unmatched results are counted") {
     aabblab::run_results a = run_of({});
     for (row& r : a.rows)
         if (r.name[aabb::strategy_kind::sort] == "insertion") r.name[aabb::strategy_kind::sweep] = "all_axes";
     const measured b{.sorts = {{"shell", 0.5}, {"std", 2}, {"quick", 1}}, .seeds = 2, .hour = 2};
-    const auto found = compare(a, run_of(b), aabblab::compared::ratios);
-    REQUIRE(found.scenes.at(0).baseline == "std");
-    REQUIRE(found.scenes[0].ratios.size() == 1);
-    REQUIRE(found.scenes[0].ratios[0].label == "shell");  // what the two have differs in the sort only
-    REQUIRE(found.results_compared == 2);
-    REQUIRE(found.only_in_a == 3 + 2);  // all of the third seed, insertion in two
-    REQUIRE(found.only_in_b == 2);
+    const auto result = compare(a, run_of(b), aabblab::compared::ratios);
+    REQUIRE(result.scenes.at(0).baseline == "std");
+    REQUIRE(result.scenes[0].ratios.size() == 1);
+    REQUIRE(result.scenes[0].ratios[0].label == "shell");  // those in both runs differ only in the sort
+    REQUIRE(result.results_compared == 2);
+    REQUIRE(result.only_in_a == 3 + 2);  // all of the third seed, and insertion in two
+    REQUIRE(result.only_in_b == 2);
 }
 
-TEST_CASE("Counts and bytes are compared one by one, and so are the answers of what is exact") {
+TEST_CASE("Counts, bytes and exact results are compared one by one") {
     const aabblab::run_results a = run_of({});
     aabblab::run_results b = run_of({.hour = 2});
     for (row& r : b.rows)
@@ -188,7 +188,7 @@ TEST_CASE("Counts and bytes are compared one by one, and so are the answers of w
     REQUIRE(number.quantity == "comparisons");
     REQUIRE(number.in_a == 6000);
     REQUIRE(number.in_b == 6180);
-    // A change that the sum over the seeds does not show.
+    // The sum over the seeds does not show this change.
     REQUIRE(changed.scenes[0].changed[1].label == "shell");
     REQUIRE(changed.scenes[0].changed[1].in_a == changed.scenes[0].changed[1].in_b);
     REQUIRE(changed.numbers_compared == 3 * 3);  // with the pairs
@@ -206,19 +206,19 @@ TEST_CASE("Counts and bytes are compared one by one, and so are the answers of w
     REQUIRE(different.different_results[0].in_a == "00000000000000a2");
 }
 
-TEST_CASE("Ratios are to the first composition, though an engine stands before it") {
+TEST_CASE("The baseline is the first composition even after an engine") {
     std::vector<row> rows = rows_of({});
     for (row& r : rows) {
         if (r.name[aabb::strategy_kind::sort] != "insertion") continue;
         r.name = {};
         r.name.engine = "cgal";
     }
-    const aabblab::comparison found = compare({"a", rows, {}}, {"b", rows, {}}, aabblab::compared::ratios);
-    REQUIRE(found.scenes.size() == 1);
-    CHECK(found.scenes[0].baseline == "std");
+    const aabblab::comparison result = compare({"a", rows, {}}, {"b", rows, {}}, aabblab::compared::ratios);
+    REQUIRE(result.scenes.size() == 1);
+    CHECK(result.scenes[0].baseline == "std");
 }
 
-TEST_CASE("compare lists what changed beyond noise, or all, and ends with status 0") {
+TEST_CASE("compare lists changes beyond noise, or all ratios, and exits with status 0") {
     const temporary_folder folder;
     const std::string a = write_results(folder / "a", rows_of({}));
     std::vector<row> slower = rows_of({.sorts = {{"insertion", 1}, {"std", 2.4}, {"shell", 0.5}}, .hour = 2});
@@ -233,22 +233,22 @@ TEST_CASE("compare lists what changed beyond noise, or all, and ends with status
     CHECK(holds(result.out, "\n2 ratios compared: 1 changed beyond noise, 1 unchanged (within 5 %), 0 undecided\n"));
     CHECK(holds(result.out, "bytes_projections  12288  24576  +100.00\n"));
     CHECK(holds(result.out, "\n9 counts and sizes compared: 3 changed\n"));
-    const program_result all = run_program({"compare", a, b, "--all"});
-    CHECK(holds(all.out, "\nshell "));
-    CHECK(holds(all.out, " same\n"));
-    CHECK_FALSE(holds(all.out, "\nopen: "));
+    const program_result full = run_program({"compare", a, b, "--all"});
+    CHECK(holds(full.out, "\nshell "));
+    CHECK(holds(full.out, " same\n"));
+    CHECK_FALSE(holds(full.out, "\nopen: "));
     const std::string noisy = write_results(folder / "noisy", rows_of({.noise = 0.3, .hour = 3}));
     CHECK(holds(run_program({"compare", a, noisy}).out,
                 " 2 undecided\nundecided: the interval extends beyond 5 %, or the change is significant only without "
                 "Holm's correction for all ratios; --all lists them\n"));
-    const program_result itself = run_well({"compare", a, a});
-    CHECK(holds(itself.out,
+    const program_result unchanged = run_well({"compare", a, a});
+    CHECK(holds(unchanged.out,
                 "\n2 ratios compared: 0 changed beyond noise, 2 unchanged (within 5 %), 0 undecided\n"
                 "9 counts and sizes compared: 0 changed\n"));
-    CHECK_FALSE(holds(itself.out, "not compared"));
+    CHECK_FALSE(holds(unchanged.out, "not compared"));
 }
 
-TEST_CASE("compare ends with status 1 where answers differ, which it says first") {
+TEST_CASE("compare reports differing results first and exits with status 1") {
     const temporary_folder folder;
     const std::string a = write_results(folder / "a", rows_of({}));
     std::vector<row> wrong = rows_of({.hour = 2});
@@ -263,26 +263,26 @@ TEST_CASE("compare ends with status 1 where answers differ, which it says first"
     CHECK(result.out.find("the results differ") < result.out.find("ratios compared"));
 }
 
-TEST_CASE("compare takes absolute times of one machine only, and warns of them") {
+TEST_CASE("compare --times warns of noise between runs and rejects another machine") {
     const temporary_folder folder;
     const std::string a = write_results(folder / "a", rows_of({.drift = 0}));
     const std::string b = write_results(folder / "b", rows_of({.machine = 2, .drift = 0, .hour = 2}));
-    const program_result one = run_well({"compare", a, b, "--times"});
-    CHECK(is_one_sentence(one.err));
-    CHECK(holds(one.err, "differ by more than the noise within"));
-    CHECK(holds(one.out, "\n2 ratios compared: 0 changed beyond noise, 2 unchanged"));
-    CHECK(holds(one.out, "\n3 times compared: 3 changed beyond noise, 0 unchanged"));
+    const program_result same_machine = run_well({"compare", a, b, "--times"});
+    CHECK(is_one_sentence(same_machine.err));
+    CHECK(holds(same_machine.err, "differ by more than the noise within"));
+    CHECK(holds(same_machine.out, "\n2 ratios compared: 0 changed beyond noise, 2 unchanged"));
+    CHECK(holds(same_machine.out, "\n3 times compared: 3 changed beyond noise, 0 unchanged"));
     change_processor(b, "Abacus 9");
-    const program_result two = run_refused({"compare", a, b, "--times"});
-    CHECK(two.out.empty());
-    CHECK(holds(two.err, "Abacus 9"));
-    CHECK(holds(two.err, aabblab::read_manifest(a).cpu));
+    const program_result other_machine = run_refused({"compare", a, b, "--times"});
+    CHECK(other_machine.out.empty());
+    CHECK(holds(other_machine.err, "Abacus 9"));
+    CHECK(holds(other_machine.err, aabblab::read_manifest(a).cpu));
     const program_result ratios = run_well({"compare", a, b});
     CHECK(holds(ratios.out, "B: " + b + " (commit "));
     CHECK(holds(ratios.out, "Abacus 9)\n"));
 }
 
-TEST_CASE("compare takes folders of several experiments, and leaves out what one of the two does not have") {
+TEST_CASE("compare skips experiments that only one of two folders has") {
     const temporary_folder folder;
     write_results(folder / "a/first", rows_of({.experiment = "first"}));
     write_results(folder / "a/second", rows_of({.experiment = "second"}));
@@ -296,7 +296,7 @@ TEST_CASE("compare takes folders of several experiments, and leaves out what one
         holds(result.out, "not compared, because the other run lacks them: 9 compositions in a scene of A, 0 of B\n"));
 }
 
-TEST_CASE("compare refuses what holds no results, with one sentence") {
+TEST_CASE("compare rejects folders without valid results in one sentence") {
     const temporary_folder folder;
     const std::string good = write_results(folder / "good", rows_of({}));
     const std::string other = write_results(folder / "other", rows_of({.experiment = "other"}));
@@ -305,8 +305,8 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
     std::filesystem::create_directories(empty);
     const std::string torn = write_results(folder / "torn", rows_of({}));
     std::ofstream(folder / "torn/results.csv", std::ios::app) << "test,brownian\n";
-    const std::string unsaid = write_results(folder / "unsaid", rows_of({}));
-    std::filesystem::remove(folder / "unsaid/manifest.json");
+    const std::string bare = write_results(folder / "bare", rows_of({}));
+    std::filesystem::remove(folder / "bare/manifest.json");
     const std::string typed = write_results(folder / "typed", rows_of({}));
     change_processor(typed, nlohmann::ordered_json::array());
     const std::string strange = write_results(folder / "strange", rows_of({}));
@@ -323,7 +323,7 @@ TEST_CASE("compare refuses what holds no results, with one sentence") {
         {{none, good}, "there are no results in " + none},
         {{good, other}, "have no scene in common"},
         {{good, torn}, "results.csv:83: the column scene_parameters is missing"},
-        {{unsaid, good}, "manifest.json does not exist"},
+        {{bare, good}, "manifest.json does not exist"},
         {{good, typed}, "typed/manifest.json: build.cpu must be a string"},
         {{strange, good}, "strange/manifest.json:2: is not a manifest of results: its JSON is malformed"},
         {{folder / "twice", good}, "both hold results of the experiment test"},

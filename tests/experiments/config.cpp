@@ -10,7 +10,7 @@ using aabblab::experiment_size;
 
 namespace {
 
-/// The least there is to say.
+/// The smallest valid config.
 const std::string minimal = "name = \"test\"\n[[scene]]\nkind = \"brownian\"\nobjects = 10\n";
 const std::string compose = minimal + "[compose]\n";
 const std::string measure = minimal + "[measure]\n";
@@ -21,7 +21,7 @@ experiment parsed(const std::string& text, experiment_size size = experiment_siz
 
 }  // namespace
 
-TEST_CASE("A config that says little has the default composition, nine repeats and all metrics") {
+TEST_CASE("A minimal config has the default composition, nine repeats and all metrics") {
     const experiment e = parsed(minimal);
     REQUIRE(e.name == "test");
     REQUIRE(e.repeats == 9);
@@ -33,12 +33,12 @@ TEST_CASE("A config that says little has the default composition, nine repeats a
     REQUIRE(e.shown.empty());
 }
 
-TEST_CASE("Strategies that a config does not name are played where it says so, but none that is refused") {
-    const auto played = [](const std::string& strategies) { return parsed(compose + strategies).compositions; };
+TEST_CASE("others_but adds the unnamed strategies that can be combined") {
+    const auto compositions = [](const std::string& strategies) { return parsed(compose + strategies).compositions; };
     const std::string rest = "partition = \"none\"\nsweep = [\"one_axis\", \"incremental\"]\n";
-    // incremental goes with insertion alone.
+    // incremental can only be combined with insertion.
     std::vector<std::string> sorts;
-    for (const aabb::composition& c : played("sort = [\"insertion\", { others_but = [\"shell\"] }]\n" + rest))
+    for (const aabb::composition& c : compositions("sort = [\"insertion\", { others_but = [\"shell\"] }]\n" + rest))
         sorts.push_back(to_text(c, aabb::stage::global_search));
     REQUIRE(sorts.front() == "insertion + none + one_axis");
     REQUIRE(std::set(sorts.begin(), sorts.end()).size() == aabb::strategies(aabb::strategy_kind::sort).size());
@@ -48,23 +48,23 @@ TEST_CASE("Strategies that a config does not name are played where it says so, b
             "test.toml:6: unknown sort 'shall'; did you mean 'shell'?");
 }
 
-TEST_CASE("Scenes that a config does not name are played where it says so, but none of meshes or of a file") {
+TEST_CASE("others_but adds the unnamed scenes without meshes or files") {
     const auto config_with = [](const std::string& kinds) {
         return "name = \"test\"\n[[scene]]\nframes = 1\nkind = " + kinds + "\n[compose]\nsort = \"std\"\n";
     };
     std::set<std::string> expected;
     for (const aabblab::scene_info& info : aabblab::scene_kinds())
         if (!info.has_meshes && !info.reads_file && info.name != "pile") expected.insert(info.name);
-    std::vector<std::string> played;
+    std::vector<std::string> listed;
     for (const auto& scene : parsed(config_with("[\"still\", { others_but = [\"pile\"] }]")).scenes)
-        played.push_back(scene.kind);
-    CHECK(played.front() == "still");
-    CHECK(std::set(played.begin(), played.end()) == expected);
-    CHECK(played.size() == expected.size());
+        listed.push_back(scene.kind);
+    CHECK(listed.front() == "still");
+    CHECK(std::set(listed.begin(), listed.end()) == expected);
+    CHECK(listed.size() == expected.size());
     CHECK(rejection_of(config_with("[{ others_but = [\"pill\"] }]")).starts_with("test.toml:4: unknown scene 'pill'"));
 }
 
-TEST_CASE("Every list multiplies") {
+TEST_CASE("Lists in a config multiply") {
     const experiment e = parsed(R"(
 name = "test"
 seed = [1, 2]
@@ -90,7 +90,7 @@ metrics = ["time", "bytes"]
     REQUIRE(e.recorded == std::set{aabblab::metric_group::time, aabblab::metric_group::bytes});
 }
 
-TEST_CASE("Several [[compose]] multiply each for itself, and large objects may be split") {
+TEST_CASE("Several compose tables multiply separately") {
     const experiment e = parsed(minimal + R"(
 [[compose]]
 sort = ["insertion", "shell"]
@@ -107,11 +107,11 @@ sweep = "incremental"
     REQUIRE(to_text(e.compositions[6], aabb::stage::global_search) == "insertion + none + incremental");
 }
 
-TEST_CASE("What divides meshes is refused beside a scene of boxes, and plays in scenes of meshes") {
+TEST_CASE("split_mesh is rejected for scenes of boxes and accepted for scenes of meshes") {
     const std::string splits = "[compose]\nprepare = [\"none\", \"split_mesh\"]\n";
     REQUIRE(rejection_of(minimal + splits)
                 .ends_with("split_mesh divides meshes, but the scene has only boxes; split_large divides boxes"));
-    // With the line that asks for it.
+    // The message has the line of the strategy.
     REQUIRE(holds(rejection_of(minimal + splits), ":6: brownian: split_mesh divides"));
     REQUIRE(
         holds(rejection_of(minimal + "[[compose]]\nsort = \"std\"\n[[compose]]\nprepare = { name = \"split_mesh\" }\n"),
@@ -120,14 +120,14 @@ TEST_CASE("What divides meshes is refused beside a scene of boxes, and plays in 
     REQUIRE(e.compositions.size() == 2);
 }
 
-TEST_CASE("A metric that is named is recorded and shown; a group is recorded") {
+TEST_CASE("A named metric is recorded and shown, a group only recorded") {
     const experiment e = parsed(measure + "metrics = [\"time\", \"box_tests\", \"tree_bytes\"]\n");
     REQUIRE(e.recorded ==
             std::set{aabblab::metric_group::time, aabblab::metric_group::counts, aabblab::metric_group::bytes});
     REQUIRE(e.shown == std::vector<std::string>{"box_tests", "tree_bytes"});
 }
 
-TEST_CASE("What was a key or a parameter once is refused with the new spelling") {
+TEST_CASE("Former keys and parameters are rejected with the new spelling") {
     REQUIRE(rejection_of(compose + "split_large = 4\n")
                 .ends_with("'split_large' is a strategy, not a kind; write prepare = \"split_large\", or { name = "
                            "\"split_large\", … } with its parameters"));
@@ -137,13 +137,13 @@ TEST_CASE("What was a key or a parameter once is refused with the new spelling")
                 "leafless has no parameter build, which is a kind of its own: write build = \"sah\" or --build sah"));
 }
 
-TEST_CASE("A strategy may be written as the command line takes it, and what stands under quick is checked at once") {
+TEST_CASE("A config accepts the command-line syntax of strategies and checks values under quick") {
     const experiment e = parsed(compose + "partition = \"axial_cut:axes=3\"\n");
     REQUIRE(to_text(e.compositions[0], aabb::stage::global_search) == "std + axial_cut:axes=3 + one_axis");
     REQUIRE_THROWS(parsed(minimal + "quick = { objects = -1 }\n"));
 }
 
-TEST_CASE("The option --quick takes what the config says under quick") {
+TEST_CASE("The option --quick applies the values under quick") {
     const std::string text = minimal + "frames = 7\nquick = { objects = 5 }\n[measure]\nrepeats = 20\n";
     REQUIRE(parsed(text).repeats == 20);
     REQUIRE(aabblab::parameters_text(parsed(text).scenes[0]) == "objects=10 frames=7 seed=1");
@@ -161,7 +161,7 @@ TEST_CASE("The option --quick takes what the config says under quick") {
     REQUIRE(parsed(second, experiment_size::quick).scenes[0].kind == "brownian");
 }
 
-TEST_CASE("The hash is of what a config says, not of how it is written") {
+TEST_CASE("The hash of a config ignores formatting and covers every value") {
     const auto text = minimal + "frames = 7\n[compose]\nsort = [\"insertion\", \"std\"]\n[measure]\nrepeats = 9\n";
     const auto changed = [&](const std::string& from, const std::string& to) {
         return aabblab::hash_of(parsed(replaced(text, from, to)));
@@ -176,7 +176,7 @@ TEST_CASE("The hash is of what a config says, not of how it is written") {
     REQUIRE(aabblab::hash_of(parsed("engines = [\"cgal\"]\n" + text)) != hash);
 }
 
-TEST_CASE("What is asked of meshes, and with which caches, is read, checked and part of the hash") {
+TEST_CASE("The keys ask and caches are checked and part of the hash") {
     const std::string meshes =
         "name = \"m\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = [\"icosphere:triangles=80\"]\nframes = 2\n";
     REQUIRE(parsed(meshes).query == aabblab::query_settings{});
@@ -194,7 +194,7 @@ TEST_CASE("What is asked of meshes, and with which caches, is read, checked and 
             rejection_of(measure + line + "\n").ends_with(line + " is for scenes of meshes, and brownian has none"));
 }
 
-TEST_CASE("A mesh file that changes makes another hash") {
+TEST_CASE("A changed mesh file changes the hash") {
     const temporary_folder folder;
     const auto hash_with = [&](const std::string& vertex) {
         const std::string file = folder.write("one.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n" + vertex + "\n3 0 1 3\n");
@@ -206,7 +206,7 @@ TEST_CASE("A mesh file that changes makes another hash") {
     REQUIRE(hash_with("0 2 0") == before);
 }
 
-TEST_CASE("Meshes that are not there are replaced by what the config names, and it says so") {
+TEST_CASE("Missing meshes are replaced by those of without_data, with a note") {
     const std::string scene =
         "name = \"test\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = [\"no_such.off\", \"icosphere:triangles=20\"]\n";
     const experiment e = parsed(scene + "without_data = [\"icosphere:triangles=20\", \"torus_knot:triangles=96\"]\n");
@@ -218,8 +218,8 @@ TEST_CASE("Meshes that are not there are replaced by what the config names, and 
     REQUIRE(holds(rejection_of(scene), "no_such.off"));
 }
 
-TEST_CASE("What is wrong in a config is said in one sentence with its line") {
-    const auto [text, place, said] = GENERATE_COPY(table<std::string, std::string, std::string>({
+TEST_CASE("Errors in a config are reported in one sentence with their line") {
+    const auto [text, place, message] = GENERATE_COPY(table<std::string, std::string, std::string>({
         {"name = \"x\nseed = 1\n", ":1:10: ", "this is not TOML"},
         {"name = \"x\"\nseed = = 1\n", ":2:8: ", "this is not TOML"},
         {compose + "sort = \"std\"\nsort = \"std\"\n", ":7:", "this is not TOML"},
@@ -272,11 +272,11 @@ TEST_CASE("What is wrong in a config is said in one sentence with its line") {
     const std::string sentence = rejection_of(text);
     INFO(text << "\n" << sentence);
     REQUIRE(sentence.starts_with("test.toml" + place));
-    REQUIRE(holds(sentence, said));
+    REQUIRE(holds(sentence, message));
     REQUIRE(sentence.find('\n') == std::string::npos);
 }
 
-TEST_CASE("A config that cannot be read is refused by name") {
+TEST_CASE("A config that does not exist is rejected by name") {
     const temporary_folder folder;
     REQUIRE_THROWS_WITH(
         aabblab::read_experiment(folder / "first.toml", experiment_size::full),
@@ -284,7 +284,7 @@ TEST_CASE("A config that cannot be read is refused by name") {
     REQUIRE(aabblab::read_experiment(folder.write("yes.toml", minimal), experiment_size::full).text == minimal);
 }
 
-TEST_CASE("The configs of the repository are good, in both sizes") {
+TEST_CASE("The configs of the repository are valid in both sizes") {
     const std::string config = GENERATE(
         "first.toml", "global_search.toml", "local_detection.toml", "trees.toml", "exactness.toml",
         "exactness_meshes.toml", "peers/brownian.toml", "peers/engines.toml", "peers/scenes.toml", "peers/growth.toml",
@@ -294,7 +294,7 @@ TEST_CASE("The configs of the repository are good, in both sizes") {
         "auto/regret_short.toml", "auto/regret_small.toml", "auto/regret_unseen.toml");
     for (const experiment_size size : {experiment_size::full, experiment_size::quick})
         REQUIRE_NOTHROW(aabblab::read_experiment(std::string(AABBLAB_CONFIGS) + "/" + config, size));
-    // In full they make twenty million triangles.
+    // Their full sizes have twenty million triangles.
     for (const char* large : {"/peers/meshes_growth.toml", "/peers/refit.toml"})
         REQUIRE_NOTHROW(aabblab::read_experiment(std::string(AABBLAB_CONFIGS) + large, experiment_size::quick));
 }

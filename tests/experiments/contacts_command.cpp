@@ -6,8 +6,8 @@
 
 namespace {
 
-/// The second of two objects comes, stays and goes; the third stands far away.
-constexpr const char* coming =
+/// Object 1 approaches object 0, stays and leaves; object 2 is far away.
+constexpr const char* approach =
     "# a comment\n"
     "0 0  1 0 0 0  0 1 0 0  0 0 1 0\n"
     "0 2  1 0 0 90 0 1 0 0  0 0 1 0\n"
@@ -19,16 +19,16 @@ constexpr const char* coming =
 
 }  // namespace
 
-TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever finds them") {
+TEST_CASE("contacts finds the same contacts in each frame with every composition") {
     const temporary_folder folder;
     const std::string mesh = folder.write("a.off", tetrahedron);
-    const std::string motion = folder.write("m.txt", coming);
+    const std::string motion = folder.write("m.txt", approach);
     const std::vector<std::string> base = {"contacts", motion, mesh, "--json", "--out", folder / "c.csv"};
     const auto reference = json_of(joined(base, {"--engine", "cgal"}));
     CHECK(reference["objects"] == 3);
     CHECK(reference["frames"] == 4);
     CHECK(reference["contacts"] > 0);
-    CHECK(reference["contacts"].get<int>() % 2 == 0);  // frames 1 and 2 are alike
+    CHECK(reference["contacts"].get<int>() % 2 == 0);  // frames 1 and 2 are equal
     CHECK(reference["object_pairs"] == 2);
     CHECK(reference["candidates"] == 2);
     CHECK(reference["ms"].size() == 4);
@@ -50,10 +50,10 @@ TEST_CASE("contacts finds the triangles in contact, frame by frame, whatever fin
     CHECK(holds(run_program({"contacts", motion, mesh, "--engine", "fcl"}).out, "fcl (inexact)"));
 }
 
-TEST_CASE("contacts writes what collide writes of the same triangles at the same poses") {
+TEST_CASE("contacts --geometry writes the same intersections as collide") {
     const temporary_folder folder;
     const std::string mesh = folder.write("a.off", tetrahedron);
-    const std::string motion = folder.write("m.txt", coming);
+    const std::string motion = folder.write("m.txt", approach);
     run_well({"contacts", motion, mesh, "--geometry", "--out", folder / "c.csv"});
     run_well(
         {"collide", mesh, mesh, "--geometry", "--out", folder / "p.csv", "--pose-b", "1,0,0,0.25,0,1,0,0.25,0,0,1,0"});
@@ -66,7 +66,7 @@ TEST_CASE("contacts writes what collide writes of the same triangles at the same
     CHECK(bytes_of_file(folder / "c.csv") == rows);
 }
 
-TEST_CASE("a frame that a motion file leaves out is like the one before") {
+TEST_CASE("a frame omitted from a motion file repeats the previous frame") {
     const temporary_folder folder;
     const std::string mesh = folder.write("a.off", tetrahedron);
     const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0.2 0 1 0 0.1 0 0 1 0\n";
@@ -80,7 +80,7 @@ TEST_CASE("a frame that a motion file leaves out is like the one before") {
     CHECK(summary["contacts"] == 3 * once);
 }
 
-TEST_CASE("contacts plays the motion that a scene has written, and finds what the scene holds") {
+TEST_CASE("contacts finds the contacts of a scene in its motion file") {
     const temporary_folder folder;
     const std::string motion = folder / "swarm.txt";
     const std::vector<std::string> shapes = {"icosphere:triangles=80", "torus_knot:triangles=300"};

@@ -4,7 +4,7 @@
 
 namespace {
 
-/// The first coordinate of an OFF file that holds this text.
+/// The first coordinate of an OFF file, given as this text.
 float read_coordinate(const temporary_folder& folder, const std::string& text) {
     const auto file = folder.write("a.off", "OFF\n3 1 0\n" + text + " 0 0\n0 1 0\n0 0 1\n3 0 1 2\n");
     return aabblab::read_mesh(file).mesh.vertices[0][0];
@@ -34,23 +34,23 @@ TEST_CASE("text coordinates are correctly rounded") {
     }
 }
 
-TEST_CASE("decimals beside the middle of two floats are correctly rounded") {
+TEST_CASE("decimals near the midpoint of two floats are correctly rounded") {
     const temporary_folder folder;
-    REQUIRE(rc::check("as by strtof", [&](std::uint32_t bits, std::uint64_t digits, bool below) {
+    REQUIRE(rc::check("agrees with strtof", [&](std::uint32_t bits, std::uint64_t digits, bool below) {
         const float low = std::fabs(std::bit_cast<float>(bits));
         const float high = std::nextafterf(low, std::numeric_limits<float>::infinity());
         RC_PRE(std::isfinite(high));
-        const double middle = (double{low} + double{high}) / 2;
-        // All digits of the middle, or of the last double before it; then some more.
+        const double midpoint = (double{low} + double{high}) / 2;
+        // All digits of the midpoint, or of the last double before it, and then some more.
         std::array<char, 512> text{};
-        std::snprintf(text.data(), text.size(), "%.200e", below ? std::nextafter(middle, 0) : middle);
+        std::snprintf(text.data(), text.size(), "%.200e", below ? std::nextafter(midpoint, 0) : midpoint);
         std::string decimal = text.data();
         decimal.insert(decimal.find('e'), std::to_string(digits));
         RC_ASSERT(same_bits(read_coordinate(folder, decimal), std::strtof(decimal.c_str(), nullptr)));
     }));
 }
 
-TEST_CASE("a mesh written as OFF reads back to the same bits") {
+TEST_CASE("a mesh round-trips through OFF bit for bit") {
     const temporary_folder folder;
     REQUIRE(rc::check("round trip", [&](const std::vector<std::array<std::uint32_t, 3>>& points) {
         aabb::mesh m;

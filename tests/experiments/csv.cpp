@@ -15,7 +15,7 @@ std::string rejection_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("CSV is read and written as RFC 4180 says") {
+TEST_CASE("CSV is read and written as RFC 4180 specifies") {
     CHECK(csv_line(std::vector<std::string>{"a", "", "b c"}) == "a,,b c\n");
     CHECK(csv_line(std::vector<std::string>{"a,b", "\"", "c\nd", "\r"}) == "\"a,b\",\"\"\"\",\"c\nd\",\"\r\"\n");
     CHECK(fields_of("a,b\r\nc,\"d\r\ne\"\r\n") == table{{"a", "b"}, {"c", "d\r\ne"}});
@@ -25,7 +25,7 @@ TEST_CASE("CSV is read and written as RFC 4180 says") {
     CHECK(rejection_of("a,\"b\n\"c\n") == "t.csv:2: expected a comma or the end of the line after a closing quote");
 }
 
-TEST_CASE("Whatever is written as CSV is read back, and a record that is cut off anywhere is left out") {
+TEST_CASE("CSV round-trips, and a truncated record is omitted") {
     REQUIRE(rc::check([] {
         const auto character = rc::gen::element(',', '"', '\n', '\r', 'a', ' ');
         const auto record =
@@ -38,10 +38,10 @@ TEST_CASE("Whatever is written as CSV is read back, and a record that is cut off
         const auto cut = *rc::gen::inRange<std::size_t>(0, text.size() + 1);
         std::size_t complete = 0;
         while (complete + 1 < ends.size() && ends[complete + 1] <= cut) ++complete;
-        const auto left = read_csv(text.substr(0, cut), "t.csv");
-        RC_ASSERT(left.records.size() == complete);
-        RC_ASSERT(left.bytes == ends[complete]);
-        if (left.bytes < cut)
+        const auto parsed = read_csv(text.substr(0, cut), "t.csv");
+        RC_ASSERT(parsed.records.size() == complete);
+        RC_ASSERT(parsed.bytes == ends[complete]);
+        if (parsed.bytes < cut)
             RC_ASSERT_THROWS_AS((void)aabblab::whole_records_of(text.substr(0, cut), "t.csv"), aabb::input_error);
         else
             RC_ASSERT(aabblab::whole_records_of(text.substr(0, cut), "t.csv").size() == complete);

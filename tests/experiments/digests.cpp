@@ -1,4 +1,4 @@
-// FORMATS.md says of which numbers a digest is; these tests make each anew from the rows of the files.
+// FORMATS.md defines the input of each digest; these tests recompute them from the rows of the files.
 
 #include "program_json.hpp"
 
@@ -8,17 +8,17 @@ namespace {
 
 using rows = std::vector<std::vector<std::uint32_t>>;
 
-std::string digest_of(const rows& all) {
-    aabb::digest made;
-    for (const std::vector<std::uint32_t>& row : all) made.add(row);
-    return made.text();
+std::string digest_of(const rows& table) {
+    aabb::digest digest;
+    for (const std::vector<std::uint32_t>& row : table) digest.add(row);
+    return digest.text();
 }
 
-/// The two triangles of rows of `collide`, behind the frame 0 in which they meet.
-rows in_frame_0(const rows& all) {
-    rows made;
-    for (const std::vector<std::uint32_t>& row : all) made.push_back({0, row.at(0), row.at(1)});
-    return made;
+/// The pairs of triangles that `collide` writes, as rows of frame 0.
+rows in_frame_0(const rows& pairs) {
+    rows contacts;
+    for (const std::vector<std::uint32_t>& row : pairs) contacts.push_back({0, row.at(0), row.at(1)});
+    return contacts;
 }
 
 /// Runs a command with --json and --out.
@@ -34,7 +34,7 @@ struct outcome {
     rows written;
 };
 
-/// What `run` writes into the column `digest`, the same in every row.
+/// The column `digest` of `run`, the same in every row.
 std::string digest_of_run(const temporary_folder& folder, const std::string& scene) {
     const std::string config = folder.write("digests.toml", "name = \"digests\"\nseed = 7\n[[scene]]\n" + scene +
                                                                 "[measure]\nrepeats = 1\nmetrics = [\"counts\"]\n");
@@ -44,7 +44,7 @@ std::string digest_of_run(const temporary_folder& folder, const std::string& sce
 
 }  // namespace
 
-TEST_CASE("pairs and run on boxes digest the rows frame,a,b") {
+TEST_CASE("pairs and run on boxes hash the rows frame,a,b") {
     const temporary_folder folder;
     const std::string scene = folder / "scene.aabbs";
     run_well({"scene", "brownian", "--n", "80", "--frames", "3", "--seed", "7", "--density", "1", "--out", scene});
@@ -53,7 +53,7 @@ TEST_CASE("pairs and run on boxes digest the rows frame,a,b") {
     CHECK(digest_of_run(folder, "kind = \"brownian\"\nobjects = 80\nframes = 3\ndensity = 1\n") == pairs.digest);
 }
 
-TEST_CASE("collide digests 0,a,b for each row, of a mesh with itself too") {
+TEST_CASE("collide hashes 0,a,b for each row, with --self too") {
     const temporary_folder folder;
     const std::string knot = "torus_knot:triangles=600";
     const outcome both(folder, {"collide", knot, "icosphere:triangles=320"});
@@ -63,7 +63,7 @@ TEST_CASE("collide digests 0,a,b for each row, of a mesh with itself too") {
     CHECK(self.digest == digest_of(in_frame_0(self.written)));
 }
 
-TEST_CASE("contacts and run on meshes digest the rows frame,object_a,object_b,triangle_a,triangle_b") {
+TEST_CASE("contacts and run on meshes hash the rows frame,object_a,object_b,triangle_a,triangle_b") {
     const temporary_folder folder;
     const std::string motion = folder / "swarm.txt";
     run_well({"scene", "mesh_swarm", "--n", "8", "--frames", "3", "--density", "3", "--seed", "7", "--mesh",

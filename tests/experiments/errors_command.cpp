@@ -12,7 +12,7 @@ using aabblab::experiment_size;
 
 namespace {
 
-/// Of a config with a name, and this behind it.
+/// The rejection of a named config with this text.
 std::string rejection_of(const std::string& text) {
     return refusal_in<aabb::input_error>(
         [&] { return aabblab::parse_error_study("name = \"e\"\n" + text, "e.toml", experiment_size::full); });
@@ -44,7 +44,7 @@ std::string text_digest(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("every class of pairs has what it says, and both answers where it can") {
+TEST_CASE("every class of pairs has its property and, where possible, hits and misses") {
     std::set<std::string> digests;
     std::string pinned;
     for (const aabblab::pair_class_info& info : aabblab::pair_classes()) {
@@ -73,11 +73,11 @@ TEST_CASE("every class of pairs has what it says, and both answers where it can"
         if (info.name == "far") CHECK(std::ranges::all_of(pairs, [](const auto& p) { return p.a[0][0] >= 1e6F; }));
     }
     CHECK(aabblab::pair_classes().size() == 16);
-    // The same on every machine.
+    // The pairs are the same on every machine.
     CHECK(text_digest(pinned) == "4840156e752060f3");
 }
 
-TEST_CASE("errors counts what each method gets wrong, the same every time, and draws it") {
+TEST_CASE("errors counts the wrong results of each method reproducibly and plots them") {
     const temporary_folder folder;
     const std::string config = folder.write(
         "e.toml",
@@ -86,15 +86,15 @@ TEST_CASE("errors counts what each method gets wrong, the same every time, and d
         "[[curve]]\ntriangle = [\"exact\", \"epick\"]\n[[curve]]\nlabel = \"classic\"\n"
         "triangle = { name = \"moller\", epsilon = [\"absolute\", \"none\"] }\n");
     std::map<std::string, std::string> counts[2];
-    for (auto& found : counts) {
+    for (auto& run : counts) {
         CHECK(holds(run_well({"errors", config, "--out", folder / "out"}).out, "moller:epsilon=none"));
         for (const auto& r : csv_rows(folder / "out/errors.csv"))
-            found[r.at("pairs") + " " + r.at("precision") + " " + r.at("triangle")] =
+            run[r.at("pairs") + " " + r.at("precision") + " " + r.at("triangle")] =
                 r.at("count") + " " + r.at("intersecting") + " " + r.at("false_negatives") + " " +
                 r.at("false_positives");
     }
     CHECK(counts[0] == counts[1]);
-    // moller takes no doubles.
+    // moller does not accept doubles.
     CHECK(counts[0].size() == 3 * 4 + 3 * 2 + 4);
     for (const auto& [name, numbers] : counts[0]) {
         INFO(name << ": " << numbers);
@@ -109,7 +109,7 @@ TEST_CASE("errors counts what each method gets wrong, the same every time, and d
         }
 }
 
-TEST_CASE("errors holds the geometry of hits against CGAL's exact construction") {
+TEST_CASE("errors compares the geometry of hits with CGAL's exact construction") {
     const temporary_folder folder;
     const std::string config =
         folder.write("h.toml",
@@ -125,7 +125,7 @@ TEST_CASE("errors holds the geometry of hits against CGAL's exact construction")
     for (const auto& r : rows) {
         INFO(r.at("pairs") << " " << r.at("precision") << " " << r.at("triangle"));
         CHECK((r.at("triangle") == "exact" || r.at("triangle") == "epeck"));
-        // Tests of libraries take part in one batch of sixteen.
+        // Tests of libraries run on one batch in sixteen.
         const std::size_t expected = r.at("triangle") == "exact" ? 1500 : 1024;
         CHECK(std::stoul(r.at("hits")) == expected);
         CHECK(std::stoul(r.at("tried")) > 1500);
@@ -142,7 +142,7 @@ TEST_CASE("errors holds the geometry of hits against CGAL's exact construction")
     }
 }
 
-TEST_CASE("what a test that constructs gets wrong is counted, and rare hits are looked for in vain only so long") {
+TEST_CASE("measure_hits counts wrong constructions and limits the search for rare hits") {
     const std::vector<aabblab::pair_set> sets = {{"huge", false, 3, 1}, {"shared_edge", true, 2000, 1}};
     const std::vector<aabblab::hit_point> points = aabblab::measure_hits(sets);
     REQUIRE(points.size() == 4);
@@ -159,7 +159,7 @@ TEST_CASE("what a test that constructs gets wrong is counted, and rare hits are 
     CHECK(std::ranges::count(csv_of(points), '\n') == 1 + 4);
 }
 
-TEST_CASE("a config of errors that is wrong is refused with its line and the nearest name") {
+TEST_CASE("errors rejects a wrong config with its line and the nearest name") {
     CHECK(rejection_of(some_pairs + one_curve) == "accepted");
     CHECK(rejection_of(some_pairs) ==
           "e.toml:1: this config has no curve; expected at least one [[curve]], or [[hits]]");
@@ -198,7 +198,7 @@ TEST_CASE("a config of errors that is wrong is refused with its line and the nea
     run_refused({"errors", "nowhere.toml"});
 }
 
-TEST_CASE("errors plays compositions whole and draws the metrics that the config names") {
+TEST_CASE("errors runs whole compositions and plots the metrics of the config") {
     const temporary_folder folder;
     const std::string config = folder.write(
         "e.toml",
@@ -206,17 +206,17 @@ TEST_CASE("errors plays compositions whole and draws the metrics that the config
         "[[curve]]\nprepare = { name = \"neighbour_list\", margin = [0.1, 0.5] }\n"
         "[[curve]]\nlabel = \"stale\"\nprepare = { name = \"neighbour_list\", margin = 0, every = [4, 8] }\n"
         "[[plot]]\nx = \"frame_ms\"\ny = \"wrong_share\"\n[[plot]]\nx = \"all_bytes\"\ny = \"box_tests\"\n");
-    // Lines are broken where they are too long, names of compositions too.
+    // Long lines are wrapped, even within names of compositions.
     std::string words = run_well({"errors", config, "--out", folder / "out"}).out;
     std::erase_if(words, [](char c) { return c == ' ' || c == '\n'; });
     CHECK(holds(words, "hasthebestwrong_share,0,withaframe_msof"));
-    std::map<std::string, std::set<std::string>> answers;
+    std::map<std::string, std::set<std::string>> results;
     for (const aabblab::row& r : aabblab::read_rows(folder / "out/results.csv"))
-        answers[r.name[aabb::strategy_kind::prepare]].insert(r.status + (*r.false_negatives > 0 ? " misses" : "") +
-                                                             (*r.false_positives > 0 ? " invents" : ""));
+        results[r.name[aabb::strategy_kind::prepare]].insert(r.status + (*r.false_negatives > 0 ? " FN" : "") +
+                                                             (*r.false_positives > 0 ? " FP" : ""));
     const std::set<std::string> exact{"exact"};
-    const std::set<std::string> stale{"inexact misses"};
-    CHECK(answers == std::map<std::string, std::set<std::string>>{{"neighbour_list:margin=0.1", exact},
+    const std::set<std::string> stale{"inexact FN"};
+    CHECK(results == std::map<std::string, std::set<std::string>>{{"neighbour_list:margin=0.1", exact},
                                                                   {"neighbour_list:margin=0.5", exact},
                                                                   {"neighbour_list:margin=0,every=4", stale},
                                                                   {"neighbour_list:margin=0,every=8", stale}});
@@ -227,7 +227,7 @@ TEST_CASE("errors plays compositions whole and draws the metrics that the config
     }
 }
 
-TEST_CASE("a config of errors keeps triangle tests and compositions apart") {
+TEST_CASE("a config of errors cannot mix triangle tests and compositions") {
     const std::string lists = "[[curve]]\nlabel = \"lists\"\nprepare = \"neighbour_list\"\n";
     const std::string scene = "[[scene]]\nkind = \"brownian\"\nobjects = 20\nframes = 3\n";
     CHECK(rejection_of(scene + lists) == "accepted");
@@ -257,7 +257,7 @@ TEST_CASE("a config of errors keeps triangle tests and compositions apart") {
               .starts_with("e.toml:9: this curve has no method; expected triangle = "));
 }
 
-TEST_CASE("what one seed of several gets wrong shows in the plot") {
+TEST_CASE("errors in a minority of seeds show in the plot") {
     const temporary_folder folder;
     const std::string config =
         folder.write("e.toml",
@@ -266,24 +266,24 @@ TEST_CASE("what one seed of several gets wrong shows in the plot") {
                      "[[curve]]\nlabel = \"stale\"\nprepare = { name = \"neighbour_list\", every = 4 }\n"
                      "[[curve]]\nlabel = \"none\"\nprepare = \"none\"\n");
     run_well({"errors", config, "--out", folder / "out"});
-    std::uint64_t seeds = 0, missing = 0, exact = 0;
+    std::uint64_t wrong_seeds = 0, false_negatives = 0, exact = 0;
     for (const aabblab::row& r : aabblab::read_rows(folder / "out/results.csv")) {
         if (r.name[aabb::strategy_kind::prepare] == "none") continue;
-        missing += *r.false_negatives;
-        seeds += *r.false_negatives > 0;
+        false_negatives += *r.false_negatives;
+        wrong_seeds += *r.false_negatives > 0;
         exact += r.candidates + *r.false_negatives;
     }
-    // Fewer than half of the seeds, so that a median would be zero.
-    CHECK_BETWEEN(0, seeds, 3);
+    // Fewer than half of the seeds have errors, so a median would be zero.
+    CHECK_BETWEEN(0, wrong_seeds, 3);
     const auto scenes = aabblab::summarise(aabblab::read_rows(folder / "out/results.csv"));
     const auto figures = metric_figures(aabblab::read_error_study(config, experiment_size::full), scenes);
     const auto stale = std::ranges::find(figures.at(0).lines, "stale", &aabblab::series::label);
     REQUIRE(stale != figures[0].lines.end());
-    CHECK(stale->points.at(0).y > 0.5 / static_cast<double>(exact) * static_cast<double>(missing));
+    CHECK(stale->points.at(0).y > 0.5 / static_cast<double>(exact) * static_cast<double>(false_negatives));
     CHECK(figures[0].y.logarithmic);
 }
 
-TEST_CASE("an errors.csv is read as it was written, and refused with its line where it is not one") {
+TEST_CASE("errors.csv round-trips, and a malformed one is rejected with its line") {
     const temporary_folder folder;
     const auto study = aabblab::parse_error_study(
         "name = \"e\"\n[[pairs]]\nclass = [\"random\", \"far\"]\ncount = 100\nprecision = [\"float\", \"double\"]\n"
@@ -303,7 +303,7 @@ TEST_CASE("an errors.csv is read as it was written, and refused with its line wh
     CHECK(rejected(head + "random,float,c,exact,1,1,0,0,1,1\n") == ":2: the column ns_high is missing");
 }
 
-TEST_CASE("every config of errors reads") {
+TEST_CASE("every config of errors is valid") {
     const std::filesystem::path configs(AABBLAB_CONFIGS);
     for (const auto& file : std::filesystem::directory_iterator(configs / "errors")) {
         if (file.path().extension() != ".toml") continue;
@@ -320,7 +320,7 @@ TEST_CASE("every config of errors reads") {
     CHECK(pairs > 100'000'000);
 }
 
-TEST_CASE("the config that errors runs by default reads, and classify takes the tests of libraries") {
+TEST_CASE("the default configs of errors are valid, and classify accepts library tests") {
     const auto study = aabblab::read_error_study(std::filesystem::path(AABBLAB_CONFIGS) / "errors/triangle_tests.toml",
                                                  experiment_size::quick);
     CHECK(study.pairs.size() == 2 * aabblab::pair_classes().size());

@@ -1,4 +1,4 @@
-// Programs of others that join an experiment by the pairs and the times that they write.
+// External programs that take part in an experiment through the pairs and times that they write.
 #include <catch2/generators/catch_generators.hpp>
 #include <csignal>
 
@@ -6,13 +6,13 @@
 
 namespace {
 
-/// Finds the right pairs, and makes up its times.
+/// Finds the exact pairs and invents its times.
 const std::string good = R"(#!/bin/sh
 ')" AABBLAB_UNDER_TEST R"(' pairs "$1" --engine brute_force --out "$2" >/dev/null || exit
 { echo frame,update_ms,search_ms; for frame in 0 1 2 3; do echo $frame,0.5,1.25; done; } >"$3"
 )";
 
-/// Starts what is of another session and another group, whose parent is gone, and writes its number to a file.
+/// Starts an orphan in another session and process group, and writes its process id to a file.
 const std::string stray =
     "(setsid sh -c 'echo $$ >stray.part; mv stray.part stray; exec sleep 1000' &)\n"
     "until [ -e stray ]; do sleep 0.01; done\n";
@@ -34,10 +34,10 @@ program_result run_with(const temporary_folder& folder, const std::string& scrip
     return run_program({"run", folder.write("joined.toml", config_of(kind, more)).string(), "--out", folder / "out"});
 }
 
-/// The least that a config says of one.
+/// The smallest valid table of an external engine.
 const std::string listed = "[[external]]\nname = \"a\"\ncommand = \"ls\"\n";
 
-/// Whether a process is gone, or waits for nothing but to be asked how it ended.
+/// Whether a process is gone or a zombie.
 bool has_ended(pid_t process) {
     std::ifstream in("/proc/" + std::to_string(process) + "/stat");
     std::string text;
@@ -48,7 +48,7 @@ bool has_ended(pid_t process) {
 
 }  // namespace
 
-TEST_CASE("An external engine is held against the exact answer and has the times that it tells") {
+TEST_CASE("An external engine is compared with the ground truth and has its reported times") {
     const std::string kind = GENERATE("brownian", "population", "lattice", "mixed_sizes");
     CAPTURE(kind);
     const temporary_folder folder;
@@ -69,7 +69,7 @@ TEST_CASE("An external engine is held against the exact answer and has the times
         CHECK(r.search_ms == 3.75);
         CHECK_FALSE(r.update_cpu_ms.has_value());
     }
-    // Nothing of what was exchanged stays.
+    // No exchanged file remains.
     CHECK(std::ranges::none_of(std::filesystem::directory_iterator(folder.path()), [](const auto& entry) {
         return entry.path().string().ends_with(".aabbs") || entry.path().string().ends_with(".pairs.csv");
     }));
@@ -78,8 +78,8 @@ TEST_CASE("An external engine is held against the exact answer and has the times
     CHECK(holds(run_program({"explain", folder / "joined.toml"}).out, "  mine\n"));
 }
 
-TEST_CASE("What an external engine gets wrong is a failure, and counted where it says that it may") {
-    const auto [fault, says] = GENERATE(table<std::string, std::string>({
+TEST_CASE("A wrong result of an external engine is a failure, or counted if declared inexact") {
+    const auto [fault, message] = GENERATE(table<std::string, std::string>({
         {"sed -i 2d \"$2\"\n", " is a false negative\n"},
         {"sed -i '2s/.*/0,0,1/' \"$2\"\n", "the pair 0 1 is a false positive\n"},
         {"sed -i 1q \"$2\"\n", " is a false negative\n"},
@@ -89,7 +89,7 @@ TEST_CASE("What an external engine gets wrong is a failure, and counted where it
     INFO(result.err << result.out);
     REQUIRE(result.status == 1);
     REQUIRE(result.err.starts_with("aabblab: mine has a wrong result on brownian ("));
-    REQUIRE(holds(result.err, says));
+    REQUIRE(holds(result.err, message));
     REQUIRE(aabblab::read_rows(folder / "out/results.csv").size() == 2);
     const program_result counted = run_with(folder, good + fault, "brownian", "exact = false\n");
     INFO(counted.err << counted.out);
@@ -100,8 +100,8 @@ TEST_CASE("What an external engine gets wrong is a failure, and counted where it
     }
 }
 
-TEST_CASE("An answer of an external engine that is malformed gets one sentence and status 2") {
-    const auto [fault, says] = GENERATE(table<std::string, std::string>({
+TEST_CASE("Malformed output of an external engine gets one sentence and status 2") {
+    const auto [fault, message] = GENERATE(table<std::string, std::string>({
         {"exit 3\n", "the external engine 'mine' ended with status 3"},
         {"kill -9 $$\n", "the external engine 'mine' was terminated by signal 9"},
         {"rm \"$2\"\n", pairs + " are missing: the engine did not write the file"},
@@ -139,17 +139,17 @@ TEST_CASE("An answer of an external engine that is malformed gets one sentence a
     CAPTURE(result.err);
     REQUIRE(result.err.starts_with("aabblab: " + (folder / "joined.toml").string() +
                                    ":4: brownian (objects=150 frames=3 seed=1): "));
-    REQUIRE(holds(result.err, says + "\n"));
+    REQUIRE(holds(result.err, message + "\n"));
 }
 
-TEST_CASE("An external engine may tell its time in one of the two columns") {
+TEST_CASE("An external engine may report its time in either column") {
     const temporary_folder folder;
     const std::string columns = GENERATE("0,1.25", "0.5,0");
     CAPTURE(columns);
     REQUIRE(run_with(folder, good + "sed -i '2,$s/0.5,1.25/" + columns + "/' \"$3\"\n").status == 0);
 }
 
-TEST_CASE("An interrupted run leaves neither its external engine nor what was exchanged") {
+TEST_CASE("An interrupted run leaves no external engine and no exchanged files") {
     const auto [ended_by, processes] = GENERATE(table<int, std::string>({
         {SIGTERM, "1"},
         {SIGINT, "1"},
@@ -158,44 +158,44 @@ TEST_CASE("An interrupted run leaves neither its external engine nor what was ex
     }));
     CAPTURE(ended_by, processes);
     const temporary_folder folder;
-    const auto exchanged = folder / "tmp";
-    std::filesystem::create_directory(exchanged);
-    // What it started itself has to end too, also in a session of its own.
+    const auto exchange_folder = folder / "tmp";
+    std::filesystem::create_directory(exchange_folder);
+    // Processes that it started must end too, even in another session.
     std::filesystem::permissions(
         folder.write("mine", "#!/bin/sh\nsleep 1000 &\nof=$!\ncd \"${0%/*}\"\n" + stray +
                                  "echo $$ $of $(cat stray) >began.part\nmv began.part began\nwait\n"),
         std::filesystem::perms::owner_all);
     const auto config = folder.write("joined.toml", config_of("brownian", "") + "processes = " + processes + "\n");
     const pid_t program =
-        started({"sh", "-c", "exec \"$0\" \"$@\" >/dev/null 2>&1", "env", "TMPDIR=" + exchanged.string(),
+        started({"sh", "-c", "exec \"$0\" \"$@\" >/dev/null 2>&1", "env", "TMPDIR=" + exchange_folder.string(),
                  AABBLAB_UNDER_TEST, "run", config.string(), "--out", (folder / "out").string()});
     const bool began = comes_true([&] { return std::filesystem::exists(folder / "began"); });
-    const bool was_there = !std::filesystem::is_empty(exchanged);
+    const bool was_used = !std::filesystem::is_empty(exchange_folder);
     kill(program, ended_by);
     waitpid(program, nullptr, 0);
     REQUIRE(began);
-    REQUIRE(was_there);
-    pid_t engine = 0, of_engine = 0, gone_astray = 0;
-    std::ifstream(folder / "began") >> engine >> of_engine >> gone_astray;
-    REQUIRE(gone_astray > 0);
-    for (const pid_t one : {engine, of_engine, gone_astray}) CHECK(comes_true([&] { return has_ended(one); }));
-    CHECK(comes_true([&] { return std::filesystem::is_empty(exchanged); }));
+    REQUIRE(was_used);
+    pid_t engine = 0, child = 0, orphan = 0;
+    std::ifstream(folder / "began") >> engine >> child >> orphan;
+    REQUIRE(orphan > 0);
+    for (const pid_t process : {engine, child, orphan}) CHECK(comes_true([&] { return has_ended(process); }));
+    CHECK(comes_true([&] { return std::filesystem::is_empty(exchange_folder); }));
 }
 
-TEST_CASE("What an external engine leaves running is killed when it ends, whatever session that is in") {
+TEST_CASE("Processes left by an external engine are killed when it ends, in any session") {
     const temporary_folder folder;
-    const std::string how = GENERATE("", "exit 3\n", "kill -9 $$\n");
-    CAPTURE(how);
-    const program_result result = run_with(folder, good + "cd \"${0%/*}\"\n" + stray + how);
+    const std::string ending = GENERATE("", "exit 3\n", "kill -9 $$\n");
+    CAPTURE(ending);
+    const program_result result = run_with(folder, good + "cd \"${0%/*}\"\n" + stray + ending);
     INFO(result.err);
-    CHECK(result.status == (how.empty() ? 0 : 2));
-    pid_t gone_astray = 0;
-    std::ifstream(folder / "stray") >> gone_astray;
-    REQUIRE(gone_astray > 0);
-    CHECK(has_ended(gone_astray));
+    CHECK(result.status == (ending.empty() ? 0 : 2));
+    pid_t orphan = 0;
+    std::ifstream(folder / "stray") >> orphan;
+    REQUIRE(orphan > 0);
+    CHECK(has_ended(orphan));
 }
 
-TEST_CASE("An external engine that ends its process group has failed, and may be run where children are ignored") {
+TEST_CASE("An external engine that kills its process group fails, and an ignored SIGCHLD is harmless") {
     const temporary_folder folder;
     CHECK(holds(as_refused(run_with(folder, good + "kill 0\nsleep 1000\n")).err, "terminated by signal 15"));
     REQUIRE(run_with(folder, good, "brownian", "timeout_s = 20\n").status == 0);
@@ -205,17 +205,17 @@ TEST_CASE("An external engine that ends its process group has failed, and may be
     CHECK(ignored.status == 0);
 }
 
-TEST_CASE("An external engine that does not end is killed with what it started, and takes nobody with it") {
+TEST_CASE("An external engine that hangs is killed with its children, and other candidates still run") {
     const temporary_folder folder;
-    const auto [waits, rows_of_engine] = GENERATE(table<std::string, std::size_t>({
+    const auto [hang, rows_of_engine] = GENERATE(table<std::string, std::size_t>({
         {"sleep 1000 & cd \"${0%/*}\"; echo $! >began; wait\n", 0},
         // A program that has closed its output is not waited for either.
         {"exec >&-; sleep 1000 & cd \"${0%/*}\"; echo $! >began; wait\n", 0},
-        // Not before the second repeat.
+        // Only the second repeat hangs.
         {"cd \"${0%/*}\"; echo >>calls; [ $(wc -l <calls) -lt 3 ] || { sleep 1000 & echo $! >began; wait; }\n", 1},
     }));
-    CAPTURE(waits);
-    const program_result result = run_with(folder, good + waits, "brownian", "timeout_s = 1\n");
+    CAPTURE(hang);
+    const program_result result = run_with(folder, good + hang, "brownian", "timeout_s = 1\n");
     CAPTURE(result.err, result.out);
     REQUIRE(result.status == 1);
     CHECK(holds(result.err,
@@ -225,15 +225,15 @@ TEST_CASE("An external engine that does not end is killed with what it started, 
     CHECK(std::ranges::count_if(rows, [](const auto& r) { return r.name.engine.empty(); }) == 2);
     CHECK(static_cast<std::size_t>(
               std::ranges::count_if(rows, [](const auto& r) { return r.name.engine == "mine"; })) == rows_of_engine);
-    pid_t of_engine = 0;
-    std::ifstream(folder / "began") >> of_engine;
-    REQUIRE(of_engine > 0);
-    CHECK(comes_true([&] { return has_ended(of_engine); }));
+    pid_t child = 0;
+    std::ifstream(folder / "began") >> child;
+    REQUIRE(child > 0);
+    CHECK(comes_true([&] { return has_ended(child); }));
 }
 
 TEST_CASE("An external engine that cannot be started gets one sentence and status 2") {
     const temporary_folder folder;
-    folder.write("mine", good);  // which nobody may execute
+    folder.write("mine", good);  // not executable
     const auto config = folder.write("joined.toml", config_of("brownian", ""));
     const program_result rejected = run_refused({"run", config, "--out", folder / "out"});
     REQUIRE(rejected.err.starts_with("aabblab: " + config.string() + ":4: brownian ("));
@@ -246,7 +246,7 @@ TEST_CASE("An external engine that cannot be started gets one sentence and statu
                   "./no_such_program for one in the folder of the config\n"));
 }
 
-TEST_CASE("An external engine has no part in scenes of meshes") {
+TEST_CASE("An external engine skips scenes of meshes") {
     const temporary_folder folder;
     std::filesystem::permissions(folder.write("mine", good), std::filesystem::perms::owner_all);
     const auto config =
@@ -258,10 +258,10 @@ TEST_CASE("An external engine has no part in scenes of meshes") {
             "aabblab: mine does not run on mesh_swarm: it takes only boxes\n");
 }
 
-TEST_CASE("External engines in a config are checked, and are part of its hash") {
+TEST_CASE("External engines in a config are checked and part of its hash") {
     const std::string scene = "[[scene]]\nkind = \"brownian\"\nobjects = 10\n";
     const auto with = [&](const std::string& external) { return "name = \"x\"\n" + external + scene; };
-    const auto [external, says] = GENERATE(table<std::string, std::string>({
+    const auto [external, message] = GENERATE(table<std::string, std::string>({
         {"[external]\nname = \"a\"\ncommand = \"ls\"\n", ":2: external must be in double brackets: [[external]]"},
         {"[[external]]\ncommand = \"ls\"\n", ":2: this [[external]] has no name; expected name = \"…\""},
         {"[[external]]\nname = \"a/b\"\ncommand = \"ls\"\n",
@@ -281,7 +281,7 @@ TEST_CASE("External engines in a config are checked, and are part of its hash") 
         {"[[external]]\nname = \"a\"\ncommand = [\"ls\", \"-l\"]\n", "accepted"},
     }));
     CAPTURE(external);
-    REQUIRE(holds(rejection_of(with(external)), says));
+    REQUIRE(holds(rejection_of(with(external)), message));
     const auto hash = [&](const std::string& text) {
         return aabblab::hash_of(aabblab::parse_experiment(with(text), "x.toml", aabblab::experiment_size::full));
     };

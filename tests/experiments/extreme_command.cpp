@@ -6,7 +6,7 @@ import aabblab.tables;
 
 namespace {
 
-/// Two triangles that intersect, with the answer that they do not.
+/// Two intersecting triangles, declared disjoint.
 const std::string lie =
     "[[case]]\nname = \"lie\"\nsource = \"s\"\nabout = \"a\"\nclass = \"crossing\"\n"
     "first = [[0, 0, 0], [2, 0, 0], [0, 2, 0]]\nsecond = [[0.5, 0.5, -1], [0.5, 0.5, 1], [3, 3, 0]]\n"
@@ -14,7 +14,7 @@ const std::string lie =
 
 }  // namespace
 
-TEST_CASE("Scenes that are not answered as they must be stand in the table, and each contender in a sentence") {
+TEST_CASE("Wrong results are marked in the tables and listed by candidate") {
     std::vector<aabb::extreme_scene> scenes = aabb::extreme_scenes(aabb::extreme_size::small);
     std::erase_if(scenes, [](const aabb::extreme_scene& scene) {
         return scene.name != "two_objects" && scene.name != "many_against_one" && scene.name != "beyond_float";
@@ -38,7 +38,7 @@ TEST_CASE("Scenes that are not answered as they must be stand in the table, and 
     CHECK(meshes.rows[0][1].ends_with(" WRONG"));
     CHECK(meshes.rows[0][2] == "exact");
     CHECK(meshes.rows[1][1].ends_with(" rejected"));
-    // One that may err must refuse all the same.
+    // An inexact engine must reject the scene too.
     CHECK(meshes.columns[4].name == "fcl");
     CHECK(meshes.rows[1][4] == "WRONG");
     const std::vector<std::string> failures = aabblab::failures_in(rows);
@@ -55,17 +55,17 @@ TEST_CASE("Scenes that are not answered as they must be stand in the table, and 
     CHECK(memory[0].starts_with("many_against_one, "));
     CHECK(memory[0].ends_with(" bytes; the limit is 1,000"));
 
-    // All of that comes from rows as they are kept, too.
+    // Stored rows give the same.
     const temporary_folder folder;
     const std::string text = csv_of(rows);
-    const auto kept = aabblab::read_extreme_rows(folder.write("extreme.csv", text));
-    CHECK(csv_of(kept) == text);
-    CHECK(aabblab::failures_in(kept) == failures);
-    CHECK(aabblab::memory_in(kept) == memory);
-    CHECK(aabblab::scene_table(kept, aabblab::row_group::meshes).rows == meshes.rows);
+    const auto stored = aabblab::read_extreme_rows(folder.write("extreme.csv", text));
+    CHECK(csv_of(stored) == text);
+    CHECK(aabblab::failures_in(stored) == failures);
+    CHECK(aabblab::memory_in(stored) == memory);
+    CHECK(aabblab::scene_table(stored, aabblab::row_group::meshes).rows == meshes.rows);
 }
 
-TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, and the program with status 1") {
+TEST_CASE("A case with a wrong expectation fails every exact test, and the program exits with status 1") {
     const temporary_folder folder;
     const std::string file = folder.write("c.toml", lie);
     const std::filesystem::path out = folder / "results";
@@ -73,7 +73,7 @@ TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, 
     CHECK(ran.status == 1);
     CHECK(holds(ran.err, "aabblab: exact in double on lie: reports that they intersect\n"));
     CHECK(holds(ran.out, "results are not as expected.\n"));
-    // Nothing but the lie is wrong.
+    // Only the lie is wrong.
     CHECK(holds(ran.out, "crossing      1      4 WRONG"));
     for (const std::string scene : {"lattice  ", "flushed_boxes", "same_place", "upward_meshes", "pairs_zero_area"})
         CHECK(holds(ran.out, "\n" + scene));
@@ -95,18 +95,18 @@ TEST_CASE("A case with the wrong answer fails wherever an answer must be exact, 
     CHECK(rejected > 100);
 }
 
-TEST_CASE("What stands before or behind validate extreme and has no part in it is refused") {
+TEST_CASE("validate extreme rejects arguments that do not apply to it") {
     const temporary_folder folder;
     const std::string file = folder.write("c.toml", "[[case]]\nname = 1\n");
-    const auto said = [](const std::vector<std::string>& arguments) { return run_refused(arguments).err; };
-    CHECK(said({"validate", "--quick", "extreme", "--cases", file}) ==
+    const auto error_of = [](const std::vector<std::string>& arguments) { return run_refused(arguments).err; };
+    CHECK(error_of({"validate", "--quick", "extreme", "--cases", file}) ==
           "aabblab: validate: --quick does not apply to 'extreme', whose own options follow its name\n");
-    CHECK(said({"validate", file, "extreme"}).starts_with("aabblab: validate: CONFIG does not apply to 'extreme'"));
-    CHECK(said({"validate", "extreme", "--cases", file}) ==
+    CHECK(error_of({"validate", file, "extreme"}).starts_with("aabblab: validate: CONFIG does not apply to 'extreme'"));
+    CHECK(error_of({"validate", "extreme", "--cases", file}) ==
           "aabblab: " + file + ":2: name is a number; expected a name\n");
-    CHECK(said({"validate", "extreme", "--qiuck"}) ==
+    CHECK(error_of({"validate", "extreme", "--qiuck"}) ==
           "aabblab: validate extreme: unknown option '--qiuck'; did you mean '--quick'?\n");
-    CHECK(holds(said({"validate", "extreme", "more.toml"}), "validate extreme: "));
+    CHECK(holds(error_of({"validate", "extreme", "more.toml"}), "validate extreme: "));
     const std::string help = run_program({"validate", "extreme", "--help"}).out;
     CHECK(holds(help, "--cases FILE"));
     CHECK(holds(help, "\npairs_sliver "));

@@ -38,7 +38,7 @@ std::string recording_at(const std::filesystem::path& file) {
 
 }  // namespace
 
-TEST_CASE("One's own recordings and motion stand in one table with engines, and every command finds the same in them") {
+TEST_CASE("Every command finds the same pairs in a user's recordings and motion files") {
     const temporary_folder folder;
     std::map<std::string, std::string> digests;  // by parameters
     std::string files;
@@ -82,13 +82,13 @@ TEST_CASE("One's own recordings and motion stand in one table with engines, and 
     const auto manifest = nlohmann::json::parse(bytes_of_file(folder / "out/manifest.json"));
     for (const auto& scene : manifest["scenes"]) {
         const auto& parameters = scene["parameters"];
-        const std::string of = "file=" + parameters["file"].get<std::string>();
-        CHECK(scene["digest"] == digests.at(parameters.contains("meshes") ? of + " meshes=" + mesh : of));
+        const std::string key = "file=" + parameters["file"].get<std::string>();
+        CHECK(scene["digest"] == digests.at(parameters.contains("meshes") ? key + " meshes=" + mesh : key));
         CHECK_FALSE(scene.contains("seed"));
     }
 }
 
-TEST_CASE("Results are resumed until a recording or a motion has changed") {
+TEST_CASE("Results are resumed unless a recording or motion file has changed") {
     const temporary_folder folder;
     const std::string recording = folder / "a.aabbs";
     const std::string motion = folder / "m.txt";
@@ -114,7 +114,7 @@ TEST_CASE("Results are resumed until a recording or a motion has changed") {
     CHECK(bytes_of_file(folder / "out/results.csv") == before);
 }
 
-TEST_CASE("Seeds of a config do not multiply what has none, and one of its own is refused") {
+TEST_CASE("Scenes from files ignore the seeds of a config and reject their own") {
     const temporary_folder folder;
     const std::string file = folder / "a.aabbs";
     record(file, "1");
@@ -123,16 +123,16 @@ TEST_CASE("Seeds of a config do not multiply what has none, and one of its own i
     REQUIRE(e.scenes.size() == 1 + 2);
     CHECK_FALSE(e.scenes[0].seed);
     CHECK(aabblab::parameters_text(e.scenes[0]) == "file=" + file);
-    const std::string said = " recording reads a file, so it has no seed";
-    CHECK(rejection_of(recording_config("file = " + in_toml(file) + "\nseed = 1\n")) == "test.toml:6:" + said);
+    const std::string message = " recording reads a file, so it has no seed";
+    CHECK(rejection_of(recording_config("file = " + in_toml(file) + "\nseed = 1\n")) == "test.toml:6:" + message);
     CHECK(rejection_of(recording_config("file = " + in_toml(file) + "\nquick={ seed = 1 }\n")) ==
-          "test.toml:6:" + said);
+          "test.toml:6:" + message);
     CHECK_THROWS_AS(aabblab::make_box_scene({"recording", {{"file", file}}, {}, 1}), aabb::input_error);
     CHECK_NOTHROW(aabblab::make_box_scene({"recording", {{"file", file}}, {}, std::nullopt}));
     CHECK_THROWS_AS(aabblab::make_box_scene({"still", {}, {}, std::nullopt}), aabb::input_error);
 }
 
-TEST_CASE("A file that is not there or malformed is refused with the line of the config") {
+TEST_CASE("A missing or malformed scene file is rejected with the line of the config") {
     const temporary_folder folder;
     const std::string file = folder / "a.aabbs";
     record(file, "1");
@@ -163,7 +163,7 @@ TEST_CASE("A file that is not there or malformed is refused with the line of the
     CHECK(motion(still, "meshes = [\"icosphere\"]\n") == "accepted");
 }
 
-TEST_CASE("A relative path is taken as given, else from the folder of the config") {
+TEST_CASE("A relative path is resolved as given, or else from the folder of the config") {
     const temporary_folder folder;
     std::filesystem::create_directory(folder / "sub");
     record(folder / "sub/a.aabbs", "1");
@@ -178,28 +178,28 @@ TEST_CASE("A relative path is taken as given, else from the folder of the config
     CHECK(aabblab::make_box_scene(e.scenes[0])->objects() == 60);
 }
 
-TEST_CASE("A mesh in the folder of the config comes before one of the data folder, and results say only its name") {
+TEST_CASE("A mesh beside the config precedes the data folder, and results store only its name") {
     const temporary_folder folder;
-    // Of the name of a mesh that is in the data folder, or may be.
+    // The data folder may contain a mesh of this name.
     folder.write("sub/elephant.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     const std::string config =
         folder.write("sub/c.toml",
                      "name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nframes = 1\nmeshes = \"elephant.off\"\n"
                      "without_data = \"icosphere\"\n[measure]\nrepeats = 1\n");
-    const std::filesystem::path near = std::filesystem::relative(config);
+    const std::filesystem::path relative_config = std::filesystem::relative(config);
     run_well({"run", config, "--out", folder / "out"});
     const auto rows = aabblab::read_rows(folder / "out/results.csv");
     REQUIRE(rows.size() == 1);
     CHECK(rows[0].scene.meshes == std::vector<std::string>{"elephant.off"});
     CHECK(rows[0].triangles == 1);
-    run_well({"run", near, "--out", folder / "out", "--resume"});
+    run_well({"run", relative_config, "--out", folder / "out", "--resume"});
     CHECK(aabblab::read_rows(folder / "out/results.csv").size() == 1);
     CHECK(holds(
         rejection_of("name = \"c\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = \"absent.off\"\n", "some/test.toml"),
         "(a mesh is a file, here, in some or in "));
 }
 
-TEST_CASE("scene draws a recording, and makes one of a motion") {
+TEST_CASE("scene draws a recording and converts a motion file to one") {
     const temporary_folder folder;
     const std::string file = folder / (odd + ".aabbs");
     record(file, "1");
@@ -227,7 +227,7 @@ TEST_CASE("scene draws a recording, and makes one of a motion") {
     CHECK(bytes_of_file(file) == bytes);
 }
 
-TEST_CASE("A recording in place of a config is refused with what takes it") {
+TEST_CASE("A recording in place of a config is rejected with the commands that accept it") {
     const temporary_folder folder;
     const std::string file = folder / "s.aabbs";
     run_well({"scene", "brownian", "--n", "20", "--frames", "1", "--out", file});
@@ -237,11 +237,11 @@ TEST_CASE("A recording in place of a config is refused with what takes it") {
                                  "config reads it as kind = \"recording\", file = \"s.aabbs\" under [[scene]]\n"));
 }
 
-TEST_CASE("list says which scenes play a file, and that it must be given") {
+TEST_CASE("list reports which scenes require a file") {
     CHECK(holds(run_program({"list"}).out, "    file=… "));
     std::set<std::string> seedless;
-    const auto all = json_of({"list", "--json"});
-    for (const auto& scene : all["scenes"]) {
+    const auto listed = json_of({"list", "--json"});
+    for (const auto& scene : listed["scenes"]) {
         if (scene["has_seed"].get<bool>()) continue;
         seedless.insert(scene["name"].get<std::string>());
         CHECK(scene["parameters"][0]["name"] == "file");

@@ -4,7 +4,7 @@ using Catch::Matchers::EndsWith;
 
 namespace {
 
-/// Where each part of a file can be another.
+/// A file whose parts can be replaced.
 struct parts {
     std::string asset = R"({"version":"2.0"})";
     std::string more{};  // members of the file
@@ -30,7 +30,7 @@ std::string binary() {
     for (const std::uint16_t i : std::array<std::uint16_t, 6>{0, 1, 2, 0, 2, 3}) bytes += raw(i);
     return bytes;
 }
-const triangles two = {{0, 1, 2}, {0, 2, 3}};
+const triangles two_faces = {{0, 1, 2}, {0, 2, 3}};
 
 std::string chunk(std::uint32_t type, std::string bytes, char padding) {
     while (bytes.size() % 4 != 0) bytes += padding;
@@ -65,7 +65,7 @@ std::string encoded(const std::string& bytes) {
     return text;
 }
 
-/// A file in the making: each list of numbers becomes an accessor with a view and a buffer of its own.
+/// Builds a file: each list of numbers becomes an accessor with its own view and buffer.
 class asset {
 public:
     template <class Number>
@@ -126,8 +126,8 @@ std::string morphed(const std::string& node, const std::string& mesh, const std:
 }
 const std::string both = R"({"POSITION":1},{"POSITION":2})";
 
-/// A triangle at x = 0, 1 and 0 with y = 1, of which the corners hang on joints as said; joint 0 (node 1) stands at
-/// x = 10, joint 1 (node 2) at y = 20 and turns x into y.
+/// A triangle (0, 0), (1, 0), (0, 1) whose corners are bound to the given joints; joint 0 (node 1) is at x = 10,
+/// joint 1 (node 2) is at y = 20 and rotates x into y.
 struct skin {
     int joint_type = 5121;
     std::vector<std::uint8_t> joints = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
@@ -161,21 +161,21 @@ struct skin {
 
 }  // namespace
 
-TEST_CASE("glTF: a buffer beside the file, in it, or in a .glb file") {
-    CHECK(load(parts{}.text()).mesh.triangles == two);
-    CHECK(load(parts{.buffer = R"({"uri":"a%20b.bin","byteLength":60})"}.text()).mesh.triangles == two);
-    parts inside;
-    inside.buffer = R"({"byteLength":60,"uri":"data:application/octet-stream;base64,)"
-                    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAABAAIAAAACAAMA\"}";
-    CHECK(load(inside.text()).mesh.triangles == two);
-    const std::string held = parts{.buffer = R"({"byteLength":60})"}.text();
+TEST_CASE("glTF: buffers are read from files, data URIs and .glb chunks") {
+    CHECK(load(parts{}.text()).mesh.triangles == two_faces);
+    CHECK(load(parts{.buffer = R"({"uri":"a%20b.bin","byteLength":60})"}.text()).mesh.triangles == two_faces);
+    parts embedded;
+    embedded.buffer = R"({"byteLength":60,"uri":"data:application/octet-stream;base64,)"
+                      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAABAAIAAAACAAMA\"}";
+    CHECK(load(embedded.text()).mesh.triangles == two_faces);
+    const std::string text = parts{.buffer = R"({"byteLength":60})"}.text();
     const std::string other = chunk(0x12345678, "something else", 0);
-    const std::string file = glb(chunk(json_chunk, held, ' ') + chunk(binary_chunk, binary(), 0) + other);
-    CHECK(load(file, "a.glb").mesh.triangles == two);
+    const std::string file = glb(chunk(json_chunk, text, ' ') + chunk(binary_chunk, binary(), 0) + other);
+    CHECK(load(file, "a.glb").mesh.triangles == two_faces);
     CHECK(load(file, "a.glb").mesh.vertices[3] == aabb::vec3f{0, 0, 1});
 }
 
-TEST_CASE("A vertex of glTF that no face uses may be anywhere") {
+TEST_CASE("glTF: unused vertices may be non-finite") {
     const aabblab::loaded_mesh loaded =
         load(parts{.nodes = R"({"mesh":0,"scale":[1,1,1e300]})",
                    .indices = R"({"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"})"}
@@ -184,22 +184,22 @@ TEST_CASE("A vertex of glTF that no face uses may be anywhere") {
     CHECK(loaded.report.not_finite == 1);
 }
 
-TEST_CASE("glTF: every mode of primitives, every type of indices, with a stride or without indices") {
+TEST_CASE("glTF: every primitive mode and index type is read") {
     const auto mode = [](int number, const std::string& indices) {
         parts p;
         p.primitive = R"({"attributes":{"POSITION":0})" + indices + R"(,"mode":)" + std::to_string(number) + "}";
         return p;
     };
     CHECK(load(mode(5, "").text()).mesh.triangles == triangles{{0, 1, 2}, {1, 3, 2}});
-    // Its third triangle has a corner twice: it joins two parts of the strip.
+    // The third triangle is degenerate: it stitches two parts of the strip.
     const aabblab::loaded_mesh strip = load(mode(5, R"(,"indices":1)").text());
     CHECK(strip.mesh.triangles == triangles{{0, 1, 2}, {1, 0, 2}, {0, 3, 2}});
     CHECK(strip.report.stitches == 1);
     for (const int number : {5, 6}) {
-        parts few = mode(number, R"(,"indices":1)");
-        few.indices = R"({"bufferView":1,"componentType":5123,"count":2,"type":"SCALAR"})";
-        few.primitive += "," + mode(4, "").primitive;
-        CHECK(load(few.text()).report.dropped == 2);
+        parts too_short = mode(number, R"(,"indices":1)");
+        too_short.indices = R"({"bufferView":1,"componentType":5123,"count":2,"type":"SCALAR"})";
+        too_short.primitive += "," + mode(4, "").primitive;
+        CHECK(load(too_short.text()).report.dropped == 2);
     }
     CHECK(load(mode(6, "").text()).mesh.triangles == triangles{{0, 1, 2}, {0, 2, 3}});
     CHECK(load(mode(4, "").text()).mesh.triangles == triangles{{0, 1, 2}});
@@ -219,11 +219,11 @@ TEST_CASE("glTF: every mode of primitives, every type of indices, with a stride 
     CHECK(load(wide.text()).mesh.triangles == triangles{{0, 0, 0}});
 }
 
-TEST_CASE("glTF: nodes place what is below them") {
-    // A quarter turn around z, after twice the size.
-    const std::string turned = R"("rotation":[0,0,0.70710678118654757,0.70710678118654757],"scale":[2,2,2])";
+TEST_CASE("glTF: nodes transform their children") {
+    // Scaled by 2, then rotated by 90 degrees about z.
+    const std::string rotated = R"("rotation":[0,0,0.70710678118654757,0.70710678118654757],"scale":[2,2,2])";
     parts p;
-    p.nodes = R"({"mesh":0,"translation":[10,0,0],"children":[1,2]},{"mesh":0,)" + turned +
+    p.nodes = R"({"mesh":0,"translation":[10,0,0],"children":[1,2]},{"mesh":0,)" + rotated +
               R"(},{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,5,1]})";
     const aabb::mesh mesh = load(p.text()).mesh;
     REQUIRE(mesh.vertices.size() == 12);
@@ -234,14 +234,14 @@ TEST_CASE("glTF: nodes place what is below them") {
     CHECK(mesh.triangles[2] == std::array<std::uint32_t, 3>{4, 5, 6});
 }
 
-TEST_CASE("glTF: what cannot be right is refused with its place") {
+TEST_CASE("glTF: invalid files are rejected with the place of the error") {
     struct wrong {
         std::string parts::* part;
         std::string with;
         std::string error;
     };
     const std::string last = R"(,"type":"SCALAR"})";
-    const wrong all[] = {
+    const wrong cases[] = {
         {&parts::asset, R"({"version":"1.0"})", "is glTF of version '1.0'; only version 2 is read"},
         {&parts::more, R"(,"extensionsRequired":["KHR_draco_mesh_compression"])",
          "the file requires the extension 'KHR_draco_mesh_compression', which is not supported"},
@@ -313,10 +313,10 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
         {&parts::indices, R"({"bufferView":1,"componentType":5123,"count":7)" + last,
          "accessors[1] reaches beyond the end of bufferViews[1]"},
     };
-    for (const wrong& one : all) {
+    for (const wrong& invalid : cases) {
         parts p;
-        p.*one.part = one.with;
-        CHECK_THAT(error_of(p.text()), EndsWith("/a.gltf: " + one.error));
+        p.*invalid.part = invalid.with;
+        CHECK_THAT(error_of(p.text()), EndsWith("/a.gltf: " + invalid.error));
     }
     CHECK_THAT(error_of(parts{.buffer = R"({"uri":"absent.bin","byteLength":60})"}.text()),
                EndsWith("/absent.bin: no such file"));
@@ -324,7 +324,7 @@ TEST_CASE("glTF: what cannot be right is refused with its place") {
     CHECK_THAT(error_of("{\n\n\"asset\":}"), EndsWith("/a.gltf:3: is not a glTF file: its JSON is malformed"));
 }
 
-TEST_CASE("glTF: morph targets move vertices by the weights of the node, or else of the mesh") {
+TEST_CASE("glTF: morph targets use the weights of the node, or else of the mesh") {
     const auto at = [](const std::string& node, const std::string& mesh, const std::string& targets = both) {
         return load(morphed(node, mesh, targets)).mesh.vertices;
     };
@@ -335,7 +335,7 @@ TEST_CASE("glTF: morph targets move vertices by the weights of the node, or else
     CHECK(at("", R"("weights":[1,-2],)") == points{{5, 0, 0}, {6, 0, 0}, {5, 1, -6}});
     CHECK(at(R"(,"weights":[0,1])", R"("weights":[1,0],)") == points{{0, 0, 0}, {1, 0, 0}, {0, 1, 3}});
     CHECK(at(R"(,"translation":[0,0,7],"weights":[0,1])", "") == points{{0, 0, 7}, {1, 0, 7}, {0, 1, 10}});
-    // One that moves normals only, and one of zeros, which need not be written down.
+    // One target moves only normals, the other has implicit zeros.
     CHECK(at("", R"("weights":[1,1],)", R"({"NORMAL":1},{"POSITION":3})") == rest);
 
     CHECK_THAT(error_of(morphed("", R"("weights":[1],)", both)),
@@ -363,17 +363,17 @@ TEST_CASE("glTF: sparse accessors replace elements of their view") {
     CHECK_THAT(error_of(read_sparse(3)), EndsWith("accessors[0] replaces element 3, but has 3, counted from 0"));
 }
 
-TEST_CASE("glTF: a skinned mesh stands where its joints are") {
+TEST_CASE("glTF: joints transform a skinned mesh") {
     const auto at = [](const skin& s) { return load(s.text()).mesh.vertices; };
-    // The first corner goes with joint 0, the second, at z = -1 of joint 1, is turned, the third is half way.
+    // The first corner follows joint 0, the second, at z = -1 of joint 1, is rotated, the third is halfway.
     CHECK(at({}) == points{{10, 0, 0}, {0, 21, -1}, {4.5F, 10.5F, -0.5F}});
-    // Without matrices the joints were bound at the origin.
+    // Without matrices the joints are bound at the origin.
     CHECK(at({.members = R"("joints":[1,2])"}) == points{{10, 0, 0}, {0, 21, 0}, {4.5F, 10.5F, 0}});
     // Weights of two sets, in normalized numbers of other types: a third and two thirds.
     CHECK(at({.members = R"("joints":[1,2])",
               .attributes = R"("POSITION":0,"JOINTS_0":1,"WEIGHTS_0":4,"JOINTS_1":5,"WEIGHTS_1":6)"})[0] ==
           aabb::vec3f{10.0F / 3, 40.0F / 3, 0});
-    // Rounding of weights makes the mesh no smaller.
+    // Rounded weights do not shrink the mesh.
     CHECK(at({.weights = {0.995F, 0, 0, 0, 0, 1, 0, 0, 0.5F, 0.5F, 0, 0}})[0] == aabb::vec3f{10, 0, 0});
 
     const std::vector<std::pair<skin, std::string>> wrong = {
@@ -398,7 +398,7 @@ TEST_CASE("glTF: a skinned mesh stands where its joints are") {
     for (const auto& [with, error] : wrong) CHECK_THAT(error_of(with.text()), EndsWith("/a.gltf: " + error));
 }
 
-TEST_CASE("glTF: quantized positions, where the file says that it has them") {
+TEST_CASE("glTF: quantized positions are read if the file declares them") {
     const auto quantized = [](const std::string& extensions, int component, const std::string& more) {
         asset file;
         file.add(component, "VEC3", 3, std::vector<std::int8_t>{-128, 0, 0, 127, 0, 0, 0, 127, 0}, more);
@@ -415,7 +415,7 @@ TEST_CASE("glTF: quantized positions, where the file says that it has them") {
                EndsWith("/a.gltf: accessors[0] must be of floats and VEC3, as it has positions"));
 }
 
-TEST_CASE("glTF: what is left out is counted") {
+TEST_CASE("glTF: omitted parts are counted") {
     parts p;
     p.more = R"(,"scene":0,"animations":[{},{}])";
     p.primitive = R"({"attributes":{"POSITION":0},"indices":1},{"attributes":{"POSITION":0}},)"
@@ -424,13 +424,13 @@ TEST_CASE("glTF: what is left out is counted") {
           "3 faces of fewer than three corners dropped, 2 animations ignored, 1 mesh outside the scene left out");
 }
 
-TEST_CASE("glTF: a .glb file whose lengths lie is refused") {
+TEST_CASE("glTF: a .glb file with wrong lengths is rejected") {
     const std::string json = chunk(json_chunk, parts{}.text(), ' ');
-    const std::string old = "glTF" + raw(1U) + raw(106U) + raw(86U) + raw(0U) + "{}" + std::string(84, ' ');
-    // A general library guesses the format from words anywhere in this, and reads beyond its end.
+    const std::string version_1 = "glTF" + raw(1U) + raw(106U) + raw(86U) + raw(0U) + "{}" + std::string(84, ' ');
+    // A general library guesses the format from words in this, and reads past its end.
     const std::string guess = "g\x1cgeometrynode'" + raw(std::uint8_t{0}) + "\x01" + raw(std::uint8_t{0}) + "n,";
     for (const auto& [bytes, error] : {
-             std::pair{old, std::string(": is glTF of version 1; only version 2 is read")},
+             std::pair{version_1, std::string(": is glTF of version 1; only version 2 is read")},
              {guess, ":1: is not a glTF file: its JSON is malformed"},
              {std::string("glTF"), ": is not a glTF file: it ends in the header of 12 bytes"},
              {glb(json) + "x", ": is not a glTF file: its header announces"},

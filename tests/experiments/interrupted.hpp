@@ -2,7 +2,7 @@
 
 #include "program_json.hpp"
 
-/// Leaves the manifest of a finished run as it is before its end: without a seal.
+/// Removes the seal of a finished run, as if it had been interrupted.
 inline void unseal(const std::filesystem::path& results) {
     auto manifest = nlohmann::ordered_json::parse(bytes_of_file(results / "manifest.json"));
     manifest.erase("seal");

@@ -23,7 +23,7 @@ aabblab::contact_force force_between(const aabblab::contact_law& law, const aabb
 
 }  // namespace
 
-TEST_CASE("the force of a shared volume is the gradient of that volume, against bodies and against a floor") {
+TEST_CASE("the force of a shared volume is its gradient for bodies and for a floor") {
     const aabb::mesh ball = aabblab::make_mesh("icosphere:triangles=80").mesh;
     const aabb::mesh floor = aabblab::make_mesh("square").mesh;
     const aabblab::contact_law law{contact_geometry::shared_volume, 3, 0, 0};
@@ -50,7 +50,7 @@ TEST_CASE("the force of a shared volume is the gradient of that volume, against 
             INFO("pair " << i << ", axis " << k);
             REQUIRE(std::abs(force[k] + law.stiffness * (more - less) / (2 * h)) < 1e-6);
         }
-        // A dashpot pushes back what comes nearer.
+        // A dashpot resists approach.
         const aabblab::contact_law damped{contact_geometry::shared_volume, 3, 1, 0};
         REQUIRE(force_between(damped, first, second({0, 0, 0}), {0, 0, -1}).force[2] > force[2]);
     }
@@ -65,11 +65,11 @@ TEST_CASE("a missed pair changes the force of a shared volume") {
     REQUIRE(contacts.size() > 10);
     const vec3d whole = aabblab::force_of(law, contacts, a, b, {0, 0, 0}).force;
     contacts.erase(contacts.begin() + 3);
-    const vec3d less = aabblab::force_of(law, contacts, a, b, {0, 0, 0}).force - whole;
-    REQUIRE(std::sqrt(dot(less, less)) > 1e-3 * std::sqrt(dot(whole, whole)));
+    const vec3d difference = aabblab::force_of(law, contacts, a, b, {0, 0, 0}).force - whole;
+    REQUIRE(std::sqrt(dot(difference, difference)) > 1e-3 * std::sqrt(dot(whole, whole)));
 }
 
-TEST_CASE("springs push along the plane's normal, once a vertex, by its depth") {
+TEST_CASE("springs push along the plane's normal, once per vertex, by its depth") {
     const aabb::mesh plane = aabb::one_triangle({{{-4, -4, 0}, {4, -4, 0}, {0, 4, 0}}});
     const aabb::mesh tooth = aabb::one_triangle({{{0, 0, 0}, {1, 0, 2}, {-1, 0, 2}}});
     const aabblab::placed_mesh first{&plane, {}};
@@ -77,9 +77,9 @@ TEST_CASE("springs push along the plane's normal, once a vertex, by its depth") 
     // Reported twice, as a vertex on an edge is.
     const std::vector<aabb::contact> twice = {{0, 1, 0, 0}, {0, 1, 0, 0}};
     for (const auto geometry : {contact_geometry::deepest_vertex, contact_geometry::each_vertex}) {
-        const aabblab::contact_force found = aabblab::force_of({geometry, 8, 2, 0}, twice, first, second, {5, 0, -1});
-        REQUIRE(found.force == vec3d{0, 0, 8 * 0.25 + 2});
-        REQUIRE(found.energy == 0.25);
+        const aabblab::contact_force result = aabblab::force_of({geometry, 8, 2, 0}, twice, first, second, {5, 0, -1});
+        REQUIRE(result.force == vec3d{0, 0, 8 * 0.25 + 2});
+        REQUIRE(result.energy == 0.25);
     }
     // Springs of length 0.5 reach above the plane.
     const aabblab::placed_mesh above{&tooth, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0.25}}};

@@ -16,7 +16,7 @@ double error_after_a_second(const aabblab::integrator_info& info, double step) {
 
 }  // namespace
 
-TEST_CASE("every integrator has the order that it states, or keeps its tolerance") {
+TEST_CASE("every integrator has its stated order or keeps its tolerance") {
     REQUIRE(aabblab::integrators().size() + aabblab::left_out_integrators().size() == 5);
     for (const aabblab::integrator_info& info : aabblab::integrators()) {
         INFO(info.name);
@@ -32,7 +32,7 @@ TEST_CASE("every integrator has the order that it states, or keeps its tolerance
     REQUIRE(aabblab::integrator_named("euler") == nullptr);
 }
 
-TEST_CASE("an integrator sees velocities where a force needs them") {
+TEST_CASE("integrators pass velocities to forces") {
     // x'' = -3 v from v = 1: v = exp(-3t).
     for (const aabblab::integrator_info& info : aabblab::integrators()) {
         INFO(info.name);

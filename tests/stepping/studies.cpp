@@ -17,7 +17,7 @@ const aabblab::stiff_study& study_named(std::string_view name) {
     return *study;
 }
 
-aabblab::stiff_result played(std::string_view name, const aabblab::candidate& tested) {
+aabblab::stiff_result run_study(std::string_view name, const aabblab::candidate& tested) {
     const aabblab::stiff_study& study = study_named(name);
     aabblab::stiff_result result = study.run({.quick = true, .tested = tested});
     for (const aabblab::stiff_point& p : result.points)
@@ -26,14 +26,14 @@ aabblab::stiff_result played(std::string_view name, const aabblab::candidate& te
 }
 
 std::string wrong_in(const aabblab::stiff_result& result) {
-    std::string all;
+    std::string text;
     for (const aabblab::stiff_row& r : result.rows)
         if (!r.holds())
-            all += r.subject + ": " + r.quantity + " is " + std::to_string(r.measured) + ", not " + r.rule + "\n";
-    return all;
+            text += r.subject + ": " + r.quantity + " is " + std::to_string(r.measured) + ", not " + r.rule + "\n";
+    return text;
 }
 
-/// The usual one, but each so many-th detection finds nothing.
+/// The default candidate, but one in `every` detections finds nothing.
 aabblab::candidate forgetful(std::size_t every) {
     aabblab::candidate tested = aabblab::default_candidate();
     tested.make_local = [every](aabb::instrumentation) -> std::unique_ptr<aabb::local_stage> {
@@ -47,43 +47,43 @@ aabblab::candidate forgetful(std::size_t every) {
 
 }  // namespace
 
-TEST_CASE("every study of the stiff suite comes out as expected") {
+TEST_CASE("every study of the stiff suite gives the expected results") {
     const bool has_bdf = aabblab::integrator_named("bdf") != nullptr;
     for (const aabblab::stiff_study& study : aabblab::stiff_studies()) {
         // Two take minutes. Without bdf, overdamped has only short steps, and fewer rows.
         if (study.name == "bouncing" || study.name == "dropped" || (study.name == "overdamped" && !has_bdf)) continue;
-        const aabblab::stiff_result result = played(study.name, aabblab::default_candidate());
+        const aabblab::stiff_result result = run_study(study.name, aabblab::default_candidate());
         INFO(study.name);
         REQUIRE(result.rows.size() > 5);
         REQUIRE(wrong_in(result) == "");
-        // Something is expected of the half of them, or nothing is tested.
+        // Enough rows have an expectation, or nothing is tested.
         REQUIRE(std::ranges::count_if(result.rows, [](const auto& r) { return !r.rule.empty(); }) > 3);
     }
     if (!has_bdf)
         SKIP("overdamped, as the integrator bdf is left out of this build; AABBLAB_INSTALL=all ./aabblab test has it");
 }
 
-TEST_CASE("a contact that is dropped every thousandth step turns verdicts") {
-    const std::string wrong = wrong_in(played("stability", forgetful(1000)));
+TEST_CASE("contacts missed in every thousandth detection change verdicts") {
+    const std::string wrong = wrong_in(run_study("stability", forgetful(1000)));
     REQUIRE(holds(wrong, "velocity_verlet, dt·ω 0.05: energy drift"));
     REQUIRE(holds(wrong, "dormand_prince, dt·ω 0.05: energy drift"));
-    // Within a single contact of 63 steps it shows only when it comes more often.
-    REQUIRE(wrong_in(played("ball_bounces", forgetful(1000))) == "");
-    REQUIRE(holds(wrong_in(played("ball_bounces", forgetful(40))), "trajectory error"));
+    // In a single contact of 63 steps, only more frequent misses show.
+    REQUIRE(wrong_in(run_study("ball_bounces", forgetful(1000))) == "");
+    REQUIRE(holds(wrong_in(run_study("ball_bounces", forgetful(40))), "trajectory error"));
 }
 
-TEST_CASE("who finds no contact lets bodies through") {
+TEST_CASE("an engine that misses all contacts lets bodies tunnel") {
     aabblab::candidate blind = aabblab::default_candidate();
     blind.make_local = [](aabb::instrumentation) -> std::unique_ptr<aabb::local_stage> {
         return std::make_unique<aabb::altered_meshes>(
             aabb::alterations{.all_pairs = [](aabb::pair_list& pairs) { pairs.clear(); },
                               .first_pair = [](std::optional<aabb::index_pair>& pair) { pair.reset(); }});
     };
-    REQUIRE(holds(wrong_in(played("ball_bounces", blind)), "restitution"));
-    REQUIRE(holds(wrong_in(played("plate", blind)), "swept: share tunnelled"));
+    REQUIRE(holds(wrong_in(run_study("ball_bounces", blind)), "restitution"));
+    REQUIRE(holds(wrong_in(run_study("plate", blind)), "swept: share tunnelled"));
 }
 
-TEST_CASE("what a study left is read as it was written, and drawn as before") {
+TEST_CASE("results of a study round-trip through files and give the same figures") {
     const aabblab::stiff_study& study = study_named("stability");
     aabblab::stiff_result result;
     result.add({"velocity_verlet", "greatest stable dt·ω", 2.25, "2 ± 0.5 %", aabblab::stiff_verdict::fails});
@@ -106,7 +106,7 @@ TEST_CASE("what a study left is read as it was written, and drawn as before") {
     REQUIRE(figures.size() == 1);
     REQUIRE(csv_of(figures[0]) == csv_of(figures_of(study, result).at(0)));
     REQUIRE(holds(csv_of(figures[0]), "\n2,0.25,1e-06,1e-06,1e-06,velocity_verlet\n"));
-    // The usual advice, and the limit that was found; not that of an integrator of first order.
+    // The usual recommendation and the measured limit, but not that of a first-order integrator.
     REQUIRE(figures[0].marks.size() == 3);
     REQUIRE(figures[0].marks[2].label == "velocity_verlet 2.25");
 
