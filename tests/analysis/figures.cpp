@@ -26,7 +26,7 @@ figure figure_of(std::vector<aabblab::series> lines) {
     return {"figure1", "Time against the number of objects.", {"objects"}, {"time a frame (ms)"}, std::move(lines)};
 }
 
-/// One that varies, one that does not, points, a level and a mark.
+/// A line with varying quartiles, one without, points, a level and a mark.
 figure every_style() {
     figure f = figure_of({series_of("varies", series_style::line, {{100, 2, 1, 3}, {1000, 20, 15, 30}}),
                           series_of("stays", series_style::line, {{100, 5, 5, 5}, {1000, 6, 6, 6}}),
@@ -37,7 +37,7 @@ figure every_style() {
     return f;
 }
 
-/// Tags close in the order in which they opened, and nothing that must be escaped is not.
+/// Whether tags are balanced and special characters are escaped.
 bool well_formed(std::string_view xml) {
     std::vector<std::string_view> open;
     for (std::size_t i = 0; i < xml.size(); ++i) {
@@ -62,17 +62,17 @@ bool well_formed(std::string_view xml) {
     return open.empty();
 }
 
-/// A text of an SVG with the box that it takes where letters are as wide as in the widest usual sans.
+/// A text of an SVG with its bounding box, for letters as wide as in the widest usual sans serif font.
 struct placed_text {
     std::string text;
     double left, right, top, bottom;
 };
 
 std::vector<placed_text> texts_of(const std::string& svg) {
-    std::vector<placed_text> all;
-    const std::regex one(R"re(<text x="([-0-9.]+)" y="([-0-9.]+)" dy="5.6" text-anchor="([a-z]+)")re"
-                         R"re(( transform="rotate\(([-0-9.]+)[^"]*")?>(.*?)</text>)re");
-    for (std::sregex_iterator i(svg.begin(), svg.end(), one), end; i != end; ++i) {
+    std::vector<placed_text> texts;
+    const std::regex element(R"re(<text x="([-0-9.]+)" y="([-0-9.]+)" dy="5.6" text-anchor="([a-z]+)")re"
+                             R"re(( transform="rotate\(([-0-9.]+)[^"]*")?>(.*?)</text>)re");
+    for (std::sregex_iterator i(svg.begin(), svg.end(), element), end; i != end; ++i) {
         std::string text = std::regex_replace((*i)[6].str(), std::regex("<[^>]*>"), "");
         text = std::regex_replace(text, std::regex("&[a-z]+;"), "x");
         const auto letters = std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; });
@@ -82,60 +82,60 @@ std::vector<placed_text> texts_of(const std::string& svg) {
         const double before = (*i)[3] == "start" ? 0 : (*i)[3] == "middle" ? width / 2 : width;
         const double behind = width - before;
         const double turn = (*i)[5].matched ? std::stod((*i)[5]) * 3.14159265358979 / 180 : 0;
-        // Along the line of text; up and down it takes less than half a line.
+        // The extent along the line of text; across it the text takes less than half a line.
         const auto [from_x, to_x] = std::minmax(x - before * std::cos(turn), x + behind * std::cos(turn));
         const auto [from_y, to_y] = std::minmax(y - before * std::sin(turn), y + behind * std::sin(turn));
-        all.push_back({text, from_x, to_x, from_y - (turn == 0 ? 8 : 0), to_y + (turn == 0 ? 8 : 0)});
+        texts.push_back({text, from_x, to_x, from_y - (turn == 0 ? 8 : 0), to_y + (turn == 0 ? 8 : 0)});
     }
-    return all;
+    return texts;
 }
 
 placed_text text_in(const std::string& svg, const std::string& text) {
-    const std::vector<placed_text> all = texts_of(svg);
-    const auto found = std::ranges::find(all, text, &placed_text::text);
-    REQUIRE(found != all.end());
-    return *found;
+    const std::vector<placed_text> texts = texts_of(svg);
+    const auto match = std::ranges::find(texts, text, &placed_text::text);
+    REQUIRE(match != texts.end());
+    return *match;
 }
 
-/// The edges of the first plot, by its axes.
+/// The edges of the first plot, given by its axes.
 struct edges {
     double left, right, top, bottom;
 };
 
 edges plot_of(const std::string& svg) {
-    std::smatch found;
-    REQUIRE(std::regex_search(svg, found, std::regex(R"re(d="M([0-9.]+) ([0-9.]+)L\1 ([0-9.]+)L([0-9.]+) \3M)re")));
-    return {std::stod(found[1]), std::stod(found[4]), std::stod(found[2]), std::stod(found[3])};
+    std::smatch match;
+    REQUIRE(std::regex_search(svg, match, std::regex(R"re(d="M([0-9.]+) ([0-9.]+)L\1 ([0-9.]+)L([0-9.]+) \3M)re")));
+    return {std::stod(match[1]), std::stod(match[4]), std::stod(match[2]), std::stod(match[3])};
 }
 
 std::set<std::string> set_in(const std::string& text, const std::string& pattern) {
-    const std::vector<std::string> all = found_in(text, pattern);
-    return {all.begin(), all.end()};
+    const std::vector<std::string> matches = found_in(text, pattern);
+    return {matches.begin(), matches.end()};
 }
 
-/// No text is cut off.
+/// Requires that no text is cut off.
 void require_texts_inside(const std::string& svg) {
-    std::smatch found;
-    REQUIRE(std::regex_search(svg, found, std::regex("<svg [^>]*width=\"([0-9.]+)\" height=\"([0-9.]+)\"")));
+    std::smatch size;
+    REQUIRE(std::regex_search(svg, size, std::regex("<svg [^>]*width=\"([0-9.]+)\" height=\"([0-9.]+)\"")));
     const std::vector<placed_text> texts = texts_of(svg);
     REQUIRE(!texts.empty());
     for (const placed_text& t : texts) {
         CAPTURE(t.text, t.left, t.right, t.top, t.bottom);
         CHECK(t.left >= 0);
-        CHECK(t.right <= std::stod(found[1]));
+        CHECK(t.right <= std::stod(size[1]));
         CHECK(t.top >= 0);
-        CHECK(t.bottom <= std::stod(found[2]));
+        CHECK(t.bottom <= std::stod(size[2]));
     }
 }
 
-void require_texts_apart(const std::string& svg) {
+void require_texts_disjoint(const std::string& svg) {
     const std::vector<placed_text> texts = texts_of(svg);
     for (const placed_text& a : texts)
         for (const placed_text& b : texts) {
             if (&a >= &b) continue;
             CAPTURE(a.text, b.text);
-            const bool apart = a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
-            CHECK(apart);
+            const bool disjoint = a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+            CHECK(disjoint);
         }
 }
 
@@ -144,18 +144,18 @@ void require_svg(const std::string& svg) {
     REQUIRE(well_formed(svg));
 }
 
-/// Also that the table of its parts is where the end of the file says.
+/// Requires a PDF whose cross-reference table is at the offset that the end of the file states.
 void require_pdf(const std::string& pdf) {
     REQUIRE(pdf.starts_with("%PDF-"));
     REQUIRE(pdf.ends_with("%%EOF\n"));
-    const std::size_t said = pdf.rfind("startxref\n");
-    REQUIRE(said != std::string::npos);
-    const std::size_t table = std::stoul(pdf.substr(said + 10));
+    const std::size_t startxref = pdf.rfind("startxref\n");
+    REQUIRE(startxref != std::string::npos);
+    const std::size_t table = std::stoul(pdf.substr(startxref + 10));
     REQUIRE(table < pdf.size());
     REQUIRE((pdf.compare(table, 4, "xref") == 0 || std::isdigit(static_cast<unsigned char>(pdf[table])) != 0));
 }
 
-/// Three lines that end so far apart that each can have its label beside it, or so near that they cannot.
+/// Three lines whose ends differ by this factor, which decides whether labels fit beside them.
 figure three_lines(double factor) {
     std::vector<aabblab::series> lines;
     double end = 1;
@@ -168,7 +168,7 @@ figure three_lines(double factor) {
     return f;
 }
 
-/// So many panels with two lines and a level, which all have the same labels.
+/// Panels with two lines and a level, all with the same labels.
 figure small_multiples(std::size_t count) {
     figure f = figure_of({series_of("equal", series_style::level, {{0, 1, 1, 1}})});
     f.x.logarithmic = true;
@@ -184,7 +184,7 @@ figure small_multiples(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("A figure is a table and two pictures, in a folder that need not be there") {
+TEST_CASE("A figure is written as CSV, SVG and PDF, in a folder that is created") {
     const temporary_folder folder;
     figure other = every_style();
     other.name = "other";
@@ -206,7 +206,7 @@ TEST_CASE("A figure is a table and two pictures, in a folder that need not be th
     }
 }
 
-TEST_CASE("A figure's table has its points") {
+TEST_CASE("The CSV file of a figure has its points") {
     figure f =
         figure_of({series_of("a, \"b\"\nc", series_style::points, {{1, 0.1, 0.05, 2e-7}, {2, 3, 1, 4}}),
                    series_of("nothing", series_style::line, {}),
@@ -235,8 +235,8 @@ TEST_CASE("A figure's table has its points") {
     require_svg(svg_of(f));
 }
 
-TEST_CASE("What is text to the user is text in pictures") {
-    // Quotes, what means something to a shell, a format, XML or PDF, and UTF-8.
+TEST_CASE("Special characters in texts are escaped in SVG and PDF") {
+    // Quotes, special characters of shells, format strings, XML and PDF, and UTF-8.
     const std::string text = "'it''s' \"a_b^{c}\" `date` $x 5% %g \\n <&amp;> (é";
     const std::string in_svg = "'it''s' &quot;a_b^{c}&quot; `date` $x 5% %g \\n &lt;&amp;amp;&gt; (é";
     figure f = figure_of({series_of(text, series_style::points, {{1, 1, 1, 1}})});
@@ -257,13 +257,13 @@ TEST_CASE("What is text to the user is text in pictures") {
         REQUIRE_THAT(svg_of(f), ContainsSubstring(">'a_b' 50%</text>"));
         REQUIRE_THAT(svg_of(f), ContainsSubstring(">{a}^b %g</text>"));
     }
-    SECTION("that the font of a PDF has in a place of its own, or has not") {
+    SECTION("that the encoding of a PDF font remaps or lacks") {
         f.y.label = "\u2212 \u2265 \u2026 \u6f22";
         REQUIRE_THAT(pdf_of(f), ContainsSubstring("(\x01 \x03 \x85 ?) Tj"));
     }
 }
 
-TEST_CASE("A long label is broken into lines and keeps every word") {
+TEST_CASE("A long label is wrapped without losing words") {
     std::string words;
     for (int i = 0; i < 30; ++i) words += "word" + std::to_string(i) + ' ';
     const std::string svg = svg_of(figure_of({series_of(words, series_style::line, {{1, 1, 1, 1}}),
@@ -288,7 +288,7 @@ TEST_CASE("Long names leave room for the plot") {
     }
 }
 
-TEST_CASE("A figure without anything to show says so") {
+TEST_CASE("A figure without data says so") {
     std::vector<figure> empty{figure_of({}), figure_of({series_of("left out", series_style::line, {})}),
                               figure_of({series_of("left out", series_style::level, {{0, -1, -1, -1}})})};
     empty.back().y.logarithmic = true;
@@ -300,7 +300,7 @@ TEST_CASE("A figure without anything to show says so") {
     }
 }
 
-TEST_CASE("A series without points is left out, and the others look as if it were there") {
+TEST_CASE("A series without points is omitted, and the others keep their styles") {
     const auto second = series_of("second", series_style::line, {{1, 1, 1, 1}, {2, 2, 2, 2}});
     const std::string without = svg_of(figure_of({series_of("first", series_style::line, {}), second}));
     const std::string with = svg_of(figure_of({series_of("first", series_style::line, {{1, 1, 1, 1}}), second}));
@@ -310,7 +310,7 @@ TEST_CASE("A series without points is left out, and the others look as if it wer
     REQUIRE_THAT(without, !ContainsSubstring("first"));
 }
 
-TEST_CASE("A single point is drawn, on every kind of axis") {
+TEST_CASE("A single point is drawn on linear and logarithmic axes") {
     for (const double y : {0., 3., -2., 1e-200, 1e200})
         for (const bool logarithmic : {false, true})
             for (const auto style : {series_style::line, series_style::points, series_style::level}) {
@@ -322,7 +322,7 @@ TEST_CASE("A single point is drawn, on every kind of axis") {
             }
 }
 
-TEST_CASE("A logarithmic axis leaves out what is not positive") {
+TEST_CASE("A logarithmic axis omits values that are not positive") {
     const std::vector<figure_point> positive{{1, 1, 1, 1}, {10, 100, 50, 200}, {100, 30, 30, 30}};
     std::vector<figure_point> more = positive;
     more.insert(more.end(), {{0, 5, 5, 5}, {-7, 5, 5, 5}, {5, 0, 0, 0}, {5, -3, -4, 5000}});
@@ -331,13 +331,13 @@ TEST_CASE("A logarithmic axis leaves out what is not positive") {
     f.x.logarithmic = f.y.logarithmic = g.x.logarithmic = g.y.logarithmic = true;
     g.marks = {{0, "nowhere"}};
     REQUIRE(svg_of(f) == svg_of(g));
-    // Of a point that is shown, a quartile that has no place is the end of the axis.
+    // A quartile of a visible point that lies outside the axis is clipped to its end.
     f.lines[0].points[0].low = -1;
     f.lines[0].points[0].high = 2;
     require_svg(svg_of(f));
 }
 
-TEST_CASE("Bands and bars show quartiles that differ, and nothing else") {
+TEST_CASE("Bands and error bars are drawn only for quartiles that differ") {
     const auto svg = [](series_style style, double low, double high) {
         return svg_of(figure_of({series_of("s", style, {{1, 5, low, high}, {2, 5, low, high}})}));
     };
@@ -350,19 +350,19 @@ TEST_CASE("Bands and bars show quartiles that differ, and nothing else") {
     }
 }
 
-TEST_CASE("Ten series differ in black and white") {
+TEST_CASE("Ten series are distinguishable in black and white") {
     std::vector<aabblab::series> ten;
     for (int i = 0; i < 10; ++i)
         ten.push_back(series_of("series " + std::to_string(i), series_style::line, {{1, 1, 1, 1}, {2, 1, 1, 1}}));
     const std::string svg = svg_of(figure_of(ten));
-    // One of the ten has no dashes.
+    // One of the ten lines is solid.
     REQUIRE(set_in(svg, "stroke-dasharray=\"([^\"]*)\"").size() == 9);
-    // Behind all texts is the legend: of each series a line and its sign.
+    // The legend follows all texts: a line and a marker for each series.
     const std::vector<std::string> paths = found_in(svg.substr(svg.rfind("</text>")), "(<path [^>]*>)");
     REQUIRE(paths.size() == 20);
     std::set<std::string> shapes;
     for (std::size_t i = 1; i < paths.size(); i += 2) {
-        // Without its place and its colour.
+        // The shape is compared without position and colour.
         std::vector<double> numbers;
         for (const std::string& number : found_in(paths[i], "[ML ]([0-9.]+)")) numbers.push_back(std::stod(number));
         std::string shape = std::regex_replace(paths[i], std::regex("#[A-F0-9]*| d=\"[^\"]*\""), "");
@@ -373,7 +373,7 @@ TEST_CASE("Ten series differ in black and white") {
     REQUIRE(shapes.size() == 10);
 }
 
-TEST_CASE("The numbers of an axis are those that people would write") {
+TEST_CASE("Axes have round tick values in readable notation") {
     const auto [least, greatest, logarithmic, labels] = GENERATE(table<double, double, bool, std::string>({
         {1, 1e5, true, "1 10 100 1,000 10,000 100,000"},
         {1e-7, 1, true, "10^\u22126 10^\u22124 10^\u22122 10^0"},
@@ -385,23 +385,23 @@ TEST_CASE("The numbers of an axis are those that people would write") {
         {1000, 20000, false, "0 5,000 10,000 15,000 20,000"},
         {1e8, 3e8, false, "0 10^8 2\u00d710^8 3\u00d710^8"},
     }));
-    std::string found;
+    std::string shown;
     for (const aabblab::tick& t : scale_of(least, greatest, logarithmic, aabblab::scale_end::on_ticks).ticks)
-        if (!t.label.empty()) found += (found.empty() ? "" : " ") + t.label + (t.power.empty() ? "" : "^" + t.power);
-    CHECK(found == labels);
+        if (!t.label.empty()) shown += (shown.empty() ? "" : " ") + t.label + (t.power.empty() ? "" : "^" + t.power);
+    CHECK(shown == labels);
 }
 
-TEST_CASE("Multiples of a round number have an end, however far from 0 they are") {
+TEST_CASE("Round values are finitely many, even far from 0") {
     CHECK(aabblab::round_values(1e30, 1e30 + 1, aabblab::round_step(1, 5)).size() < 10);
     CHECK(aabblab::round_values(-0.25, 0.25, 0.1) == std::vector{-0.2, -0.1, 0., 0.1, 0.2});
     for (const auto& [span, step] : {std::pair(10., 2.), std::pair(11., 5.), std::pair(0.3, 0.1)})
         CHECK(aabblab::round_step(span, 5) == step);
 }
 
-TEST_CASE("Points of several series over one name stand side by side") {
+TEST_CASE("Points of several series at one category are drawn side by side") {
     const std::vector<figure_point> points{{1, 1, 1, 1}, {2, 2, 2, 2}};
     figure f = figure_of({series_of("", series_style::points, points), series_of("", series_style::points, points)});
-    // Places of discs, and of the left edges of squares.
+    // The positions of discs, and of the left edges of squares.
     const auto distance = [&] {
         const auto at = found_in(svg_of(f), "d=\"M([0-9.]+) [^\"]*(?:h0|z)\"[^>]* stroke=\"#");
         REQUIRE(at.size() == 2);
@@ -411,11 +411,11 @@ TEST_CASE("Points of several series over one name stand side by side") {
     CHECK(std::abs(half_square) < 4);
     f.x.names = {{1, "one"}, {2, "two"}};
     const auto [left, right, top, bottom] = plot_of(svg_of(f));
-    // Two names share the width, and the two series stand 0.3 of half of a share apart.
+    // Two categories share the width, and the two series are 0.3 of half a category apart.
     CHECK(std::abs(distance() - half_square - 0.15 * (right - left) / 2) < 0.1);
 }
 
-TEST_CASE("A folder that cannot be made is named") {
+TEST_CASE("A folder that cannot be created is named in the error") {
     const temporary_folder folder;
     folder.write("file", "");
     const figure f = every_style();
@@ -423,29 +423,29 @@ TEST_CASE("A folder that cannot be made is named") {
     REQUIRE_THROWS_WITH(aabblab::draw(folder / "file", {&f, 1}), ContainsSubstring((folder / "file").string()));
 }
 
-TEST_CASE("Lines have their labels at their ends, where they are far enough apart for it") {
+TEST_CASE("Lines are labelled at their ends if these are far enough apart") {
     const std::string svg = svg_of(three_lines(10));
     CHECK(text_in(svg, "incremental").left > plot_of(svg).right);
     require_svg(svg);
     require_texts_inside(svg);
-    require_texts_apart(svg);
+    require_texts_disjoint(svg);
     for (const char* words :
          {">Shell sort</text>", ">insertion sort,</text>", ">axial cut</text>", ">incremental</text>"})
         REQUIRE_THAT(svg, ContainsSubstring(words));
-    // From top to bottom as the lines end.
+    // Labels are ordered as the ends of the lines.
     CHECK(text_in(svg, "incremental").top < text_in(svg, "insertion sort,").top);
     CHECK(text_in(svg, "axial cut").top < text_in(svg, "Shell sort").top);
 }
 
-TEST_CASE("Labels that meet give way a little, and stand in a legend where they would have to give way far") {
+TEST_CASE("Overlapping labels are shifted slightly, or moved to a legend if that does not suffice") {
     const std::string near = svg_of(three_lines(1.3));
     require_texts_inside(near);
-    require_texts_apart(near);
+    require_texts_disjoint(near);
     std::vector<aabblab::series> many;
     for (int i = 0; i < 9; ++i)
         many.push_back(series_of("line " + std::to_string(i), series_style::line, {{1, 1, 1, 1}, {2, 2, 2, 2}}));
     many.push_back(series_of("far", series_style::line, {{1, 1, 1, 1}, {2, 100, 100, 100}}));
-    // A line that ends before the others has no end there, and points have none.
+    // A line that ends before the others has no end there, and neither have points.
     figure early = three_lines(10);
     early.lines[1].points.back().x = 1000;
     figure dots = three_lines(10);
@@ -457,7 +457,7 @@ TEST_CASE("Labels that meet give way a little, and stand in a legend where they 
     }
 }
 
-TEST_CASE("Panels share axes, looks and a legend") {
+TEST_CASE("Panels share axes, styles and a legend") {
     for (const std::size_t count : {1, 2, 3, 4, 7}) {
         CAPTURE(count);
         const figure f = small_multiples(count);
@@ -465,12 +465,12 @@ TEST_CASE("Panels share axes, looks and a legend") {
         require_svg(svg);
         require_pdf(pdf_of(f));
         require_texts_inside(svg);
-        require_texts_apart(svg);
+        require_texts_disjoint(svg);
         for (std::size_t i = 0; i < count; ++i) CHECK(count_of(">displacement " + std::to_string(i) + "<", svg) == 1);
         for (const char* once : {"objects", "time a frame (ms)", "Shell sort", "insertion sort"})
             CHECK(count_of(">" + std::string(once) + "</text>", svg) == 1);
         CHECK(count_of(">a mark</text>", svg) == count);
-        // Three looks, a frame and a grid.
+        // Three styles, a frame and a grid.
         CHECK(set_in(svg, "stroke=\"(#[A-F0-9]*)\"").size() == 5);
         CHECK(
             csv_of(f).starts_with("number,x,y,low,high,series,panel\n1,,1,1,1,equal,\n"
@@ -478,7 +478,7 @@ TEST_CASE("Panels share axes, looks and a legend") {
     }
 }
 
-TEST_CASE("No text of a figure is cut off, and no number of an axis runs into the next") {
+TEST_CASE("No text of a figure is cut off or overlaps another") {
     figure wide = figure_of({series_of("a line with a long label that has to stand in a legend below the plot",
                                        series_style::line, {{1, 1e6, 1e6, 1e6}, {1e6, 3e6, 3e6, 3e6}})});
     wide.x.label = "number of objects that move by a tenth of their edge in a frame, over all scenes and seeds";
@@ -496,6 +496,6 @@ TEST_CASE("No text of a figure is cut off, and no number of an axis runs into th
         CAPTURE(f.lines.front().label);
         const std::string svg = svg_of(f);
         require_texts_inside(svg);
-        require_texts_apart(svg);
+        require_texts_disjoint(svg);
     }
 }

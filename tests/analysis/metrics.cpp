@@ -7,7 +7,7 @@ using aabblab::byte_columns;
 using aabblab::measured;
 using aabblab::row;
 
-TEST_CASE("A metric is no group, and no two have one name") {
+TEST_CASE("Names of metrics and metric groups are unique") {
     std::set<std::string> names;
     for (const aabblab::metric_group_info& group : aabblab::metric_groups) CHECK(names.emplace(group.name).second);
     for (const std::string& name : aabblab::metric_names()) {
@@ -16,7 +16,7 @@ TEST_CASE("A metric is no group, and no two have one name") {
     }
 }
 
-TEST_CASE("Times a frame need a frame after the first one") {
+TEST_CASE("Times per frame need a frame after the first one") {
     row r;
     r.frames = 3;
     r.first_ms = 5;
@@ -30,13 +30,13 @@ TEST_CASE("Times a frame need a frame after the first one") {
     r.frames = 1;
     r.update_ms = r.search_ms = r.detect_ms = 0;
     CHECK(measured("frame_ms")(r) == 5);
-    for (const char* none : {"update_ms", "search_ms", "detect_ms"}) {
-        INFO(none);
-        CHECK_FALSE(measured(none)(r).has_value());
+    for (const char* metric : {"update_ms", "search_ms", "detect_ms"}) {
+        INFO(metric);
+        CHECK_FALSE(measured(metric)(r).has_value());
     }
 }
 
-TEST_CASE("The share of global search is that of processor time") {
+TEST_CASE("The share of global search is computed from processor time") {
     row r;
     r.frames = 3;
     r.update_ms = r.search_ms = r.detect_ms = 100;
@@ -46,7 +46,7 @@ TEST_CASE("The share of global search is that of processor time") {
     CHECK(measured("global_share")(r) == 25);
 }
 
-TEST_CASE("Processor time stands beside wall time, and what lies between was waiting") {
+TEST_CASE("Processor time is reported next to wall time, and their difference as waiting") {
     row r;
     r.frames = 3;
     r.build_ms = r.first_ms = r.update_ms = r.search_ms = r.detect_ms = 4;
@@ -63,15 +63,15 @@ TEST_CASE("Processor time stands beside wall time, and what lies between was wai
     CHECK(measured("waiting")(r) == 0);
     r.frames = 1;
     CHECK(measured("frame_cpu_ms")(r) == 4.1);
-    for (const char* none : {"update_cpu_ms", "global_cpu_ms", "global_share"}) {
-        INFO(none);
-        CHECK_FALSE(measured(none)(r).has_value());
+    for (const char* metric : {"update_cpu_ms", "global_cpu_ms", "global_share"}) {
+        INFO(metric);
+        CHECK_FALSE(measured(metric)(r).has_value());
     }
     r.update_cpu_ms.reset();
     CHECK_FALSE(measured("waiting")(r).has_value());
 }
 
-TEST_CASE("Bytes of trees are those of ours, since of an engine they are not known") {
+TEST_CASE("Bytes of trees are unknown for engines") {
     row r;
     r.triangles = 100;
     for (std::size_t i = 0; i < r.bytes.size(); ++i) r.bytes[i] = byte_columns[i] == "nodes" ? 700 : 0;

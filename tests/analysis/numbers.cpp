@@ -7,7 +7,7 @@ using aabblab::fifteen_digits;
 using aabblab::three_digits;
 using aabblab::whole_nanoseconds;
 
-TEST_CASE("Three digits are three, after a carry too") {
+TEST_CASE("Three significant digits are kept after a carry") {
     CHECK(three_digits(0) == "0");
     CHECK(three_digits(0.0182) == "0.0182");
     CHECK(three_digits(0.99951) == "1.00");
@@ -17,7 +17,7 @@ TEST_CASE("Three digits are three, after a carry too") {
     CHECK(three_digits(1234.5) == "1234");
 }
 
-TEST_CASE("What computing a number has rounded is not written") {
+TEST_CASE("Rounding errors of arithmetic are not written") {
     CHECK(fifteen_digits(0.1 + 0.2) == "0.3");
     CHECK(fifteen_digits(0.25) == "0.25");
     CHECK(fifteen_digits(1e9) == "1000000000");
@@ -27,7 +27,7 @@ TEST_CASE("What computing a number has rounded is not written") {
     CHECK(whole_nanoseconds(0) == 0);
 }
 
-TEST_CASE("One is one, all others are several") {
+TEST_CASE("Counts other than 1 are in the plural") {
     CHECK(counted(0, "frame") == "0 frames");
     CHECK(counted(1, "frame") == "1 frame");
     CHECK(counted(12345, "object") == "12,345 objects");

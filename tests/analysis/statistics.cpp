@@ -17,19 +17,19 @@ namespace {
 constexpr std::size_t processes = 3;
 constexpr std::size_t seeds = 5;
 
-/// What an experiment with a true ratio gives, when processes, seeds and repeats each disturb it.
+/// Measurements of a true ratio with random effects of processes, seeds and repeats.
 cells measured(double log_ratio, double by_process, double by_seed, double by_repeat, std::mt19937& random) {
     std::normal_distribution<double> normal;
-    cells all(processes, seeds);
+    cells data(processes, seeds);
     std::vector<double> of_seed(seeds);
     for (double& effect : of_seed) effect = by_seed * normal(random);
     for (std::size_t process = 0; process < processes; ++process) {
         const double of_process = by_process * normal(random);
         for (std::size_t seed = 0; seed < seeds; ++seed)
             for (int repeat = 0; repeat < 3; ++repeat)
-                all.add(process, seed, log_ratio + of_process + of_seed[seed] + by_repeat * normal(random));
+                data.add(process, seed, log_ratio + of_process + of_seed[seed] + by_repeat * normal(random));
     }
-    return all;
+    return data;
 }
 
 outcome outcome_at(double ratio, double noise) {
@@ -47,24 +47,24 @@ TEST_CASE("Quartiles are interpolated") {
     REQUIRE(aabblab::quartiles_of({7}).low == 7);
 }
 
-TEST_CASE("An interval of the bootstrap holds the true ratio as often as it says, whatever disturbs it") {
+TEST_CASE("A bootstrap interval covers the true ratio at its nominal level under any random effects") {
     struct disturbance {
         double by_process, by_seed, by_repeat;
     };
     for (const disturbance d : {disturbance{0, 0, 0.1}, {0, 0.1, 0}, {0.1, 0, 0}, {0, 0.1, 0.1}, {0.05, 0.05, 0.1}}) {
         std::mt19937 random(7);
-        int held = 0;
+        int covered = 0;
         constexpr int experiments = 400;
         for (int i = 0; i < experiments; ++i) {
             const auto range = bootstrap(measured(0.3, d.by_process, d.by_seed, d.by_repeat, random)).range();
-            held += range.low <= 0.3 && 0.3 <= range.high;
+            covered += range.low <= 0.3 && 0.3 <= range.high;
         }
-        CAPTURE(d.by_process, d.by_seed, d.by_repeat, held);
-        CHECK(held >= 0.92 * experiments);
+        CAPTURE(d.by_process, d.by_seed, d.by_repeat, covered);
+        CHECK(covered >= 0.92 * experiments);
     }
 }
 
-TEST_CASE("Processes and seeds that disagree widen an interval, and only as far as they do") {
+TEST_CASE("Variance between processes and seeds widens an interval") {
     const auto width = [](double by_process, double by_seed) {
         std::mt19937 random(3);
         const auto range = bootstrap(measured(0, by_process, by_seed, 0.01, random)).range();
@@ -73,7 +73,7 @@ TEST_CASE("Processes and seeds that disagree widen an interval, and only as far 
     CHECK(width(0, 0) < 0.02);
     CHECK(width(0, 0.1) > 5 * width(0, 0));
     CHECK(width(0.1, 0) > 5 * width(0, 0));
-    // Two means of a hundredth each tell more than three that differ: Student's t knows how few there are.
+    // With three processes and five seeds, Student's t has fewer degrees of freedom for processes.
     CHECK(width(0.1, 0) > width(0, 0.1));
 }
 
@@ -85,28 +85,28 @@ TEST_CASE("The same data give the same estimate") {
     REQUIRE(bootstrap(data).degrees == bootstrap(data).degrees);
 }
 
-TEST_CASE("One slow repeat does not move a ratio") {
-    cells all(processes, seeds);
+TEST_CASE("One slow repeat does not change a ratio") {
+    cells data(processes, seeds);
     for (std::size_t process = 0; process < processes; ++process)
         for (std::size_t seed = 0; seed < seeds; ++seed)
-            for (int repeat = 0; repeat < 3; ++repeat) all.add(process, seed, repeat == 0 && seed == 0 ? 5 : 0.25);
-    REQUIRE(bootstrap(all).value == 0.25);
+            for (int repeat = 0; repeat < 3; ++repeat) data.add(process, seed, repeat == 0 && seed == 0 ? 5 : 0.25);
+    REQUIRE(bootstrap(data).value == 0.25);
 }
 
-TEST_CASE("Where measurements are missing, the others decide") {
-    cells all(processes, seeds);
-    all.add(0, 0, 0.5);
-    REQUIRE(bootstrap(all).value == 0.5);
-    REQUIRE(bootstrap(all).is_known());
+TEST_CASE("Missing measurements are ignored") {
+    cells data(processes, seeds);
+    data.add(0, 0, 0.5);
+    REQUIRE(bootstrap(data).value == 0.5);
+    REQUIRE(bootstrap(data).is_known());
     REQUIRE_FALSE(bootstrap(cells(processes, seeds)).is_known());
     REQUIRE(cells(processes, seeds).empty());
-    REQUIRE_FALSE(all.empty());
+    REQUIRE_FALSE(data.empty());
 }
 
-TEST_CASE("An interval is Student's: three processes that differ have two degrees of freedom") {
-    cells all(processes, 1);
-    for (std::size_t process = 0; process < processes; ++process) all.add(process, 0, static_cast<double>(process));
-    const estimate e = bootstrap(all);
+TEST_CASE("An interval is based on Student's t, with two degrees of freedom for three processes") {
+    cells data(processes, 1);
+    for (std::size_t process = 0; process < processes; ++process) data.add(process, 0, static_cast<double>(process));
+    const estimate e = bootstrap(data);
     CHECK(e.value == 1);
     CHECK(std::abs(e.degrees - 2) < 1e-9);
     // The standard error of 0, 1, 2 is 1 / sqrt(3); 4.303 is the table's value at 97.5 %.
@@ -115,7 +115,7 @@ TEST_CASE("An interval is Student's: three processes that differ have two degree
     CHECK(std::abs(e.p_if_below(1) - 0.5) < 1e-12);
 }
 
-TEST_CASE("The difference of two estimates has the noise of both") {
+TEST_CASE("The difference of two estimates has the errors of both") {
     const estimate both = difference_of({2, 0.3, 10}, {0.5, 0.4, 10});
     CHECK(both.value == 1.5);
     CHECK(std::abs(both.error - 0.5) < 1e-12);
@@ -123,7 +123,7 @@ TEST_CASE("The difference of two estimates has the noise of both") {
     CHECK(difference_of({2, 0, 1}, {1, 0, 1}).range().low == 1);
 }
 
-TEST_CASE("The outcome is where the interval lies against the band") {
+TEST_CASE("The outcome depends on where the interval lies relative to the band") {
     CHECK(outcome_at(0.5, 0.05) == outcome::less);
     CHECK(outcome_at(2, 0.05) == outcome::more);
     CHECK(outcome_at(1, 0.005) == outcome::same);
@@ -136,17 +136,17 @@ TEST_CASE("The outcome is where the interval lies against the band") {
     CHECK(outcome_at(1.06, 0) == outcome::more);
 }
 
-TEST_CASE("A direction is found however small it is, unless it makes no difference") {
-    const auto of = [](double ratio, double error) {
+TEST_CASE("A difference has a direction unless it is shown to lie within the band") {
+    const auto direction = [](double ratio, double error) {
         return direction_of(aabblab::tails_of({std::log(ratio), error, 50}));
     };
-    CHECK(of(0.9, 0.03) == outcome::less);
-    CHECK(of(1.12, 0.03) == outcome::more);
-    CHECK(of(0.98, 0.005) == outcome::same);
-    CHECK(of(0.98, 0.1) == outcome::undecided);
+    CHECK(direction(0.9, 0.03) == outcome::less);
+    CHECK(direction(1.12, 0.03) == outcome::more);
+    CHECK(direction(0.98, 0.005) == outcome::same);
+    CHECK(direction(0.98, 0.1) == outcome::undecided);
     // Below 1, but not shown to lie within the band nor below it: its direction is known.
-    CHECK(of(0.95, 0.01) == outcome::less);
-    // Without a band nothing is the same.
+    CHECK(direction(0.95, 0.01) == outcome::less);
+    // Without a band no outcome is the same.
     CHECK(direction_of(aabblab::tails_of({std::log(0.98), 0.005, 50}, 0)) == outcome::less);
     CHECK(direction_of(aabblab::tails_of({std::log(0.9), 0.01, 50}, 0.2)) == outcome::same);
     // Counts do not vary.
@@ -154,38 +154,38 @@ TEST_CASE("A direction is found however small it is, unless it makes no differen
     CHECK(direction_of(aabblab::tails_of({0.5, 0, 1})) == outcome::more);
 }
 
-TEST_CASE("A claim of less is favoured by less only, one of not more by all that is not above the band") {
+TEST_CASE("Only less supports a claim of less, and any ratio not above the band one of not more") {
     using aabblab::expectation;
-    const auto found = [](expectation expected, double ratio, double error) {
+    const auto support_for = [](expectation expected, double ratio, double error) {
         return support_of(expected, aabblab::tails_of({std::log(ratio), error, 50}));
     };
-    CHECK(found(expectation::less, 0.8, 0.01) == support::favours);
-    CHECK(found(expectation::less, 1, 0.01) == support::no_difference);
-    CHECK(found(expectation::less, 1.2, 0.01) == support::contradicts);
-    CHECK(found(expectation::less, 0.96, 0.03) == support::undecided);
+    CHECK(support_for(expectation::less, 0.8, 0.01) == support::favours);
+    CHECK(support_for(expectation::less, 1, 0.01) == support::no_difference);
+    CHECK(support_for(expectation::less, 1.2, 0.01) == support::contradicts);
+    CHECK(support_for(expectation::less, 0.96, 0.03) == support::undecided);
     // Less than 1, from 0.937 to 0.983, and yet no more than the band: a narrower interval would lie within it.
-    CHECK(found(expectation::less, 0.96, 0.012) == support::no_difference);
-    CHECK(found(expectation::less, 0.96, 0.001) == support::no_difference);
-    CHECK(found(expectation::less, 0.945, 0.012) == support::favours);
-    CHECK(found(expectation::not_more, 1, 0.01) == support::favours);
-    CHECK(found(expectation::not_more, 1.2, 0.01) == support::contradicts);
+    CHECK(support_for(expectation::less, 0.96, 0.012) == support::no_difference);
+    CHECK(support_for(expectation::less, 0.96, 0.001) == support::no_difference);
+    CHECK(support_for(expectation::less, 0.945, 0.012) == support::favours);
+    CHECK(support_for(expectation::not_more, 1, 0.01) == support::favours);
+    CHECK(support_for(expectation::not_more, 1.2, 0.01) == support::contradicts);
     // 0.96, from 0.90 to 1.02, is not above 1.05, whether or not it is less than 1.
-    CHECK(found(expectation::not_more, 0.96, 0.03) == support::favours);
-    CHECK(found(expectation::not_more, 1.02, 0.03) == support::undecided);
+    CHECK(support_for(expectation::not_more, 0.96, 0.03) == support::favours);
+    CHECK(support_for(expectation::not_more, 1.02, 0.03) == support::undecided);
 }
 
-TEST_CASE("Several outcomes or claims at once are decided step by step, the surest first") {
-    struct together {
+TEST_CASE("Several outcomes or claims are decided by the step-down procedure of Holm") {
+    struct family {
         std::vector<double> chances;
         std::vector<bool> decided;
     };
-    // Holm, 1979: the k-th of m surest is held against 0.025 / (m - k + 1).
-    for (const auto& [chances, decided] : {together{{0.02}, {true}},
+    // Holm, 1979: the k-th smallest of m p-values is compared with 0.025 / (m - k + 1).
+    for (const auto& [chances, decided] : {family{{0.02}, {true}},
                                            {{0.02, 0.02}, {false, false}},
                                            {{0.02, 0.01}, {true, true}},
                                            {{0.024, 0.001, 0.012}, {true, true, true}},
                                            {{0.024, 0.001, 0.013}, {false, true, false}},
-                                           // What is sure beyond doubt stays so beside what is not.
+                                           // A p-value of 0 stays decided next to an undecided one.
                                            {{0, 0.5}, {true, false}},
                                            {{}, {}}}) {
         CAPTURE(chances);
@@ -195,30 +195,30 @@ TEST_CASE("Several outcomes or claims at once are decided step by step, the sure
             outcomes.push_back({outcome::less, p});
             claims.push_back({aabblab::expectation::less, {p, 1, 1, 1}});
         }
-        std::vector<bool> found;
-        for (const outcome o : decide_together(outcomes)) found.push_back(o == outcome::less);
-        CHECK(found == decided);
-        found.clear();
+        std::vector<bool> is_less;
+        for (const outcome o : decide_together(outcomes)) is_less.push_back(o == outcome::less);
+        CHECK(is_less == decided);
+        is_less.clear();
         for (std::size_t i = 0; const double level : levels_together(claims))
-            found.push_back(direction_of(claims[i++].p, level) == outcome::less);
-        CHECK(found == decided);
+            is_less.push_back(direction_of(claims[i++].p, level) == outcome::less);
+        CHECK(is_less == decided);
     }
 }
 
-TEST_CASE("Machines that disagree make a wide interval, those that agree a narrow one") {
-    const estimate one{0.5, 0.01, 20};
-    const estimate alone[] = {one};
-    CHECK(aabblab::mean_of(alone).range().low == one.range().low);
-    const estimate agree[] = {one, {0.502, 0.01, 20}, {0.498, 0.01, 20}};
-    const estimate differ[] = {one, {0.9, 0.01, 20}, {0.1, 0.01, 20}};
+TEST_CASE("Machines that disagree give a wide interval, and those that agree a narrow one") {
+    const estimate single{0.5, 0.01, 20};
+    const estimate alone[] = {single};
+    CHECK(aabblab::mean_of(alone).range().low == single.range().low);
+    const estimate agree[] = {single, {0.502, 0.01, 20}, {0.498, 0.01, 20}};
+    const estimate differ[] = {single, {0.9, 0.01, 20}, {0.1, 0.01, 20}};
     CHECK(std::abs(aabblab::mean_of(agree).value - 0.5) < 1e-12);
     const auto width = [](const estimate& e) { return e.range().high - e.range().low; };
-    CHECK(width(aabblab::mean_of(agree)) < width(one));
+    CHECK(width(aabblab::mean_of(agree)) < width(single));
     // Two degrees of freedom: 4.303 standard errors of 0.4 / sqrt(3) on either side.
     CHECK(std::abs(width(aabblab::mean_of(differ)) - 2 * 4.303 * 0.4 / std::sqrt(3.0)) < 0.01);
 }
 
-TEST_CASE("A verdict says no more than what its undecided endpoints cannot change") {
+TEST_CASE("A verdict is undecided if its undecided endpoints could change it") {
     using enum support;
     const auto verdict = [](const std::vector<support>& primary) { return aabblab::verdict_of(primary); };
     CHECK(verdict({favours}) == verdict_kind::holds);

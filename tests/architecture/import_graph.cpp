@@ -4,7 +4,7 @@
 
 namespace {
 
-/// The rooms from the ground up: each may import those above it in this list, and itself.
+/// The rooms in import order: each may import itself and those before it in this list.
 const std::vector<std::string> rooms = {
     "modules/std",
     "modules/base",
@@ -69,40 +69,39 @@ const std::vector<std::string> rooms = {
     "modules",  // the module aabb, which is for users: nothing here imports the core whole
 };
 
-struct arrow {
+struct dependency {
     std::string from, to;  ///< rooms
     std::string file, module;
 };
 
-/// Rooms that show one module, of their own name, and hide all others.
+/// Rooms that expose one module, of their own name, and hide all others.
 const std::set<std::string> hiding_rooms = {"strategies/columns", "strategies/split_mesh", "strategies/wide_tree"};
 
 /// Whether the module is one that its room hides.
-bool is_hidden(const arrow& one) {
-    return hiding_rooms.contains(one.to) && one.module != "aabb." + one.to.substr(one.to.rfind('/') + 1);
+bool is_hidden(const dependency& d) {
+    return hiding_rooms.contains(d.to) && d.module != "aabb." + d.to.substr(d.to.rfind('/') + 1);
 }
 
-/// Who may not import whom, though it stands above.
-bool is_forbidden(const arrow& one) {
+/// Whether a dependency is forbidden although it follows the order of the rooms.
+bool is_forbidden(const dependency& d) {
     const auto is_kind = [](const std::string& room) {
         return room.starts_with("strategies/") && room != "strategies/registry" && room != "strategies/selection" &&
                !hiding_rooms.contains(room);
     };
-    const bool to_paper = one.to.starts_with("paper");
-    // Others than `reproduce` read results that it has sealed.
-    const bool knows_paper = one.file == "experiments/commands/reproduce.cpp" ||
-                             (one.from == "experiments/commands" && one.to == "paper/record");
-    const bool judges = one.from.starts_with("paper") && one.from != "paper/measuring";
+    const bool to_paper = d.to.starts_with("paper");
+    // Other commands than `reproduce` read results that it has sealed.
+    const bool knows_paper =
+        d.file == "experiments/commands/reproduce.cpp" || (d.from == "experiments/commands" && d.to == "paper/record");
+    const bool judges = d.from.starts_with("paper") && d.from != "paper/measuring";
     // Strategies of different kinds know nothing of each other, and configs nothing of results; one command knows the
     // paper, which measures in one room and reads results through their analysis in all others.
-    return (is_kind(one.from) && is_kind(one.to)) || is_hidden(one) ||
-           (one.from.starts_with("experiments") && to_paper && !knows_paper) ||
-           (one.from == "experiments/configs" && one.to == "experiments/results") ||
-           (judges &&
-            (one.to == "experiments/trials" || one.to == "experiments/configs" || one.to == "experiments/results"));
+    return (is_kind(d.from) && is_kind(d.to)) || is_hidden(d) ||
+           (d.from.starts_with("experiments") && to_paper && !knows_paper) ||
+           (d.from == "experiments/configs" && d.to == "experiments/results") ||
+           (judges && (d.to == "experiments/trials" || d.to == "experiments/configs" || d.to == "experiments/results"));
 }
 
-/// The room that a file stands in: the longest name that its path begins with.
+/// The room of a file: the longest name that its path begins with.
 std::string room_of(const std::string& file) {
     std::string best;
     for (const std::string& room : rooms)
@@ -114,47 +113,47 @@ constexpr std::array folders{"modules", "strategies", "validation", "experiments
 
 struct source {
     std::string file;
-    std::string module;  ///< none of a partition
+    std::string module;  ///< empty for a partition
     bool is_interface = false;
     std::vector<std::string> imports;
 };
 
-/// What stands in the sources of a folder before any code: the module that each is of, and those that it imports.
-/// @param root what the names of files begin in
+/// The module declarations and imports of the sources in a folder.
+/// @param root the folder that file names are relative to
 std::vector<source> sources_in(const std::filesystem::path& folder, const std::filesystem::path& root) {
     static const std::regex declaration(R"(^(export )?module ([a-z_.0-9]+);)");
     static const std::regex import_line(R"(^(?:export )?import ([a-z_.0-9:]+);)");
-    std::vector<source> all;
+    std::vector<source> sources;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         const std::string ending = entry.path().extension().string();
         if (ending != ".cpp" && ending != ".cppm" && ending != ".hpp") continue;
-        source& one = all.emplace_back();
-        one.file = std::filesystem::relative(entry.path(), root).generic_string();
-        std::smatch found;
+        source& unit = sources.emplace_back();
+        unit.file = std::filesystem::relative(entry.path(), root).generic_string();
+        std::smatch match;
         std::ifstream in(entry.path());
         for (std::string line; std::getline(in, line);) {
-            if (std::regex_search(line, found, declaration)) {
-                one.module = found[2];
-                one.is_interface = found[1].matched;
+            if (std::regex_search(line, match, declaration)) {
+                unit.module = match[2];
+                unit.is_interface = match[1].matched;
             }
-            if (std::regex_search(line, found, import_line)) one.imports.push_back(found[1]);
+            if (std::regex_search(line, match, import_line)) unit.imports.push_back(match[1]);
         }
     }
-    std::ranges::sort(all, {}, &source::file);
-    return all;
+    std::ranges::sort(sources, {}, &source::file);
+    return sources;
 }
 
-/// The arrows from files to rooms, each once.
-std::vector<arrow> arrows_in(const std::filesystem::path& root) {
+/// The dependencies of files on rooms, each once.
+std::vector<dependency> dependencies_in(const std::filesystem::path& root) {
     std::map<std::string, std::string> home{{"aabb.strategies", "strategies/registry/strategies.cppm.in"}};
     std::vector<source> sources;
     for (const char* folder : folders)
         if (std::filesystem::exists(root / folder))
-            for (const source& one : sources_in(root / folder, root)) {
-                if (one.is_interface) home[one.module] = one.file;
-                sources.push_back(one);
+            for (const source& unit : sources_in(root / folder, root)) {
+                if (unit.is_interface) home[unit.module] = unit.file;
+                sources.push_back(unit);
             }
-    std::vector<arrow> arrows;
+    std::vector<dependency> dependencies;
     std::set<std::pair<std::string, std::string>> known;
     for (const source& importing : sources)
         for (const std::string& module : importing.imports) {
@@ -162,43 +161,43 @@ std::vector<arrow> arrows_in(const std::filesystem::path& root) {
             const std::string& file = importing.file;
             INFO(file << " imports " << module);
             REQUIRE(home.contains(module));
-            const arrow one{room_of(file), room_of(home.at(module)), file, module};
-            REQUIRE(!one.from.empty());
-            if (one.from != one.to && (known.emplace(file, one.to).second || is_hidden(one))) arrows.push_back(one);
+            const dependency d{room_of(file), room_of(home.at(module)), file, module};
+            REQUIRE(!d.from.empty());
+            if (d.from != d.to && (known.emplace(file, d.to).second || is_hidden(d))) dependencies.push_back(d);
         }
-    return arrows;
+    return dependencies;
 }
 
-/// Imports that the interface of an implementation unit has already: "FILE imports MODULE", a line each.
+/// Imports that repeat those of the interface of an implementation unit: a line "FILE imports MODULE" for each.
 std::string repeated_imports(const std::filesystem::path& root) {
     const std::vector<source> sources = sources_in(root, root);
     std::map<std::string, std::set<std::string>> of_interface;  // by module
-    for (const source& one : sources)
-        if (one.is_interface) of_interface[one.module].insert(one.imports.begin(), one.imports.end());
+    for (const source& unit : sources)
+        if (unit.is_interface) of_interface[unit.module].insert(unit.imports.begin(), unit.imports.end());
     std::string text;
-    for (const source& one : sources)
-        for (const std::string& imported : one.imports)
-            if (!one.is_interface && of_interface[one.module].contains(imported))
-                text += one.file + " imports " + imported + "\n";
+    for (const source& unit : sources)
+        for (const std::string& imported : unit.imports)
+            if (!unit.is_interface && of_interface[unit.module].contains(imported))
+                text += unit.file + " imports " + imported + "\n";
     return text;
 }
 
-/// "experiments/trials <- paper/claims: FILE imports MODULE", a line each.
-std::string arrows_back(const std::vector<arrow>& arrows) {
+/// Dependencies against the order: a line "experiments/trials -> paper/claims: FILE imports MODULE" for each.
+std::string backward_dependencies(const std::vector<dependency>& dependencies) {
     std::string text;
-    for (const arrow& one : arrows)
-        if (std::ranges::find(rooms, one.from) < std::ranges::find(rooms, one.to) || is_forbidden(one))
-            text += one.from + " -> " + one.to + ": " + one.file + " imports " + one.module + "\n";
+    for (const dependency& d : dependencies)
+        if (std::ranges::find(rooms, d.from) < std::ranges::find(rooms, d.to) || is_forbidden(d))
+            text += d.from + " -> " + d.to + ": " + d.file + " imports " + d.module + "\n";
     return text;
 }
 
-/// Each room with what it imports, from the ground up.
-std::string drawing_of(const std::vector<arrow>& arrows) {
+/// Each room with the rooms that it imports, in import order.
+std::string drawing_of(const std::vector<dependency>& dependencies) {
     std::string text;
     for (const std::string& room : rooms) {
         std::set<std::string> below;
-        for (const arrow& one : arrows)
-            if (one.from == room) below.insert(one.to);
+        for (const dependency& d : dependencies)
+            if (d.from == room) below.insert(d.to);
         text += room + (below.empty() ? "" : " <-");
         for (const std::string& other : below) text += " " + other;
         text += "\n";
@@ -208,14 +207,14 @@ std::string drawing_of(const std::vector<arrow>& arrows) {
 
 }  // namespace
 
-TEST_CASE("No import runs back from a room to one that stands on it") {
-    const std::vector<arrow> arrows = arrows_in(AABBLAB_SOURCE);
-    std::ofstream(AABBLAB_DRAWING) << drawing_of(arrows);
-    REQUIRE(arrows.size() > 40);
-    CHECK(arrows_back(arrows) == "");
+TEST_CASE("No room imports a room that follows it") {
+    const std::vector<dependency> dependencies = dependencies_in(AABBLAB_SOURCE);
+    std::ofstream(AABBLAB_DRAWING) << drawing_of(dependencies);
+    REQUIRE(dependencies.size() > 40);
+    CHECK(backward_dependencies(dependencies) == "");
 }
 
-TEST_CASE("No implementation unit imports what its interface does") {
+TEST_CASE("No implementation unit repeats an import of its interface") {
     for (const char* folder : folders) CHECK(repeated_imports(std::filesystem::path(AABBLAB_SOURCE) / folder) == "");
     const temporary_folder folder;
     std::ofstream(folder / "a.cppm") << "export module a;\nimport b;\nexport import :c;\n";
@@ -223,20 +222,20 @@ TEST_CASE("No implementation unit imports what its interface does") {
     CHECK(repeated_imports(folder.path()) == "a.cpp imports :c\na.cpp imports b\n");
 }
 
-TEST_CASE("An import that runs back is found") {
+TEST_CASE("Imports against the order of the rooms are detected") {
     const temporary_folder folder;
     const auto write = [&](const std::string& file, const std::string& text) {
         const std::filesystem::path path = folder.path() / file;
         std::filesystem::create_directories(path.parent_path());
         std::ofstream(path) << text;
     };
-    const auto back = [&] { return arrows_back(arrows_in(folder.path())); };
+    const auto back = [&] { return backward_dependencies(dependencies_in(folder.path())); };
     write("modules/geometry/geometry.cppm", "export module aabb.geometry;\n");
     write("strategies/sort/a.cppm", "export module aabb.sort.a;\nimport aabb.geometry;\n");
     write("strategies/tree/b.cppm", "export module aabb.tree.b;\nimport aabb.geometry;\n");
     write("paper/claims/claims.cppm", "export module aabblab.claims;\nimport aabb.geometry;\n");
     CHECK(back().empty());
-    CHECK(holds(drawing_of(arrows_in(folder.path())), "strategies/sort <- modules/geometry\n"));
+    CHECK(holds(drawing_of(dependencies_in(folder.path())), "strategies/sort <- modules/geometry\n"));
     write("modules/geometry/mesh.cpp", "module aabb.geometry;\nimport aabb.sort.a;\n");
     CHECK(back() == "modules/geometry -> strategies/sort: modules/geometry/mesh.cpp imports aabb.sort.a\n");
     write("modules/geometry/mesh.cpp", "module aabb.geometry;\n");

@@ -1,4 +1,4 @@
-// Runs the program of micro-benchmarks.
+// Runs the micro-benchmark program.
 
 #include "../experiments/program_json.hpp"
 
@@ -21,7 +21,7 @@ aabb::strategy_choice strategy_of(const std::string& benchmark) {
     return aabb::parse_strategy(benchmark.substr(begin, benchmark.find('/', begin) - begin));
 }
 
-/// What benchmarks of these names report.
+/// The JSON reports of the benchmarks that match the filter.
 nlohmann::json reported(const std::string& filter) {
     return json_of(
         {"--benchmark_filter=" + filter, "--benchmark_min_time=0.001", "--benchmark_format=json"})["benchmarks"];
@@ -29,7 +29,7 @@ nlohmann::json reported(const std::string& filter) {
 
 }  // namespace
 
-TEST_CASE("Every strategy of a stage of global search has a benchmark, named as the command line takes it") {
+TEST_CASE("Every sort, partition and sweep has a benchmark with its name on the command line") {
     std::vector<std::string> listed = lines_of(run_well({"--benchmark_list_tests"}).out);
     for (const aabb::strategy_kind kind :
          {aabb::strategy_kind::sort, aabb::strategy_kind::partition, aabb::strategy_kind::sweep}) {
@@ -55,7 +55,7 @@ TEST_CASE("Every strategy of a stage of global search has a benchmark, named as 
     REQUIRE(std::ranges::adjacent_find(listed) == listed.end());
 }
 
-TEST_CASE("Every test of local detection has a benchmark, with and without what carries B into A's frame") {
+TEST_CASE("Every test of local detection has a benchmark, with and without the transform into A's frame") {
     const auto listed = lines_of(run_well({"--benchmark_list_tests", "--benchmark_filter=^test/"}).out);
     const std::string triangle = "test/triangle/";
     const auto triangle_test_of = [](const std::string& benchmark) {
@@ -69,10 +69,10 @@ TEST_CASE("Every test of local detection has a benchmark, with and without what 
                                          "test/triangle_aabb",
                                          triangle + "moller:epsilon=scaled,division=yes"};
     for (const std::string& name : strategy_names(aabb::strategy_kind::triangle)) {
-        const auto of_it = [&](const std::string& benchmark) {
+        const auto is_of_test = [&](const std::string& benchmark) {
             return benchmark.starts_with(triangle) && triangle_test_of(benchmark).name == name;
         };
-        const auto first = std::ranges::find_if(listed, of_it);
+        const auto first = std::ranges::find_if(listed, is_of_test);
         INFO(name);
         REQUIRE(first != listed.end());
         expected.push_back(*first);
@@ -89,7 +89,7 @@ TEST_CASE("Every test of local detection has a benchmark, with and without what 
         }
 }
 
-TEST_CASE("Tests of local detection report a time and the share of hits, which is the same in every run") {
+TEST_CASE("Tests of local detection report a time and a reproducible share of hits") {
     const auto benchmarks = reported("^test/");
     const auto again = reported("^test/");
     REQUIRE(benchmarks.size() >= 20);
@@ -107,23 +107,23 @@ TEST_CASE("Tests of local detection report a time and the share of hits, which i
         CHECK(benchmarks[i].value("hits", 0.0) > 0);
         CHECK(benchmarks[i].value("hits", 1.0) < 1);
         CHECK(benchmarks[i]["hits"] == again[i]["hits"]);
-        // Of Möller's original what it loses is counted; all others are refused when they lose anything.
+        // Möller's original reports the share of hits that it keeps; all other tests must not lose any.
         const bool may_lose = benchmarks[i].value("name", "").starts_with("test/triangle_box_moller");
         CHECK((benchmarks[i].value("kept", -1.0) >= 0) == may_lose);
     }
-    // The box of a triangle holds it, and the leaf's box, when it is turned, holds that of the turned triangle.
+    // The box of a triangle contains it, and the rotated box of a leaf contains that of the rotated triangle.
     for (const std::string frame : {"", "/frame:a"}) {
         INFO(frame);
         CHECK(hits("test/triangle_box" + frame) < hits("test/triangle_aabb" + frame));
         CHECK(hits("test/triangle_aabb" + frame) <= hits("test/box" + frame));
-        // Each further axis parts some boxes, none parts what holds triangles that meet.
+        // Each further axis separates some boxes, but none whose triangles intersect.
         CHECK(hits("test/rotated_box_6" + frame) < hits("test/box" + frame));
         CHECK(hits("test/rotated_box_15" + frame) < hits("test/rotated_box_6" + frame));
         CHECK(hits("test/triangle_box_moller" + frame) <= hits("test/triangle_box" + frame));
     }
-    // A rotated box holds its triangle; the box that B's node becomes in A's frame is larger than the rotated one.
+    // A rotated box contains its triangle; the box of B's node in A's frame is larger than the rotated one.
     CHECK(hits("test/triangle_box") < hits("test/rotated_box_15"));
-    // Where nothing is turned the two boxes are one.
+    // Without rotation the two boxes are the same.
     CHECK(hits("test/triangle_aabb/frame:a") == hits("test/box/frame:a"));
     CHECK(hits("test/triangle/exact/frame:a") == hits("test/triangle/exact"));
 }
@@ -143,7 +143,7 @@ TEST_CASE("Benchmarks report their counters") {
     counters(3, {"real_time", "box_tests/n", "pairs/n"});
 }
 
-TEST_CASE("Every build has a benchmark, which tells what two threads gain, and what there is to gain") {
+TEST_CASE("Every build has a benchmark that reports the speedup by two threads and its upper bound") {
     std::vector<std::string> measured;
     for (const auto& benchmark : reported("^build/.*/noise_sphere")) {
         INFO(benchmark.dump());
@@ -155,7 +155,7 @@ TEST_CASE("Every build has a benchmark, which tells what two threads gain, and w
     CHECK(sorted(measured) == sorted(strategy_names(aabb::strategy_kind::build)));
 }
 
-TEST_CASE("What benchmarks cannot use is refused with status 2") {
+TEST_CASE("Invalid arguments of benchmarks are rejected with status 2") {
     for (const char* argument : {"--benchmark_filter=sotr/", "--benchmrk", "--benchmark_format=xml"}) {
         const program_result result = run_program({argument});
         INFO(argument << ": " << result.err);

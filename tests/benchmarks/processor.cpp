@@ -14,16 +14,16 @@ int processors() {
 
 }  // namespace
 
-TEST_CASE("A thread stays on one processor, but not while it is let off") {
+TEST_CASE("A thread stays pinned to one processor, except for work that is run unpinned") {
     const int before = processors();
     {
         const aabblab::idlest_processor pinned;
         CHECK(processors() == 1);
         pinned.without([&] {
             CHECK(processors() == before);
-            int of_another = 0;
-            std::jthread([&] { of_another = processors(); }).join();
-            CHECK(of_another == before);
+            int of_other_thread = 0;
+            std::jthread([&] { of_other_thread = processors(); }).join();
+            CHECK(of_other_thread == before);
         });
         CHECK(processors() == 1);
     }

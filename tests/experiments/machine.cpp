@@ -2,7 +2,7 @@
 
 import aabblab.machine;
 
-TEST_CASE("A machine is told as Linux has it: processor, caches by level, governor, whether it is virtual") {
+TEST_CASE("A machine is described from /proc and /sys: processor, caches, governor and hypervisor") {
     const temporary_folder root;
     root.write("proc/cpuinfo",
                "processor\t: 0\nmodel name\t: A Processor @ 2.40GHz\nflags\t\t: fpu hypervisor sse\n\n"
@@ -28,9 +28,9 @@ TEST_CASE("A machine is told as Linux has it: processor, caches by level, govern
     CHECK(m.hypervisor == true);
 }
 
-TEST_CASE("What a system does not tell of its machine is left open") {
-    const temporary_folder nothing;
-    const aabblab::machine m = aabblab::this_machine(nothing.path());
+TEST_CASE("Machine properties that the system does not report stay unknown") {
+    const temporary_folder empty_root;
+    const aabblab::machine m = aabblab::this_machine(empty_root.path());
     CHECK(m.processor == "unknown");
     CHECK(m.caches.empty());
     CHECK(!m.governor);

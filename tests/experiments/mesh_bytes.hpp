@@ -9,7 +9,7 @@ inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
 using triangles = std::vector<std::array<std::uint32_t, 3>>;
 
-/// A mesh in a file of that name.
+/// The mesh that is read from a file of that name.
 inline aabblab::loaded_mesh read(const std::string& name, const std::string& bytes) {
     const temporary_folder folder;
     return aabblab::read_mesh(folder.write(name, bytes));

@@ -11,7 +11,7 @@ std::string error_of(const std::filesystem::path& file) {
 struct malformed {
     std::string file;
     std::string bytes;
-    std::string error;  // what follows the file
+    std::string error;  // the message after the file name
 };
 
 const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n";
@@ -33,7 +33,7 @@ std::string ply_points(float last = 0) {
 
 }  // namespace
 
-TEST_CASE("malformed text meshes are refused with the line") {
+TEST_CASE("malformed text meshes are rejected with the line number") {
     const temporary_folder folder;
     for (const auto& [file, bytes, error] : {
              malformed{"a.off", "", ": is empty"},
@@ -146,18 +146,18 @@ TEST_CASE("malformed text meshes are refused with the line") {
     }
 }
 
-TEST_CASE("malformed binary meshes are refused") {
+TEST_CASE("malformed binary meshes are rejected") {
     const temporary_folder folder;
     const std::string face = raw(std::uint8_t{3}) + raw(0) + raw(1);
     const std::string triangle = stl_triangle({0, 0, 0, 1, 0, 0, 0, 1, 0});
-    const std::string no_stl =
+    const std::string not_stl =
         ": is not an STL file: it is neither text that begins with solid nor holds the 84 bytes of a binary header";
-    const std::string lying =
+    const std::string huge_count =
         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty float y\n"
         "property float z\nend_header\n";
     for (const auto& [file, bytes, error] : {
-             malformed{"a.ply", lying, ": ends in element 0 of 4000000000 elements 'vertex'"},
-             {"a.ply", lying + raw(1e300) + raw(1.0), ": vertex 0 has a coordinate that is too large for a float"},
+             malformed{"a.ply", huge_count, ": ends in element 0 of 4000000000 elements 'vertex'"},
+             {"a.ply", huge_count + raw(1e300) + raw(1.0), ": vertex 0 has a coordinate that is too large for a float"},
              {"a.ply", ply_binary + ply_points().substr(1), ": ends in element 2 of 3 elements 'vertex'"},
              {"a.ply", ply_binary + ply_points(not_a_number) + face + raw(2),
               ": vertex 2 has a coordinate that is not finite, and a face uses it"},
@@ -167,10 +167,10 @@ TEST_CASE("malformed binary meshes are refused") {
              {"a.ply", ply_binary + ply_points() + face, ": ends in element 0 of 1 elements 'face'"},
              {"a.ply", ply_binary + ply_points() + face + raw(2) + raw(1),
               ": continues for 4 bytes after the last element that its header announces"},
-             {"a.stl", "cube", no_stl},
+             {"a.stl", "cube", not_stl},
              {"a.stl", (stl_header(2, "solid but binary") + triangle).substr(0, 100),
               ": its header announces 2 triangles, which take 184 bytes, but the file has 100"},
-             {"a.stl", stl_header(2, "solid but binary").substr(0, 82), no_stl},
+             {"a.stl", stl_header(2, "solid but binary").substr(0, 82), not_stl},
              {"a.stl", stl_header(4000000000),
               ": its header announces 4000000000 triangles, which take 200000000084 bytes, but the file has 84"},
              {"a.stl", stl_header(0), ": the mesh has no triangles"},
@@ -182,13 +182,13 @@ TEST_CASE("malformed binary meshes are refused") {
     }
 }
 
-TEST_CASE("a word of a file is quoted up to 40 bytes, but whole characters") {
+TEST_CASE("an error message quotes at most 40 bytes of a word, in whole characters") {
     const temporary_folder folder;
     const std::string word = "x" + repeated("\xc3\xa9", 30);
     CHECK_THAT(error_of(folder.write("a.off", word)), EndsWith("found '" + word.substr(0, 39) + "…'"));
 }
 
-TEST_CASE("what is no mesh file is refused") {
+TEST_CASE("files that are not meshes are rejected") {
     const temporary_folder folder;
     CHECK_THAT(error_of(folder / "absent.off"), EndsWith("/absent.off: no such file"));
     CHECK_THAT(error_of(folder.path()), EndsWith(": is a folder, not a file"));
@@ -197,16 +197,16 @@ TEST_CASE("what is no mesh file is refused") {
                EndsWith("/a.stp: unknown mesh format '.stp'; did you mean '.stl'?"));
     CHECK_THAT(error_of(folder.write("mesh", "x")),
                EndsWith("/mesh: unknown mesh format ''; expected one of .off, .obj, .ply, .stl, .gltf, .glb"));
-    // A file with a hole: it has the size, but no disk or memory is touched.
+    // A sparse file has the size, but takes no disk space or memory.
     std::filesystem::resize_file(folder.write("huge.off", "OFF"), std::uintmax_t{1} << 43);
     CHECK_THAT(error_of(folder / "huge.off"), Catch::Matchers::ContainsSubstring("16384.0 GiB of memory"));
 }
 
-TEST_CASE("what takes more memory than there is is told in sizes that differ") {
+TEST_CASE("a mesh that exceeds the memory is rejected with both sizes in enough digits to differ") {
     const auto memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
     REQUIRE_NOTHROW(aabblab::require_memory("x", memory));
-    const std::string there = std::to_string(static_cast<std::uint64_t>(memory));
+    const std::string available = std::to_string(static_cast<std::uint64_t>(memory));
     const std::string one_more = std::to_string(static_cast<std::uint64_t>(memory) + 1);
     REQUIRE_THROWS_WITH(aabblab::require_memory("x", memory + 1),
-                        "x would take " + one_more + " bytes of memory, but this machine has " + there + " bytes");
+                        "x would take " + one_more + " bytes of memory, but this machine has " + available + " bytes");
 }

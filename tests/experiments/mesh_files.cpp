@@ -3,11 +3,11 @@
 namespace {
 
 const std::vector<aabb::vec3f> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-const triangles two = {{0, 1, 2}, {0, 2, 3}};
+const triangles half_tetrahedron = {{0, 1, 2}, {0, 2, 3}};
 
 void require_two_triangles(const aabblab::loaded_mesh& loaded, const std::string& report = {}) {
     REQUIRE(loaded.mesh.vertices == corners);
-    REQUIRE(loaded.mesh.triangles == two);
+    REQUIRE(loaded.mesh.triangles == half_tetrahedron);
     REQUIRE(loaded.report.text() == report);
 }
 
@@ -20,24 +20,24 @@ std::string ply_header(const std::string& format, const std::string& coordinate,
 }
 
 template <class Coordinate, class Count, class Index>
-std::string ply_body(bool big) {
+std::string ply_body(bool big_endian) {
     std::string bytes;
     for (const aabb::vec3f& v : corners) {
-        bytes += raw(std::uint8_t{9}, big);
-        for (int k = 0; k < 3; ++k) bytes += raw(static_cast<Coordinate>(v[k]), big);
-        bytes += raw(std::uint8_t{1}, big) + raw(std::int16_t{-4}, big);
+        bytes += raw(std::uint8_t{9}, big_endian);
+        for (int k = 0; k < 3; ++k) bytes += raw(static_cast<Coordinate>(v[k]), big_endian);
+        bytes += raw(std::uint8_t{1}, big_endian) + raw(std::int16_t{-4}, big_endian);
     }
-    for (const auto& t : two) {
-        bytes += raw(static_cast<Count>(3), big);
-        for (const std::uint32_t v : t) bytes += raw(static_cast<Index>(v), big);
-        bytes += raw(std::int32_t{-7}, big);
+    for (const auto& t : half_tetrahedron) {
+        bytes += raw(static_cast<Count>(3), big_endian);
+        for (const std::uint32_t v : t) bytes += raw(static_cast<Index>(v), big_endian);
+        bytes += raw(std::int32_t{-7}, big_endian);
     }
-    return bytes + raw(0.5, big);
+    return bytes + raw(0.5, big_endian);
 }
 
 }  // namespace
 
-TEST_CASE("OFF in its variants") {
+TEST_CASE("OFF is read in all its variants") {
     const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
     const std::string faces = "3 0 1 2\n3 0 2 3\n";
     for (const std::string& file : {
@@ -58,7 +58,7 @@ TEST_CASE("OFF in its variants") {
     }
 }
 
-TEST_CASE("OFF is made of words, and lines mean something only where colours of faces end") {
+TEST_CASE("Line breaks in OFF matter only where they end the colours of faces") {
     for (const std::string& file : {
              std::string("OFF 4 2 0 0 0 0 1 0 0 0 1 0 0 0 1 3 0 1 2 3 0 2 3"),
              std::string("OFF\n4\n2\n# none\n0\n0\n0 0\n1 0 0 0\n1 0 0 0 1 3\n0 1 2 3 0\n2\n3\n"),
@@ -77,14 +77,14 @@ TEST_CASE("OFF is made of words, and lines mean something only where colours of 
         const std::string error = refusal_in<aabb::input_error>([&] { return read("a.off", file); });
         return error.substr(error.rfind('/') + 1);
     };
-    // The 3 behind the first face is a colour and the next word a face of four corners, or it begins a face of three.
+    // The number after the first face is its colour, or the number of corners of the next face.
     CHECK(error_of("OFF 5 2 0 0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n3 0 1 2 3\n3 0 2 3\n") == "accepted");
     CHECK(error_of("OFF 9 2 0 0 0 0 2 0 0 3 1 0 3 2 0 2 3 0 1 3 0 0 1 0 9 9 9 8 8 8\n3 0 1 2 7\n7 0 1 2 3 4 5 6\n") ==
           "accepted");
     CHECK(error_of("OFF 9 2 0 0 0 0 1 0 0 0 1 0 0 0 1 1 1 1 1 1 2 1 1 3 1 1 4 1 1 5\n3 0 1 2 7\n3 0 1 2 4 5 6\n") ==
           "a.off: can be read in two ways, as numbers after the corners of a face are colours or more faces; expected "
           "each vertex and each face on a line of its own");
-    // A number that is missing does not shift all others.
+    // A missing number does not shift those after it.
     CHECK(error_of("OFF\n3 2 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n3 2 1 0\n") ==
           "a.off:4: expected three coordinates, found the end of the line");
     CHECK(error_of("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 3 1 2 0 0 0\n") ==
@@ -94,10 +94,10 @@ TEST_CASE("OFF is made of words, and lines mean something only where colours of 
     CHECK(error_of("OFF 3 1 0\n0 0\n0 1 0\n0 0 1 0 3 0 1\n") == "a.off: ends after 0 of 1 faces");
 }
 
-TEST_CASE("OBJ: faces of its first versions are read, and statements that may make surface are told") {
+TEST_CASE("OBJ: obsolete face statements are read, and skipped statements are reported") {
     const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
     require_two_triangles(read("a.obj", vertices + "f 1 2 3\nfo 1 3 4\n"));
-    // A backslash carries a statement on, behind a blank or a word.
+    // A backslash continues a statement, after a blank or a word.
     require_two_triangles(read("a.obj", vertices + "f 1 2\\\n3\nf 1 \\\n3\\\n 4\n"));
     CHECK(read("a.obj", vertices + "v 0 0 0 \\\n1.0\nf 1 2 3\nf 1 3 4\n").report.text().empty());
     require_two_triangles(
@@ -109,7 +109,7 @@ TEST_CASE("OBJ: faces of its first versions are read, and statements that may ma
     CHECK(read("a.obj", many).report.text().ends_with("1 statement 'xh' skipped, 2 of other names skipped"));
 }
 
-TEST_CASE("A vertex that no face uses may be NaN or infinite, keeps its number and is in no box") {
+TEST_CASE("An unused vertex may be NaN or infinite, keeps its index and enlarges no box") {
     const std::string ply =
         "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
         "property list uchar int vertex_indices\nend_header\n";
@@ -132,7 +132,7 @@ TEST_CASE("A vertex that no face uses may be NaN or infinite, keeps its number a
     }
 }
 
-TEST_CASE("PLY: strips of triangles, told from faces by nothing but their form") {
+TEST_CASE("PLY: triangle strips are read with a consistent orientation") {
     const auto file = [](const std::string& elements, const std::string& values) {
         return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
                elements + "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n" + values;
@@ -142,7 +142,7 @@ TEST_CASE("PLY: strips of triangles, told from faces by nothing but their form")
     const auto triangles_of = [&](const std::string& elements, const std::string& values) {
         return read("a.ply", file(elements, values)).mesh.triangles;
     };
-    // All face one way: every other one is turned, beginning anew behind a -1.
+    // Every other triangle is flipped, so that all face one way; a -1 begins a new strip.
     CHECK(triangles_of(strips, "4 0 1 2 3\n") == triangles{{0, 1, 2}, {2, 1, 3}});
     CHECK(triangles_of(strips, "8 0 1 2 3 -1 0 1 3\n") == triangles{{0, 1, 2}, {2, 1, 3}, {0, 1, 3}});
     CHECK(triangles_of(strips, "9 -1 0 1 -1 0 1 2 -1 -1\n") == triangles{{0, 1, 2}});
@@ -150,7 +150,7 @@ TEST_CASE("PLY: strips of triangles, told from faces by nothing but their form")
     CHECK(parts.report.text() == "2 faces of fewer than three corners dropped");
     CHECK(triangles_of(faces + strips, "3 3 2 1\n3 0 1 2\n") == triangles{{3, 2, 1}, {0, 1, 2}});
     CHECK(triangles_of(strips + faces, "3 0 1 2\n3 3 2 1\n") == triangles{{0, 1, 2}, {3, 2, 1}});
-    // What joins two parts without a -1 is no surface, but counts for the turn.
+    // Degenerate triangles that join strips without a -1 are skipped, but count for the orientation.
     const aabblab::loaded_mesh joined = read("a.ply", file(strips, "8 0 1 2 2 1 1 2 3\n"));
     CHECK(joined.mesh.triangles == triangles{{0, 1, 2}, {2, 1, 3}});
     CHECK(joined.report.text() == "4 triangles of strips skipped, which repeat a corner");
@@ -165,24 +165,24 @@ TEST_CASE("PLY: strips of triangles, told from faces by nothing but their form")
     CHECK(read("a.ply", binary + values).mesh.triangles == triangles{{0, 1, 2}, {2, 1, 3}, {0, 1, 3}});
 }
 
-TEST_CASE("STL: however many vertices a text or binary file has, equal ones become one") {
-    constexpr int most = 3000;
-    std::string binary = stl_header(2 * most);
-    for (int turn = 0; turn < 2; ++turn)
-        for (int t = 0; t < most; ++t) {
+TEST_CASE("STL: equal vertices of a large file are merged") {
+    constexpr int count = 3000;
+    std::string binary = stl_header(2 * count);
+    for (int copy = 0; copy < 2; ++copy)
+        for (int t = 0; t < count; ++t) {
             const auto x = static_cast<float>(t);
             binary += stl_triangle({x, 0, 0, x, 1, 0, 0, x, 1});
         }
     const aabb::mesh mesh = read("a.stl", binary).mesh;
-    REQUIRE(mesh.triangle_count() == 2 * most);
-    CHECK(mesh.vertices.size() == 3 * most);
-    for (std::uint32_t t = 0; t < most; ++t) {
-        CHECK(mesh.triangles[t] == mesh.triangles[t + most]);
+    REQUIRE(mesh.triangle_count() == 2 * count);
+    CHECK(mesh.vertices.size() == 3 * count);
+    for (std::uint32_t t = 0; t < count; ++t) {
+        CHECK(mesh.triangles[t] == mesh.triangles[t + count]);
         CHECK(mesh.triangle(t)[2] == aabb::vec3f{0, static_cast<float>(t), 1});
     }
 }
 
-TEST_CASE("OBJ: corners in all their forms, negative ones, other statements") {
+TEST_CASE("OBJ: corners are read in every form, and irrelevant statements are ignored") {
     const std::string vertices = "v 0 0 0\nv 1 0 0 1.0\nv 0 1 0\nv 0 0 1 0.2 0.3 0.4\n";
     for (const std::string& file : {
              vertices + "f 1 2 3\nf 1 3 4\n",
@@ -197,7 +197,7 @@ TEST_CASE("OBJ: corners in all their forms, negative ones, other statements") {
     }
 }
 
-TEST_CASE("PLY: text and binary, any scalar types, other properties and elements") {
+TEST_CASE("PLY: text and binary files are read with any scalar types, properties and elements") {
     const std::string camera = "1 element 'camera' skipped";
     require_two_triangles(
         read("a.ply", ply_header("ascii", "float", "uchar int vertex_indices") +
@@ -221,7 +221,7 @@ TEST_CASE("PLY: faces may come before vertices") {
               .mesh.triangles == triangles{{0, 1, 2}});
 }
 
-TEST_CASE("STL: text and binary; equal vertices merge in the order of the file") {
+TEST_CASE("STL: equal vertices of text and binary files are merged in file order") {
     const std::string text =
         "solid half\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
         " FACET NORMAL nan 0 0\n OUTER LOOP\n VERTEX 0 0 0\n VERTEX 0 1 0\n VERTEX 0 0 1\n ENDLOOP\n ENDFACET\n"
@@ -234,7 +234,7 @@ TEST_CASE("STL: text and binary; equal vertices merge in the order of the file")
     REQUIRE(read("a.stl", stl_header(1) + stl_triangle({0, 0, 0, -0.0F, 0, 0, 1, 1, 1})).mesh.vertices.size() == 3);
 }
 
-TEST_CASE("triangles of polygons stand in file order, and everything done to a mesh is counted") {
+TEST_CASE("triangles of polygons keep the file order, and every change to a mesh is counted") {
     const aabblab::loaded_mesh loaded = read("a.off",
                                              "OFF\n6 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.1 0 0\n16777217 0 0\n"
                                              "4 0 1 2 3\n5 0 1 2 3 4\n3 0 1 5\n2 0 1\n3 2 2 1\n");
@@ -245,7 +245,7 @@ TEST_CASE("triangles of polygons stand in file order, and everything done to a m
             "rounded to float, 1 face of fewer than three corners dropped");
 }
 
-TEST_CASE("zero area is decided exactly") {
+TEST_CASE("triangles of zero area are detected exactly") {
     const auto zero_area = [](const std::string& vertices) {
         return read("a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 2\n").report.zero_area;
     };
@@ -253,13 +253,13 @@ TEST_CASE("zero area is decided exactly") {
     REQUIRE(zero_area("1e38 0 0\n1e38 1e-38 0\n1e38 3e38 0\n") == 1);
     REQUIRE(zero_area("16777216 16777216 0\n0 0 0\n1e-45 1e-45 0\n") == 1);
     REQUIRE(zero_area("16777216 16777216 0\n0 0 0\n1e-45 0 0\n") == 0);
-    // The sums cancel to the last bit but one.
+    // The sums cancel except for the last bit but one.
     REQUIRE(zero_area("0 0 0\n16777215 16777214 0\n16777214 16777213 0\n") == 0);
     REQUIRE(zero_area("3e38 3e38 0\n-3e38 -3e38 0\n1e-45 0 0\n") == 0);
     REQUIRE(zero_area("3e38 -3e38 3e38\n-3e38 3e38 -3e38\n0 -0 0\n") == 1);
 }
 
-TEST_CASE("doubles of a binary file that are not floats are counted") {
+TEST_CASE("doubles of a binary file that are rounded to float are counted") {
     const std::string header =
         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty double x\nproperty int y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n";

@@ -8,7 +8,7 @@ import aabblab.files;
 
 namespace {
 
-void put(const std::filesystem::path& file, const std::string& text) {
+void write_output(const std::filesystem::path& file, const std::string& text) {
     aabblab::output_file out(file);
     out.write(text);
     out.commit();
@@ -16,7 +16,7 @@ void put(const std::filesystem::path& file, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("an output file appears when it is committed, and not otherwise") {
+TEST_CASE("an output file appears only when it is committed") {
     const temporary_folder folder;
     {
         aabblab::output_file out(folder / "a");
@@ -36,93 +36,92 @@ TEST_CASE("an output file appears when it is committed, and not otherwise") {
     REQUIRE(folder.files() == 1);
 }
 
-TEST_CASE("an output file that is not committed has no name, so that an interrupted process leaves nothing") {
+TEST_CASE("an uncommitted output file is unnamed, so that an interrupted process leaves no file") {
     const temporary_folder folder;
-    const int opened = open(folder.path().c_str(), O_TMPFILE | O_RDWR, 0600);
-    if (opened >= 0) close(opened);
-    const bool unnamed = opened >= 0 && std::filesystem::exists("/proc/self/fd");
-    for (int round = 0; round < 2; ++round) {  // the second finds the file of the first
+    const int descriptor = open(folder.path().c_str(), O_TMPFILE | O_RDWR, 0600);
+    if (descriptor >= 0) close(descriptor);
+    const bool has_unnamed_files = descriptor >= 0 && std::filesystem::exists("/proc/self/fd");
+    for (int round = 0; round < 2; ++round) {  // the second replaces the file of the first
         aabblab::output_file out(folder / "a");
         out.write(std::string(100'000, 'x'));
-        // Where files without a name are not supported, or cannot be named for want of /proc, one has a name beside the
-        // target.
-        REQUIRE(folder.files() == static_cast<std::size_t>(round) + (unnamed ? 0 : 1));
+        // If the system has no unnamed files, or no /proc to name them, a temporary file is created beside the target.
+        REQUIRE(folder.files() == static_cast<std::size_t>(round) + (has_unnamed_files ? 0 : 1));
         out.commit();
         REQUIRE(folder.files() == 1);
         REQUIRE(bytes_of_file(folder / "a") == std::string(100'000, 'x'));
     }
 }
 
-TEST_CASE("an output file may have the longest of names and the longest of paths") {
+TEST_CASE("an output file may have a name or path of the maximum length") {
     const temporary_folder folder;
     const std::string name(255, 'n');
-    put(folder / name, "");
+    write_output(folder / name, "");
     REQUIRE(std::filesystem::exists(folder / name));
-    // With room for a name of one letter.
+    // The path leaves room for a name of one letter.
     std::filesystem::path deep = folder.path();
     while (deep.native().size() < 4093) {
         const std::size_t room = 4093 - deep.native().size() - 1;
         deep /= std::string(room > 250 ? 200 : room, 'd');
     }
     std::filesystem::create_directories(deep);
-    put(deep / "a", "");
+    write_output(deep / "a", "");
     REQUIRE(std::filesystem::exists(deep / "a"));
 }
 
-TEST_CASE("the permissions of an output file are those of any new file") {
+TEST_CASE("an output file has the permissions that umask allows") {
     const temporary_folder folder;
     const mode_t before = umask(027);
-    put(folder / "a", "");
+    write_output(folder / "a", "");
     umask(before);
     REQUIRE(std::filesystem::status(folder / "a").permissions() == std::filesystem::perms{0640});
 }
 
-TEST_CASE("an output file in the working folder") {
+TEST_CASE("an output file without a folder is written to the working directory") {
     const temporary_folder folder;
     const auto before = std::filesystem::current_path();
     std::filesystem::current_path(folder.path());
-    put("a", "");
+    write_output("a", "");
     std::filesystem::current_path(before);
     REQUIRE(std::filesystem::exists(folder / "a"));
     REQUIRE(folder.files() == 1);
 }
 
-TEST_CASE("an older file stays until the new one is complete; two writers do not meet") {
+TEST_CASE("an existing file is replaced only on commit, and concurrent writers do not interfere") {
     const temporary_folder folder;
     folder.write("a", "older");
-    aabblab::output_file one(folder / "a");
-    aabblab::output_file two(folder / "a");
-    one.write("one");
-    two.write("two");
+    aabblab::output_file first(folder / "a");
+    aabblab::output_file second(folder / "a");
+    first.write("one");
+    second.write("two");
     REQUIRE(bytes_of_file(folder / "a") == "older");
-    two.commit();
+    second.commit();
     REQUIRE(bytes_of_file(folder / "a") == "two");
-    one.commit();
+    first.commit();
     REQUIRE(bytes_of_file(folder / "a") == "one");
 }
 
-TEST_CASE("a symbolic link is written through") {
+TEST_CASE("writing to a symbolic link replaces its target") {
     const temporary_folder folder;
     folder.write("a", "older");
     std::filesystem::create_symlink("a", folder / "link");
-    put(folder / "link", "new");
+    write_output(folder / "link", "new");
     REQUIRE(std::filesystem::is_symlink(folder / "link"));
     REQUIRE(bytes_of_file(folder / "a") == "new");
 }
 
-TEST_CASE("what is no regular file is written, not replaced") {
+TEST_CASE("a file that is not regular is written to, not replaced") {
     const temporary_folder folder;
     REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
     std::string read;
     std::thread reader([&] { read = bytes_of_file(folder / "pipe"); });
-    put(folder / "pipe", "through");
+    write_output(folder / "pipe", "through");
     reader.join();
     REQUIRE(read == "through");
     REQUIRE(std::filesystem::is_fifo(folder / "pipe"));
     REQUIRE(folder.files() == 1);
 }
 
-TEST_CASE("what cannot be written is refused") {
+TEST_CASE("targets that cannot be written are rejected") {
     using Catch::Matchers::EndsWith;
     const temporary_folder folder;
     REQUIRE_THROWS_WITH(aabblab::output_file(""), "the file to write has no name");
@@ -137,7 +136,7 @@ TEST_CASE("what cannot be written is refused") {
     REQUIRE_THROWS_WITH(aabblab::output_file(folder / "link"),
                         EndsWith("/link: cannot be written: it is a symbolic link to a file that does not exist"));
     REQUIRE(folder.files() == 1);
-    const auto fill = [] { put("/dev/full", std::string(100'000, 'x')); };
+    const auto fill = [] { write_output("/dev/full", std::string(100'000, 'x')); };
     REQUIRE_THROWS_WITH(fill(), "/dev/full: cannot be written: No space left on device");
     REQUIRE_THROWS_AS(fill(), aabb::input_error);
 }

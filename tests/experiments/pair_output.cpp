@@ -5,7 +5,7 @@
 import aabb;
 import aabblab.pair_output;
 
-TEST_CASE("A pair or a contact that a stage reports twice is a defect") {
+TEST_CASE("A pair or contact that a stage reports twice is a defect") {
     std::vector<aabb::index_pair> pairs = {{0, 1}, {0, 7}, {2, 3}};
     REQUIRE_NOTHROW(aabblab::require_each_once(pairs, "a stage"));
     pairs.insert(pairs.begin() + 1, {0, 7});
@@ -18,11 +18,11 @@ TEST_CASE("A pair or a contact that a stage reports twice is a defect") {
     REQUIRE_NOTHROW(aabblab::require_each_once(contacts, "a stage"));
 }
 
-TEST_CASE("A table of numbers is there only once it is committed") {
+TEST_CASE("A number table is written only when it is committed") {
     const temporary_folder folder;
     {
-        aabblab::number_table left(folder / "left.csv", "a,b");
-        left.add({0, 1});
+        aabblab::number_table uncommitted(folder / "left.csv", "a,b");
+        uncommitted.add({0, 1});
     }
     REQUIRE(folder.files() == 0);
     aabblab::number_table table(folder / "pairs.csv", "frame,a,b");
@@ -32,17 +32,17 @@ TEST_CASE("A table of numbers is there only once it is committed") {
     REQUIRE(bytes_of_file(folder / "pairs.csv") == "frame,a,b\n0,0,1\n2,0,4294967295\n");
 }
 
-TEST_CASE("Rows are sorted whatever their order and their bits") {
+TEST_CASE("Rows are sorted from any order and with any bit pattern") {
     std::mt19937 numbers(1);
     const auto random = [&] { return static_cast<std::uint32_t>(numbers()); };
     for (const std::size_t size : {0U, 1U, 2U, 64U, 65U, 1000U, 20000U})
-        for (const std::uint32_t of_a : {0xffffffffU, 0x100U, 0xfff000U, 1U, 0U})
-            for (const std::uint32_t of_b : {0xffffffffU, 0x1ffffU, 0x80000001U, 0U}) {
+        for (const std::uint32_t mask_a : {0xffffffffU, 0x100U, 0xfff000U, 1U, 0U})
+            for (const std::uint32_t mask_b : {0xffffffffU, 0x1ffffU, 0x80000001U, 0U}) {
                 std::vector<aabb::index_pair> pairs;
                 std::vector<aabb::contact> contacts;
                 for (std::size_t i = 0; i < size; ++i) {
-                    pairs.push_back({random() & of_a, random() & of_b});
-                    contacts.push_back({random() & of_a, random() & of_b, random() & of_b, random() & of_a});
+                    pairs.push_back({random() & mask_a, random() & mask_b});
+                    contacts.push_back({random() & mask_a, random() & mask_b, random() & mask_b, random() & mask_a});
                 }
                 const std::vector<aabb::index_pair> sorted_pairs = sorted(pairs);
                 aabblab::sort_rows(pairs);

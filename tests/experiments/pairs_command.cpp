@@ -17,7 +17,7 @@ std::string recording_in(const temporary_folder& folder, const std::string& obje
 
 }  // namespace
 
-TEST_CASE("pairs gives one set of pairs whatever finds it") {
+TEST_CASE("pairs reports the pairs of brute force with every composition") {
     const temporary_folder folder;
     const std::string scene = recording_in(folder);
     const std::string out = folder / "pairs.csv";
@@ -41,7 +41,7 @@ TEST_CASE("pairs gives one set of pairs whatever finds it") {
     REQUIRE(std::ranges::is_sorted(records));
 }
 
-TEST_CASE("pairs tells people what it found") {
+TEST_CASE("pairs prints the scene and the composition") {
     const temporary_folder folder;
     const program_result result = run_well({"pairs", recording_in(folder, "2"), "--sort", "insertion"});
     REQUIRE(holds(result.out, "2 objects, 4 frames"));
@@ -49,7 +49,7 @@ TEST_CASE("pairs tells people what it found") {
     run_well({"pairs", recording_in(folder, "0")});
 }
 
-TEST_CASE("copies of objects beyond all measure are refused before they are made") {
+TEST_CASE("too many copies of objects are rejected before they are allocated") {
     const temporary_folder folder;
     const std::string scene = folder / "dense.aabbs";
     run_well({"scene", "brownian", "--n", "300", "--density", "3", "--frames", "0", "--out", scene});
@@ -64,7 +64,7 @@ TEST_CASE("copies of objects beyond all measure are refused before they are made
         CHECK(holds(run_refused(arguments).err, "copies of 300 objects, but at most 16796416"));
 }
 
-TEST_CASE("pairs are never written over the recording they are of") {
+TEST_CASE("pairs never overwrites the recording that it reads") {
     const temporary_folder folder;
     const std::string scene = recording_in(folder);
     const std::string bytes = bytes_of_file(scene);
@@ -75,7 +75,7 @@ TEST_CASE("pairs are never written over the recording they are of") {
     }
 }
 
-TEST_CASE("pairs of a recording with a bad box in a later frame leaves no file behind") {
+TEST_CASE("pairs leaves no output file if a later frame has an invalid box") {
     const temporary_folder folder;
     std::string bytes = bytes_of_file(recording_in(folder));
     bytes.replace(bytes.size() - 32, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN

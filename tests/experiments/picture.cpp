@@ -4,34 +4,34 @@
 
 import aabblab.picture;
 
-TEST_CASE("a survey measures displacement over the mean extent and the mean spacing") {
-    aabblab::picture_data seen(4, 3);
-    const std::vector<std::uint8_t> all(4, 1);
-    seen.add_frame(std::vector<aabb::box>{cube(0, 0, 0), cube(7, 0, 0), cube(0, 7, 0), cube(7, 7, 0)}, all);
-    REQUIRE_FALSE(seen.displacement_over_extent());
-    // The third takes no part, and neither does its way.
-    seen.add_frame(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(99, 99, 99), cube(7, 6, 0)},
+TEST_CASE("displacement is measured relative to the mean extent and the mean spacing") {
+    aabblab::picture_data data(4, 3);
+    const std::vector<std::uint8_t> all_present(4, 1);
+    data.add_frame(std::vector<aabb::box>{cube(0, 0, 0), cube(7, 0, 0), cube(0, 7, 0), cube(7, 7, 0)}, all_present);
+    REQUIRE_FALSE(data.displacement_over_extent());
+    // The third object is absent, so its displacement does not count.
+    data.add_frame(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(99, 99, 99), cube(7, 6, 0)},
                    std::vector<std::uint8_t>{1, 1, 0, 1});
-    REQUIRE(seen.frames() == 2);
-    REQUIRE(*seen.displacement_over_extent() == 1);
-    REQUIRE(seen.sides() == aabb::vec3d{8, 8, 0});
-    REQUIRE(*seen.displacement_over_spacing() == 1 / 4.0);
-    REQUIRE(aabblab::displacement_text(seen) ==
+    REQUIRE(data.frames() == 2);
+    REQUIRE(*data.displacement_over_extent() == 1);
+    REQUIRE(data.sides() == aabb::vec3d{8, 8, 0});
+    REQUIRE(*data.displacement_over_spacing() == 1 / 4.0);
+    REQUIRE(aabblab::displacement_text(data) ==
             "mean displacement per frame: 1 of the mean extent, 0.25 of the mean spacing");
-    REQUIRE(seen.paths().size() == 4);
-    REQUIRE_FALSE(seen.paths()[2][1]);
-    // Back again, which is no way either.
-    seen.add_frame(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(0, 0, 0), cube(7, 6, 0)}, all);
-    REQUIRE(*seen.displacement_over_extent() == 0.5);
-    REQUIRE(seen.paths()[1][1].value() == aabb::vec3d{6.5, 0.5, 0.5});
+    REQUIRE(data.paths().size() == 4);
+    REQUIRE_FALSE(data.paths()[2][1]);
+    // It returns, which is no displacement either.
+    data.add_frame(std::vector<aabb::box>{cube(1, 0, 0), cube(6, 0, 0), cube(0, 0, 0), cube(7, 6, 0)}, all_present);
+    REQUIRE(*data.displacement_over_extent() == 0.5);
+    REQUIRE(data.paths()[1][1].value() == aabb::vec3d{6.5, 0.5, 0.5});
 }
 
-TEST_CASE("a picture shows each box in the colour of its overlaps") {
-    aabblab::picture_data seen(5, 2);
+TEST_CASE("a picture colours boxes by whether they overlap") {
+    aabblab::picture_data data(5, 2);
     const std::vector<aabb::box> boxes = {cube(0, 0, 0), cube(0.5F, 0, 0), cube(5, 0, 5), cube(9, 0, 9), cube(9, 0, 9)};
-    seen.add_frame(boxes, std::vector<std::uint8_t>{1, 1, 1, 1, 0});
-    seen.add_frame(boxes, std::vector<std::uint8_t>{1, 0, 1, 1, 0});
-    const std::string svg = aabblab::picture_of(seen, {"a name", "a < b & c", "objects=5"});
+    data.add_frame(boxes, std::vector<std::uint8_t>{1, 1, 1, 1, 0});
+    data.add_frame(boxes, std::vector<std::uint8_t>{1, 0, 1, 1, 0});
+    const std::string svg = aabblab::picture_of(data, {"a name", "a < b & c", "objects=5"});
     REQUIRE(svg.starts_with("<svg xmlns="));
     REQUIRE(svg.ends_with("</svg>\n"));
     for (const std::string part :
@@ -43,51 +43,51 @@ TEST_CASE("a picture shows each box in the colour of its overlaps") {
     REQUIRE(count_of("class=\"overlapping\" x", svg.substr(0, last)) == 2 + 1);  // one in the legend
     REQUIRE(count_of("class=\"overlapping\" x", svg.substr(last)) == 0);
     REQUIRE(count_of("class=\"apart\" x", svg.substr(last)) == 3);
-    // One for each object that was ever there, and none in the first frame.
+    // Every object that was ever present has a path in the last frame.
     REQUIRE(count_of("class=\"way\"", svg.substr(last)) == 4);
     REQUIRE(holds(svg, "paths of 5 objects"));
     REQUIRE_FALSE(holds(svg, "a sample"));
 }
 
-TEST_CASE("of many boxes a picture draws a sample with the largest in it") {
-    aabblab::picture_data seen(9003, 1);
+TEST_CASE("a picture of many boxes draws a sample that includes the largest") {
+    aabblab::picture_data data(9003, 1);
     std::vector<aabb::box> boxes;
     for (int i = 0; i < 9000; ++i) boxes.push_back(cube(static_cast<float>(i % 100) * 3, 0, static_cast<float>(i)));
     for (int i = 0; i < 3; ++i) boxes.push_back({{-10, 0, 0}, {70, 60, 60}});
-    seen.add_frame(boxes, {});
-    const std::string svg = aabblab::picture_of(seen, {"many", "", ""});
+    data.add_frame(boxes, {});
+    const std::string svg = aabblab::picture_of(data, {"many", "", ""});
     REQUIRE(holds(svg, "a sample of 4000 boxes is drawn, huge ones first"));
     const std::string first = svg.substr(0, svg.find("last frame"));
     REQUIRE(count_of("<rect class=\"apart\" x", first) + count_of("<rect class=\"overlapping\" x", first) ==
             4000 + 2);  // two in the legend
-    // Each of the three, outlined where it is.
+    // Each of the three huge boxes is outlined at its place.
     const std::string outline = first.substr(first.find("<rect class=\"huge\""));
     REQUIRE(count_of(outline.substr(0, outline.find('\n')), first) == 3);
     REQUIRE(holds(first, "longer than 5 mean extents"));
     REQUIRE(holds(first, "boxes 9003"));
 }
 
-TEST_CASE("a picture shows the axes that tell most and gives each its own scale where one is much longer") {
-    const auto [far, said] = GENERATE(table<aabb::box, std::string>({
+TEST_CASE("a picture shows the most informative axes, with separate scales if one is much longer") {
+    const auto [other, caption] = GENERATE(table<aabb::box, std::string>({
         {cube(9, 8, 7), "seen along y: x across, z upwards<"},
         {cube(8, 9, 1), "seen along z: x across, y upwards<"},
         {cube(9, 8, 2), "seen along y: x across, z upwards<"},
         {cube(50, 0, 0), "seen along z: x across, y upwards, each with a scale of its own<"},
         {cube(0, 0, 50), "seen along y: x across, z upwards, each with a scale of its own<"},
     }));
-    aabblab::picture_data seen(2, 1);
-    seen.add_frame(std::vector<aabb::box>{cube(0, 0, 0), far}, {});
-    const std::string svg = aabblab::picture_of(seen, {"two", "", ""});
-    REQUIRE_THAT(svg, Catch::Matchers::ContainsSubstring(said));
+    aabblab::picture_data data(2, 1);
+    data.add_frame(std::vector<aabb::box>{cube(0, 0, 0), other}, {});
+    const std::string svg = aabblab::picture_of(data, {"two", "", ""});
+    REQUIRE_THAT(svg, Catch::Matchers::ContainsSubstring(caption));
 }
 
-TEST_CASE("a picture of what lies far from the origin has an end") {
-    aabblab::picture_data seen(1, 1);
-    seen.add_frame(std::vector<aabb::box>{{{1e30F, 0, 1e30F}, {1e30F, 0, 1e30F}}}, {});
-    REQUIRE(count_of("class=\"tick\"", aabblab::picture_of(seen, {"far", "", ""})) < 100);
+TEST_CASE("a picture of a box far from the origin has few ticks") {
+    aabblab::picture_data data(1, 1);
+    data.add_frame(std::vector<aabb::box>{{{1e30F, 0, 1e30F}, {1e30F, 0, 1e30F}}}, {});
+    REQUIRE(count_of("class=\"tick\"", aabblab::picture_of(data, {"far", "", ""})) < 100);
 }
 
-TEST_CASE("scene draws every kind, without a recording where none is wanted") {
+TEST_CASE("scene draws every kind without writing a recording") {
     const temporary_folder folder;
     const std::string kind =
         GENERATE("brownian", "clustered", "far", "flat", "free_fall", "hollow_sphere", "lattice", "line", "mixed_sizes",
@@ -108,14 +108,14 @@ TEST_CASE("scene draws every kind, without a recording where none is wanted") {
     REQUIRE(holds(svg, "first frame (0): boxes " + (kind == "population" && objects == "30" ? "15" : objects) + ","));
 }
 
-TEST_CASE("a frame that all objects have left is drawn without any") {
+TEST_CASE("a frame without objects is drawn") {
     const temporary_folder folder;
     run_well(
         {"scene", "population", "--n", "1", "--frames", "1", "--turnover", "1", "--picture", folder / "empty.svg"});
     REQUIRE(folder.files() == 1);
 }
 
-TEST_CASE("scene writes the same recording with a picture as without") {
+TEST_CASE("scene writes the same recording with and without a picture") {
     const temporary_folder folder;
     const std::string alone = folder / "alone.aabbs";
     const std::string both = folder / "both.aabbs";
@@ -127,26 +127,26 @@ TEST_CASE("scene writes the same recording with a picture as without") {
     REQUIRE(holds(bytes_of_file(folder / "both.svg"), "</svg>"));
 }
 
-TEST_CASE("scene says the displacement that was asked for") {
+TEST_CASE("scene reports the requested displacement") {
     const temporary_folder folder;
     const std::string out = folder / "scene.aabbs";
-    const auto said = [&](const std::string& unit) {
+    const auto output_in = [&](const std::string& unit) {
         return run_program({"scene", "line", "--displacement", "0.25", "--unit", unit, "--out", out}).out;
     };
-    REQUIRE(holds(said("extent"), "mean displacement per frame: 0.25 of the mean extent, "));
-    REQUIRE(holds(said("spacing"), " of the mean extent, 0.25 of the mean spacing\n"));
+    REQUIRE(holds(output_in("extent"), "mean displacement per frame: 0.25 of the mean extent, "));
+    REQUIRE(holds(output_in("spacing"), " of the mean extent, 0.25 of the mean spacing\n"));
     REQUIRE(holds(run_program({"scene", "line", "--frames", "0", "--out", out}).out,
                   "mean displacement per frame: - of the mean extent, - of the mean spacing\n"));
 }
 
-TEST_CASE("scene refuses pictures that it cannot write and leaves no file behind") {
+TEST_CASE("scene rejects pictures that it cannot write and leaves no file behind") {
     const temporary_folder folder;
     std::filesystem::create_directory(folder / "sub");
     const std::string file = folder / "scene.aabbs";
     const std::string same = folder / "sub" / ".." / "scene.aabbs";
     const std::string nowhere = folder / "missing" / "scene.svg";
-    const auto rejected = [&](const std::vector<std::string>& outputs, const std::string& said) {
-        check_refused({"scene", "brownian"}, {{outputs, said}});
+    const auto rejected = [&](const std::vector<std::string>& outputs, const std::string& message) {
+        check_refused({"scene", "brownian"}, {{outputs, message}});
         REQUIRE(folder.files() == 1);
     };
     rejected({}, "expected --out, --motion or --picture");

@@ -13,7 +13,7 @@ std::string error_of(const std::string& name, const std::string& bytes) {
     return refusal_in<aabb::input_error>([&] { return read(name, bytes); });
 }
 
-/// A binary PLY file of one face.
+/// A binary PLY file with a single face.
 std::string ply(const polygon& vertices, const numbers& face) {
     std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices.size()) +
                         "\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
@@ -25,20 +25,20 @@ std::string ply(const polygon& vertices, const numbers& face) {
     return bytes;
 }
 
-numbers counted(std::size_t count) {
+numbers consecutive(std::size_t count) {
     numbers face(count);
     std::iota(face.begin(), face.end(), 0U);
     return face;
 }
 
-aabblab::loaded_mesh cut(const polygon& vertices, const numbers& face) {
+aabblab::loaded_mesh mesh_of(const polygon& vertices, const numbers& face) {
     return read("a.ply", ply(vertices, face));
 }
-aabblab::loaded_mesh cut(const polygon& vertices) {
-    return cut(vertices, counted(vertices.size()));
+aabblab::loaded_mesh mesh_of(const polygon& vertices) {
+    return mesh_of(vertices, consecutive(vertices.size()));
 }
 std::string rejection_of(const polygon& vertices) {
-    return error_of("a.ply", ply(vertices, counted(vertices.size())));
+    return error_of("a.ply", ply(vertices, consecutive(vertices.size())));
 }
 const std::string crosses = "crosses itself";
 const std::string no_normal = "has no normal, as its signed area is zero";
@@ -49,12 +49,12 @@ triangles fan(std::uint32_t corners) {
     return expected;
 }
 
-triangles reversed(triangles of) {
-    for (auto& [a, b, c] : of) std::swap(a, c);
-    return of;
+triangles reversed(triangles list) {
+    for (auto& [a, b, c] : list) std::swap(a, c);
+    return list;
 }
 
-// In the plane, in whole numbers.
+// Integer geometry in the plane.
 
 struct point {
     std::int64_t u;
@@ -71,23 +71,23 @@ std::int64_t twice_area(const flat_polygon& p) {
     return sum;
 }
 
-/// Whether two triangles that turn to the left have inner points in common.
+/// Whether the interiors of two counterclockwise triangles intersect.
 bool overlap(const std::array<point, 3>& s, const std::array<point, 3>& t) {
-    const auto parts = [](const std::array<point, 3>& of, const std::array<point, 3>& other) {
+    const auto separates = [](const std::array<point, 3>& a, const std::array<point, 3>& b) {
         for (std::size_t i = 0; i < 3; ++i)
-            if (std::ranges::all_of(other, [&](const point& p) { return twice_area(of[i], of[(i + 1) % 3], p) <= 0; }))
+            if (std::ranges::all_of(b, [&](const point& p) { return twice_area(a[i], a[(i + 1) % 3], p) <= 0; }))
                 return true;
         return false;
     };
-    return !parts(s, t) && !parts(t, s);
+    return !separates(s, t) && !separates(t, s);
 }
 
-/// Triangles that fill the polygon: none is turned the other way, none overlap, and their areas add up to its area.
-void require_fills(const flat_polygon& p, const triangles& cut) {
+/// Requires a triangulation of the polygon: no triangle is flipped, none overlap, and their areas add up to its area.
+void require_triangulation(const flat_polygon& p, const triangles& parts) {
     const std::int64_t area = twice_area(p);
     std::int64_t sum = 0;
     std::vector<std::array<point, 3>> filled;
-    for (const auto& [a, b, c] : cut) {
+    for (const auto& [a, b, c] : parts) {
         const std::int64_t part = twice_area(p[a], p[b], p[c]);
         RC_ASSERT(!(area > 0 ? part < 0 : part > 0));
         sum += part;
@@ -95,37 +95,37 @@ void require_fills(const flat_polygon& p, const triangles& cut) {
         if (part < 0) filled.push_back({p[c], p[b], p[a]});
     }
     RC_ASSERT(sum == area);
-    RC_ASSERT(cut.size() == p.size() - 2);
+    RC_ASSERT(parts.size() == p.size() - 2);
     for (std::size_t i = 0; i < filled.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) RC_ASSERT_FALSE(overlap(filled[i], filled[j]));
 }
 
-/// In a plane in space, any one but so that floats hold the coordinates.
-polygon placed(const flat_polygon& p) {
+/// Embeds the polygon in a random plane in which its coordinates are exact floats.
+polygon embedded_in_space(const flat_polygon& p) {
     const int axis = *rc::gen::inRange(0, 3);
     const int slope_u = *rc::gen::inRange(-1, 2);
     const int slope_v = *rc::gen::inRange(-1, 2);
     const int scale = *rc::gen::element(0, -149, 100);
-    polygon all;
+    polygon embedded;
     for (const point& q : p) {
         aabb::vec3f at{};
         at[(axis + 1) % 3] = std::ldexp(static_cast<float>(q.u), scale);
         at[(axis + 2) % 3] = std::ldexp(static_cast<float>(q.v), scale);
         at[axis] = std::ldexp(static_cast<float>(slope_u * q.u + slope_v * q.v), scale);
-        all.push_back(at);
+        embedded.push_back(at);
     }
-    return all;
+    return embedded;
 }
 
-/// Points in the order of their directions from the origin, of which no two are alike.
+/// A star-shaped polygon: points sorted by their directions from the origin, of which no two are equal.
 flat_polygon any_star() {
     flat_polygon p = {{40, 0}, {-40, 41}, {-40, -41}};
-    for (int more = *rc::gen::inRange(1, 20); more > 0; --more) {
+    for (int extra = *rc::gen::inRange(1, 20); extra > 0; --extra) {
         const point q{*rc::gen::inRange(-40, 41), *rc::gen::inRange(-40, 41)};
-        const auto is_alike = [&](const point& r) {
+        const auto has_same_direction = [&](const point& r) {
             return twice_area({0, 0}, q, r) == 0 && q.u * r.u + q.v * r.v >= 0;
         };
-        if (std::ranges::none_of(p, is_alike)) p.push_back(q);
+        if (std::ranges::none_of(p, has_same_direction)) p.push_back(q);
     }
     const auto is_lower = [](const point& q) { return q.v < 0 || (q.v == 0 && q.u < 0); };
     std::ranges::sort(p, [&](const point& q, const point& r) {
@@ -136,19 +136,19 @@ flat_polygon any_star() {
 
 }  // namespace
 
-TEST_CASE("polygons: a concave one is cut by ears, the same from any first corner") {
+TEST_CASE("polygons: a concave polygon is ear-clipped in the same way from any first corner") {
     const polygon notched = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
-    const triangles ears = cut(notched).mesh.triangles;
+    const triangles ears = mesh_of(notched).mesh.triangles;
     CHECK(ears == triangles{{0, 1, 2}, {3, 4, 5}, {0, 2, 3}, {3, 5, 0}});
-    numbers face = counted(6);
+    numbers face = consecutive(6);
     for (int first = 0; first < 6; ++first) {
-        CHECK(cut(notched, face).mesh.triangles == ears);
-        CHECK(cut(notched, face).report.text() == "1 concave polygon ear-clipped");
+        CHECK(mesh_of(notched, face).mesh.triangles == ears);
+        CHECK(mesh_of(notched, face).report.text() == "1 concave polygon ear-clipped");
         std::ranges::rotate(face, face.begin() + 1);
     }
     std::ranges::reverse(face);
-    CHECK(cut(notched, face).mesh.triangles == reversed(ears));
-    // Its triangles stand where the face does.
+    CHECK(mesh_of(notched, face).mesh.triangles == reversed(ears));
+    // Its triangles take the place of the face.
     const std::string off =
         "OFF\n6 4 0\n0 0 0\n2 0 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n3 0 1 2\n4 0 1 2 3\n"
         "6 0 1 2 3 4 5\n3 3 4 5\n";
@@ -158,15 +158,15 @@ TEST_CASE("polygons: a concave one is cut by ears, the same from any first corne
           triangles{{0, 1, 2}, {0, 1, 2}, {0, 2, 3}, ears[0], ears[1], ears[2], ears[3], {3, 4, 5}});
 }
 
-TEST_CASE("polygons: a convex one is fanned from its first corner") {
+TEST_CASE("polygons: a convex polygon is fan-triangulated from its first corner") {
     const polygon octagon = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 1, 0}, {3, 2, 0}, {2, 3, 0}, {0, 3, 0}, {0, 1, 0}};
-    CHECK(cut(octagon).mesh.triangles == fan(8));
-    CHECK(cut(octagon).report.text() == "1 polygon fan-triangulated, 2 triangles of zero area kept");
-    // Not flat, but convex along its normal.
-    CHECK(cut({{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}}).mesh.triangles == fan(4));
+    CHECK(mesh_of(octagon).mesh.triangles == fan(8));
+    CHECK(mesh_of(octagon).report.text() == "1 polygon fan-triangulated, 2 triangles of zero area kept");
+    // It is not planar, but convex along its normal.
+    CHECK(mesh_of({{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}}).mesh.triangles == fan(4));
 }
 
-TEST_CASE("polygons: one that crosses itself or has no normal is refused with its place") {
+TEST_CASE("polygons: a polygon that intersects itself or has no normal is rejected with its line") {
     const std::string bow = "0 0 0\n2 2 0\n2 0 0\n0 1 0\n";
     CHECK_THAT(error_of("a.off", "OFF\n4 2 0\n" + bow + "3 0 1 2\n4 0 1 2 3\n"),
                EndsWith("/a.off:8: the boundary of a face of 4 corners " + crosses));
@@ -182,7 +182,7 @@ TEST_CASE("polygons: one that crosses itself or has no normal is refused with it
                EndsWith("/a.ply: face 0: the boundary of a face of 4 corners " + crosses));
 
     CHECK_THAT(rejection_of({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}), EndsWith(no_normal));
-    // All turns to the left: a pentagram; twice around a square; a loop that overlaps itself.
+    // These turn only left: a pentagram, a doubly traversed square, and a loop that overlaps itself.
     CHECK_THAT(rejection_of({{0, 3, 0}, {-2, -3, 0}, {3, 1, 0}, {-3, 1, 0}, {2, -3, 0}}), EndsWith(crosses));
     CHECK_THAT(rejection_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
                EndsWith(crosses));
@@ -192,53 +192,53 @@ TEST_CASE("polygons: one that crosses itself or has no normal is refused with it
 
 TEST_CASE("polygons: repeated corners count once") {
     const polygon p = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}};
-    CHECK(cut(p, {0, 1, 1, 2}).mesh.triangles == triangles{{0, 1, 1}, {0, 1, 2}});
-    CHECK(cut(p, {0, 1, 4, 2, 3}).mesh.triangles == triangles{{0, 1, 4}, {0, 4, 2}, {0, 2, 3}});
-    // What is left is a triangle, a segment or a point, and these are kept.
-    CHECK(cut({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {0, 1, 1, 2}).mesh.triangles.size() == 2);
-    CHECK(cut(p, {0, 0, 1, 1}).mesh.triangles.size() == 2);
-    CHECK(cut(p, {2, 2, 2, 2}).report.text() == "1 polygon fan-triangulated, 2 triangles of zero area kept");
-    // Concave, with a corner repeated.
-    CHECK(cut({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {1, 1, 0}, {0, 4, 0}}).report.concave == 1);
+    CHECK(mesh_of(p, {0, 1, 1, 2}).mesh.triangles == triangles{{0, 1, 1}, {0, 1, 2}});
+    CHECK(mesh_of(p, {0, 1, 4, 2, 3}).mesh.triangles == triangles{{0, 1, 4}, {0, 4, 2}, {0, 2, 3}});
+    // The rest is a triangle, a segment or a point, and is kept.
+    CHECK(mesh_of({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {0, 1, 1, 2}).mesh.triangles.size() == 2);
+    CHECK(mesh_of(p, {0, 0, 1, 1}).mesh.triangles.size() == 2);
+    CHECK(mesh_of(p, {2, 2, 2, 2}).report.text() == "1 polygon fan-triangulated, 2 triangles of zero area kept");
+    // It is concave and repeats a corner.
+    CHECK(mesh_of({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {1, 1, 0}, {0, 4, 0}}).report.concave == 1);
 }
 
-TEST_CASE("polygons: a boundary may touch itself, and go back where it came from") {
-    // Each corner is two digits, its coordinates.
-    const auto require_filled = [](std::string_view corners) {
+TEST_CASE("polygons: a boundary may touch itself and retrace edges") {
+    // The two digits of a corner are its coordinates.
+    const auto check_polygon = [](std::string_view corners) {
         flat_polygon flat;
         polygon p;
         for (std::size_t i = 0; i < corners.size(); i += 3) {
             const point& q = flat.emplace_back(point{corners[i] - '0', corners[i + 1] - '0'});
             p.push_back({static_cast<float>(q.u), static_cast<float>(q.v), 0});
         }
-        const aabblab::loaded_mesh loaded = cut(p);
+        const aabblab::loaded_mesh loaded = mesh_of(p);
         CHECK(loaded.report.concave == 1);
-        require_fills(flat, loaded.mesh.triangles);
+        require_triangulation(flat, loaded.mesh.triangles);
     };
-    // A hole; two holes; a hole to which the way has a bend.
-    require_filled("00 90 99 09 00 34 36 66 63 34");
-    require_filled("00 90 99 09 00 11 12 22 11 33 34 44 33 11");
-    require_filled("00 90 99 09 00 25 33 36 66 63 33 25");
-    // Two squares that share a corner; two squares and a way from one to the other, with a bend.
-    require_filled("00 10 11 21 22 12 11 01");
-    require_filled("00 10 11 23 42 52 53 43 42 23 11 01");
-    // Needles outwards and inwards, one with a bend.
-    require_filled("00 40 42 62 42 44 04");
-    require_filled("00 40 42 22 23 22 42 44 04");
-    // A corner that touches an edge.
-    require_filled("00 40 44 20 04");
+    // A hole, two holes, and a hole with a bent bridge.
+    check_polygon("00 90 99 09 00 34 36 66 63 34");
+    check_polygon("00 90 99 09 00 11 12 22 11 33 34 44 33 11");
+    check_polygon("00 90 99 09 00 25 33 36 66 63 33 25");
+    // Two squares that share a corner, and two squares with a bent bridge.
+    check_polygon("00 10 11 21 22 12 11 01");
+    check_polygon("00 10 11 23 42 52 53 43 42 23 11 01");
+    // Spikes outwards and inwards, the latter bent.
+    check_polygon("00 40 42 62 42 44 04");
+    check_polygon("00 40 42 22 23 22 42 44 04");
+    // A corner touches an edge.
+    check_polygon("00 40 44 20 04");
 }
 
-TEST_CASE("polygons: every decision is exact") {
-    // A corner on the diagonal, and one unit in the last place inside and outside, far from the origin.
+TEST_CASE("polygons: predicates are exact") {
+    // A corner lies on the diagonal, or one unit in the last place from it, far from the origin.
     const auto cut_at = [](float x) {
         const polygon p = {{16777214, 16777214, 5}, {16777216, 16777214, 5}, {x, x, 5}, {16777214, 16777216, 5}};
-        return cut(p).report.concave;
+        return mesh_of(p).report.concave;
     };
     CHECK(cut_at(16777215) == 0);
     CHECK(cut_at(16777216) == 0);
-    const auto bent = [](float inwards, float one) {
-        return cut({{0, 0, one}, {3 * one, 0, one}, {3 * one, 3 * one, one}, {2 * one, 2 * one - inwards, one}});
+    const auto bent = [](float inwards, float s) {
+        return mesh_of({{0, 0, s}, {3 * s, 0, s}, {3 * s, 3 * s, s}, {2 * s, 2 * s - inwards, s}});
     };
     CHECK(bent(0, 1).report.concave == 0);
     CHECK(bent(0x1p-22F, 1).report.concave == 1);
@@ -247,50 +247,50 @@ TEST_CASE("polygons: every decision is exact") {
     CHECK(bent(0x1p104F, 0x1p126F).report.concave == 1);
     CHECK(bent(0x1p-149F, 0x1p-149F).report.concave == 1);
     CHECK(bent(0x1p-149F, 0x1p-140F).report.concave == 1);
-    // The greatest component of the normal is the one along x by the last bit: along z the boundary crosses itself.
+    // The x component of the normal is the largest by its last bit; projected along z the boundary crosses itself.
     const float largest = std::numeric_limits<float>::max();
-    CHECK(cut({{-largest, -largest, 0}, {largest, -largest, 0}, {largest, largest, 0}, {-largest, largest, 0}})
+    CHECK(mesh_of({{-largest, -largest, 0}, {largest, -largest, 0}, {largest, largest, 0}, {-largest, largest, 0}})
               .report.concave == 0);
-    CHECK(cut({{-largest, 0, 1}, {0, -0x1p-149F, 1}, {largest, 0, 1}, {0, -0x1p-148F, 1}}).report.concave == 1);
+    CHECK(mesh_of({{-largest, 0, 1}, {0, -0x1p-149F, 1}, {largest, 0, 1}, {0, -0x1p-148F, 1}}).report.concave == 1);
 }
 
-TEST_CASE("polygons: triangles fill any star, whatever its first corner and direction") {
+TEST_CASE("polygons: a star-shaped polygon is triangulated from any first corner in either direction") {
     REQUIRE(rc::check([] {
         const flat_polygon flat = any_star();
-        const polygon p = placed(flat);
-        numbers face = counted(p.size());
-        const aabblab::loaded_mesh loaded = cut(p, face);
-        require_fills(flat, loaded.mesh.triangles);
+        const polygon p = embedded_in_space(flat);
+        numbers face = consecutive(p.size());
+        const aabblab::loaded_mesh loaded = mesh_of(p, face);
+        require_triangulation(flat, loaded.mesh.triangles);
         std::ranges::rotate(face, face.begin() + *rc::gen::inRange<std::ptrdiff_t>(0, std::ssize(face)));
-        const aabblab::loaded_mesh rotated = cut(p, face);
+        const aabblab::loaded_mesh rotated = mesh_of(p, face);
         RC_ASSERT(rotated.report.concave == loaded.report.concave);
-        require_fills(flat, rotated.mesh.triangles);
+        require_triangulation(flat, rotated.mesh.triangles);
         if (loaded.report.concave == 0) return;
         RC_ASSERT(rotated.mesh.triangles == loaded.mesh.triangles);
         std::ranges::reverse(face);
-        RC_ASSERT(cut(p, face).mesh.triangles == reversed(loaded.mesh.triangles));
+        RC_ASSERT(mesh_of(p, face).mesh.triangles == reversed(loaded.mesh.triangles));
     }));
 }
 
-TEST_CASE("polygons: what is not refused is filled") {
+TEST_CASE("polygons: every accepted polygon is triangulated") {
     REQUIRE(rc::check([] {
         const int size = *rc::gen::inRange(2, 7);
         flat_polygon flat;
         for (int corners = *rc::gen::inRange(4, 10); corners > 0; --corners)
             flat.push_back({*rc::gen::inRange(0, size), *rc::gen::inRange(0, size)});
-        // There and back.
+        // Some have a spike at the end.
         if (*rc::gen::arbitrary<bool>())
             flat.insert(flat.end(), {{*rc::gen::inRange(0, size), *rc::gen::inRange(0, size)}, flat.back()});
-        const polygon p = placed(flat);
+        const polygon p = embedded_in_space(flat);
         const std::string rejection = rejection_of(p);
         const std::int64_t area = twice_area(flat);
-        // All at one place, or going there and back, it may be kept without area.
-        if (rejection == "accepted" && area != 0) require_fills(flat, cut(p).mesh.triangles);
+        // A point or a retraced path may be kept with zero area.
+        if (rejection == "accepted" && area != 0) require_triangulation(flat, mesh_of(p).mesh.triangles);
         RC_ASSERT(rejection.ends_with(no_normal) <= (area == 0));
     }));
 }
 
-TEST_CASE("polygons: of ten thousand corners") {
+TEST_CASE("polygons: a polygon of ten thousand corners is triangulated") {
     polygon comb;
     for (int tooth = 0; tooth < 5000; ++tooth) {
         comb.push_back({static_cast<float>(tooth), 1, 0});
@@ -298,7 +298,7 @@ TEST_CASE("polygons: of ten thousand corners") {
     }
     comb.push_back({5000, 0, 0});
     comb.push_back({-1, 0, 0});
-    const aabblab::loaded_mesh loaded = cut(comb);
+    const aabblab::loaded_mesh loaded = mesh_of(comb);
     CHECK(loaded.report.text() == "1 concave polygon ear-clipped");
     CHECK(loaded.mesh.triangle_count() == 10'000);
 }

@@ -18,7 +18,7 @@ constexpr const char* config =
     "name = \"shared\"\nseed = [1, 2]\nquick = { seed = 3 }\n[[scene]]\nkind = \"brownian\"\nobjects = 60\nframes = 2\n"
     "[compose]\nsort = [\"std\", \"insertion\"]\n[measure]\nrepeats = 6\nprocesses = 3\nquick = { repeats = 2 }\n";
 
-/// A folder with the config, of which runs go into `out`.
+/// A config in a folder of its own, and its runs, which write to `out`.
 struct shared_run {
     explicit shared_run(const std::string& text = config) : file(folder.write("shared.toml", text)) {}
 
@@ -32,29 +32,29 @@ struct shared_run {
     std::filesystem::path out = folder / "out";
 };
 
-/// All of a row but its times.
-std::set<std::string> answers(const std::filesystem::path& results) {
-    std::set<std::string> all;
+/// The fields of rows except their times.
+std::set<std::string> results_of(const std::filesystem::path& results) {
+    std::set<std::string> lines;
     for (const row& r : aabblab::read_rows(results / "results.csv")) {
         std::string text = r.key() + " " + std::to_string(r.process) + " " + r.digest + " " + r.status;
         for (const auto& count : r.counts) text += " " + std::to_string(count.value_or(0));
-        all.insert(text);
+        lines.insert(text);
     }
-    return all;
+    return lines;
 }
 
-/// Leaves the first lines of the table, and half of the next, as a process that is killed does.
-void cut_off(const std::filesystem::path& results, std::size_t lines) {
-    const std::string all = bytes_of_file(results / "results.csv");
+/// Keeps the first lines of the table and half of the next, as a process that is killed does.
+void truncate_table(const std::filesystem::path& results, std::size_t lines) {
+    const std::string table = bytes_of_file(results / "results.csv");
     std::size_t at = 0;
-    for (std::size_t i = 0; i < lines; ++i) at = all.find('\n', at) + 1;
-    std::ofstream(results / "results.csv", std::ios::binary) << all.substr(0, at + 40);
+    for (std::size_t i = 0; i < lines; ++i) at = table.find('\n', at) + 1;
+    std::ofstream(results / "results.csv", std::ios::binary) << table.substr(0, at + 40);
     unseal(results);
 }
 
 }  // namespace
 
-TEST_CASE("Fresh processes share the repeats, and one validates for all") {
+TEST_CASE("Repeats are divided among processes, of which only the first validates") {
     const shared_run shared;
     REQUIRE(holds(shared.run().out, "insertion"));
     const std::vector<row> rows = shared.rows();
@@ -67,24 +67,24 @@ TEST_CASE("Fresh processes share the repeats, and one validates for all") {
                               return other.name == r.name && other.scene == r.scene;
                           })->counts);
     }
-    // In the order of the processes, so that their times lie apart.
+    // Processes run one after another, so that their times are far apart.
     CHECK(std::ranges::is_sorted(rows, {}, &row::process));
 }
 
-TEST_CASE("A run killed half-way and resumed ends with the rows of one that was not") {
+TEST_CASE("A run that is killed and resumed has the rows of an uninterrupted one") {
     const shared_run shared;
     shared.run();
-    const std::set<std::string> whole = answers(shared.out);
-    // In the first process, between two, in the last.
+    const std::set<std::string> uninterrupted = results_of(shared.out);
+    // The cuts are in the first process, between two processes, and in the last.
     for (const std::size_t lines : {1, 4, 9, 13, 24}) {
         CAPTURE(lines);
-        cut_off(shared.out, lines);
+        truncate_table(shared.out, lines);
         shared.run({"--resume"});
-        REQUIRE(answers(shared.out) == whole);
+        REQUIRE(results_of(shared.out) == uninterrupted);
     }
 }
 
-TEST_CASE("A run whose process is killed leaves no other behind, and is resumed") {
+TEST_CASE("A run that is killed leaves no process behind and can be resumed") {
     const shared_run shared(replaced(config, "objects = 60", "objects = 2000"));
     const pid_t child = started({AABBLAB_UNDER_TEST, "run", shared.file, "--out", shared.out});
     const auto size = [&] {
@@ -92,7 +92,7 @@ TEST_CASE("A run whose process is killed leaves no other behind, and is resumed"
         const auto bytes = std::filesystem::file_size(shared.out / "results.csv", error);
         return error ? std::uintmax_t{0} : bytes;
     };
-    // No header is so long: some rows are there, and more are to come.
+    // The header is shorter: some rows are written, and more are to come.
     while (size() < 2000 && waitpid(child, nullptr, WNOHANG) == 0) usleep(1000);
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
@@ -102,28 +102,28 @@ TEST_CASE("A run whose process is killed leaves no other behind, and is resumed"
         usleep(300'000);
     } while (size() != before);
     shared.run({"--resume"});
-    const std::set<std::string> resumed = answers(shared.out);
+    const std::set<std::string> resumed = results_of(shared.out);
     run_well({"run", shared.file, "--out", shared.folder / "whole"});
-    REQUIRE(resumed == answers(shared.folder / "whole"));
+    REQUIRE(resumed == results_of(shared.folder / "whole"));
     REQUIRE(resumed.size() == 2 * 2 * 6);
 }
 
-TEST_CASE("A repeat that was interrupted is played again, whole") {
+TEST_CASE("An interrupted repeat is run again for all candidates") {
     const shared_run shared;
     shared.run();
     const std::vector<row> before = shared.rows();
-    // Of the second repeat of the first scene one row is left.
-    cut_off(shared.out, 4);
+    // Only one row remains of the second repeat of the first scene.
+    truncate_table(shared.out, 4);
     shared.run({"--resume"});
     const std::vector<row> after = shared.rows();
     REQUIRE(after.size() == before.size());
     for (std::size_t i = 0; i < 2; ++i) CHECK(after[i].search_ms == before[i].search_ms);
     CHECK(after[2].repeat == 1);
-    // Six digits after the point hardly repeat themselves in both.
+    // Two times are hardly equal to six decimals in both runs.
     CHECK((after[2].search_ms != before[2].search_ms || after[2].build_ms != before[2].build_ms));
 }
 
-TEST_CASE("A quick run takes the seeds of quick, and no more processes than repeats") {
+TEST_CASE("A quick run takes the seeds of quick and at most as many processes as repeats") {
     const shared_run shared;
     shared.run({"--quick"});
     const std::vector<row> rows = shared.rows();
@@ -134,7 +134,7 @@ TEST_CASE("A quick run takes the seeds of quick, and no more processes than repe
     }
 }
 
-TEST_CASE("What the first process found wrong is not timed by the others") {
+TEST_CASE("A candidate that the first process rejects is not timed by later ones") {
     const temporary_folder folder;
     const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
     results_folder results(folder / "r", record_of(e), existing_results::reject);
@@ -145,13 +145,13 @@ TEST_CASE("What the first process found wrong is not timed by the others") {
     for (const row& r : results.rows()) CHECK(r.name == candidates[0].name);
 }
 
-TEST_CASE("A repeat of a later process that finds other pairs is named, and its composition loses its rows") {
+TEST_CASE("A composition with a wrong result in a later process is reported and loses its rows") {
     const temporary_folder folder;
     const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
     results_folder results(folder / "r", record_of(e), existing_results::reject);
     std::vector<aabblab::candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], candidates, results, 0).empty());
-    // The name of the first, and nothing of what it finds.
+    // The first candidate keeps its name, but loses all pairs.
     candidates[0].make_global = [make = candidates[0].make_global](aabb::instrumentation counted) {
         return std::make_unique<altered_search>(make(counted), [] {}, [](auto& pairs) { pairs.clear(); });
     };
@@ -161,7 +161,7 @@ TEST_CASE("A repeat of a later process that finds other pairs is named, and its 
     for (const row& r : results.rows()) CHECK(r.name == candidates[1].name);
 }
 
-TEST_CASE("More processes than repeats are refused, as is a seed of quick that is none") {
+TEST_CASE("More processes than repeats and invalid settings of quick are rejected") {
     const std::string scene = "[[scene]]\nkind = \"still\"\nobjects = 5\nframes = 1\n";
     CHECK(rejection_of("name = \"a\"\n" + scene + "[measure]\nrepeats = 2\nprocesses = 3\n") ==
           "test.toml:8: processes must be at most repeats, which is 2");

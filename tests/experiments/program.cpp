@@ -6,7 +6,7 @@
 
 namespace {
 
-/// Whoever was to read standard output has gone.
+/// Runs the program with a standard output whose reader has closed it.
 program_result run_unread(const std::vector<std::string>& arguments) {
     int ends[2];
     REQUIRE(pipe2(ends, O_CLOEXEC) == 0);
@@ -21,7 +21,7 @@ std::vector<std::string> words_of(const std::string& text) {
     return {std::istream_iterator<std::string>(in), {}};
 }
 
-/// In characters, not bytes.
+/// The length of the longest line, in characters, not bytes.
 std::size_t widest_line(const std::string& text) {
     std::size_t widest = 0;
     for (const std::string& line : lines_of(text))
@@ -30,20 +30,20 @@ std::size_t widest_line(const std::string& text) {
     return widest;
 }
 
-/// The program, its commands, and theirs, as help tells them.
+/// The program, its commands and their subcommands, as listed by --help.
 std::vector<std::vector<std::string>> every_command(const std::vector<std::string>& from = {}) {
-    std::vector<std::vector<std::string>> all{from};
+    std::vector<std::vector<std::string>> commands{from};
     const std::string help = run_program(joined(from, {"--help"})).out;
     const std::size_t begin = help.find("\nSubcommands:\n");
-    if (begin == std::string::npos) return all;
+    if (begin == std::string::npos) return commands;
     for (const std::string& line : lines_of(help.substr(begin + 2, help.find("\n\n", begin + 2) - begin - 2)))
         if (line.starts_with("  ") && line[2] != ' ')
-            for (std::vector<std::string>& one : every_command(joined(from, {words_of(line).front()})))
-                all.push_back(std::move(one));
-    return all;
+            for (std::vector<std::string>& command : every_command(joined(from, {words_of(line).front()})))
+                commands.push_back(std::move(command));
+    return commands;
 }
 
-/// What a terminal so many characters wide shows of a shell's command: of both streams.
+/// The output of a shell command, of both streams, on a terminal of that width.
 std::string shown_on_terminal(unsigned short columns, const std::string& command) {
     const winsize size{.ws_row = 50, .ws_col = columns, .ws_xpixel = 0, .ws_ypixel = 0};
     int terminal = -1, line = -1;
@@ -75,7 +75,7 @@ TEST_CASE("The program prints its version and its help") {
         REQUIRE(holds(run_program({command, "--help"}).out, "aabblab list shows every strategy"));
 }
 
-TEST_CASE("Help and list fit the width they are given, 80 characters without a terminal") {
+TEST_CASE("Help and list fit the given width, or 80 characters without a terminal") {
     const std::vector<std::vector<std::string>> commands = every_command();
     REQUIRE(commands.size() > 16);
     for (const std::vector<std::string>& command : commands) {
@@ -87,12 +87,12 @@ TEST_CASE("Help and list fit the width they are given, 80 characters without a t
     const program_result narrow = run_command({"env", "COLUMNS=50", AABBLAB_UNDER_TEST, "list", "sort"});
     CHECK(widest_line(sorts) > 50);
     CHECK(widest_line(narrow.out) <= 50);
-    // What is said of a name hangs in its own column, and is all there.
+    // Descriptions wrap within their own column, without losing words.
     CHECK(holds(narrow.out, "\n" + std::string(25, ' ')));
     CHECK(words_of(narrow.out) == words_of(sorts));
 }
 
-TEST_CASE("On a terminal, list and refusals are as wide as it is") {
+TEST_CASE("list and error messages fit the width of the terminal") {
     const std::string program = AABBLAB_UNDER_TEST;
     const std::string sorts = shown_on_terminal(60, program + " list sort");
     CHECK(widest_line(sorts) <= 60);
@@ -100,19 +100,20 @@ TEST_CASE("On a terminal, list and refusals are as wide as it is") {
     const std::string rejected = shown_on_terminal(60, program + " pairs s.aabbs --sweep unknown_at_all");
     CHECK(widest_line(rejected) <= 60);
     CHECK(rejected.starts_with("aabblab: unknown sweep 'unknown_at_all'; expected one of"));
-    CHECK(holds(rejected, "\n         "));  // behind "aabblab: "
+    CHECK(holds(rejected, "\n         "));  // after "aabblab: "
 }
 
-TEST_CASE("list shows one kind alone, and the nearest for one that is none") {
+TEST_CASE("list can be limited to one kind") {
     const program_result sorts = run_well({"list", "sort"});
     CHECK(sorts.out.starts_with("sort\n  insertion "));
     CHECK_FALSE(holds(sorts.out, "partition"));
     CHECK(holds(run_program({"list"}).out, sorts.out));
-    const auto all = json_of({"list", "--json"});
-    CHECK(json_of({"list", "sort", "--json"}) == nlohmann::json{{"strategies", {{"sort", all["strategies"]["sort"]}}}});
+    const auto full = json_of({"list", "--json"});
+    CHECK(json_of({"list", "sort", "--json"}) ==
+          nlohmann::json{{"strategies", {{"sort", full["strategies"]["sort"]}}}});
     CHECK(json_of({"list", "engines", "--json"}) ==
-          nlohmann::json{{"engines", all["engines"]}, {"engines_left_out", all["engines_left_out"]}});
-    for (const auto& [name, content] : all.items()) {
+          nlohmann::json{{"engines", full["engines"]}, {"engines_left_out", full["engines_left_out"]}});
+    for (const auto& [name, content] : full.items()) {
         if (name == "strategies" || name == "engines_left_out") continue;
         INFO(name);
         CHECK(run_program({"list", name}).out.starts_with(name));
@@ -120,7 +121,7 @@ TEST_CASE("list shows one kind alone, and the nearest for one that is none") {
     }
 }
 
-TEST_CASE("Output that cannot be written is an error, output that nobody reads is none") {
+TEST_CASE("Output that cannot be written is an error, but a closed pipe is not") {
     const int full = open("/dev/full", O_WRONLY | O_CLOEXEC);
     REQUIRE(full >= 0);
     as_refused(run_program({"list"}, {}, full));
@@ -131,7 +132,7 @@ TEST_CASE("Output that cannot be written is an error, output that nobody reads i
     REQUIRE(quiet.err.empty());
 }
 
-TEST_CASE("An experiment whose tables nobody reads is finished all the same") {
+TEST_CASE("An experiment whose output pipe is closed runs to its end") {
     const temporary_folder folder;
     const std::string config =
         folder.write("c.toml", "name = \"c\"\n[[scene]]\nkind = [\"brownian\", \"still\"]\nobjects = 20\nframes = 1\n" +
@@ -140,7 +141,7 @@ TEST_CASE("An experiment whose tables nobody reads is finished all the same") {
     CHECK(unread.status == 0);
     CHECK(unread.err.empty());
     CHECK(std::ranges::count(bytes_of_file(folder / "r/results.csv"), '\n') == 1 + 2 * 2);
-    // The second scene cannot be played, which has to be known by the status.
+    // The second scene cannot be run, which the exit status must report.
     folder.write("a.off", "OFF\n3 1 0\n0 0 0\n3e38 0 0\n0 3e38 0\n3 0 1 2\n");
     const std::string failing =
         folder.write("f.toml",
@@ -151,7 +152,7 @@ TEST_CASE("An experiment whose tables nobody reads is finished all the same") {
     CHECK(run_unread({"run", failing, "--out", folder / "f"}).status == 2);
 }
 
-TEST_CASE("With standard output closed nothing is begun, and no file takes its place") {
+TEST_CASE("A closed standard output is rejected before any file is opened") {
     const temporary_folder folder;
     const std::string out = folder / "s.aabbs";
     const program_result rejected =
@@ -162,11 +163,11 @@ TEST_CASE("With standard output closed nothing is begun, and no file takes its p
 
 TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
     const program_result text = run_well({"list"});
-    const auto all = json_of({"list", "--json"});
+    const auto list = json_of({"list", "--json"});
     std::vector<std::string> names;
     for (const char* kind : {"prepare", "sort", "partition", "sweep", "build", "tree", "triangle"}) {
-        REQUIRE(all["strategies"][kind].size() >= 1);
-        for (const auto& strategy : all["strategies"][kind]) {
+        REQUIRE(list["strategies"][kind].size() >= 1);
+        for (const auto& strategy : list["strategies"][kind]) {
             names.push_back(strategy["name"]);
             for (const auto& parameter : strategy["parameters"]) {
                 names.push_back(parameter["name"].get<std::string>() + "=" + parameter["default"].get<std::string>());
@@ -176,12 +177,12 @@ TEST_CASE("list shows every strategy, engine, scene, shape and metric") {
         }
     }
     for (const char* group : {"engines", "engines_left_out", "scenes", "shapes", "metrics"})
-        for (const auto& entry : all[group]) names.push_back(entry["name"]);
+        for (const auto& entry : list[group]) names.push_back(entry["name"]);
     for (const char* expected : {"insertion", "median", "brute_force", "brownian", "icosphere", "frame_ms",
                                  "comparisons", "all_bytes", "missing"})
         REQUIRE(std::ranges::find(names, expected) != names.end());
     names.emplace_back("triangles=5000");  // of a shape
     for (const std::string& name : names) REQUIRE_THAT(text.out, Catch::Matchers::ContainsSubstring(" " + name));
-    for (const auto& engine : all["engines_left_out"])
+    for (const auto& engine : list["engines_left_out"])
         REQUIRE(holds(text.out, "left out: " + engine["not_found"].get<std::string>() + " was not found"));
 }

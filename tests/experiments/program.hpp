@@ -14,9 +14,9 @@
 
 import aabb;
 
-/// What a run of the program left behind.
+/// The exit status and output of a run of the program.
 struct program_result {
-    int status;  ///< its exit status; 128 and more where a signal ended it
+    int status;  ///< the exit status; 128 plus the signal if one ended the program
     std::string out;
     std::string err;
 };
@@ -45,10 +45,10 @@ using temporary_file = std::unique_ptr<std::FILE, file_closer>;
 
 }  // namespace program_detail
 
-/// The program reads costs that its user keeps; tests have none, unless they name a folder of their own.
+/// The program reads costs from the user's configuration; tests have none unless they name a folder of their own.
 inline const bool is_without_kept_costs = setenv("XDG_CONFIG_HOME", "/nonexistent", 1) == 0;
 
-/// Starts a command, and does not wait for it.
+/// Starts a command without waiting for it.
 [[nodiscard]] inline pid_t started(std::vector<std::string> arguments, posix_spawn_file_actions_t* files = nullptr) {
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -61,10 +61,9 @@ inline const bool is_without_kept_costs = setenv("XDG_CONFIG_HOME", "/nonexisten
 
 inline constexpr int closed_output = -2;
 
-/// Runs a command to its end, its name first; one without a slash is looked for as a shell does.
-/// @param input what it reads from standard input
-/// @param output an open file that it writes standard output to, in place of one whose content is returned; or
-/// closed_output
+/// Runs a command to its end, its name first; one without a slash is searched for in PATH.
+/// @param input the content of standard input
+/// @param output the descriptor to use as standard output, whose content is not returned; or closed_output
 [[nodiscard]] inline program_result run_command(std::vector<std::string> arguments, const std::string& input = {},
                                                 int output = -1) {
     const auto in = program_detail::make_file(input);
@@ -86,10 +85,10 @@ inline constexpr int closed_output = -2;
             program_detail::content_of(err.get())};
 }
 
-/// Within half a minute.
-[[nodiscard]] inline bool comes_true(const std::function<bool()>& what) {
+/// Whether the condition becomes true within half a minute.
+[[nodiscard]] inline bool comes_true(const std::function<bool()>& condition) {
     for (int attempt = 0; attempt < 3000; ++attempt) {
-        if (what()) return true;
+        if (condition()) return true;
         usleep(10'000);
     }
     return false;
@@ -102,7 +101,7 @@ inline constexpr int closed_output = -2;
     return run_command(std::move(arguments), input, output);
 }
 
-/// The same where it must succeed.
+/// Runs the program under test, which must succeed.
 inline program_result run_well(std::vector<std::string> arguments, const std::string& input = {}) {
     program_result result = run_program(std::move(arguments), input);
     INFO(result.out << result.err);
@@ -110,19 +109,19 @@ inline program_result run_well(std::vector<std::string> arguments, const std::st
     return result;
 }
 
-/// Arguments, and more of them.
+/// Appends more arguments.
 [[nodiscard]] inline std::vector<std::string> joined(std::vector<std::string> arguments,
                                                      const std::vector<std::string>& more) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
 }
 
-/// Is it one sentence that begins with the program's name?
+/// Whether the text is one line that begins with the program's name.
 [[nodiscard]] inline bool is_one_sentence(const std::string& text) {
     return text.starts_with("aabblab: ") && text.find('\n') == text.size() - 1;
 }
 
-/// The same result, which must be a refusal: status 2 and one sentence.
+/// Requires that the result is a rejection, with status 2 and one sentence, and returns it.
 inline program_result as_refused(program_result result) {
     INFO(result.out << result.err);
     REQUIRE(result.status == 2);
@@ -130,23 +129,23 @@ inline program_result as_refused(program_result result) {
     return result;
 }
 
-/// Runs the program where it must refuse.
+/// Runs the program under test, which must reject its arguments.
 inline program_result run_refused(std::vector<std::string> arguments, const std::string& input = {}) {
     return as_refused(run_program(std::move(arguments), input));
 }
 
-/// Command lines, and what each must say as it is refused.
+/// Command lines, each with a part of the message with which it must be rejected.
 using refusals = std::vector<std::pair<std::vector<std::string>, std::string>>;
 
-/// Holds that each is refused in such a sentence, and prints nothing.
-/// @param before stands before the rest of each
-inline void check_refused(const std::vector<std::string>& before, const refusals& all) {
-    for (const auto& [rest, said] : all) {
+/// Checks that each is rejected with such a message and prints nothing else.
+/// @param before the arguments that precede the rest of each
+inline void check_refused(const std::vector<std::string>& before, const refusals& rejections) {
+    for (const auto& [rest, message] : rejections) {
         const std::vector<std::string> arguments = joined(before, rest);
         CAPTURE(arguments);
         const program_result result = run_refused(arguments);
         CHECK(result.out.empty());
-        CHECK_THAT(result.err, Catch::Matchers::ContainsSubstring(said));
+        CHECK_THAT(result.err, Catch::Matchers::ContainsSubstring(message));
     }
 }
 
@@ -157,19 +156,19 @@ inline void check_refused(const std::vector<std::string>& before, const refusals
     return lines;
 }
 
-/// `what` so many times, with `between`.
+/// `what`, repeated, with `between` as separator.
 [[nodiscard]] inline std::string repeated(const std::string& what, std::size_t times, const std::string& between = {}) {
     std::string text;
     for (std::size_t i = 0; i < times; ++i) text += (i == 0 ? "" : between) + what;
     return text;
 }
 
-/// A unit cube with its lowest corner there.
+/// A unit cube with this minimum corner.
 [[nodiscard]] inline aabb::box cube(float x, float y, float z) {
     return {{x, y, z}, {x + 1, y + 1, z + 1}};
 }
 
-/// No line is longer than 80 characters.
+/// Checks that no line is longer than 80 bytes.
 inline void check_narrow(const std::string& text) {
     for (const std::string& line : lines_of(text)) {
         INFO(line);

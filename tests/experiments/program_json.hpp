@@ -4,7 +4,7 @@
 
 #include "program.hpp"
 
-/// What the program prints where it succeeds.
+/// The JSON that the program prints; it must succeed.
 [[nodiscard]] inline nlohmann::json json_of(std::vector<std::string> arguments) {
     return nlohmann::json::parse(run_well(std::move(arguments)).out);
 }

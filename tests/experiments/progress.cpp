@@ -4,7 +4,7 @@ import aabblab.progress;
 
 using namespace std::chrono_literals;
 
-TEST_CASE("Progress says how far the work has come and how long it will take") {
+TEST_CASE("Progress reports the work done and estimates the remaining time") {
     using aabblab::progress_text;
     REQUIRE(progress_text("frames searched", 30, 120, 4s) == "frames searched: 30 of 120, about 12 s left");
     REQUIRE(progress_text("rows", 0, 120, 4s) == "rows: 0 of 120");

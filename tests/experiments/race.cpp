@@ -1,4 +1,4 @@
-// The race behind recommend, and the command.
+// The race of candidates behind recommend, and the command.
 
 #include <catch2/matchers/catch_matchers.hpp>
 #include <csignal>
@@ -18,10 +18,10 @@ using namespace std::chrono_literals;
 
 namespace {
 
-// Long enough that a busy machine does not change who is far behind.
+// Long enough that a busy machine does not change which candidate is far behind.
 constexpr auto tick = 5ms;
 
-/// Finds what the usual composition finds, but for what is changed then, and does something before each frame.
+/// The default composition, which calls `before` in each frame and applies `after` to the pairs.
 racer delayed(
     const std::string& name, const std::function<void()>& before, const altered_search::change& after = [](auto&) {}) {
     racer r;
@@ -37,20 +37,20 @@ auto sleeping(std::chrono::milliseconds time) {
     return [time] { std::this_thread::sleep_for(time); };
 }
 
-/// Never gets through that frame, counted from 0, and takes so long for others.
-auto stuck_in(int which, std::chrono::milliseconds others = 1ms) {
-    return [=, i = 0]() mutable { std::this_thread::sleep_for(i++ == which ? 10min : others); };
+/// Hangs in that frame, counted from 0, and takes the given time for each of the others.
+auto stuck_in(int frame, std::chrono::milliseconds others = 1ms) {
+    return [=, i = 0]() mutable { std::this_thread::sleep_for(i++ == frame ? 10min : others); };
 }
 
 /// Loses a pair of each frame that has any.
-racer losing(const std::string& name) {
+racer lossy(const std::string& name) {
     return delayed(name, sleeping(20ms), [](auto& pairs) {
         if (!pairs.empty()) pairs.pop_back();
     });
 }
 
-/// Writes its name behind what is in the file, each time it is made.
-aabblab::candidate noted(const aabblab::candidate& tested, const std::string& name, const std::string& file) {
+/// Appends its name to the file each time it is created.
+aabblab::candidate logged(const aabblab::candidate& tested, const std::string& name, const std::string& file) {
     aabblab::candidate recording_candidate = tested;
     recording_candidate.make_global = [=, make = tested.make_global](aabb::instrumentation counted) {
         std::ofstream(file, std::ios::app) << name;
@@ -61,23 +61,23 @@ aabblab::candidate noted(const aabblab::candidate& tested, const std::string& na
 
 const aabblab::scene_choice scene{"brownian", {{"objects", "200"}, {"frames", "24"}}, {}, 1, {}};
 
-// Its frames are long, so that a busy machine does not change who is far behind.
+// Its few frames can take long, so that a busy machine does not change which candidate is far behind.
 const aabblab::scene_choice short_scene{"brownian", {{"objects", "200"}, {"frames", "3"}}, {}, 1, {}};
 
-aabblab::race_result race_of(const aabblab::scene_choice& choice, std::vector<racer> all, double seconds) {
+aabblab::race_result race_of(const aabblab::scene_choice& choice, std::vector<racer> racers, double seconds) {
     aabblab::staged_scene staged(choice);
-    return aabblab::run_race(staged, std::move(all), aabblab::time_limits(seconds));
+    return aabblab::run_race(staged, std::move(racers), aabblab::time_limits(seconds));
 }
 
-std::vector<racer> starters_of(const aabblab::scene_choice& choice) {
+std::vector<racer> candidates_for_race(const aabblab::scene_choice& choice) {
     return aabblab::race_candidates(aabblab::scene_frames(choice));
 }
 
-bool holds(const std::vector<racer>& some, const std::string& name) {
-    return std::ranges::find(some, name, &racer::name) != some.end();
+bool holds(const std::vector<racer>& racers, const std::string& name) {
+    return std::ranges::find(racers, name, &racer::name) != racers.end();
 }
 
-aabblab::observation played_in(double build_ms, double first_ms, double rest_ms, std::size_t frames) {
+aabblab::observation observed(double build_ms, double first_ms, double rest_ms, std::size_t frames) {
     aabblab::observation seen;
     seen.build.wall_ms = build_ms;
     seen.first.update.wall_ms = first_ms;
@@ -87,28 +87,28 @@ aabblab::observation played_in(double build_ms, double first_ms, double rest_ms,
     return seen;
 }
 
-/// A finalist who took so many milliseconds for a scene of two frames, repeat by repeat.
-racer finished(const std::string& name, std::initializer_list<double> all_ms) {
+/// A finalist with these times of a scene of two frames, by repeat.
+racer finalist(const std::string& name, std::initializer_list<double> ms_of_repeats) {
     racer r;
     r.name = name;
-    for (const double ms : all_ms) r.times.push_back(played_in(0, 0, ms, 2));
+    for (const double ms : ms_of_repeats) r.times.push_back(observed(0, 0, ms, 2));
     return r;
 }
 
-/// The same of a scene of 100 frames, with as little noise as machines have.
-racer finished(const std::string& name, double build_ms, double frame_ms, bool slow_and_fast = false) {
+/// A finalist of a scene of 100 frames, with the noise of a quiet machine.
+racer finalist(const std::string& name, double build_ms, double frame_ms, bool alternates = false) {
     racer r;
     r.name = name;
     bool slow = false;
     for (const double noise : {1.0, 1.02, 0.99, 1.01, 0.98, 1.0, 1.01}) {
         slow = !slow;
-        const double ms = slow_and_fast ? frame_ms * (slow ? 1.1 : 0.9) : frame_ms;
-        r.times.push_back(played_in(build_ms * noise, ms * noise, 99 * ms * noise, 100));
+        const double ms = alternates ? frame_ms * (slow ? 1.1 : 0.9) : frame_ms;
+        r.times.push_back(observed(build_ms * noise, ms * noise, 99 * ms * noise, 100));
     }
     return r;
 }
 
-aabblab::race_result ended(std::vector<racer> finalists, std::size_t frames = 100) {
+aabblab::race_result race_with(std::vector<racer> finalists, std::size_t frames = 100) {
     aabblab::race_result race;
     race.frames = race.final_frames = race.validated = frames;
     rank(finalists);
@@ -118,17 +118,17 @@ aabblab::race_result ended(std::vector<racer> finalists, std::size_t frames = 10
 
 }  // namespace
 
-TEST_CASE("A race ends with the fastest, and those who are far behind or fail play no more") {
-    std::vector<racer> all{delayed("slow", sleeping(20 * tick)),
-                           delayed("fast", sleeping(tick)),
-                           delayed("stuck", sleeping(10min)),
-                           delayed("broken", [] { throw std::runtime_error("no"); }),
-                           delayed("gone", [] { std::raise(SIGKILL); }),
-                           delayed("late", [i = 0]() mutable {
-                               // Slow for a frame, then as fast as any.
-                               std::this_thread::sleep_for(i++ == 0 ? 60 * tick : tick);
-                           })};
-    const aabblab::race_result race = race_of(scene, std::move(all), 8);
+TEST_CASE("A race finds the fastest candidate and drops those that are far behind or fail") {
+    std::vector<racer> racers{delayed("slow", sleeping(20 * tick)),
+                              delayed("fast", sleeping(tick)),
+                              delayed("stuck", sleeping(10min)),
+                              delayed("broken", [] { throw std::runtime_error("no"); }),
+                              delayed("gone", [] { std::raise(SIGKILL); }),
+                              delayed("late", [i = 0]() mutable {
+                                  // It is slow in frame 0, then as fast as any.
+                                  std::this_thread::sleep_for(i++ == 0 ? 60 * tick : tick);
+                              })};
+    const aabblab::race_result race = race_of(scene, std::move(racers), 8);
     REQUIRE(race.frames == 25);
     REQUIRE(race.objects == 200);
     REQUIRE_FALSE(race.finalists.empty());
@@ -142,81 +142,81 @@ TEST_CASE("A race ends with the fastest, and those who are far behind or fail pl
         CHECK(r.last->digest == race.finalists.front().last->digest);
         CHECK(r.log_ratio->value >= 0);
     }
-    // Those who came farthest stand first.
+    // The last to be dropped comes first.
     CHECK(race.dropped.front().name == "slow");
 }
 
-TEST_CASE("Who was disturbed once is not dropped") {
+TEST_CASE("A candidate that was disturbed once is not dropped") {
     const temporary_folder folder;
-    const std::string played = folder / "played";
-    std::vector<racer> all{delayed("fast", sleeping(tick)), delayed("disturbed", sleeping(tick))};
-    // Three times as slow in the play that finds no file.
-    all.back().tested.make_global = [=, make = all.back().tested.make_global,
-                                     slow = delayed("", sleeping(3 * tick))](aabb::instrumentation counted) {
-        if (std::filesystem::exists(played)) return make(counted);
-        std::ofstream(played) << "once";
+    const std::string marker = folder / "played";
+    std::vector<racer> racers{delayed("fast", sleeping(tick)), delayed("disturbed", sleeping(tick))};
+    // It takes three times as long in the first run, which finds no file.
+    racers.back().tested.make_global = [=, make = racers.back().tested.make_global,
+                                        slow = delayed("", sleeping(3 * tick))](aabb::instrumentation counted) {
+        if (std::filesystem::exists(marker)) return make(counted);
+        std::ofstream(marker) << "once";
         return slow.tested.make_global(counted);
     };
-    CHECK(holds(race_of(scene, all, 5).finalists, "disturbed"));
+    CHECK(holds(race_of(scene, racers, 5).finalists, "disturbed"));
 }
 
-TEST_CASE("A race counts the frames of the scene that were played, not those that were played again") {
+TEST_CASE("A race counts the frames of repeated runs only once") {
     const aabblab::race_result race = race_of(scene, {delayed("one", [] {}), delayed("other", [] {})}, 20);
     REQUIRE(race.finalists.size() + race.dropped.size() == 2);
     CHECK(race.frames_of_all == 50);
     CHECK(race.frames_run == 25 * race.finalists.size() + 4 * race.dropped.size());
 }
 
-TEST_CASE("Who finds other pairs than CGAL does not win a race") {
-    const std::vector<racer> all{delayed("right", sleeping(20ms)), losing("wrong")};
-    const aabblab::race_result race = race_of(short_scene, all, 2);
+TEST_CASE("A candidate whose pairs differ from CGAL's does not win a race") {
+    const std::vector<racer> racers{delayed("right", sleeping(20ms)), lossy("wrong")};
+    const aabblab::race_result race = race_of(short_scene, racers, 2);
     CHECK(race.is_validated());
     REQUIRE(race.finalists.size() == 1);
     CHECK(race.finalists.front().name == "right");
     CHECK(holds(race.wrong, "wrong"));
     CHECK(aabblab::advice_of(race).back() == "wrong is rejected: its pairs differ from the ground truth.");
-    CHECK_THROWS_WITH(race_of(short_scene, {all.back()}, 2), "no candidate finds the exact pairs of this scene");
+    CHECK_THROWS_WITH(race_of(short_scene, {racers.back()}, 2), "no candidate finds the exact pairs of this scene");
 }
 
-TEST_CASE("Who finds other pairs than the first of those who play in turn is known") {
-    const std::vector<aabblab::candidate> all{delayed("a", [] {}).tested, delayed("b", [] {}).tested,
-                                              losing("c").tested};
+TEST_CASE("Interleaved runs identify candidates whose pairs differ from the baseline's") {
+    const std::vector<aabblab::candidate> candidates{delayed("a", [] {}).tested, delayed("b", [] {}).tested,
+                                                     lossy("c").tested};
     aabblab::staged_scene staged(short_scene);
-    const aabblab::interleaved_runs played = aabblab::run_interleaved(staged, all, 4, 2, aabblab::time_limits(20));
-    CHECK(aabblab::disagreeing(played.times) == std::vector<std::size_t>{2});
+    const aabblab::interleaved_runs runs = aabblab::run_interleaved(staged, candidates, 4, 2, aabblab::time_limits(20));
+    CHECK(aabblab::disagreeing(runs.times) == std::vector<std::size_t>{2});
 }
 
-TEST_CASE("As many finish a race as there is time for, but two") {
-    std::vector<racer> all;
-    for (const char* name : {"a", "b", "c"}) all.push_back(delayed(name, sleeping(100ms)));
-    CHECK(race_of(short_scene, all, 20).finalists.size() == 3);
-    CHECK(race_of(short_scene, all, 4).finalists.size() == 2);
+TEST_CASE("A race has as many finalists as time permits, but at least two") {
+    std::vector<racer> racers;
+    for (const char* name : {"a", "b", "c"}) racers.push_back(delayed(name, sleeping(100ms)));
+    CHECK(race_of(short_scene, racers, 20).finalists.size() == 3);
+    CHECK(race_of(short_scene, racers, 4).finalists.size() == 2);
 }
 
-TEST_CASE("Each repeat of a race begins with another racer") {
+TEST_CASE("Each repeat of a race begins with another candidate") {
     const temporary_folder folder;
     const std::string file = folder / "order";
-    std::vector<racer> all;
+    std::vector<racer> racers;
     for (const char* name : {"a", "b"}) {
-        // Long enough that both come to the end.
-        racer& r = all.emplace_back(delayed(name, sleeping(5ms)));
-        r.tested = noted(r.tested, name, file);
+        // Long enough that both become finalists.
+        racer& r = racers.emplace_back(delayed(name, sleeping(5ms)));
+        r.tested = logged(r.tested, name, file);
     }
-    REQUIRE(race_of(scene, all, 20).finalists.size() == 2);
+    REQUIRE(race_of(scene, racers, 20).finalists.size() == 2);
     const std::string order = bytes_of_file(file);
-    // A round, then at least five repeats.
+    // One round is followed by at least five repeats.
     REQUIRE(order.size() >= 2 + 2 * 5);
     for (std::size_t i = 2; i + 2 < order.size(); i += 2) CHECK(order[i] != order[i + 2]);
 }
 
-TEST_CASE("What is done apart is told as far as it comes, and how it ends") {
+TEST_CASE("A child process reports its output so far and how it ended") {
     using aabblab::ending;
     const auto ends = [](const std::function<void()>& work, double seconds) {
         const aabblab::child_result done = aabblab::run_in_child(
-            [&](const aabblab::output_sender& tell) {
-                tell("begun;");
+            [&](const aabblab::output_sender& send) {
+                send("begun;");
                 work();
-                tell("ended");
+                send("ended");
             },
             seconds);
         CHECK(done.reported.starts_with("begun;"));
@@ -238,13 +238,13 @@ TEST_CASE("What is done apart is told as far as it comes, and how it ends") {
     CHECK(rejected.reason == "it is wrong");
     const temporary_folder folder;
     const std::string file = folder / "begun";
-    const auto none = aabblab::run_in_child([&](const aabblab::output_sender&) { std::ofstream(file) << "yes"; }, 0);
-    CHECK(none.end == ending::stopped);
-    CHECK(none.seconds == 0);
+    const auto idle = aabblab::run_in_child([&](const aabblab::output_sender&) { std::ofstream(file) << "yes"; }, 0);
+    CHECK(idle.end == ending::stopped);
+    CHECK(idle.seconds == 0);
     CHECK_FALSE(std::filesystem::exists(file));
 }
 
-TEST_CASE("A race of S seconds ends within 2 S, or 2 seconds after the scene was read") {
+TEST_CASE("A race of S seconds ends within 2 S, or 2 seconds after the scene is read") {
     double now = 0;
     aabblab::time_limits limits(10, [&] { return now; });
     const auto is_near = [](double a, double b) { return std::abs(a - b) < 1e-9; };
@@ -256,14 +256,14 @@ TEST_CASE("A race of S seconds ends within 2 S, or 2 seconds after the scene was
     CHECK(limits.to_run() < 0);
     CHECK(limits.to_end() < 0);
     now = 0;
-    aabblab::time_limits of_much(1, [&] { return now; });
+    aabblab::time_limits after_long_read(1, [&] { return now; });
     now = 40;
-    of_much.note_scene_read();
-    CHECK_BETWEEN(0.9, of_much.to_run(), 1);
-    CHECK(is_near(of_much.to_end(), 1.9));
+    after_long_read.note_scene_read();
+    CHECK_BETWEEN(0.9, after_long_read.to_run(), 1);
+    CHECK(is_near(after_long_read.to_end(), 1.9));
 }
 
-TEST_CASE("Where the first frames take too long, fewer are raced over") {
+TEST_CASE("A race runs fewer frames if the first ones take too long") {
     const aabblab::race_result race = race_of(scene,
                                               {delayed("early", stuck_in(2, 200ms)), delayed("fast", stuck_in(2, 5ms)),
                                                delayed("never", stuck_in(0)), delayed("late", stuck_in(1))},
@@ -279,7 +279,7 @@ TEST_CASE("Where the first frames take too long, fewer are raced over") {
     CHECK(holds(use, " ms for the first 2 of 25 frames"));
 }
 
-TEST_CASE("Where nobody ends a frame, the first one gets the time for comparing as well") {
+TEST_CASE("If no candidate finishes a frame, the first frame also gets the time for validation") {
     const aabblab::race_result race =
         race_of(scene, {delayed("slow", sleeping(1500ms)), delayed("slower", sleeping(10min))}, 3);
     REQUIRE(race.finalists.size() == 1);
@@ -287,8 +287,8 @@ TEST_CASE("Where nobody ends a frame, the first one gets the time for comparing 
     CHECK(race.final_frames == 1);
 }
 
-TEST_CASE("Who gets stuck behind the first frames is not recommended where another comes to the end") {
-    // As fast as the other until then, so that it is not the other who is dropped.
+TEST_CASE("A candidate that hangs after the first frames is not recommended if another one finishes") {
+    // Both are equally fast until then, so that the other one is not dropped.
     const aabblab::race_result race =
         race_of(scene, {delayed("stuck", stuck_in(5, 10ms)), delayed("ends", sleeping(10ms))}, 20);
     REQUIRE(race.finalists.size() == 1);
@@ -297,11 +297,11 @@ TEST_CASE("Who gets stuck behind the first frames is not recommended where anoth
     CHECK(holds(race.dropped, "stuck"));
 }
 
-TEST_CASE("Who did not end is not recommended where anybody did, and all are named who had no time") {
-    std::vector<racer> all;
-    for (int i = 0; i < 12; ++i) all.push_back(delayed("stuck", sleeping(10min)));
-    all.insert(all.begin() + 1, delayed("ends", sleeping(2ms)));
-    const aabblab::race_result race = race_of(scene, std::move(all), 1);
+TEST_CASE("Unfinished candidates are not recommended if one finishes, and those without time are counted") {
+    std::vector<racer> racers;
+    for (int i = 0; i < 12; ++i) racers.push_back(delayed("stuck", sleeping(10min)));
+    racers.insert(racers.begin() + 1, delayed("ends", sleeping(2ms)));
+    const aabblab::race_result race = race_of(scene, std::move(racers), 1);
     REQUIRE(race.finalists.size() == 1);
     CHECK(race.finalists.front().name == "ends");
     REQUIRE(race.dropped.size() == 12);
@@ -313,13 +313,13 @@ TEST_CASE("Who did not end is not recommended where anybody did, and all are nam
                                                            "; increase --seconds.") == 1);
 }
 
-TEST_CASE("A race that is refused a frame says why, as the command says it") {
+TEST_CASE("A race reports the reason why a frame is invalid") {
     const std::string why = "frame 0: box 3 is inverted";
     const auto reject = [&] { throw aabb::input_error(why); };
     CHECK_THROWS_WITH(race_of(scene, {delayed("one", reject), delayed("other", reject)}, 1), why);
 }
 
-TEST_CASE("recommend and explain report an invalid frame, whichever it is") {
+TEST_CASE("recommend and explain report an invalid frame at any position") {
     const temporary_folder folder;
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "60", "--frames", "30", "--out", file});
@@ -339,7 +339,7 @@ TEST_CASE("recommend and explain report an invalid frame, whichever it is") {
     }
 }
 
-TEST_CASE("Nobody keeps a race waiting for longer than it may take") {
+TEST_CASE("A candidate that exceeds the time of a race is stopped") {
     const auto hesitant = [] {
         return delayed("hesitant", [i = 0]() mutable {
             if (i++ == 0) std::this_thread::sleep_for(6s);
@@ -353,48 +353,48 @@ TEST_CASE("Nobody keeps a race waiting for longer than it may take") {
     CHECK_THROWS_AS(race_of(scene, {hesitant()}, 0.5), aabb::input_error);
 }
 
-TEST_CASE("Order and ratio of finalists are of what they took in the same repeats") {
-    // The median of b is less, but it is slower in four repeats of five.
-    std::vector<racer> two{finished("b", {1.1, 2.2, 2.9, 4.4, 5.5}), finished("a", {1, 2, 3, 4, 5})};
-    aabblab::rank(two);
-    CHECK(two[0].name == "a");
-    CHECK(two[0].ratio() == 1);
-    CHECK(std::abs(two[1].ratio() - 1.1) < 1e-9);
-    CHECK(two[1].last->whole_ms() == 2.9);
-    // Each is ahead of the next in two repeats of three.
-    std::vector<racer> circle{finished("a", {1, 2, 3}), finished("b", {2, 3, 1}), finished("c", {3, 1, 2})};
-    aabblab::rank(circle);
-    CHECK(circle[0].ratio() == 1);
-    for (const racer& r : circle) CHECK(r.ratio() >= 1);
+TEST_CASE("Finalists are ranked by ratios of times in the same repeats") {
+    // b has the smaller median, but is slower in four of five repeats.
+    std::vector<racer> finalists{finalist("b", {1.1, 2.2, 2.9, 4.4, 5.5}), finalist("a", {1, 2, 3, 4, 5})};
+    aabblab::rank(finalists);
+    CHECK(finalists[0].name == "a");
+    CHECK(finalists[0].ratio() == 1);
+    CHECK(std::abs(finalists[1].ratio() - 1.1) < 1e-9);
+    CHECK(finalists[1].last->whole_ms() == 2.9);
+    // Each is faster than the next in two of three repeats.
+    std::vector<racer> cycle{finalist("a", {1, 2, 3}), finalist("b", {2, 3, 1}), finalist("c", {3, 1, 2})};
+    aabblab::rank(cycle);
+    CHECK(cycle[0].ratio() == 1);
+    for (const racer& r : cycle) CHECK(r.ratio() >= 1);
 }
 
-TEST_CASE("What would change the answer of a race is told where the repeats show it") {
+TEST_CASE("Advice states for which numbers of frames another candidate is shown to be faster") {
     const std::string none_faster = "; no other candidate is shown to be faster with fewer or more frames.";
-    // The sentence that says what to use ends so.
-    const auto ends_so = [](std::vector<racer> finalists, const std::string& end, std::size_t frames = 100) {
-        return aabblab::advice_of(ended(std::move(finalists), frames)).front().ends_with(end);
+    // Whether the sentence that says which to use ends with `end`.
+    const auto use_ends_with = [](std::vector<racer> finalists, const std::string& end, std::size_t frames = 100) {
+        return aabblab::advice_of(race_with(std::move(finalists), frames)).front().ends_with(end);
     };
-    const racer winner = finished("winner", 10, 1);
-    // Over n frames it takes 2 n, and the winner 10 + n.
-    CHECK(ends_so({winner, finished("quick", 0, 2)}, "; below about 10 frames, quick would be faster."));
-    CHECK(ends_so({winner, finished("quick", 0, 2), finished("quicker", 5, 1.2)},
-                  "; below about 25 frames, quicker would be faster."));
-    CHECK(ends_so({winner, finished("patient", 160, 0.5)}, "; above about 300 frames, patient would be faster."));
-    CHECK(ends_so({winner, finished("patient", 160, 0.5), finished("sooner", 130, 0.2)},
-                  "; above about 150 frames, sooner would be faster."));
-    CHECK(ends_so({winner, finished("slower", 20, 2)}, none_faster));
-    // It may be slower a frame, or not.
-    CHECK(ends_so({winner, finished("noisy", 5, 1.07, true)}, none_faster));
-    // Over one frame, or alone.
-    for (const std::string& use : {aabblab::advice_of(ended({winner, finished("quick", 0, 2)}, 1)).front(),
-                                   aabblab::advice_of(ended({winner})).front()}) {
+    const racer winner = finalist("winner", 10, 1);
+    // It takes 2 n ms for n frames, and the winner 10 + n.
+    CHECK(use_ends_with({winner, finalist("quick", 0, 2)}, "; below about 10 frames, quick would be faster."));
+    CHECK(use_ends_with({winner, finalist("quick", 0, 2), finalist("quicker", 5, 1.2)},
+                        "; below about 25 frames, quicker would be faster."));
+    CHECK(use_ends_with({winner, finalist("patient", 160, 0.5)}, "; above about 300 frames, patient would be faster."));
+    CHECK(use_ends_with({winner, finalist("patient", 160, 0.5), finalist("sooner", 130, 0.2)},
+                        "; above about 150 frames, sooner would be faster."));
+    CHECK(use_ends_with({winner, finalist("slower", 20, 2)}, none_faster));
+    // It may be slower per frame or not.
+    CHECK(use_ends_with({winner, finalist("noisy", 5, 1.07, true)}, none_faster));
+    // There is one frame, or no other candidate.
+    for (const std::string& use : {aabblab::advice_of(race_with({winner, finalist("quick", 0, 2)}, 1)).front(),
+                                   aabblab::advice_of(race_with({winner})).front()}) {
         CHECK_FALSE(holds(use, " would be faster"));
         CHECK(!use.ends_with(none_faster));
     }
 }
 
-TEST_CASE("Of a few plays it is not said how sure a ratio is, and of CGAL how far it came") {
-    aabblab::race_result race = ended({finished("winner", {1, 1}), finished("other", {2, 2})}, 2);
+TEST_CASE("Advice reports too few repeats for an interval and an incomplete validation") {
+    aabblab::race_result race = race_with({finalist("winner", {1, 1}), finalist("other", {2, 2})}, 2);
     CHECK(aabblab::advice_of(race).front() ==
           "Use winner: 1 ms for 2 frames; the next, other, takes 2.00 times as long, in 2 repeats, too few for a "
           "confidence interval.");
@@ -406,11 +406,11 @@ TEST_CASE("Of a few plays it is not said how sure a ratio is, and of CGAL how fa
           "No candidate was compared with the ground truth: CGAL failed, or did not finish in time.");
 }
 
-TEST_CASE("The answer of a race can be named") {
+TEST_CASE("Advice names the options that select the winner") {
     const auto named = [](const aabblab::candidate_name& name) {
-        racer winner = finished("winner", 10, 1);
+        racer winner = finalist("winner", 10, 1);
         winner.tested.name = name;
-        return aabblab::advice_of(ended({winner})).back();
+        return aabblab::advice_of(race_with({winner})).back();
     };
     aabblab::candidate_name ours;
     ours[aabb::strategy_kind::prepare] = "none";
@@ -424,21 +424,21 @@ TEST_CASE("The answer of a race can be named") {
     CHECK(named(automatic).starts_with("Use winner"));
 }
 
-TEST_CASE("How auto did in a race is told as far as the repeats tell") {
-    racer automatic = finished("auto (= x)", 10, 1.3, true);
+TEST_CASE("Advice compares auto with the winner as far as the repeats permit") {
+    racer automatic = finalist("auto (= x)", 10, 1.3, true);
     automatic.tested.name.engine = "auto";
-    const racer winner = finished("winner", 10, 1);
-    const racer second = finished("second", 10, 1.01);
+    const racer winner = finalist("winner", 10, 1);
+    const racer second = finalist("second", 10, 1.01);
     const auto reported = [](const aabblab::race_result& race, const std::string& begin) {
-        return std::ranges::any_of(aabblab::advice_of(race), [&](const auto& one) { return one.starts_with(begin); });
+        return std::ranges::any_of(aabblab::advice_of(race), [&](const auto& s) { return s.starts_with(begin); });
     };
-    CHECK(reported(ended({winner, second, automatic}), "auto (= x) takes 1."));
-    racer noisy = finished("auto (= x)", {1, 3, 1, 3, 1, 3, 2.1});
+    CHECK(reported(race_with({winner, second, automatic}), "auto (= x) takes 1."));
+    racer noisy = finalist("auto (= x)", {1, 3, 1, 3, 1, 3, 2.1});
     noisy.tested.name = automatic.tested.name;
-    const racer even = finished("even", {2, 2, 2, 2, 2, 2, 2});
-    const racer odd = finished("odd", {2.01, 2.01, 2.01, 2.01, 2.01, 2.01, 2.01});
-    CHECK(reported(ended({even, odd, noisy}, 2), "auto (= x) is as fast within the noise of 7 repeats ("));
-    aabblab::race_result without = ended({winner, second});
+    const racer even = finalist("even", {2, 2, 2, 2, 2, 2, 2});
+    const racer odd = finalist("odd", {2.01, 2.01, 2.01, 2.01, 2.01, 2.01, 2.01});
+    CHECK(reported(race_with({even, odd, noisy}, 2), "auto (= x) is as fast within the noise of 7 repeats ("));
+    aabblab::race_result without = race_with({winner, second});
     automatic.last = automatic.times.front();
     automatic.last->frames = 8;
     automatic.slowdown = 1.5;
@@ -448,87 +448,87 @@ TEST_CASE("How auto did in a race is told as far as the repeats tell") {
     CHECK(reported(without, "auto (= x): stopped after 2.1 s."));
 }
 
-TEST_CASE("In rounds everybody plays once, begins in turn, and follows each other as often") {
-    for (std::size_t runners = 1; runners <= 12; ++runners) {
-        INFO(runners << " players");
-        std::vector<std::vector<int>> follows(runners, std::vector<int>(runners));
-        // An odd number needs twice as many rounds, of which half would be played backwards.
-        for (std::size_t round = 0; round < runners; ++round) {
-            std::vector<bool> has_run(runners);
-            for (std::size_t place = 0; place < runners; ++place) {
-                const std::size_t one = aabblab::index_in_round(place, round, runners);
-                REQUIRE(one < runners);
-                CHECK_FALSE(has_run[one]);
-                has_run[one] = true;
-                if (place > 0) ++follows[one][aabblab::index_in_round(place - 1, round, runners)];
+TEST_CASE("In rounds each candidate runs once, begins in turn and follows the others about equally often") {
+    for (std::size_t candidates = 1; candidates <= 12; ++candidates) {
+        INFO(candidates << " candidates");
+        std::vector<std::vector<int>> follows(candidates, std::vector<int>(candidates));
+        // For odd numbers exact balance needs twice as many rounds, half of them reversed.
+        for (std::size_t round = 0; round < candidates; ++round) {
+            std::vector<bool> has_run(candidates);
+            for (std::size_t place = 0; place < candidates; ++place) {
+                const std::size_t candidate = aabblab::index_in_round(place, round, candidates);
+                REQUIRE(candidate < candidates);
+                CHECK_FALSE(has_run[candidate]);
+                has_run[candidate] = true;
+                if (place > 0) ++follows[candidate][aabblab::index_in_round(place - 1, round, candidates)];
             }
-            CHECK(aabblab::index_in_round(0, round, runners) == round);
+            CHECK(aabblab::index_in_round(0, round, candidates) == round);
         }
-        for (std::size_t a = 0; a < runners; ++a)
-            for (std::size_t b = 0; b < runners; ++b)
-                if (a != b) CHECK((runners % 2 == 0 ? follows[a][b] == 1 : follows[a][b] <= 2));
+        for (std::size_t a = 0; a < candidates; ++a)
+            for (std::size_t b = 0; b < candidates; ++b)
+                if (a != b) CHECK((candidates % 2 == 0 ? follows[a][b] == 1 : follows[a][b] <= 2));
     }
 }
 
-TEST_CASE("Rounds are run in turn while there is time for one more, and the fewest in any case") {
-    std::vector<char> all{'a', 'b', 'c'};
+TEST_CASE("Rounds run while there is time for another, and a minimum number in any case") {
+    std::vector<char> names{'a', 'b', 'c'};
     std::string order;
     double left = 10;
-    const auto run = [&](char one, std::size_t round) {
-        order += one + std::to_string(round);
+    const auto run = [&](char name, std::size_t round) {
+        order += name + std::to_string(round);
         left -= 2;
     };
-    const auto after = [&](std::size_t) { std::erase(all, 'c'); };
-    CHECK(aabblab::run_rounds(all, {.end = 9, .fewest = 2, .seconds_left = [&] { return left; }}, run, after) == 2);
+    const auto after = [&](std::size_t) { std::erase(names, 'c'); };
+    CHECK(aabblab::run_rounds(names, {.end = 9, .fewest = 2, .seconds_left = [&] { return left; }}, run, after) == 2);
     CHECK(order == "a0b0c0b1a1");
 }
 
-TEST_CASE("Who is compared with another may take far longer, or a share of the time, or stay within the margin") {
+TEST_CASE("The stopping rule limits the time of a candidate by grace, ratio, share and margin") {
     const aabblab::stopping_rule rule{.grace = 1, .share = 10, .margin = 2};
     CHECK(rule.longest(0.25) == 6);
     CHECK(rule.longest(1) == 11);
     CHECK(rule.longest(8) == 17);
 }
 
-TEST_CASE("Those who play in turn begin in turn, and who is hopeless plays once") {
+TEST_CASE("Interleaved candidates begin in turn, and a hopeless one runs once") {
     const temporary_folder folder;
     const std::string file = folder / "order";
-    std::vector<aabblab::candidate> all;
+    std::vector<aabblab::candidate> candidates;
     for (const char* name : {"a", "b", "c"})
-        all.push_back(noted(delayed(name, sleeping(*name == 'c' ? 250ms : 0ms)).tested, name, file));
+        candidates.push_back(logged(delayed(name, sleeping(*name == 'c' ? 250ms : 0ms)).tested, name, file));
     aabblab::staged_scene staged(scene);
-    const aabblab::interleaved_runs played = aabblab::run_interleaved(staged, all, 4, 3, aabblab::time_limits(60));
+    const aabblab::interleaved_runs runs = aabblab::run_interleaved(staged, candidates, 4, 3, aabblab::time_limits(60));
     CHECK(bytes_of_file(file) == "abcbaab");
-    REQUIRE(played.times.size() == 3);
-    CHECK(played.times[0].size() == 3);
-    CHECK(played.times[1].size() == 3);
-    CHECK(played.times[2].size() <= 1);
-    CHECK(played.hopeless == std::vector<bool>{false, false, true});
+    REQUIRE(runs.times.size() == 3);
+    CHECK(runs.times[0].size() == 3);
+    CHECK(runs.times[1].size() == 3);
+    CHECK(runs.times[2].size() <= 1);
+    CHECK(runs.hopeless == std::vector<bool>{false, false, true});
 }
 
-TEST_CASE("Those who play in turn have as many frames and rounds as there is time for") {
-    const auto turns_of = [](const std::vector<racer>& racers, double seconds) {
-        std::vector<aabblab::candidate> all;
-        for (const racer& r : racers) all.push_back(r.tested);
+TEST_CASE("Interleaved runs have as many frames and rounds as time permits") {
+    const auto runs_of = [](const std::vector<racer>& racers, double seconds) {
+        std::vector<aabblab::candidate> candidates;
+        for (const racer& r : racers) candidates.push_back(r.tested);
         aabblab::staged_scene staged(scene);
-        return aabblab::run_interleaved(staged, all, 4, 3, aabblab::time_limits(seconds));
+        return aabblab::run_interleaved(staged, candidates, 4, 3, aabblab::time_limits(seconds));
     };
-    const aabblab::interleaved_runs some =
-        turns_of({delayed("first", stuck_in(2)), delayed("stuck", stuck_in(1)), delayed("fast", stuck_in(4))}, 3);
-    CHECK(some.frames == 2);
-    CHECK(some.times[0].size() == some.rounds);
-    CHECK(some.times[1].empty());
-    REQUIRE(some.broken_off[1].has_value());
-    CHECK(some.broken_off[1]->seen.frames == 1);
-    CHECK_FALSE(some.times[2].empty());
-    const aabblab::interleaved_runs none = turns_of({delayed("first", stuck_in(0)), delayed("fast", stuck_in(4))}, 1);
-    CHECK(none.rounds == 0);
-    CHECK(none.times[0].empty());
-    CHECK(text_of(none.broken_off[0].value()).starts_with("stopped after "));
-    CHECK_FALSE(none.broken_off[1].has_value());
+    const aabblab::interleaved_runs short_runs =
+        runs_of({delayed("first", stuck_in(2)), delayed("stuck", stuck_in(1)), delayed("fast", stuck_in(4))}, 3);
+    CHECK(short_runs.frames == 2);
+    CHECK(short_runs.times[0].size() == short_runs.rounds);
+    CHECK(short_runs.times[1].empty());
+    REQUIRE(short_runs.broken_off[1].has_value());
+    CHECK(short_runs.broken_off[1]->seen.frames == 1);
+    CHECK_FALSE(short_runs.times[2].empty());
+    const aabblab::interleaved_runs no_runs = runs_of({delayed("first", stuck_in(0)), delayed("fast", stuck_in(4))}, 1);
+    CHECK(no_runs.rounds == 0);
+    CHECK(no_runs.times[0].empty());
+    CHECK(text_of(no_runs.broken_off[0].value()).starts_with("stopped after "));
+    CHECK_FALSE(no_runs.broken_off[1].has_value());
 }
 
-TEST_CASE("A ratio of times in the same rounds has a median, a least and a greatest") {
+TEST_CASE("A paired ratio has the median, minimum and maximum over the rounds") {
     const auto of = [](const std::vector<double>& ms, const std::vector<double>& of_other) {
         return aabblab::paired_ratio_of(ms, of_other);
     };
@@ -545,34 +545,34 @@ TEST_CASE("A ratio of times in the same rounds has a median, a least and a great
     CHECK_FALSE(of({0.7, 0.96}, {1, 1}).may_be_same());
 }
 
-TEST_CASE("All that is exact starts in a race, engines too") {
-    std::vector<racer> all = starters_of(scene);
-    CHECK(all.front().name == "auto (= neighbour_list + bucket + columns + simd)");
-    CHECK_FALSE(holds(all, "neighbour_list + bucket + columns + simd"));
+TEST_CASE("Every exact candidate starts in a race, engines included") {
+    std::vector<racer> racers = candidates_for_race(scene);
+    CHECK(racers.front().name == "auto (= neighbour_list + bucket + columns + simd)");
+    CHECK_FALSE(holds(racers, "neighbour_list + bucket + columns + simd"));
     for (const char* name : {"bucket + columns + simd", "insertion + none + incremental", "std + uniform_grid + simd"})
-        CHECK(holds(all, name));
-    CHECK_FALSE(holds(all, "split_mesh + bucket + columns + simd"));
+        CHECK(holds(racers, name));
+    CHECK_FALSE(holds(racers, "split_mesh + bucket + columns + simd"));
     for (const aabb::engine_info& engine : aabb::engines())
-        CHECK(holds(all, engine.name) == (engine.exact && engine.searches_boxes));
-    // What auto is does not race twice.
+        CHECK(holds(racers, engine.name) == (engine.exact && engine.searches_boxes));
+    // The composition that auto selects does not start twice.
     aabblab::scene_choice still = scene;
     still.settings[1].value = "1";
-    all = starters_of(still);
-    CHECK(all.front().name == "auto (= bucket + columns + simd)");
-    CHECK_FALSE(holds(all, "bucket + columns + simd"));
+    racers = candidates_for_race(still);
+    CHECK(racers.front().name == "auto (= bucket + columns + simd)");
+    CHECK_FALSE(holds(racers, "bucket + columns + simd"));
     const aabblab::scene_choice meshes{"mesh_pair", {}, {"icosphere:triangles=80"}, 1, {}};
-    all = starters_of(meshes);
+    racers = candidates_for_race(meshes);
     for (const char* name :
          {"bucket + columns + simd + sah + implicit + exact", "bucket + columns + simd + canonical + exact"})
-        CHECK(holds(all, name));
-    CHECK_FALSE(holds(all, "bucket + columns + simd + canonical + moller"));
+        CHECK(holds(racers, name));
+    CHECK_FALSE(holds(racers, "bucket + columns + simd + canonical + moller"));
     for (const aabb::engine_info& engine : aabb::engines())
         if (engine.collides_meshes)
-            CHECK(std::ranges::any_of(all, [&](const racer& r) { return r.name.starts_with(engine.name); }) ==
+            CHECK(std::ranges::any_of(racers, [&](const racer& r) { return r.name.starts_with(engine.name); }) ==
                   engine.exact);
 }
 
-TEST_CASE("recommend ranks, says what to use, and writes a page") {
+TEST_CASE("recommend ranks candidates, says which to use and writes a page") {
     const temporary_folder folder;
     const std::string file = folder / "p.aabbs";
     const std::string page = folder / "p.html";
@@ -594,14 +594,14 @@ TEST_CASE("recommend ranks, says what to use, and writes a page") {
             "--seconds is how long to run: a number above 0, at most 1,000,000, not '" + std::string(seconds) + "'"));
     }
     CHECK(run_program({"recommend", folder / "none.aabbs"}).status == 2);
-    const std::string one = folder / "one.aabbs";
-    run_well({"scene", "pile", "--n", "1", "--frames", "2", "--out", one});
-    CHECK(holds(run_refused({"recommend", one}).err, "nothing to search: the scene has 1 object"));
+    const std::string single = folder / "one.aabbs";
+    run_well({"scene", "pile", "--n", "1", "--frames", "2", "--out", single});
+    CHECK(holds(run_refused({"recommend", single}).err, "nothing to search: the scene has 1 object"));
     CHECK(holds(run_refused({"recommend", "still.toml"}).err,
                 "still.toml is a config, which explain and run take as their only argument"));
 }
 
-TEST_CASE("recommend writes its page over nothing that it reads, and says early where it cannot be") {
+TEST_CASE("recommend never overwrites its input and rejects an unwritable page before it runs") {
     const temporary_folder folder;
     const std::string mesh = folder.write("t.off", tetrahedron);
     const std::string file = folder / "p.aabbs";

@@ -7,33 +7,33 @@ namespace {
 
 using frame = std::vector<aabb::box>;
 
-/// Plays frames that are given.
+/// A scene of the given frames.
 class given_scene final : public aabb::box_scene {
 public:
     explicit given_scene(std::vector<frame> frames) : frames_(std::move(frames)) {}
     [[nodiscard]] std::size_t objects() const override { return frames_.empty() ? 0 : frames_[0].size(); }
     [[nodiscard]] std::size_t frames() const override { return frames_.size(); }
     bool next(frame& boxes) override {
-        if (played_ == frames_.size()) return false;
-        if (frames_[played_].size() != objects()) throw aabb::input_error("the scene breaks off");
-        boxes = frames_[played_++];
+        if (next_ == frames_.size()) return false;
+        if (frames_[next_].size() != objects()) throw aabb::input_error("the scene breaks off");
+        boxes = frames_[next_++];
         return true;
     }
 
 private:
     std::vector<frame> frames_;
-    std::size_t played_ = 0;
+    std::size_t next_ = 0;
 };
 
-/// Announces more than any disk holds, and must not be played.
+/// Announces more frames than any disk holds, and must not be run.
 class endless_scene final : public aabb::box_scene {
 public:
     [[nodiscard]] std::size_t objects() const override { return 2147483647; }
     [[nodiscard]] std::size_t frames() const override { return 2147483647; }
-    bool next(frame&) override { throw aabb::input_error("the scene was played"); }
+    bool next(frame&) override { throw aabb::input_error("the scene was run"); }
 };
 
-std::vector<frame> play(aabb::box_scene& scene) {
+std::vector<frame> frames_of(aabb::box_scene& scene) {
     std::vector<frame> frames;
     for (frame boxes; scene.next(boxes);) frames.push_back(boxes);
     return frames;
@@ -54,9 +54,9 @@ std::string header(std::int32_t objects, std::int32_t frames, const std::string&
     return name + name + raw(objects) + raw(frames) + raw(zero) + raw(0) + world;
 }
 
-/// Opens and plays it.
+/// The error of opening and reading a recording.
 std::string error_of(const std::filesystem::path& file) {
-    return refusal_in<aabb::input_error>([&] { play(*aabblab::open_recording(file)); });
+    return refusal_in<aabb::input_error>([&] { frames_of(*aabblab::open_recording(file)); });
 }
 
 const aabb::box small = {{-0.0F, 1e-45F, -3}, {0, 0.1F, 3}};
@@ -64,24 +64,24 @@ const aabb::box large = {{-3.4e38F, -1, 5}, {3.4e38F, -1, 5}};
 
 }  // namespace
 
-TEST_CASE("a recording plays as it was recorded") {
+TEST_CASE("a recording has the frames that were recorded") {
     const temporary_folder folder;
     for (const std::vector<frame>& frames :
          {std::vector<frame>{{}}, {{small}}, {{small, large}, {large, small}, {small, small}}, {{}, {}}}) {
         given_scene scene(frames);
-        std::vector<std::size_t> heard;
-        aabblab::write_recording(scene, "name", "type", folder / "a.aabbs", [&](auto done) { heard.push_back(done); });
-        REQUIRE(heard.size() == frames.size());
-        REQUIRE(heard.back() == frames.size());
+        std::vector<std::size_t> calls;
+        aabblab::write_recording(scene, "name", "type", folder / "a.aabbs", [&](auto done) { calls.push_back(done); });
+        REQUIRE(calls.size() == frames.size());
+        REQUIRE(calls.back() == frames.size());
         const auto recording = aabblab::open_recording(folder / "a.aabbs");
         REQUIRE(recording->objects() == frames[0].size());
         REQUIRE(recording->frames() == frames.size());
-        REQUIRE(play(*recording) == frames);
+        REQUIRE(frames_of(*recording) == frames);
         REQUIRE(folder.files() == 1);
     }
 }
 
-TEST_CASE("the bytes of a recording are Broadmark's") {
+TEST_CASE("a recording has Broadmark's binary format") {
     const temporary_folder folder;
     given_scene scene({{{{0, 0, 0}, {1, 1, 1}}}, {{{2, 0, 0}, {3, 1, 1}}}});
     aabblab::write_recording(scene, "name", "name", folder / "a.aabbs", {});
@@ -94,29 +94,29 @@ TEST_CASE("the bytes of a recording are Broadmark's") {
     REQUIRE(bytes.substr(128, 6) == std::string("boxes\0", 6));
 }
 
-TEST_CASE("a scene that breaks off leaves no recording behind, and an older one untouched") {
+TEST_CASE("a scene that fails leaves no recording behind and an existing one untouched") {
     const temporary_folder folder;
     folder.write("a.aabbs", "older");
     given_scene scene({{small}, {small, small}});
     REQUIRE_THROWS_AS(aabblab::write_recording(scene, "n", "t", folder / "a.aabbs", {}), aabb::input_error);
     REQUIRE(bytes_of_file(folder / "a.aabbs") == "older");
     REQUIRE(folder.files() == 1);
-    given_scene none({});
-    REQUIRE_THROWS_AS(aabblab::write_recording(none, "n", "t", folder / "b.aabbs", {}), aabb::input_error);
+    given_scene empty({});
+    REQUIRE_THROWS_AS(aabblab::write_recording(empty, "n", "t", folder / "b.aabbs", {}), aabb::input_error);
 }
 
-TEST_CASE("a recording that the disk has no room for is refused before it is begun") {
+TEST_CASE("a recording that exceeds the free disk space is rejected before it is written") {
     const temporary_folder folder;
     endless_scene scene;
     REQUIRE_THROWS_WITH(
         aabblab::write_recording(scene, "n", "t", folder / "a.aabbs", {}),
         ContainsSubstring("a.aabbs: would take 137438953344.0 GiB, but only ") && EndsWith(" GiB are free"));
     REQUIRE(folder.files() == 0);
-    // What is no regular file takes no room.
-    REQUIRE_THROWS_WITH(aabblab::write_recording(scene, "n", "t", "/dev/null", {}), "the scene was played");
+    // A file that is not regular takes no disk space.
+    REQUIRE_THROWS_WITH(aabblab::write_recording(scene, "n", "t", "/dev/null", {}), "the scene was run");
 }
 
-TEST_CASE("frames without objects are played up to a million of them") {
+TEST_CASE("a recording without objects has at most a million frames") {
     const temporary_folder folder;
     const auto frames = aabblab::open_recording(folder.write("a.aabbs", header(0, 999'999)))->frames();
     REQUIRE(frames == 1'000'000);
@@ -125,7 +125,7 @@ TEST_CASE("frames without objects are played up to a million of them") {
                         EndsWith("b.aabbs: a recording of 0 objects holds at most 1000000 frames, not 1000001"));
 }
 
-TEST_CASE("recordings that cannot be used are refused") {
+TEST_CASE("invalid recordings are rejected") {
     const temporary_folder folder;
     using malformed = std::pair<std::string, std::string>;
     for (const auto& [bytes, error] : {
@@ -159,7 +159,7 @@ TEST_CASE("recordings that cannot be used are refused") {
     CHECK_THAT(error_of(folder.path()), EndsWith(": is a folder, not a file"));
 }
 
-TEST_CASE("a recording that shrinks while it plays is refused") {
+TEST_CASE("a recording that shrinks while it is read is rejected") {
     const temporary_folder folder;
     std::string bytes = header(40000, 1);
     for (int i = 0; i < 80000; ++i) bytes += unit;

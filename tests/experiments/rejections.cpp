@@ -2,19 +2,19 @@
 
 namespace {
 
-/// Also that each leaves no file behind.
-void check_all(const temporary_folder& folder, const std::vector<std::string>& before, const refusals& all) {
+/// Checks that each is rejected and leaves no file behind.
+void check_all(const temporary_folder& folder, const std::vector<std::string>& before, const refusals& rejections) {
     const std::size_t files = folder.files();
-    for (const auto& one : all) {
-        CAPTURE(one.first);
-        check_refused(before, {one});
+    for (const auto& rejection : rejections) {
+        CAPTURE(rejection.first);
+        check_refused(before, {rejection});
         CHECK(folder.files() == files);
     }
 }
 
 }  // namespace
 
-TEST_CASE("A command line that is wrong gets one sentence and status 2") {
+TEST_CASE("An invalid command line is rejected in one sentence with status 2") {
     check_all(
         temporary_folder(), {},
         {
@@ -48,7 +48,7 @@ TEST_CASE("A command line that is wrong gets one sentence and status 2") {
         });
 }
 
-TEST_CASE("pairs and scene refuse what they cannot do and leave no file behind") {
+TEST_CASE("pairs and scene reject invalid options and leave no file behind") {
     const temporary_folder folder;
     const std::string scene = folder / "scene.aabbs";
     run_well({"scene", "brownian", "--n", "60", "--frames", "3", "--out", scene});
@@ -82,7 +82,7 @@ TEST_CASE("pairs and scene refuse what they cannot do and leave no file behind")
               });
 }
 
-TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
+TEST_CASE("collide rejects invalid options and leaves no file behind") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
     check_all(
@@ -128,7 +128,7 @@ TEST_CASE("collide refuses what it cannot do and leaves no file behind") {
         });
 }
 
-TEST_CASE("a line of a file of poses that is none is told") {
+TEST_CASE("an invalid line of a file of poses is reported") {
     const temporary_folder folder;
     const std::string a = folder.write("a.off", tetrahedron);
     const std::string poses = folder.write("poses.txt", "");
@@ -140,17 +140,17 @@ TEST_CASE("a line of a file of poses that is none is told") {
         {"1,0,0,0,0,1,0,0,0,0,1,0\n\n1,0,0,1e39,0,1,0,0,0,0,1,0", "poses.txt:3: "},
         {"1,0,0,1e39,0,1,0,0,0,0,1,0", "a.off: seen from one mesh, the other lies beyond the range of float"},
     };
-    for (const auto& [text, said] : texts) {
+    for (const auto& [text, message] : texts) {
         folder.write("poses.txt", text);
-        check_all(folder, {"collide", a, a, "--poses", poses, "--out", folder / "pairs.csv"}, {{{}, said}});
+        check_all(folder, {"collide", a, a, "--poses", poses, "--out", folder / "pairs.csv"}, {{{}, message}});
     }
 }
 
-TEST_CASE("contacts refuses what is not a motion, with file and line, and leaves no file behind") {
+TEST_CASE("contacts rejects an invalid motion with file and line and leaves no file behind") {
     const temporary_folder folder;
     const std::string mesh = folder.write("a.off", tetrahedron);
     const std::string motion = folder.write("m.txt", "");
-    const std::string one = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
+    const std::string pose = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
     const std::vector<std::pair<std::string, std::string>> texts = {
         {"", ": is empty"},
         {"# nothing\n", ": ends before the first pose"},
@@ -163,21 +163,21 @@ TEST_CASE("contacts refuses what is not a motion, with file and line, and leaves
         {"0 0 2 0 0 0 0 1 0 0 0 0 1 0\n", ":1: the pose is not rigid"},
         {"0 0 1 0 0 0 0 1 0 0 0 0 1 0 7\n", ":1: expected the end of the line after frame, object and twelve numbers"},
         {"1 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
-        {one + "99999999 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: a frame is a number below 10000000"},
-        {one + "1 0 1 0 0 0 0 1 0 0 0 0 1 0\n" + one, ":3: frame 0 follows frame 1; frames must be in order"},
-        {one + one, ":2: object 0 has two poses in frame 0"},
-        {one + "1 4 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: frame 0 has no pose of object 4"},
+        {pose + "99999999 0 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: a frame is a number below 10000000"},
+        {pose + "1 0 1 0 0 0 0 1 0 0 0 0 1 0\n" + pose, ":3: frame 0 follows frame 1; frames must be in order"},
+        {pose + pose, ":2: object 0 has two poses in frame 0"},
+        {pose + "1 4 1 0 0 0 0 1 0 0 0 0 1 0\n", ":2: frame 0 has no pose of object 4"},
         {"0 2 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: frame 0 has no pose of object 0"},
         {"0 4000000000 1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: an object is a number below 10000000"},
         {"0 0 1 0 0 1e39 0 1 0 0 0 0 1 0\n", ": frame 0: object 0 lies beyond the range of float"},
     };
-    for (const auto& [text, said] : texts) {
+    for (const auto& [text, message] : texts) {
         folder.write("m.txt", text);
-        check_all(folder, {"contacts", motion, mesh, "--out", folder / "c.csv"}, {{{}, "m.txt" + said}});
+        check_all(folder, {"contacts", motion, mesh, "--out", folder / "c.csv"}, {{{}, "m.txt" + message}});
     }
 }
 
-TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
+TEST_CASE("contacts and scene reject meshes and options that do not match") {
     const temporary_folder folder;
     const std::string mesh = folder.write("a.off", tetrahedron);
     const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
@@ -208,7 +208,7 @@ TEST_CASE("contacts and scene refuse meshes and options that do not fit") {
               });
 }
 
-TEST_CASE("order refuses what it does not know, and to write over the mesh that it reads") {
+TEST_CASE("order rejects invalid options and does not overwrite the mesh that it reads") {
     const temporary_folder folder;
     const std::string mesh = folder.write("a.off", tetrahedron);
     const std::string sorted = mesh + ":order=median";

@@ -29,12 +29,12 @@ row repeat_of(const std::string& sort, std::uint64_t repeat, double search_ms) {
     return r;
 }
 
-row of_seed(row r, std::uint64_t seed) {
+row with_seed(row r, std::uint64_t seed) {
     r.scene.seed = seed;
     return r;
 }
 
-row of_engine(double search_ms) {
+row engine_row(double search_ms) {
     row r = repeat_of("", 0, search_ms);
     r.name = {};
     r.name.engine = "cgal";
@@ -44,7 +44,7 @@ row of_engine(double search_ms) {
 std::vector<std::string> column_of(const aabblab::table& t, const std::string& name) {
     const auto place = std::ranges::find(t.columns, name, &aabblab::column::name) - t.columns.begin();
     std::vector<std::string> cells;
-    for (const auto& all : t.rows) cells.push_back(all.at(static_cast<std::size_t>(place)));
+    for (const auto& line : t.rows) cells.push_back(line.at(static_cast<std::size_t>(place)));
     return cells;
 }
 
@@ -52,10 +52,10 @@ using texts = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("Ratios are taken within a repeat") {
+TEST_CASE("Ratios are computed within a repeat") {
     std::vector<row> rows;
     for (std::uint64_t repeat = 0; repeat < 7; ++repeat) {
-        // The machine slows down; the second stays twice as slow as the first.
+        // The machine slows down; the second candidate still takes twice as long as the first.
         const double slow = 1 + static_cast<double>(repeat);
         rows.push_back(repeat_of("std", repeat, slow));
         rows.push_back(repeat_of("insertion", repeat, 2 * slow));
@@ -65,12 +65,12 @@ TEST_CASE("Ratios are taken within a repeat") {
     CHECK(std::abs(line.ratio_interval->low - 2) < 1e-12);
     CHECK(std::abs(line.ratio_interval->high - 2) < 1e-12);
     CHECK(line.repeats == 7);
-    // Of one repeat nobody can tell how far it is off.
+    // A single repeat gives no interval.
     CHECK_FALSE(aabblab::summarise(std::span(rows).first(2))[0].candidates[1].ratio_interval.has_value());
 }
 
-TEST_CASE("Repeats that are too few for an interval are said to be") {
-    const std::string said = "95 %: - if there are too few repeats, seeds or processes for an interval\n";
+TEST_CASE("Too few repeats for an interval are reported") {
+    const std::string note = "95 %: - if there are too few repeats, seeds or processes for an interval\n";
     std::vector<row> rows;
     for (const auto& [repeat, slower] : {std::pair(0, 0.5), std::pair(1, 1.9), std::pair(2, 0.7), std::pair(3, 1.1)}) {
         rows.push_back(repeat_of("std", static_cast<std::uint64_t>(repeat), 1));
@@ -80,7 +80,7 @@ TEST_CASE("Repeats that are too few for an interval are said to be") {
         const auto scene = aabblab::summarise(std::span(rows).first(2 * few))[0];
         CHECK(scene.candidates[1].ratio.has_value());
         CHECK_FALSE(scene.candidates[1].ratio_interval.has_value());
-        CHECK(holds(aabblab::heading_of(scene), said));
+        CHECK(holds(aabblab::heading_of(scene), note));
         CHECK(column_of(aabblab::table_of(scene), "95 %").front() == "-");
     }
     const auto scene = aabblab::summarise(rows)[0];
@@ -88,12 +88,12 @@ TEST_CASE("Repeats that are too few for an interval are said to be") {
     CHECK_FALSE(holds(aabblab::heading_of(scene), "too few"));
 }
 
-TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean of theirs") {
+TEST_CASE("A scene is pooled over its seeds, with the geometric mean of their ratios") {
     std::vector<row> rows;
     for (std::uint64_t repeat = 0; repeat < 3; ++repeat)
         for (const auto& [seed, slower] : {std::pair(1, 2.0), std::pair(20, 8.0)}) {
-            rows.push_back(of_seed(repeat_of("std", repeat, 1), seed));
-            rows.push_back(of_seed(repeat_of("insertion", repeat, slower), seed));
+            rows.push_back(with_seed(repeat_of("std", repeat, 1), seed));
+            rows.push_back(with_seed(repeat_of("insertion", repeat, slower), seed));
             rows.back().contacts = 5;
         }
     rows.back().status = "inexact";
@@ -106,7 +106,7 @@ TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean
     CHECK(scenes[0].digest.empty());
     const aabblab::candidate_summary& line = scenes[0].candidates[1];
     CHECK(std::abs(line.ratio.value_or(0) - 4) < 1e-12);
-    // Two seeds that disagree leave the ratio open: they are too few for an interval.
+    // Two seeds are too few for an interval.
     CHECK_FALSE(line.ratio_interval.has_value());
     CHECK(line.pairs == 2 * 1234567);
     CHECK(line.contacts == 10);
@@ -114,9 +114,9 @@ TEST_CASE("A scene is pooled over its seeds, and its ratio is the geometric mean
     CHECK(line.ms_per_frame->median == 2.5);
 }
 
-TEST_CASE("One seed that is inexact makes a line inexact, with what all seeds miss and invent") {
-    row first = of_seed(repeat_of("std", 0, 1), 1);
-    row second = of_seed(repeat_of("std", 0, 1), 2);
+TEST_CASE("One inexact seed makes a line inexact, with the false negatives and positives of all seeds") {
+    row first = with_seed(repeat_of("std", 0, 1), 1);
+    row second = with_seed(repeat_of("std", 0, 1), 2);
     for (row* r : {&first, &second}) {
         r->status = "inexact";
         r->false_negatives = 2;
@@ -131,15 +131,15 @@ TEST_CASE("One seed that is inexact makes a line inexact, with what all seeds mi
     }
 }
 
-TEST_CASE("The table of counts has what was counted, a frame, and copies an object") {
+TEST_CASE("The table of counts has counts per frame and copies per object") {
     row counted = repeat_of("std", 0, 1);
     counted.counts[static_cast<std::size_t>(aabb::work::comparisons)] = 300;
     counted.counts[static_cast<std::size_t>(aabb::work::subset_copies)] = 45;
     counted.bytes[0] = 2048;
-    row again = of_seed(counted, 2);
+    row again = with_seed(counted, 2);
     again.counts[static_cast<std::size_t>(aabb::work::comparisons)] = 100;
     again.bytes[0] = 4096;
-    const row engine = of_engine(1);
+    const row engine = engine_row(1);
     const auto scene = aabblab::summarise(std::vector<row>{counted, engine, again})[0];
     REQUIRE(aabblab::to_csv(aabblab::counts_table_of(scene)) ==
             "#,composition,comparisons,subset copies,copies per object,KiB projections\n"
@@ -147,8 +147,8 @@ TEST_CASE("The table of counts has what was counted, a frame, and copies an obje
     REQUIRE(aabblab::counts_table_of(aabblab::summarise(std::vector<row>{engine})[0]).columns.empty());
 }
 
-TEST_CASE("A composition that is the only one is named, above the table where its name is long") {
-    const row engine = of_engine(1);
+TEST_CASE("A single composition is named in the table, or above it if its name is long") {
+    const row engine = engine_row(1);
     for (const auto& [sort, shown] : {std::pair("std", "std + one_axis"),
                                       std::pair("shell:gaps=ciura,and=what_more_there_is", "this composition")}) {
         const auto scene = aabblab::summarise(std::vector<row>{repeat_of(sort, 0, 2), engine})[0];
@@ -160,7 +160,7 @@ TEST_CASE("A composition that is the only one is named, above the table where it
     }
 }
 
-TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those without times") {
+TEST_CASE("A table ranks exact lines by time, then inexact ones, then those without times") {
     std::vector<row> rows;
     for (const auto& [sort, ms] :
          {std::pair("slow", 10.0), std::pair("wrong", 1.0), std::pair("untimed", 3.0), std::pair("fast", 2.0)})
@@ -186,14 +186,14 @@ TEST_CASE("A table is ranked: exact lines by time, then inexact ones, then those
     CHECK(std::ranges::find(t.columns, "pairs", &aabblab::column::name) == t.columns.end());
 }
 
-TEST_CASE("The table over all scenes has the geometric mean of ratios, their range and who wins") {
+TEST_CASE("The table over all scenes has the geometric mean and range of ratios, wins and regret") {
     std::vector<row> rows;
     for (const auto& [scene, ms] : {std::pair("a", 0.5), std::pair("b", 8.0)})
         for (const auto& [sort, time] : {std::pair("std", 1.0), std::pair("insertion", ms)}) {
             rows.push_back(repeat_of(sort, 0, time));
             rows.back().scene.kind = scene;
         }
-    rows.push_back(of_engine(4));
+    rows.push_back(engine_row(4));
     rows.back().scene.kind = "a";
     const auto scenes = aabblab::summarise(rows);
     CHECK(aabblab::to_csv(aabblab::overall_table_of(scenes)) ==
@@ -203,12 +203,12 @@ TEST_CASE("The table over all scenes has the geometric mean of ratios, their ran
           "3,cgal,4.00,4.00,4.00,1,0,8.00,8.00\n");
 }
 
-TEST_CASE("Tables are written for programs too") {
+TEST_CASE("Tables are escaped for TeX and HTML") {
     REQUIRE(holds(aabblab::to_tex({{{"a_b", false}}, {{"50%"}}}), "a\\_b \\\\\n\\midrule\n50\\% \\\\"));
     REQUIRE(holds(aabblab::to_html({{{"a", false}}, {{"<x>"}}}), "<td>&lt;x&gt;</td>"));
 }
 
-TEST_CASE("A table fits the width it is given: spare columns go, or long names, or blocks share it") {
+TEST_CASE("A table fits the given width: it drops spare columns, replaces long names or splits into blocks") {
     const aabblab::table t{{{"sort", false}, {"tree", false}, {"ms"}, {"spare", true, 1}, {"first", true, 2}},
                            {{"insertion", "canonical", "1", "2", "3"}, {"std", "compressed:build=sah", "4", "5", "6"}}};
     CHECK(aabblab::to_text(t, 80) == aabblab::to_text(t));
@@ -217,7 +217,7 @@ TEST_CASE("A table fits the width it is given: spare columns go, or long names, 
           "insertion  canonical              1      2\n"
           "std        compressed:build=sah   4      5\n"
           "left out to fit the width: first\n");
-    // Where that is not enough, numbers in place of long names make room for all else.
+    // If that is not enough, numbers replace long names.
     CHECK(aabblab::to_text(t, 30) ==
           "#  ms  spare  first\n"
           "1   1      2      3\n"
@@ -229,13 +229,13 @@ TEST_CASE("A table fits the width it is given: spare columns go, or long names, 
     CHECK(aabblab::to_text(t, 13).starts_with("#  ms  spare\n"));
     CHECK(aabblab::to_text(t, 13).ends_with("left out to fit the width: first\n"));
     CHECK(aabblab::to_text(t, 10).ends_with("left out to fit the width: first, spare\n"));
-    // Numbers that are there are kept.
+    // Existing row numbers are kept.
     aabblab::table ranked{{{aabblab::row_number}, {"sort", false}, {"ms"}}, {{"3", "a sort of many words", "1"}}};
     CHECK(aabblab::to_text(ranked, 20) == "#  ms\n3   1\n\n3  a sort of many words\n");
-    // A table of nothing but names is as wide as it is.
+    // A table that has only names is not narrowed.
     const aabblab::table names{{{"sort", false}, {"tree", false}}, {{"insertion", "canonical"}}};
     CHECK(aabblab::to_text(names, 10) == aabblab::to_text(names));
-    // Short names stay, and spare columns go.
+    // Short names are kept, and spare columns dropped.
     aabblab::table short_names = t;
     for (auto& cells : short_names.rows) cells[1] = "t";
     CHECK(aabblab::to_text(short_names, 30) ==
@@ -258,7 +258,7 @@ TEST_CASE("A table fits the width it is given: spare columns go, or long names, 
           "std               3         4\n");
 }
 
-TEST_CASE("run fits its tables to the terminal, prints work on request, and leaves a summary.csv of all lines") {
+TEST_CASE("run prints narrow tables, prints counts on request, and writes all lines to summary.csv") {
     const temporary_folder folder;
     const std::string config = folder.write("a.toml",
                                             "name = \"a\"\nseed = [1, 2]\nengines = [\"cgal\"]\n[[scene]]\n"
@@ -291,7 +291,7 @@ TEST_CASE("run fits its tables to the terminal, prints work on request, and leav
         CHECK(std::stod(line.at("ratio")) >= slowest);
         slowest = std::stod(line.at("ratio"));
     }
-    // A refused run leaves it, and one that goes on makes it anew.
+    // A rejected run keeps the summary, and a resumed one writes it again.
     REQUIRE(run_program({"run", config, "--out", folder / "a"}).status == 2);
     const std::string before = bytes_of_file(folder / "a/summary.csv");
     run_well({"run", config, "--resume", "--out", folder / "a"});

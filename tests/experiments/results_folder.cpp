@@ -8,7 +8,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-/// A mesh whose name holds all that means something in CSV.
+/// A mesh name with every special character of CSV.
 const std::string mesh_name = "two\nlines, \"one\"\rname.off";
 
 std::string config_of(const std::string& mesh) {
@@ -18,7 +18,7 @@ std::string config_of(const std::string& mesh) {
            "\", \"icosphere:triangles=20\"]\nframes = 2\n[measure]\nrepeats = 3\n";
 }
 
-/// A small experiment, and a folder for what it makes.
+/// A small experiment and a folder for its results.
 struct small_run {
     temporary_folder folder;
     std::string config = folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes=1\n");
@@ -27,9 +27,9 @@ struct small_run {
 
 }  // namespace
 
-TEST_CASE("Two runs do not write into one folder at once") {
-    const small_run made;
-    const auto& [folder, config, out] = made;
+TEST_CASE("Two runs cannot write to one folder at the same time") {
+    const small_run experiment;
+    const auto& [folder, config, out] = experiment;
     auto held = std::make_unique<aabblab::folder_lock>(folder / "out");
     CHECK_THROWS_WITH(aabblab::folder_lock(folder / "out"),
                       StartsWith("another aabblab is writing to ") && EndsWith("with --out"));
@@ -42,9 +42,9 @@ TEST_CASE("Two runs do not write into one folder at once") {
     run_well({"run", config, "--out", out, "--resume"});
 }
 
-TEST_CASE("Rows that stand in a results.csv twice are refused, by file and lines") {
-    const small_run made;
-    const auto& [folder, config, out] = made;
+TEST_CASE("Duplicate rows of a results.csv are rejected with file and lines") {
+    const small_run experiment;
+    const auto& [folder, config, out] = experiment;
     run_well({"run", config, "--out", out});
     const std::string text = bytes_of_file(folder / "out/results.csv");
     const std::size_t second_line = text.find('\n') + 1;
@@ -55,18 +55,18 @@ TEST_CASE("Rows that stand in a results.csv twice are refused, by file and lines
         CHECK(holds(run_refused(arguments).err, "/results.csv:11: the measurement of line 2 is repeated here"));
 }
 
-TEST_CASE("Results of before a count was there are read without it, others are refused") {
-    const small_run made;
-    const auto& [folder, config, out] = made;
+TEST_CASE("Results from before a count existed are read without it, and other columns are rejected") {
+    const small_run experiment;
+    const auto& [folder, config, out] = experiment;
     run_well({"run", config, "--out", out});
     const std::string text = bytes_of_file(folder / "out/results.csv");
-    // Fields are counted from the end of each line, since behind the counts none has commas of its own.
+    // Fields are counted from the end of each line, since those after the counts contain no commas.
     const std::string header = text.substr(0, text.find('\n'));
-    const auto behind = std::ranges::count(header.substr(header.find(",restarts,") + 10), ',') + 1;
+    const auto columns_after = std::ranges::count(header.substr(header.find(",restarts,") + 10), ',') + 1;
     std::string earlier;
     for (std::string line : lines_of(text)) {
         std::size_t end = line.size();
-        for (auto n = behind; n > 0; --n) end = line.rfind(',', end - 1);
+        for (auto n = columns_after; n > 0; --n) end = line.rfind(',', end - 1);
         earlier += line.erase(line.rfind(',', end - 1), end - line.rfind(',', end - 1)) + "\n";
     }
     const auto restarts = static_cast<std::size_t>(aabb::work::restarts);
@@ -82,7 +82,7 @@ TEST_CASE("Results of before a count was there are read without it, others are r
                           EndsWith(" is 'box_texts'; expected 'box_tests'"));
 }
 
-TEST_CASE("A mesh may have any name: its results are read back, resumed after any cut, and compared") {
+TEST_CASE("Results of a mesh with special characters in its name are read, resumed and compared") {
     const temporary_folder folder;
     const std::string mesh =
         folder.write(mesh_name, "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
@@ -90,11 +90,11 @@ TEST_CASE("A mesh may have any name: its results are read back, resumed after an
     const std::string out = folder / "out";
     run_well({"run", config, "--out", out});
     const std::filesystem::path table = folder / "out/results.csv";
-    const auto whole = aabblab::read_rows(table);
-    REQUIRE(whole.size() == 3);
-    CHECK(whole[0].scene.meshes == std::vector<std::string>{mesh, "icosphere:triangles=20"});
+    const auto complete = aabblab::read_rows(table);
+    REQUIRE(complete.size() == 3);
+    CHECK(complete[0].scene.meshes == std::vector<std::string>{mesh, "icosphere:triangles=20"});
     run_well({"compare", out, out});
-    // In the middle of the name of the last row, which stands in two lines.
+    // The cut is in the mesh name of the last row, which spans two lines.
     const std::string text = bytes_of_file(table);
     std::filesystem::resize_file(table, text.rfind('\n', text.rfind("lines,")) + 3);
     unseal(folder / "out");
@@ -102,6 +102,6 @@ TEST_CASE("A mesh may have any name: its results are read back, resumed after an
     run_well({"run", config, "--out", out, "--resume"});
     const auto resumed = aabblab::read_rows(table);
     REQUIRE(resumed.size() == 3);
-    for (std::size_t i = 0; i < 3; ++i) CHECK(resumed[i].key() == whole[i].key());
-    CHECK(resumed[0].search_ms == whole[0].search_ms);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(resumed[i].key() == complete[i].key());
+    CHECK(resumed[0].search_ms == complete[0].search_ms);
 }

@@ -37,7 +37,7 @@ experiment meshes() {
 
 enum class fault { loses, repeats };
 
-candidate altered_contender(const std::string& name, const std::function<void()>& before,
+candidate altered_candidate(const std::string& name, const std::function<void()>& before,
                             const altered_search::change& after) {
     candidate tested;
     tested.name[aabb::strategy_kind::sort] = name;
@@ -48,9 +48,9 @@ candidate altered_contender(const std::string& name, const std::function<void()>
     return tested;
 }
 
-/// Loses one pair of a frame, or finds one twice.
+/// Loses a pair of frame 2, or reports it twice.
 candidate wrong_candidate(fault what) {
-    return altered_contender(
+    return altered_candidate(
         "wrong", [] {},
         [what, frame = 0](auto& pairs) mutable {
             if (frame++ != 2) return;
@@ -61,28 +61,28 @@ candidate wrong_candidate(fault what) {
         });
 }
 
-/// Plays the only scene into new results in that folder, and requires that nothing fails.
-std::vector<row> played(const experiment& e, const std::filesystem::path& folder) {
+/// Runs the only scene with new results in that folder, and requires that nothing fails.
+std::vector<row> rows_of_run(const experiment& e, const std::filesystem::path& folder) {
     results_folder results(folder, record_of(e), existing_results::reject);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::candidates_for(e, e.scenes[0]), results).empty());
     const std::span<const row> rows = results.rows();
     return {rows.begin(), rows.end()};
 }
 
-/// Keys and digests: what must not depend on when a row was made.
-std::set<std::string> answers(std::span<const row> rows) {
-    std::set<std::string> all;
-    for (const row& r : rows) all.insert(r.key() + r.digest + r.status);
-    return all;
+/// Keys, digests and statuses, which do not depend on the time of measurement.
+std::set<std::string> results_of(std::span<const row> rows) {
+    std::set<std::string> results;
+    for (const row& r : rows) results.insert(r.key() + r.digest + r.status);
+    return results;
 }
 
 }  // namespace
 
-TEST_CASE("A scene of boxes is played by every global search and every engine that searches boxes") {
+TEST_CASE("A scene of boxes is run by every global search and every engine that searches boxes") {
     const temporary_folder folder;
     const experiment e = boxes();
     REQUIRE(aabblab::candidates_for(e, e.scenes[0]).size() == 3);
-    played(e, folder / "r");
+    rows_of_run(e, folder / "r");
     const std::vector<row> rows = aabblab::read_rows(folder / "r/results.csv");
     REQUIRE(rows.size() == 6);
     for (const row& r : rows) {
@@ -97,9 +97,9 @@ TEST_CASE("A scene of boxes is played by every global search and every engine th
     }
 }
 
-TEST_CASE("A scene of meshes is played by both stages together, engines included") {
+TEST_CASE("A scene of meshes is run by both stages together, engines included") {
     const temporary_folder folder;
-    const std::vector<row> rows = played(meshes(), folder / "r");
+    const std::vector<row> rows = rows_of_run(meshes(), folder / "r");
     REQUIRE(rows.size() == 4 + 3);
     for (const row& r : rows) {
         INFO(r.key());
@@ -109,7 +109,7 @@ TEST_CASE("A scene of meshes is played by both stages together, engines included
     }
 }
 
-TEST_CASE("A composition that loses a pair or reports one twice is named, and gets no row") {
+TEST_CASE("A composition that loses a pair or reports one twice is named and gets no row") {
     for (const fault what : {fault::loses, fault::repeats}) {
         const temporary_folder folder;
         const experiment e = boxes();
@@ -132,7 +132,7 @@ TEST_CASE("A composition that loses a pair or reports one twice is named, and ge
     }
 }
 
-TEST_CASE("Differences of an inexact triangle test are counted by class and fail nothing") {
+TEST_CASE("Differences of an inexact triangle test are counted by class and are no failure") {
     const experiment e = meshes();
     const auto candidates = aabblab::candidates_for(e, e.scenes[0]);
     const aabblab::scene_validation result = aabblab::validate_scene(e.scenes[0], candidates);
@@ -149,13 +149,13 @@ TEST_CASE("Differences of an inexact triangle test are counted by class and fail
     }
 }
 
-TEST_CASE("Who takes longer than patience has is played once, and not when the run is resumed") {
+TEST_CASE("A candidate that is stopped early runs once, and not again when the run is resumed") {
     const temporary_folder folder;
     experiment e = boxes(4);
     e.patience = 10;
     std::vector<candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
     const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(50)); };
-    candidates.push_back(altered_contender("slow", wait, [](auto&) {}));
+    candidates.push_back(altered_candidate("slow", wait, [](auto&) {}));
     results_folder results(folder / "r", record_of(e), existing_results::reject);
     REQUIRE(aabblab::run_scene(e, e.scenes[0], candidates, results).empty());
     const auto rows_of = [&](const std::string& sort) {
@@ -165,14 +165,14 @@ TEST_CASE("Who takes longer than patience has is played once, and not when the r
     CHECK(rows_of("slow") == 1);
     CHECK(rows_of("std") == 4);
     CHECK(holds(aabblab::heading_of(aabblab::summarise(results.rows())[0]), "repeated less often than others: slow"));
-    const std::size_t all = results.rows().size();
+    const std::size_t row_count = results.rows().size();
     const std::string text = bytes_of_file(folder / "r/results.csv");
     REQUIRE(aabblab::run_scene(e, e.scenes[0], candidates, results).empty());
-    CHECK(results.rows().size() == all);
+    CHECK(results.rows().size() == row_count);
     CHECK(bytes_of_file(folder / "r/results.csv") == text);
 }
 
-TEST_CASE("Each scene has an order of its own in which contenders are played after the first, the same each time") {
+TEST_CASE("Each scene runs its candidates after the baseline in a reproducible random order") {
     experiment e = boxes(1);
     e.recorded.clear();
     std::vector<candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
@@ -198,11 +198,11 @@ TEST_CASE("Each scene has an order of its own in which contenders are played aft
     CHECK(order_in(3) != order_in(2));
 }
 
-TEST_CASE("Results of another config are not continued") {
+TEST_CASE("Results of another config are not resumed") {
     const temporary_folder folder;
-    played(boxes(), folder / "r");
+    rows_of_run(boxes(), folder / "r");
     REQUIRE_THROWS_AS(results_folder(folder / "r", record_of(boxes(5)), existing_results::resume), aabb::input_error);
-    // A row of a scene that the manifest does not know.
+    // The table has a row of a scene that is not in the manifest.
     std::string text = bytes_of_file(folder / "r/results.csv");
     REQUIRE_NOTHROW(results_folder(folder / "r", record_of(boxes()), existing_results::resume));
     text.replace(text.rfind("brownian"), 8, "hollow_x");
@@ -213,11 +213,11 @@ TEST_CASE("Results of another config are not continued") {
     REQUIRE_THROWS_AS(results_folder(folder / "r", record_of(boxes()), existing_results::resume), aabb::input_error);
 }
 
-TEST_CASE("What was not to be measured is not measured") {
+TEST_CASE("Metrics that were not requested are not measured") {
     experiment e = boxes(5);
     e.recorded.clear();
     const temporary_folder folder;
-    const std::vector<row> rows = played(e, folder / "r");
+    const std::vector<row> rows = rows_of_run(e, folder / "r");
     REQUIRE(rows.size() == 3);
     for (const row& r : rows) {
         REQUIRE_FALSE((r.build_ms || r.first_ms || r.search_ms || r.counts[0] || r.bytes[0] || r.false_negatives));
@@ -225,21 +225,21 @@ TEST_CASE("What was not to be measured is not measured") {
     }
 }
 
-TEST_CASE("A pair of boxes that is lost fails a contender whose triangle test is inexact, too") {
+TEST_CASE("A lost pair of boxes is a failure even with an inexact triangle test") {
     candidate tested = wrong_candidate(fault::loses);
     tested.exact = false;
     const aabblab::scene_validation result = aabblab::validate_scene(boxes().scenes[0], std::vector{tested});
     REQUIRE(result.candidates[0].failure.ends_with("is a false negative"));
 }
 
-TEST_CASE("A contender that goes wrong when it is timed keeps no row of its earlier repeats") {
+TEST_CASE("A candidate with a wrong result when timed loses the rows of its earlier repeats") {
     const temporary_folder folder;
     const experiment e = boxes(3);
     std::vector<candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
     candidate late = wrong_candidate(fault::loses);
-    // Right when validated and in its first repeat.
-    late.make_global = [made = 0, wrong = late.make_global](aabb::instrumentation counted) mutable {
-        return made++ < 2 ? aabb::compose_global_search({}, counted) : wrong(counted);
+    // It is right in the validation and in its first repeat.
+    late.make_global = [runs = 0, wrong = late.make_global](aabb::instrumentation counted) mutable {
+        return runs++ < 2 ? aabb::compose_global_search({}, counted) : wrong(counted);
     };
     candidates.push_back(late);
     results_folder results(folder / "r", record_of(e), existing_results::reject);
@@ -248,35 +248,35 @@ TEST_CASE("A contender that goes wrong when it is timed keeps no row of its earl
     REQUIRE(holds(failures[0], " when timed, but was "));
     const std::vector<row> rows = aabblab::read_rows(folder / "r/results.csv");
     REQUIRE(rows.size() == 9);
-    REQUIRE(answers(rows) == answers(results.rows()));
+    REQUIRE(results_of(rows) == results_of(results.rows()));
     for (const row& r : rows) REQUIRE(r.name[aabb::strategy_kind::sort] != "wrong");
 }
 
-TEST_CASE("Results of another config or build are set aside where that is asked for, others continued") {
+TEST_CASE("Results of another config or build are set aside on request, and others resumed") {
     const temporary_folder folder;
-    const auto play = [&](const experiment& e) {
+    const auto run = [&](const experiment& e) {
         results_folder results(folder / "r", record_of(e), existing_results::replace);
         const std::size_t before = results.rows().size();
         REQUIRE(aabblab::run_scene(e, e.scenes[0], aabblab::candidates_for(e, e.scenes[0]), results).empty());
         return std::pair{before, results.replaced()};
     };
-    const std::pair<std::size_t, std::string> nothing{0, ""};
-    const std::pair<std::size_t, std::string> all{6, ""};
-    REQUIRE(play(boxes()) == nothing);
-    REQUIRE(play(boxes()) == all);
-    const auto [left, said] = play(boxes(5));
-    REQUIRE(left == 0);
-    REQUIRE(holds(said, "another config"));
+    const std::pair<std::size_t, std::string> no_rows{0, ""};
+    const std::pair<std::size_t, std::string> all_rows{6, ""};
+    REQUIRE(run(boxes()) == no_rows);
+    REQUIRE(run(boxes()) == all_rows);
+    const auto [rows_left, reason] = run(boxes(5));
+    REQUIRE(rows_left == 0);
+    REQUIRE(holds(reason, "another config"));
     REQUIRE(aabblab::read_rows(folder / "r/results.csv").size() == 15);
-    // Another build, whose tables had other columns.
+    // The results are of another build, whose tables had other columns.
     std::string manifest = bytes_of_file(folder / "r/manifest.json");
     const std::string commit = "\"commit\": \"";
     manifest.insert(manifest.find(commit) + commit.size(), "0");
     folder.write("r/manifest.json", manifest);
     folder.write("r/results.csv", "columns,of,then\n1,2,3\n");
-    const auto [left_of_build, said_of_build] = play(boxes(5));
-    REQUIRE(left_of_build == 0);
-    REQUIRE(holds(said_of_build, "another build"));
+    const auto [rows_left_of_build, reason_of_build] = run(boxes(5));
+    REQUIRE(rows_left_of_build == 0);
+    REQUIRE(holds(reason_of_build, "another build"));
     REQUIRE(bytes_of_file(folder / "r/results.csv.old") == "columns,of,then\n1,2,3\n");
     REQUIRE(aabblab::read_rows(folder / "r/results.csv").size() == 15);
 }

@@ -12,7 +12,7 @@ bool has_parameter(const aabblab::scene_info& info, const std::string& name) {
     return std::ranges::any_of(info.parameters, [&](const aabb::parameter_info& p) { return p.name == name; });
 }
 
-/// Those that are made from a seed.
+/// The kinds of scenes that are generated from a seed.
 std::vector<aabblab::scene_info> generated_kinds() {
     std::vector<aabblab::scene_info> kinds;
     for (const aabblab::scene_info& info : aabblab::scene_kinds())
@@ -20,7 +20,7 @@ std::vector<aabblab::scene_info> generated_kinds() {
     return kinds;
 }
 
-std::vector<std::vector<aabb::box>> play_boxes(const scene_choice& choice) {
+std::vector<std::vector<aabb::box>> boxes_of(const scene_choice& choice) {
     const auto scene = aabblab::make_box_scene(choice);
     std::vector<std::vector<aabb::box>> frames;
     for (std::vector<aabb::box> boxes; scene->next(boxes);) frames.push_back(boxes);
@@ -32,7 +32,7 @@ std::vector<std::vector<aabb::box>> play_boxes(const scene_choice& choice) {
     return frames;
 }
 
-std::vector<std::vector<aabb::pose>> play_poses(const scene_choice& choice) {
+std::vector<std::vector<aabb::pose>> poses_of(const scene_choice& choice) {
     const auto scene = aabblab::make_mesh_scene(choice);
     std::vector<std::vector<aabb::pose>> frames;
     for (std::vector<aabb::pose> poses; scene->next(poses);) frames.push_back(poses);
@@ -53,13 +53,13 @@ std::string error_of(const scene_choice& choice, bool of_meshes) {
 }
 
 std::string digest_of(const scene_choice& choice) {
-    aabb::digest all;
-    for (const auto& boxes : play_boxes(choice))
-        for (const aabb::box& b : boxes) all.add(std::bit_cast<std::array<std::uint32_t, 6>>(b));
-    return all.text();
+    aabb::digest digest;
+    for (const auto& boxes : boxes_of(choice))
+        for (const aabb::box& b : boxes) digest.add(std::bit_cast<std::array<std::uint32_t, 6>>(b));
+    return digest.text();
 }
 
-/// How many pairs of boxes overlap.
+/// The number of overlapping pairs of boxes.
 std::size_t overlaps_in(std::span<const aabb::box> boxes) {
     std::size_t pairs = 0;
     for (std::size_t a = 0; a < boxes.size(); ++a)
@@ -81,37 +81,37 @@ double longest_edge(const aabb::mesh& m) {
 
 }  // namespace
 
-TEST_CASE("every scene plays with 0, 1, 2 and 50 objects, the same for the same seed") {
+TEST_CASE("every scene runs with 0, 1, 2 and 50 objects, reproducibly for a seed") {
     for (const aabblab::scene_info& info : generated_kinds())
         for (const std::string objects : {"0", "1", "2", "50"})
             for (const std::string frames : {"0", "3"}) {
                 CAPTURE(info.name, objects, frames);
                 scene_choice choice{info.name, {{"frames", frames}}, {}, 1};
                 if (has_parameter(info, "objects")) choice.settings.push_back({"objects", objects});
-                const auto play = [&](std::uint64_t seed) {
+                const auto description_for = [&](std::uint64_t seed) {
                     choice.seed = seed;
                     if (!info.has_meshes) {
-                        const auto played = play_boxes(choice);
-                        REQUIRE(played.size() == std::stoul(frames) + 1);
-                        REQUIRE(played[0].size() == std::stoul(objects));
-                        REQUIRE(played == play_boxes(choice));
+                        const auto result = boxes_of(choice);
+                        REQUIRE(result.size() == std::stoul(frames) + 1);
+                        REQUIRE(result[0].size() == std::stoul(objects));
+                        REQUIRE(result == boxes_of(choice));
                         return digest_of(choice);
                     }
                     choice.meshes = {"icosphere:triangles=20", "torus_knot:triangles=100"};
-                    const auto played = play_poses(choice);
-                    REQUIRE(played.size() == std::stoul(frames) + 1);
-                    REQUIRE(played == play_poses(choice));
-                    if (has_parameter(info, "objects")) REQUIRE(played[0].size() == std::stoul(objects));
+                    const auto result = poses_of(choice);
+                    REQUIRE(result.size() == std::stoul(frames) + 1);
+                    REQUIRE(result == poses_of(choice));
+                    if (has_parameter(info, "objects")) REQUIRE(result[0].size() == std::stoul(objects));
                     std::string places;
-                    for (const aabb::pose& p : played[0]) places += std::to_string(p.translation[0]) + " ";
+                    for (const aabb::pose& p : result[0]) places += std::to_string(p.translation[0]) + " ";
                     return places;
                 };
                 const bool is_random = info.name != "lattice" && (objects != "0" || !has_parameter(info, "objects"));
-                REQUIRE((play(1) != play(2)) == is_random);
+                REQUIRE((description_for(1) != description_for(2)) == is_random);
             }
 }
 
-TEST_CASE("a wave runs through the second mesh of deforming, no higher than told, and the first stays as it is") {
+TEST_CASE("deforming sends a wave of the given amplitude through its second mesh only") {
     const auto scene = aabblab::make_mesh_scene({"deforming",
                                                  {{"frames", "9"}, {"amplitude", "0.1"}},
                                                  {"icosphere:triangles=320", "icosphere:triangles=320"},
@@ -136,7 +136,7 @@ TEST_CASE("a wave runs through the second mesh of deforming, no higher than told
     REQUIRE(scene->meshes[0].vertices == rigid);
 }
 
-TEST_CASE("scenes of boxes are the same everywhere") {
+TEST_CASE("scenes of boxes are the same on every platform") {
     const std::map<std::string, std::string> digests = {
         {"brownian", "0667e87404c1b636"}, {"cloud", "e809fdc8d20f68d1"},         {"clustered", "aaaea97623a21fdf"},
         {"far", "3d2998bf5a2db46a"},      {"hollow_sphere", "bde4980e9fc1f3ae"}, {"needles", "2c1b44defa4ed77a"},
@@ -151,11 +151,11 @@ TEST_CASE("scenes of boxes are the same everywhere") {
     }
 }
 
-TEST_CASE("brownian cubes stay in their world and move no further than told") {
+TEST_CASE("brownian cubes stay in their world and move at most by the given displacement") {
     const double side = 21.5443469;  // cbrt(1000 / 0.1)
-    const auto furthest = [&](const std::vector<aabb::setting>& settings) {
-        const auto frames = play_boxes({"brownian", settings, {}, 1});
-        double most = 0;
+    const auto largest_step = [&](const std::vector<aabb::setting>& settings) {
+        const auto frames = boxes_of({"brownian", settings, {}, 1});
+        double largest = 0;
         for (std::size_t f = 0; f < frames.size(); ++f)
             for (std::size_t i = 0; i < frames[f].size(); ++i) {
                 double square = 0;
@@ -167,22 +167,22 @@ TEST_CASE("brownian cubes stay in their world and move no further than told") {
                     const double moved = double{frames[f][i].min[k]} - double{frames[f - 1][i].min[k]};
                     square += moved * moved;
                 }
-                most = std::max(most, std::sqrt(square));
+                largest = std::max(largest, std::sqrt(square));
             }
-        return most;
+        return largest;
     };
-    const double by_speed = furthest({});
+    const double by_speed = largest_step({});
     REQUIRE(by_speed <= 0.75 * side / 30 + 1e-5);
     REQUIRE(by_speed > 0.7 * side / 30);
-    const double by_displacement = furthest({{"displacement", "0.01"}});
+    const double by_displacement = largest_step({{"displacement", "0.01"}});
     REQUIRE(by_displacement <= 0.01 + 1e-5);
     REQUIRE(by_displacement > 0.009);
-    // Any step is folded back into the world.
-    furthest({{"displacement", "1e9"}});
+    // Steps of any size are reflected back into the world.
+    largest_step({{"displacement", "1e9"}});
 }
 
-TEST_CASE("a hundredth of brownian cubes changes direction every frame") {
-    const auto frames = play_boxes({"brownian", {{"frames", "2"}, {"displacement", "0.01"}}, {}, 3});
+TEST_CASE("a hundredth of the brownian cubes change direction in each frame") {
+    const auto frames = boxes_of({"brownian", {{"frames", "2"}, {"displacement", "0.01"}}, {}, 3});
     std::size_t straight = 0;
     for (std::size_t i = 0; i < 1000; ++i) {
         double bend = 0;
@@ -191,19 +191,19 @@ TEST_CASE("a hundredth of brownian cubes changes direction every frame") {
                              (double{frames[1][i].min[k]} - double{frames[0][i].min[k]}));
         straight += bend < 1e-5;
     }
-    // Ten turned by the seed, some reflected; slow ones look straight.
+    // About ten change direction and some are reflected; of slow ones this does not show.
     CHECK_BETWEEN(970, straight, 1000);
 }
 
-TEST_CASE("a lattice touches in every frame, whatever its step") {
+TEST_CASE("neighbours in a lattice touch in every frame, for any step") {
     for (const std::string step : {"0.25", "0.1", "1e-9"}) {
         CAPTURE(step);
-        for (const auto& boxes : play_boxes({"lattice", {{"objects", "27"}, {"displacement", step}}, {}, 1}))
+        for (const auto& boxes : boxes_of({"lattice", {{"objects", "27"}, {"displacement", step}}, {}, 1}))
             REQUIRE(overlaps_in(boxes) == 158);  // pairs of the 27 cells that are neighbours
     }
 }
 
-TEST_CASE("a swarm's objects meet, cycle through the meshes and move as told") {
+TEST_CASE("the objects of a swarm overlap, use its meshes in turn and move by the default displacement") {
     const auto scene = aabblab::make_mesh_scene(
         {"mesh_swarm", {{"objects", "100"}}, {"icosphere:triangles=80", "torus_knot:triangles=200"}, 1});
     REQUIRE(scene->meshes.size() == 2);
@@ -222,12 +222,12 @@ TEST_CASE("a swarm's objects meet, cycle through the meshes and move as told") {
     }
 }
 
-TEST_CASE("huge objects of a swarm are the first, of the first mesh, and as long as they are told") {
-    const std::vector<std::string> one{"icosphere:triangles=80"};
-    for (const std::vector<std::string>& given : {one, {one[0], "torus_knot:triangles=200", one[0]}}) {
+TEST_CASE("huge objects of a swarm come first, with the first mesh and the given length") {
+    const std::vector<std::string> single{"icosphere:triangles=80"};
+    for (const std::vector<std::string>& meshes : {single, {single[0], "torus_knot:triangles=200", single[0]}}) {
         const auto scene = aabblab::make_mesh_scene(
-            {"mesh_swarm", {{"objects", "64"}, {"huge", "3"}, {"span", "0.5"}, {"density", "1"}}, given, 1});
-        REQUIRE(scene->meshes.size() == std::max<std::size_t>(given.size(), 2));
+            {"mesh_swarm", {{"objects", "64"}, {"huge", "3"}, {"span", "0.5"}, {"density", "1"}}, meshes, 1});
+        REQUIRE(scene->meshes.size() == std::max<std::size_t>(meshes.size(), 2));
         for (std::size_t i = 0; i < 64; ++i)
             REQUIRE(scene->mesh_of[i] == (i < 3 ? 0 : 1 + (i - 3) % (scene->meshes.size() - 1)));
         // The others fill a cube of 61 unit cubes.
@@ -236,12 +236,12 @@ TEST_CASE("huge objects of a swarm are the first, of the first mesh, and as long
             REQUIRE(std::abs(longest_edge(scene->meshes[m]) - (m == 0 ? side / 2 : 1)) < 1e-5);
         for (std::vector<aabb::pose> poses; scene->next(poses);) REQUIRE(overlaps_in(*scene, poses) > 61);
     }
-    // All of them, more than all, none.
+    // All objects may be huge, more than all, or none.
     for (const char* huge : {"5", "9", "0"})
-        REQUIRE(play_poses({"mesh_swarm", {{"objects", "5"}, {"huge", huge}}, one, 1})[0].size() == 5);
+        REQUIRE(poses_of({"mesh_swarm", {{"objects", "5"}, {"huge", huge}}, single, 1})[0].size() == 5);
 }
 
-TEST_CASE("meshes that are not normalised keep their coordinates and still meet") {
+TEST_CASE("meshes that are not normalised keep their coordinates and still overlap") {
     const temporary_folder folder;
     const auto file = folder.write("a.off", "OFF\n4 2 0\n1000 0 0\n1010 0 0\n1000 10 0\n1000 0 10\n3 0 1 2\n3 0 2 3\n");
     for (const std::string kind : {"mesh_swarm", "mesh_pair"}) {
@@ -251,22 +251,22 @@ TEST_CASE("meshes that are not normalised keep their coordinates and still meet"
     }
 }
 
-TEST_CASE("a pair passes through itself") {
-    const auto frames = play_poses({"mesh_pair", {{"frames", "4"}, {"distance", "0.5"}}, {"icosphere"}, 1});
+TEST_CASE("one mesh of a pair moves through the other") {
+    const auto frames = poses_of({"mesh_pair", {{"frames", "4"}, {"distance", "0.5"}}, {"icosphere"}, 1});
     for (std::size_t f = 0; f < 5; ++f) {
-        const aabb::vec3d apart = frames[f][1].translation - frames[f][0].translation;
-        const double wanted[] = {0.5, 0.25, 0, 0.25, 0.5};
-        REQUIRE(std::abs(std::sqrt(aabb::dot(apart, apart)) - wanted[f]) < 1e-6);
+        const aabb::vec3d offset = frames[f][1].translation - frames[f][0].translation;
+        const double expected[] = {0.5, 0.25, 0, 0.25, 0.5};
+        REQUIRE(std::abs(std::sqrt(aabb::dot(offset, offset)) - expected[f]) < 1e-6);
         REQUIRE(frames[f][0] == frames[0][0]);
     }
 }
 
-TEST_CASE("a pair with distance and turn 0 stands still") {
-    const auto all = play_poses({"mesh_pair", {{"frames", "4"}, {"distance", "0"}, {"turn", "0"}}, {"icosphere"}, 1});
-    for (const auto& poses : all) REQUIRE(poses == all[0]);
+TEST_CASE("a pair with distance 0 and turn 0 does not move") {
+    const auto frames = poses_of({"mesh_pair", {{"frames", "4"}, {"distance", "0"}, {"turn", "0"}}, {"icosphere"}, 1});
+    for (const auto& poses : frames) REQUIRE(poses == frames[0]);
 }
 
-TEST_CASE("scenes that cannot be made are refused") {
+TEST_CASE("invalid scenes are rejected") {
     REQUIRE(error_of({"browninan", {}, {}, 1}, false) == "unknown scene 'browninan'; did you mean 'brownian'?");
     REQUIRE(error_of({"mesh_swarm", {}, {}, 1}, false) == "mesh_swarm is a scene of meshes, not of boxes");
     REQUIRE(error_of({"lattice", {}, {}, 1}, true) == "lattice is a scene of boxes, not of meshes");

@@ -22,8 +22,8 @@ class finished_run {
 public:
     finished_run() { run_well({"run", folder_.write("sealed.toml", config), "--out", out()}); }
 
-    /// The command that goes on with it.
-    [[nodiscard]] std::vector<std::string> resumed() const {
+    /// The command that resumes it.
+    [[nodiscard]] std::vector<std::string> resume_command() const {
         return {"run", folder_ / "sealed.toml", "--out", out(), "--resume"};
     }
     [[nodiscard]] std::filesystem::path out() const { return folder_ / "out"; }
@@ -46,8 +46,8 @@ std::vector<std::string> keys_of(const std::vector<row>& rows) {
     return keys;
 }
 
-void check_refused_rows(const finished_run& run, const std::string& said) {
-    CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error, MessageMatches(ContainsSubstring(said)));
+void check_rejected_rows(const finished_run& run, const std::string& text) {
+    CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error, MessageMatches(ContainsSubstring(text)));
 }
 
 std::string joined_lines(const std::vector<std::string>& lines, const char* end) {
@@ -62,7 +62,7 @@ std::string shuffled(const std::string& table) {
     return joined_lines(lines, "\n");
 }
 
-/// The field of a line, as long as none is in quotes before it.
+/// Replaces the first `from` in a line, counted from 1.
 std::string with_field(const std::string& table, std::size_t line, const std::string& from, const std::string& to) {
     std::vector<std::string> lines = lines_of(table);
     lines.at(line - 1) = replaced(lines.at(line - 1), from, to);
@@ -75,12 +75,12 @@ std::string without_line(const std::string& table, std::size_t line) {
 
 }  // namespace
 
-TEST_CASE("Checksums are those of FIPS 180-4") {
+TEST_CASE("SHA-256 gives the digests of the FIPS 180-4 examples") {
     CHECK(aabblab::sha256_of("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     CHECK(aabblab::sha256_of("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
-TEST_CASE("Rows of a finished run are read in the order of play, whatever their order and the ends of lines") {
+TEST_CASE("Rows of a finished run are read in run order, for any order and line endings in the file") {
     const finished_run run;
     const std::vector<row> rows = aabblab::verified_rows(run.out());
     REQUIRE(rows.size() == 12);
@@ -96,7 +96,7 @@ TEST_CASE("Rows of a finished run are read in the order of play, whatever their 
     CHECK(keys_of(aabblab::verified_rows(run.out())) == keys_of(rows));
     run.write_table(joined_lines(lines_of(mixed), "\r\n"));
     CHECK(keys_of(aabblab::verified_rows(run.out())) == keys_of(rows));
-    // A tool that every system has sees the same.
+    // The checksum is that of the sorted lines, as sort and sha256sum compute it.
     const auto sealed = run.manifest()["seal"]["results.csv"];
     std::vector<std::string> lines = lines_of(table);
     std::ranges::sort(lines);
@@ -104,13 +104,13 @@ TEST_CASE("Rows of a finished run are read in the order of play, whatever their 
     CHECK(sealed["sha256"] == aabblab::sha256_of(joined_lines(lines, "\n")));
 }
 
-TEST_CASE("Rows that were altered, removed or added are refused, with the place where there is one") {
+TEST_CASE("Altered, removed or added rows are rejected, with their line if it is known") {
     const finished_run run;
     const std::string table = run.table();
     const row first = aabblab::read_rows(run.out() / "results.csv").front();
     const auto rejected = [&](const std::string& text, const std::string& sentence) {
         run.write_table(text);
-        check_refused_rows(run, sentence);
+        check_rejected_rows(run, sentence);
         run.write_table(table);
     };
     const std::string altered = "out/results.csv was altered after the run: its rows do not have the checksum";
@@ -127,14 +127,14 @@ TEST_CASE("Rows that were altered, removed or added are refused, with the place 
     CHECK(aabblab::verified_rows(run.out()).size() == 12);
 }
 
-TEST_CASE("A manifest that was altered is refused") {
+TEST_CASE("An altered manifest is rejected") {
     const finished_run run;
     const nlohmann::ordered_json manifest = run.manifest();
     const auto rejected = [&](const std::function<void(nlohmann::ordered_json&)>& alter, const std::string& sentence) {
         nlohmann::ordered_json altered = manifest;
         alter(altered);
         run.write_manifest(altered);
-        check_refused_rows(run, sentence);
+        check_rejected_rows(run, sentence);
     };
     const std::string sentence =
         "manifest.json was altered after the run: it does not have the checksum that it states";
@@ -150,21 +150,21 @@ TEST_CASE("A manifest that was altered is refused") {
              "manifest.json: scenes[0] must have parameters, an object of settings");
 }
 
-TEST_CASE("A manifest with a member of another type, or without one, is read or refused, sealed and unsealed") {
+TEST_CASE("A manifest with a mistyped or missing member is read or rejected, sealed or not") {
     const finished_run run;
-    std::size_t refusals = 0;
+    std::size_t rejections = 0;
     for (const bool is_sealed : {true, false}) {
         if (!is_sealed) unseal(run.out());
-        const nlohmann::ordered_json whole = run.manifest();
+        const nlohmann::ordered_json complete = run.manifest();
         std::set<std::string> places;
-        const nlohmann::ordered_json leaves = whole.flatten();
+        const nlohmann::ordered_json leaves = complete.flatten();
         for (const auto& [leaf, value] : leaves.items())
             for (nlohmann::json::json_pointer place(leaf); !place.empty(); place.pop_back())
                 places.insert(place.to_string());
         for (const std::string& place : places)
             for (const char* other : {"null", "1", "-1.5", "true", "\"x\"", "[1]", "{\"x\":[]}", "without"}) {
                 const nlohmann::ordered_json::json_pointer at(place);
-                nlohmann::ordered_json altered = whole;
+                nlohmann::ordered_json altered = complete;
                 if (std::string_view(other) == "without") {
                     nlohmann::ordered_json& parent = altered[at.parent_pointer()];
                     if (parent.is_array()) continue;
@@ -178,29 +178,29 @@ TEST_CASE("A manifest with a member of another type, or without one, is read or 
                     (void)aabblab::read_manifest(run.out());
                     (void)aabblab::verified_rows(run.out());
                 } catch (const aabb::input_error& rejected) {
-                    ++refusals;
+                    ++rejections;
                     CHECK_THAT(rejected.what(), ContainsSubstring("/out/"));
                 } catch (const std::exception& error) {
                     FAIL_CHECK(error.what());
                 }
             }
     }
-    CHECK(refusals > 100);
+    CHECK(rejections > 100);
 }
 
-TEST_CASE("A row with a number that no run writes is compared or refused, and no time is none") {
+TEST_CASE("A row with an implausible number is rejected or compared with finite changes") {
     const finished_run run;
     const std::filesystem::path second = run.out().parent_path() / "second";
     std::filesystem::copy(run.out(), second);
     unseal(run.out());
     const std::vector<std::string> lines = lines_of(run.table());
     const auto columns = static_cast<std::size_t>(std::ranges::count(lines[0], ',')) + 1;
-    std::size_t refusals = 0;
+    std::size_t rejections = 0;
     for (const std::string number : {"", "-1", "nan", "inf", "1e300", "18446744073709551615", "1e999", "0", "x"})
         for (std::size_t column = 0; column < columns; ++column) {
             std::vector<std::string> altered = lines;
             std::string& line = altered[2];
-            // One field of a row stands in quotes, and has commas.
+            // One field of a row is quoted and contains commas.
             const auto end_of = [&](std::size_t at) {
                 return std::min(line[at] == '"' ? line.find("\",", at) + 1 : line.find(',', at), line.size());
             };
@@ -210,40 +210,40 @@ TEST_CASE("A row with a number that no run writes is compared or refused, and no
             run.write_table(joined_lines(altered, "\n"));
             CAPTURE(number, column);
             try {
-                const auto found = compare(aabblab::read_results(run.out()), aabblab::read_results(second),
-                                           aabblab::compared::ratios_and_times);
-                for (const aabblab::compared_scene& scene : found.scenes)
-                    for (const auto* all : {&scene.ratios, &scene.times})
-                        for (const aabblab::compared_time& time : *all) CHECK(std::isfinite(time.change));
+                const auto comparison = compare(aabblab::read_results(run.out()), aabblab::read_results(second),
+                                                aabblab::compared::ratios_and_times);
+                for (const aabblab::compared_scene& scene : comparison.scenes)
+                    for (const auto* list : {&scene.ratios, &scene.times})
+                        for (const aabblab::compared_time& time : *list) CHECK(std::isfinite(time.change));
             } catch (const aabb::input_error&) {
-                ++refusals;
+                ++rejections;
             }
         }
-    CHECK(refusals > 100);
+    CHECK(rejections > 100);
 }
 
-TEST_CASE("A run that is not finished has no seal, and is read as it is") {
+TEST_CASE("An unfinished run has no seal and is read as it is") {
     const finished_run run;
     unseal(run.out());
     run.write_table(without_line(run.table(), 13));
     CHECK(aabblab::verified_rows(run.out()).size() == 11);
-    // Its digests are known all the same.
+    // Its digests are checked nevertheless.
     const row first = aabblab::read_rows(run.out() / "results.csv").front();
     run.write_table(with_field(run.table(), 3, first.digest, "0000000000000000"));
     CHECK_THROWS_AS(aabblab::verified_rows(run.out()), aabb::input_error);
 }
 
-TEST_CASE("What was altered is neither resumed nor sealed anew") {
+TEST_CASE("An altered run is neither resumed nor sealed again") {
     const finished_run run;
-    run_well(run.resumed());
+    run_well(run.resume_command());
     REQUIRE(run.manifest().contains("seal"));
     run.write_table(without_line(run.table(), 4));
     const std::string before = bytes_of_file(run.out() / "manifest.json");
-    CHECK(holds(run_refused(run.resumed()).err, "has 11 rows; when the run was finished it had 12"));
+    CHECK(holds(run_refused(run.resume_command()).err, "has 11 rows; when the run was finished it had 12"));
     CHECK(bytes_of_file(run.out() / "manifest.json") == before);
 }
 
-TEST_CASE("A manifest says what machine it was, and what of it times hang on") {
+TEST_CASE("A manifest describes the machine, and a run does not resume with other caches") {
     const finished_run run;
     const nlohmann::ordered_json manifest = run.manifest();
     CHECK(manifest["build"]["cpu"].is_string());
@@ -251,15 +251,15 @@ TEST_CASE("A manifest says what machine it was, and what of it times hang on") {
     CHECK(manifest["machine"]["processors"] > 0);
     CHECK(manifest["machine"]["kernel"].get<std::string>().starts_with("Linux "));
     CHECK(manifest["machine"]["libc"].is_string());
-    // A new kernel is no other machine, another cache is.
+    // A run resumes with another kernel, but not with another cache.
     unseal(run.out());
     nlohmann::ordered_json changed = run.manifest();
     changed["machine"]["kernel"] = "Linux 1.0 i386";
     run.write_manifest(changed);
-    run_well(run.resumed());
+    run_well(run.resume_command());
     unseal(run.out());
     changed = run.manifest();
     changed["build"]["caches"]["L2"] = 1;
     run.write_manifest(changed);
-    CHECK(holds(run_program(run.resumed()).err, "another build or machine"));
+    CHECK(holds(run_program(run.resume_command()).err, "another build or machine"));
 }

@@ -5,7 +5,7 @@ import aabblab.scenes;
 
 namespace {
 
-/// Every edge once in each direction: closed, and every triangle facing the same way.
+/// Whether every edge occurs once in each direction: the mesh is closed and consistently oriented.
 bool is_closed(const aabb::mesh& m) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (const auto& t : m.triangles)
@@ -16,7 +16,7 @@ bool is_closed(const aabb::mesh& m) {
     return true;
 }
 
-/// Six times the volume inside; positive where triangles face outwards.
+/// Six times the enclosed volume; positive if triangles face outwards.
 double volume(const aabb::mesh& m) {
     double sum = 0;
     for (std::uint32_t i = 0; i < m.triangle_count(); ++i) {
@@ -33,7 +33,7 @@ std::string error_of(const std::string& name) {
     return refusal_in<aabb::input_error>([&] { return aabblab::make_mesh(name); });
 }
 
-/// Sets AABBLAB_DATA as long as it lives.
+/// Sets AABBLAB_DATA during its lifetime.
 class data_folder_at {
 public:
     explicit data_folder_at(const std::filesystem::path& folder) { setenv("AABBLAB_DATA", folder.c_str(), 1); }
@@ -44,57 +44,57 @@ public:
 
 }  // namespace
 
-TEST_CASE("shapes but the floor and slivers are closed and face outwards; all have the triangles wanted, with area") {
+TEST_CASE("shapes have the requested number of triangles, and all but square and slivers are closed") {
     const temporary_folder folder;
     for (const auto& [shape, summary, parameters] : aabblab::shapes())
-        for (const std::uint32_t wanted : {100U, 1000U, 1234U, 5000U, 20000U, 100000U}) {
-            CAPTURE(shape, wanted);
-            const aabb::mesh m = aabblab::make_mesh(shape + ":triangles=" + std::to_string(wanted)).mesh;
+        for (const std::uint32_t requested : {100U, 1000U, 1234U, 5000U, 20000U, 100000U}) {
+            CAPTURE(shape, requested);
+            const aabb::mesh m = aabblab::make_mesh(shape + ":triangles=" + std::to_string(requested)).mesh;
             const bool closed = shape != "square" && shape != "slivers";
             REQUIRE(is_closed(m) == closed);
             if (closed) REQUIRE(volume(m) > 0);
             REQUIRE_NOTHROW(aabb::require_valid(m));
             aabblab::write_off(m, folder / "m.off");
             REQUIRE(aabblab::read_mesh(folder / "m.off").report.zero_area == 0);
-            // An icosphere has 20 n² triangles: up to half a step of n beside it.
-            const double room = shape == "icosphere" ? std::max(20.0, 1.1 * std::sqrt(20.0 * wanted))
-                                : shape == "square"  ? 2 * std::sqrt(2.0 * wanted)
-                                : wanted < 200       ? 8
-                                                     : 2;
-            REQUIRE(std::abs(static_cast<double>(m.triangle_count()) - wanted) <= room);
+            // An icosphere has 20 n² triangles, so the nearest is up to half a step of n away.
+            const double tolerance = shape == "icosphere" ? std::max(20.0, 1.1 * std::sqrt(20.0 * requested))
+                                     : shape == "square"  ? 2 * std::sqrt(2.0 * requested)
+                                     : requested < 200    ? 8
+                                                          : 2;
+            REQUIRE(std::abs(static_cast<double>(m.triangle_count()) - requested) <= tolerance);
         }
     REQUIRE(aabblab::make_mesh("icosphere").mesh.triangle_count() == 5120);
     REQUIRE(aabblab::make_mesh("torus_knot:triangles=20000").mesh.triangle_count() == 20000);
 }
 
-TEST_CASE("boxes of slivers all overlap, and nothing touches, with a second row in the gaps of the first") {
+TEST_CASE("slivers in the gaps of others have overlapping boxes, but do not intersect") {
     constexpr std::uint32_t n = 300;
     const aabb::mesh m = aabblab::make_mesh("slivers:triangles=" + std::to_string(n)).mesh;
     const double gap = 10 * std::sqrt(0.5) / n;
-    for (const double aside : {0.0, gap / 2}) {
+    for (const double shift : {0.0, gap / 2}) {
         std::uint64_t boxes = 0, hits = 0;
         for (std::uint32_t i = 0; i < n; ++i)
             for (std::uint32_t j = 0; j < n; ++j) {
                 aabb::triangle3f other = m.triangle(j);
                 for (int c = 0; c < 3; ++c) {
-                    other[c][0] += static_cast<float>(aside);
-                    other[c][1] -= static_cast<float>(aside);
+                    other[c][0] += static_cast<float>(shift);
+                    other[c][1] -= static_cast<float>(shift);
                 }
                 boxes += aabb::overlaps(aabb::bounds_of(m.triangle(i)), aabb::bounds_of(other));
                 hits += aabb::exact_triangle::intersects(m.triangle(i), other);
             }
         CHECK(boxes == std::uint64_t{n} * n);
-        CHECK(hits == (aside == 0 ? n : 0));
+        CHECK(hits == (shift == 0 ? n : 0));
     }
 }
 
-TEST_CASE("shapes are the same everywhere, in any order") {
+TEST_CASE("shapes are the same on every platform, in any order of triangles") {
     const auto digest_of = [](const std::string& name) {
         const aabb::mesh m = aabblab::make_mesh(name).mesh;
-        aabb::digest all;
-        for (const aabb::vec3f& v : m.vertices) all.add(std::bit_cast<std::array<std::uint32_t, 3>>(v));
-        for (const auto& t : m.triangles) all.add(t);
-        return all.text();
+        aabb::digest digest;
+        for (const aabb::vec3f& v : m.vertices) digest.add(std::bit_cast<std::array<std::uint32_t, 3>>(v));
+        for (const auto& t : m.triangles) digest.add(t);
+        return digest.text();
     };
     CHECK(digest_of("icosphere:triangles=1000") == "d755fdaa678cfdc0");
     CHECK(digest_of("noise_sphere:triangles=1000") == "dcf74046466fc0c4");
@@ -104,12 +104,12 @@ TEST_CASE("shapes are the same everywhere, in any order") {
     CHECK(digest_of("torus_knot:triangles=20000,order=median") == "e02228f01ba3f345");
 }
 
-TEST_CASE("a mesh in the order of a build has the same triangles") {
+TEST_CASE("a mesh in the order of a build keeps its triangles") {
     const auto corners_of = [](const aabb::mesh& m) {
-        std::vector<std::array<float, 9>> all(m.triangles.size());
-        for (std::size_t t = 0; t < all.size(); ++t)
-            for (std::size_t k = 0; k < 9; ++k) all[t][k] = m.vertices[m.triangles[t][k / 3]][static_cast<int>(k % 3)];
-        return sorted(all);
+        std::vector<std::array<float, 9>> xyz(m.triangles.size());
+        for (std::size_t t = 0; t < xyz.size(); ++t)
+            for (std::size_t k = 0; k < 9; ++k) xyz[t][k] = m.vertices[m.triangles[t][k / 3]][static_cast<int>(k % 3)];
+        return sorted(xyz);
     };
     const aabb::mesh plain = aabblab::make_mesh("torus_knot:triangles=2000").mesh;
     for (const char* build : {"median", "sah"}) {
@@ -119,7 +119,7 @@ TEST_CASE("a mesh in the order of a build has the same triangles") {
     }
 }
 
-TEST_CASE("a mesh is a file, a file of the data folder or a shape") {
+TEST_CASE("a mesh is named by a file, a file in the data folder or a shape") {
     const temporary_folder folder;
     const data_folder_at here(folder.path());
     REQUIRE(aabblab::data_folder() == folder.path());

@@ -12,7 +12,7 @@ using aabblab::searched_frame;
 
 namespace {
 
-/// Objects in a row that move towards the first, which stands; each stops for good at its first contact.
+/// Objects in a row that move towards the first, which is fixed; each stops for good at its first contact.
 class stopping_meshes final : public aabb::mesh_scene {
 public:
     explicit stopping_meshes(std::size_t objects) {
@@ -46,7 +46,7 @@ private:
     std::set<std::uint32_t> stopped_;
 };
 
-/// The same of unit cubes.
+/// The same motion with unit cubes.
 class stopping_boxes final : public aabb::box_scene {
 public:
     [[nodiscard]] std::size_t objects() const override { return 4; }
@@ -54,10 +54,10 @@ public:
     bool next(std::vector<aabb::box>& boxes) override {
         if (frame_ == frames()) return false;
         if (frame_++ > 0)
-            for (std::uint32_t object = 1; object < at_.size(); ++object)
-                if (!stopped_.contains(object)) at_[object] -= 0.25F;
+            for (std::uint32_t object = 1; object < x_.size(); ++object)
+                if (!stopped_.contains(object)) x_[object] -= 0.25F;
         boxes.clear();
-        for (const float x : at_) boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});
+        for (const float x : x_) boxes.push_back({{x, 0, 0}, {x + 1, 1, 1}});
         return true;
     }
     void take_pairs(std::span<const aabb::index_pair> pairs) override {
@@ -66,20 +66,20 @@ public:
 
 private:
     std::size_t frame_ = 0;
-    std::vector<float> at_ = {0, 1.5F, 3, 4.5F};
+    std::vector<float> x_ = {0, 1.5F, 3, 4.5F};
     std::set<std::uint32_t> stopped_;
 };
 
 std::vector<candidate> exact_candidates(bool meshes) {
-    std::vector<candidate> all;
+    std::vector<candidate> candidates;
     using enum aabb::strategy_kind;
     const aabb::composition coherent = composed({{sort, "insertion"}, {sweep, "incremental"}, {tree, "compressed"}});
-    all.push_back(aabblab::candidate_of(aabb::composition(), meshes));
-    all.push_back(aabblab::candidate_of(coherent, meshes));
+    candidates.push_back(aabblab::candidate_of(aabb::composition(), meshes));
+    candidates.push_back(aabblab::candidate_of(coherent, meshes));
     for (const aabb::engine_info& engine : aabb::engines())
         if (auto tested = aabblab::candidate_of(engine, meshes); tested && tested->exact)
-            all.push_back(*std::move(tested));
-    return all;
+            candidates.push_back(*std::move(tested));
+    return candidates;
 }
 
 aabblab::stages local_only() {
@@ -88,14 +88,14 @@ aabblab::stages local_only() {
 
 }  // namespace
 
-TEST_CASE("What is asked is answered by each contender, and a wrong answer is told") {
+TEST_CASE("Every candidate answers count and first-contact queries, and a wrong result is reported") {
     const aabblab::scene_choice choice{"mesh_pair", {{"frames", "3"}}, {"icosphere:triangles=320"}, 1};
     const std::vector<candidate> candidates = exact_candidates(true);
-    for (const aabblab::query_kind ask : {aabblab::query_kind::count, aabblab::query_kind::first})
+    for (const aabblab::query_kind query : {aabblab::query_kind::count, aabblab::query_kind::first})
         for (const bool cold : {false, true}) {
             std::string digest;
             for (const candidate& tested : candidates) {
-                const aabblab::observation times = aabblab::observe(choice, tested, {.query = {ask, cold}});
+                const aabblab::observation times = aabblab::observe(choice, tested, {.query = {query, cold}});
                 INFO(aabblab::text_of(tested.name) << ": " << times.wrong);
                 CHECK(times.wrong.empty());
                 CHECK(times.rest.detect.wall_ms > 0);
@@ -103,37 +103,37 @@ TEST_CASE("What is asked is answered by each contender, and a wrong answer is to
                 CHECK(times.digest == digest);
             }
             candidate wrong = candidates[0];
-            // Counts one contact too many, or says of the first one that it is in another triangle.
+            // It counts one contact too many, or reports the first one with another triangle.
             wrong.make_local = [](aabb::instrumentation) {
                 return std::make_unique<aabb::altered_meshes>(aabb::alterations{.first_pair =
-                                                                                    [](auto& found) {
-                                                                                        if (found) found->b += 1000;
+                                                                                    [](auto& pair) {
+                                                                                        if (pair) pair->b += 1000;
                                                                                     },
                                                                                 .more_counted = 1});
             };
-            CHECK_FALSE(aabblab::observe(choice, wrong, {.query = {ask, cold}}).wrong.empty());
+            CHECK_FALSE(aabblab::observe(choice, wrong, {.query = {query, cold}}).wrong.empty());
         }
 }
 
-TEST_CASE("A scene that reacts to contacts shows every contender the same frames, validated and timed") {
+TEST_CASE("A scene that reacts to contacts gives every candidate the same frames, validated and timed") {
     for (const bool meshes : {true, false}) {
-        const auto made = [&] {
+        const auto make_scene = [&] {
             return meshes ? scene_frames(std::make_unique<stopping_meshes>(4))
                           : scene_frames(std::make_unique<stopping_boxes>());
         };
         const std::vector<candidate> candidates = exact_candidates(meshes);
         REQUIRE(candidates.size() > 3);
-        scene_frames scene = made();
-        const aabblab::scene_validation all = aabblab::validate_scene({"stopping", {}, {}, 1}, scene, candidates);
+        scene_frames scene = make_scene();
+        const aabblab::scene_validation result = aabblab::validate_scene({"stopping", {}, {}, 1}, scene, candidates);
         for (std::size_t i = 0; i < candidates.size(); ++i) {
-            INFO(all.candidates[i].failure);
-            CHECK(all.candidates[i].failure.empty());
-            CHECK(all.candidates[i].digest == all.digest);
-            scene_frames again = made();
-            CHECK(aabblab::observe(again, candidates[i]).digest == all.digest);
+            INFO(result.candidates[i].failure);
+            CHECK(result.candidates[i].failure.empty());
+            CHECK(result.candidates[i].digest == result.digest);
+            scene_frames again = make_scene();
+            CHECK(aabblab::observe(again, candidates[i]).digest == result.digest);
         }
-        // Each stops where it first touches the one before: nothing passes, and no pair but neighbours ever meets.
-        scene_frames last = made();
+        // Each stops where it first touches the one before: nothing tunnels, and only neighbours ever touch.
+        scene_frames last = make_scene();
         aabblab::stage_runner tested(candidates[0], last, aabb::instrumentation::none);
         std::set<aabb::index_pair> met;
         aabblab::run_frames(last, tested, [&](const searched_frame& frame) {
@@ -143,17 +143,17 @@ TEST_CASE("A scene that reacts to contacts shows every contender the same frames
     }
 }
 
-TEST_CASE("A scene is handed over frame by frame, all of it or the first frames") {
+TEST_CASE("A scene is run frame by frame, to its end or for its first frames") {
     const aabblab::scene_choice choice{
         "mesh_swarm", {{"objects", "12"}, {"frames", "3"}}, {"icosphere:triangles=80"}, 1};
     const candidate tested = exact_candidates(true)[0];
-    for (const std::size_t most : {std::size_t{2}, std::size_t{9}}) {
+    for (const std::size_t limit : {std::size_t{2}, std::size_t{9}}) {
         scene_frames scene(choice);
-        aabblab::stage_runner p(tested, scene, aabb::instrumentation::none);
+        aabblab::stage_runner runner(tested, scene, aabb::instrumentation::none);
         std::uint32_t frames = 0;
         std::size_t contacts = 0;
         aabblab::run_frames(
-            scene, p,
+            scene, runner,
             [&](const searched_frame& frame) {
                 CHECK(frame.number == frames++);
                 CHECK(frame.ms() == frame.took.update.wall_ms + frame.took.search.wall_ms + frame.took.detect.wall_ms);
@@ -162,13 +162,13 @@ TEST_CASE("A scene is handed over frame by frame, all of it or the first frames"
                 CHECK(std::ranges::is_sorted(frame.contacts));
                 contacts += frame.contacts.size();
             },
-            most);
-        CHECK(frames == std::min<std::size_t>(most, 4));
+            limit);
+        CHECK(frames == std::min<std::size_t>(limit, 4));
         CHECK(contacts > 0);
     }
 }
 
-TEST_CASE("A player without global search tries every two objects, and can be asked for less than all contacts") {
+TEST_CASE("A runner without global search tests all pairs of objects, and can count contacts or find the first") {
     scene_frames scene(std::make_unique<stopping_meshes>(3));
     aabblab::stage_runner tested(local_only(), scene);
     REQUIRE(scene.next());
@@ -192,7 +192,7 @@ TEST_CASE("A player without global search tries every two objects, and can be as
     CHECK(neighbours.size() == 6);
 }
 
-TEST_CASE("What is wrong with poses of a file is said with file and frame") {
+TEST_CASE("Invalid poses of a file are reported with file and frame") {
     class leaving final : public aabb::mesh_scene {
     public:
         leaving() {

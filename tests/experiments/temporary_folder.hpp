@@ -8,13 +8,13 @@
 
 #include "../testing.hpp"
 
-/// A folder of its own for a test, gone with it.
+/// A temporary folder, removed at the end of its lifetime.
 class temporary_folder {
 public:
     temporary_folder() {
-        static int made = 0;
+        static int count = 0;
         folder_ = std::filesystem::temp_directory_path() /
-                  ("aabblab_test_" + std::to_string(getpid()) + "_" + std::to_string(made++));
+                  ("aabblab_test_" + std::to_string(getpid()) + "_" + std::to_string(count++));
         std::filesystem::create_directories(folder_);
     }
     temporary_folder(const temporary_folder&) = delete;
@@ -24,7 +24,7 @@ public:
     [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
     [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
-    /// The folders above it are made.
+    /// Writes a file and creates its parent folders.
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
         std::filesystem::create_directories((folder_ / name).parent_path());
         std::ofstream(folder_ / name, std::ios::binary) << bytes;

@@ -12,12 +12,12 @@ using Catch::Matchers::EndsWith;
 
 namespace {
 
-/// A format of text: a sample, and what reading says of it.
+/// A text format: a sample, and a function that summarises what is read from it.
 struct text_format {
     std::string file;
     std::string text;
     std::function<std::string(const std::filesystem::path&)> read;
-    std::size_t wrong_line;  ///< in which `wrong` makes an error
+    std::size_t wrong_line;  ///< the line in which `wrong` is an error
     std::string right, wrong;
 
     [[nodiscard]] std::string damaged() const { return replaced(text, right, wrong); }
@@ -33,7 +33,7 @@ std::string text_of_mesh(const std::filesystem::path& file) {
     return text;
 }
 
-/// Of a command, without the times in it.
+/// The output of a command; throws its error if it fails.
 std::string output_of(const std::vector<std::string>& command) {
     const program_result result = run_program(command);
     if (result.status != 0) throw aabb::input_error(result.err);
@@ -143,24 +143,24 @@ std::string error_of(const text_format& format, const std::filesystem::path& fil
 
 }  // namespace
 
-TEST_CASE("Every text format is read however other systems write text, and its errors name the same line") {
+TEST_CASE("Every text format is read in all encodings and line endings, and errors name the same line") {
     for (const text_format& format : formats()) {
         const temporary_folder folder;
         const std::string read = format.read(folder.write(format.file, format.text));
         const std::string rejection = error_of(format, folder.write(format.file, format.damaged()));
         CHECK_THAT(rejection, ContainsSubstring(format.file + ":" + std::to_string(format.wrong_line) + ":"));
-        for (const auto& [how, bytes] : unambiguous_encodings(format.text)) {
-            INFO(format.file << ", " << how);
+        for (const auto& [encoding, bytes] : unambiguous_encodings(format.text)) {
+            INFO(format.file << ", " << encoding);
             CHECK(error_of(format, folder.write(format.file, bytes)) == "read: " + read);
         }
-        for (const auto& [how, bytes] : unambiguous_encodings(format.damaged())) {
-            INFO(format.file << ", " << how);
+        for (const auto& [encoding, bytes] : unambiguous_encodings(format.damaged())) {
+            INFO(format.file << ", " << encoding);
             CHECK(error_of(format, folder.write(format.file, bytes)) == rejection);
         }
     }
 }
 
-TEST_CASE("In every text format, what is no text or may mean two things is named for what it is") {
+TEST_CASE("Every text format rejects binary and ambiguous input with the reason") {
     for (const text_format& format : formats()) {
         INFO(format.file);
         const temporary_folder folder;
@@ -175,17 +175,17 @@ TEST_CASE("In every text format, what is no text or may mean two things is named
         CHECK_THAT(rejection_of(std::string("\xff\xfe\0\0", 4) + widened(format.text, 0, 3)),
                    EndsWith(head + "text in UTF-32; expected UTF-8"));
         const std::size_t second = format.text.find('\n') + 1;
-        // Text STL and text PLY are told from binary by what is in them.
-        const bool is_of_two_kinds = format.file.ends_with(".stl");
+        // Text STL is distinguished from binary by its content.
+        const bool may_be_binary = format.file.ends_with(".stl");
         for (const auto& [mark, name] : {std::pair{'\0', "a NUL byte"}, {'\x1a', "Ctrl-Z"}}) {
             std::string bytes = format.text;
             bytes.insert(second, 1, mark);
             const std::string rejection = rejection_of(bytes);
             CHECK_FALSE(holds(rejection, "read: "));
-            if (!is_of_two_kinds)
+            if (!may_be_binary)
                 CHECK_THAT(rejection, EndsWith(head + "not text: " + name + " in line 2, with more text after it"));
         }
-        // A carriage return in place of one line feed. JSON has no lines.
+        // A carriage return replaces one line feed. Line ends do not matter in JSON.
         if (format.text == gltf) continue;
         std::string mixed = format.text;
         mixed[second - 1] = '\r';
@@ -200,16 +200,16 @@ TEST_CASE("In every text format, what is no text or may mean two things is named
         EndsWith("a.off:2: some lines end in carriage returns alone, others in line feeds; expected one of the two"));
 }
 
-TEST_CASE("UTF-16 becomes UTF-8, and what cannot be read in it does no harm in a comment") {
+TEST_CASE("UTF-16 becomes UTF-8, with unpaired surrogates replaced") {
     const temporary_folder folder;
-    // "# é€𝄞\n", then a high surrogate without its other half.
+    // "# é€𝄞\n", then an unpaired high surrogate.
     const std::string comment("#\0 \0\xe9\0\xac\x20\x34\xd8\x1e\xdd\n\0#\0\x34\xd8\n\0", 20);
     CHECK(aabblab::text_of_file(folder.write("a.txt", "\xff\xfe" + comment)) ==
           "# \xc3\xa9\xe2\x82\xac\xf0\x9d\x84\x9e\n#\xef\xbf\xbd\n");
     CHECK_NOTHROW(aabblab::read_mesh(folder.write("a.off", "\xff\xfe" + comment + widened(tetrahedron, 0, 1))));
 }
 
-TEST_CASE("Binary PLY is read whatever ends the lines of its header, and text before it") {
+TEST_CASE("Binary PLY is read with any line endings of its header and with a byte order mark") {
     const temporary_folder folder;
     const std::string header =
         "ply\nformat binary_little_endian 1.0\ncomment end_header\nelement vertex 3\nproperty uchar tag\nproperty "
@@ -220,7 +220,7 @@ TEST_CASE("Binary PLY is read whatever ends the lines of its header, and text be
         for (const float x : {0.0F, 1.0F, 2.0F}) values += tag + raw(x) + raw(x * x) + raw(1.0F);
         values += raw(std::uint8_t{3}) + raw(0) + raw(1) + raw(2);
         for (const std::string& end : {"\n", "\r\n", "\r"}) {
-            INFO(static_cast<int>(tag) << " behind a header of lines that end in " << end.size() << " bytes");
+            INFO(static_cast<int>(tag) << " after a header with line endings of " << end.size() << " bytes");
             const auto loaded = aabblab::read_mesh(folder.write("a.ply", with_line_ends(header, end) + values));
             CHECK(loaded.mesh.vertices == std::vector<aabb::vec3f>{{0, 0, 1}, {1, 1, 1}, {2, 4, 1}});
             CHECK(loaded.mesh.triangles.size() == 1);
@@ -229,17 +229,17 @@ TEST_CASE("Binary PLY is read whatever ends the lines of its header, and text be
     }
 }
 
-TEST_CASE("A line without an end is refused, not waited for") {
+TEST_CASE("An endless line is rejected") {
     CHECK(run_refused({"classify", "/dev/zero"}).err ==
           "aabblab: /dev/zero:1: the line is longer than 16777216 bytes; expected text of short lines\n");
 }
 
-TEST_CASE("Whatever a byte of a file becomes, it is read or refused in a sentence") {
+TEST_CASE("Randomly corrupted files are read or rejected in a sentence") {
     const temporary_folder folder;
     std::mt19937 draw(1);
     const auto below = [&](std::size_t end) { return draw() % end; };
     for (const text_format& format : formats()) {
-        if (format.file == "p.txt" || format.file == "c.txt") continue;  // run in a process of their own
+        if (format.file == "p.txt" || format.file == "c.txt") continue;  // run in child processes, which takes long
         for (int trial = 0; trial < 1000; ++trial) {
             const auto encodings = unambiguous_encodings(format.text);
             std::string bytes = below(2) == 0 ? format.text : encodings[below(encodings.size())].bytes;

@@ -4,7 +4,7 @@
 
 /// A text as another system or program writes it.
 struct encoded_text {
-    std::string how;
+    std::string encoding;
     std::string bytes;
 };
 
@@ -14,14 +14,14 @@ struct encoded_text {
     return other;
 }
 
-/// ASCII in two bytes a character, or four.
-[[nodiscard]] inline std::string widened(const std::string& ascii, std::size_t zeros_before, std::size_t zeros_behind) {
+/// ASCII in two or four bytes per character.
+[[nodiscard]] inline std::string widened(const std::string& ascii, std::size_t zeros_before, std::size_t zeros_after) {
     std::string wide;
-    for (const char c : ascii) wide += std::string(zeros_before, '\0') + c + std::string(zeros_behind, '\0');
+    for (const char c : ascii) wide += std::string(zeros_before, '\0') + c + std::string(zeros_after, '\0');
     return wide;
 }
 
-/// Ways to write a text, whose lines end in line feeds, that leave no doubt about what it says.
+/// Encodings of a text with line feeds that can be read unambiguously.
 [[nodiscard]] inline std::vector<encoded_text> unambiguous_encodings(const std::string& text) {
     const std::string mark = "\xef\xbb\xbf";
     return {
@@ -31,12 +31,12 @@ struct encoded_text {
         {"carriage returns alone", with_line_ends(text, "\r")},
         {"UTF-16, little-endian", "\xff\xfe" + widened(text, 0, 1)},
         {"UTF-16, big-endian", "\xfe\xff" + widened(text, 1, 0)},
-        {"a NUL behind it", text + std::string(1, '\0')},
-        {"a block of NULs behind it", text + std::string(5000, '\0')},
-        {"Ctrl-Z behind it", text + "\x1a"},
-        {"a line with Ctrl-Z behind it", text + "\x1a\r\n"},
+        {"a trailing NUL", text + std::string(1, '\0')},
+        {"a block of trailing NULs", text + std::string(5000, '\0')},
+        {"trailing Ctrl-Z", text + "\x1a"},
+        {"a trailing line with Ctrl-Z", text + "\x1a\r\n"},
         {"a mark, carriage returns and Ctrl-Z", mark + with_line_ends(text, "\r") + "\x1a"},
-        {"UTF-16 with carriage returns and a NUL behind it",
+        {"UTF-16 with carriage returns and a trailing NUL",
          "\xff\xfe" + widened(with_line_ends(text, "\r") + std::string(1, '\0'), 0, 1)},
     };
 }

@@ -19,17 +19,17 @@ std::string rejection_of(const std::string& text) {
     return refusal_in<aabb::input_error>([&] { return aabblab::parse_triangle_cases(text, "c.toml"); });
 }
 
-/// With this in place of the line of that key.
+/// A case with the line of that key replaced.
 std::string with_line(const std::string& key, const std::string& line) {
     std::istringstream in(case_named("one", "true"));
-    std::string all;
-    for (std::string one; std::getline(in, one);) all += (one.starts_with(key + " ") ? line : one) + "\n";
-    return all;
+    std::string text;
+    for (std::string old; std::getline(in, old);) text += (old.starts_with(key + " ") ? line : old) + "\n";
+    return text;
 }
 
 }  // namespace
 
-TEST_CASE("A file of cases is read with every number as it stands") {
+TEST_CASE("A file of cases is read with exact numbers") {
     const std::string least = "second = [[5e-324, -0.0, 1e-45], [3.4028234663852886e+38, 0.1, 1], [3, 3, 0]]";
     const std::vector<aabb::triangle_case> cases =
         aabblab::parse_triangle_cases(with_line("second", least) + "intersect_double = false\n", "c.toml");
@@ -49,7 +49,7 @@ TEST_CASE("A file of cases is read with every number as it stands") {
     CHECK(aabblab::parse_triangle_cases(case_named("one", "true"), "c.toml")[0].intersect_double);
 }
 
-TEST_CASE("A bad file of cases gets one sentence with file and line") {
+TEST_CASE("An invalid file of cases is rejected in one sentence with file and line") {
     CHECK(rejection_of(case_named("one", "true") + case_named("two", "false")) == "accepted");
     CHECK(rejection_of("") == "c.toml has no cases; expected [[case]]");
     CHECK(rejection_of("[case]\n") == "c.toml:1: case must be in double brackets: [[case]]");
@@ -74,7 +74,7 @@ TEST_CASE("A bad file of cases gets one sentence with file and line") {
           "c.toml:9: two cases have the name 'one'");
 }
 
-TEST_CASE("The project's own cases are answered rightly by all that must be exact") {
+TEST_CASE("Every triangle test that must be exact solves the project's own cases") {
     const std::vector<aabb::triangle_case> cases = aabblab::read_triangle_cases(AABBLAB_CASES);
     REQUIRE(cases.size() >= 100);
     const temporary_folder folder;

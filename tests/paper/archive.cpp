@@ -12,13 +12,13 @@ namespace {
 /// The results of a run that is finished, as `reproduce` leaves them.
 void write_finished_run(const std::filesystem::path& folder, double ratio = 0.6) {
     worlds::write_world(folder, ratio, 0.05);
-    // A study of errors and the atlas have results of their own; any experiment does for one.
-    std::vector<aabblab::experiment> all = worlds::all_experiments(aabblab::experiment_size::quick);
-    aabblab::experiment& any = *std::ranges::find(all, "c10", &aabblab::experiment::name);
+    // The study of errors and the atlas have their own results; any experiment can stand for them.
+    std::vector<aabblab::experiment> experiments = worlds::all_experiments(aabblab::experiment_size::quick);
+    aabblab::experiment& any = *std::ranges::find(experiments, "c10", &aabblab::experiment::name);
     worlds::write_experiment(folder / "errors", any, [](const auto&, auto&) {});
     any.name = "atlas";
     worlds::write_experiment(folder / "atlas", any, [](const auto&, auto&) {});
-    // A suite left its rows, or, as earlier versions did, what it drew.
+    // A suite leaves its rows, or, in earlier versions, its report.
     for (const char* suite : {"stiff", "extreme"}) std::filesystem::create_directories(folder / suite);
     std::ofstream(folder / "stiff/plate.csv")
         << "subject,quantity,measured,expected,verdict\na shot,share,0.25,0,FAILS\n";
@@ -29,19 +29,19 @@ void write_finished_run(const std::filesystem::path& folder, double ratio = 0.6)
                {"name": "f", "caption": "Drawn", "x": {"label": "x", "logarithmic": false, "names": []},
                 "y": {"label": "y", "logarithmic": true, "names": []}, "marks": [{"x": 1, "label": "here"}],
                 "panels": [], "lines": [{"label": "one", "style": 0, "points": [[1, 2, 2, 2], [2, null, null, null]]}]}]})";
-    // What stands beside that is not of the record.
+    // Other files in its folder are not part of the record.
     std::ofstream(folder / "extreme/extreme.csv") << "of another version\n";
     std::ofstream(folder / "failures.txt") << "";
     aabblab::seal_record(folder);
 }
 
-/// The command that judges these.
+/// The command that judges these sources.
 std::vector<std::string> judge(const std::vector<std::string>& sources, const std::string& out,
                                const std::vector<std::string>& more = {}) {
     return joined(joined({"reproduce", "--judge", "--out", out}, sources), more);
 }
 
-/// The lines of a file as `change` leaves them.
+/// Applies `change` to the lines of a file.
 void change_lines(const std::filesystem::path& file, const std::function<void(std::vector<std::string>&)>& change) {
     std::vector<std::string> lines = lines_of(bytes_of_file(file));
     change(lines);
@@ -51,7 +51,7 @@ void change_lines(const std::filesystem::path& file, const std::function<void(st
 
 }  // namespace
 
-TEST_CASE("An archive, and results with other ends of lines and another order of rows, give the very report") {
+TEST_CASE("An archive, and results with other line endings and another row order, give the same report") {
     const temporary_folder folder;
     const std::filesystem::path results = folder / "results";
     write_finished_run(results);
@@ -90,31 +90,31 @@ TEST_CASE("An archive, and results with other ends of lines and another order of
     CHECK(bytes_of_file(folder / "c/report.html") == page);
 }
 
-TEST_CASE("Results that were altered are not judged, and a sentence says which and where") {
+TEST_CASE("Altered results are rejected in a sentence that names the file") {
     const temporary_folder folder;
-    const std::filesystem::path whole = folder / "whole";
-    write_finished_run(whole);
-    const auto rejected = [&](const std::string& said, const std::function<void(const std::filesystem::path&)>& alter) {
+    const std::filesystem::path original = folder / "whole";
+    write_finished_run(original);
+    const auto rejected = [&](const std::string& text, const std::function<void(const std::filesystem::path&)>& alter) {
         const std::filesystem::path altered = folder / "altered";
         std::filesystem::remove_all(altered);
-        std::filesystem::copy(whole, altered, std::filesystem::copy_options::recursive);
+        std::filesystem::copy(original, altered, std::filesystem::copy_options::recursive);
         alter(altered);
-        INFO(said);
-        CHECK(holds(run_refused(judge({altered}, folder / "out")).err, "altered/" + said));
+        INFO(text);
+        CHECK(holds(run_refused(judge({altered}, folder / "out")).err, "altered/" + text));
         CHECK(!std::filesystem::exists(folder / "out/report.html"));
         // Nor are they compared.
-        CHECK(holds(run_refused({"compare", whole, altered}).err, "altered/" + said));
+        CHECK(holds(run_refused({"compare", original, altered}).err, "altered/" + text));
     };
     const auto of_table = [](const std::function<void(std::vector<std::string>&)>& change) {
         return [=](const std::filesystem::path& results) { change_lines(results / "c3/results.csv", change); };
     };
-    const auto of_file = [](const std::string& name, const std::string& what, const std::string& by) {
+    const auto of_file = [](const std::string& name, const std::string& what, const std::string& with) {
         return [=](const std::filesystem::path& results) {
-            const std::string text = replaced(bytes_of_file(results / name), what, by);
+            const std::string text = replaced(bytes_of_file(results / name), what, with);
             std::ofstream(results / name, std::ios::binary) << text;
         };
     };
-    // What else may be altered in a table is in tests/experiments/seal.cpp.
+    // Other alterations of a table are tested in tests/experiments/seal.cpp.
     rejected("c3/results.csv was altered after the run: its rows do not have the checksum",
              of_table([](auto& lines) { lines[6] = replaced(lines[6], "50.000000", "50.000001"); }));
     rejected("c3/manifest.json was altered after the run",
@@ -131,12 +131,12 @@ TEST_CASE("Results that were altered are not judged, and a sentence says which a
         std::filesystem::copy(results / "c6/process-0.json", results / "c6/process-3.json");
     });
     rejected("SHA256SUMS:1: expected a checksum", of_file("SHA256SUMS", "  ", " "));
-    // What is left of the last.
+    // The last alteration is still there.
     CHECK(holds(run_program({"atlas", "--judge", folder / "altered"}).err, "expected a checksum"));
-    run_well({"compare", whole, whole});
+    run_well({"compare", original, original});
 }
 
-TEST_CASE("Results that are not finished are judged, and the report says so") {
+TEST_CASE("Unfinished results are judged, and the report says so") {
     const temporary_folder folder;
     const std::filesystem::path results = folder / "results";
     write_finished_run(results);
@@ -147,7 +147,7 @@ TEST_CASE("Results that are not finished are judged, and the report says so") {
     CHECK(holds(bytes_of_file(folder / "out/report.html"), "Note: the results are not sealed"));
 }
 
-TEST_CASE("What is no archive of a run is refused in one sentence") {
+TEST_CASE("Invalid archives of a run are rejected in one sentence") {
     const temporary_folder folder;
     const std::string results = folder / "results";
     worlds::write_tests(results, 1, 1);
@@ -168,7 +168,7 @@ TEST_CASE("What is no archive of a run is refused in one sentence") {
     run_well(judge({folder / "run"}, folder / "judged", {"--archive", archive}));
     const std::string bytes = bytes_of_file(archive);
     rejected({"--judge", folder.write("cut.tar.xz", bytes.substr(0, bytes.size() / 2))}, "is damaged or cut off");
-    // What is wrong inside is told by the archive's name.
+    // Errors inside an archive are reported with its name.
     std::filesystem::remove(folder / "run/c6/process-0.json");
     aabblab::write_archive(folder / "altered.tar.xz", aabblab::archive_folder, folder / "run",
                            aabblab::archived_files(folder / "run"));

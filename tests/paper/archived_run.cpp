@@ -9,7 +9,7 @@ namespace {
 const std::filesystem::path root = AABBLAB_CONFIGS "/../..";
 const std::string full_run = "paper/archive/full_run.tar.xz";
 
-/// Judges an archive, which is whole, into a folder.
+/// Judges an archive, which must be intact, into a folder.
 void judge_published(const std::string& archive, const temporary_folder& folder) {
     const program_result judged =
         run_well({"reproduce", "--judge", (root / archive).string(), "--out", folder.path().string()});
@@ -19,7 +19,7 @@ void judge_published(const std::string& archive, const temporary_folder& folder)
 
 }  // namespace
 
-TEST_CASE("What is unpacked of an archive ends with the program, however that ends") {
+TEST_CASE("Unpacked files of an archive are removed when the program ends, even by a signal") {
     const int signal = GENERATE(SIGINT, SIGTERM, SIGHUP, SIGKILL);
     CAPTURE(signal);
     const temporary_folder folder;
@@ -27,7 +27,7 @@ TEST_CASE("What is unpacked of an archive ends with the program, however that en
     std::filesystem::create_directory(unpacked);
     const pid_t program = started({"env", "TMPDIR=" + unpacked.string(), AABBLAB_UNDER_TEST, "reproduce", "--judge",
                                    (root / full_run).string(), "--out", (folder / "out").string()});
-    // In the midst of it.
+    // The signal comes while files are unpacked.
     const bool began = comes_true([&] { return !std::filesystem::is_empty(unpacked); });
     usleep(200'000);
     const bool was_there = !std::filesystem::is_empty(unpacked);
@@ -38,15 +38,14 @@ TEST_CASE("What is unpacked of an archive ends with the program, however that en
     CHECK(comes_true([&] { return std::filesystem::is_empty(unpacked); }));
 }
 
-TEST_CASE("The archived run is whole, README says what is found in it, and so does a program of another language",
-          "[long]") {
+TEST_CASE("The archived run is intact, and README and an independent program agree with it", "[long]") {
     const temporary_folder folder;
     judge_published(full_run, folder);
     const std::string report = bytes_of_file(folder / "report.md");
     const std::size_t from = report.find("\n|") + 1;
-    const std::string whole = report.substr(from, report.find("\n\n", from) + 1 - from);
-    // A claim that the run has not measured is not in README.
-    const std::string table = std::regex_replace(whole, std::regex(R"(\|[^\n]*\| undecided +\|\n)"), "");
+    const std::string full_table = report.substr(from, report.find("\n\n", from) + 1 - from);
+    // README does not list claims that the run has not measured.
+    const std::string table = std::regex_replace(full_table, std::regex(R"(\|[^\n]*\| undecided +\|\n)"), "");
     INFO(table);
     REQUIRE(holds(table, "| C13 |"));
     CHECK(holds(bytes_of_file(root / "README.md"), table));
@@ -59,6 +58,6 @@ TEST_CASE("The archived run is whole, README says what is found in it, and so do
     CHECK(again.out.ends_with(" of " + std::to_string(claims) + " claims recomputed, 0 differences\n"));
 }
 
-TEST_CASE("The archived quick run is whole, and what quick runs are compared with") {
+TEST_CASE("The archived quick run is intact and is what quick runs are compared with") {
     judge_published("paper/archive/quick_run.tar.xz", temporary_folder());
 }

@@ -19,18 +19,18 @@ using aabblab::verdict_kind;
 
 namespace {
 
-const claim_result& named(const aabblab::reproduction& all, const std::string& id) {
-    return *std::ranges::find(all.claims, id, &claim_result::id);
+const claim_result& named(const aabblab::reproduction& results, const std::string& id) {
+    return *std::ranges::find(results.claims, id, &claim_result::id);
 }
 
-/// Where the primary endpoints of a claim are, in words.
+/// The conditions of the primary endpoints of a claim, in words.
 std::set<std::string> places_of(const claim_result& claim) {
-    std::set<std::string> found;
-    for (const endpoint& e : primaries_of(claim)) found.insert(aabblab::text_of(e.where));
-    return found;
+    std::set<std::string> places;
+    for (const endpoint& e : primaries_of(claim)) places.insert(aabblab::text_of(e.where));
+    return places;
 }
 
-/// Judged together, each world that of a machine.
+/// Judges worlds together, each as the results of one machine.
 aabblab::reproduction judged_worlds(const std::vector<double>& ratios, double noise,
                                     aabblab::experiment_size size = aabblab::experiment_size::quick) {
     std::vector<temporary_folder> folders(ratios.size());
@@ -42,12 +42,12 @@ aabblab::reproduction judged_worlds(const std::vector<double>& ratios, double no
     return aabblab::judged(machines);
 }
 
-/// Holds the verdict on every claim against that of its row; where that is empty, nothing is expected.
+/// Compares the verdict on every claim with the one expected for its row, unless that is empty.
 template <class Expected>
-void check_verdicts(const aabblab::reproduction& all, const Expected& expected) {
-    REQUIRE(all.claims.size() == worlds::claim_rows().size());
-    for (std::size_t i = 0; i < all.claims.size(); ++i) {
-        const claim_result& c = all.claims[i];
+void check_verdicts(const aabblab::reproduction& results, const Expected& expected) {
+    REQUIRE(results.claims.size() == worlds::claim_rows().size());
+    for (std::size_t i = 0; i < results.claims.size(); ++i) {
+        const claim_result& c = results.claims[i];
         INFO(c.sentence + "\n" + c.evidence);
         CHECK(c.id == worlds::claim_rows()[i].id);
         const std::string verdict = expected(worlds::claim_rows()[i]);
@@ -58,18 +58,18 @@ auto on_all(const std::string& verdict) {
     return [=](const worlds::claim_row&) { return verdict; };
 }
 
-/// A world in which `tell` changes the rows of one experiment of otherwise equal times.
-/// @param disturb what is not in the processor time
+/// Judges a world in which `change` sets values in the rows of one experiment; other times are equal.
+/// @param disturb changes wall times only
 aabblab::reproduction reproduction_where(
-    const std::string& experiment, const std::function<void(const worlds::played&, aabblab::row&)>& tell,
+    const std::string& experiment, const std::function<void(const worlds::played&, aabblab::row&)>& change,
     const std::function<void(aabblab::row&)>& disturb = [](aabblab::row&) {}) {
     const temporary_folder folder;
     for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick))
-        if (e.name == experiment) worlds::write_experiment(folder.path(), e, tell, disturb);
+        if (e.name == experiment) worlds::write_experiment(folder.path(), e, change, disturb);
     return judged(aabblab::measurements(folder.path()));
 }
 
-/// Of the LaTeX report, without its comments.
+/// The text of the LaTeX report, without comments.
 std::string paper_text() {
     std::string text;
     for (const auto& file : std::filesystem::recursive_directory_iterator(AABBLAB_CONFIGS "/../tex")) {
@@ -81,7 +81,7 @@ std::string paper_text() {
     return text;
 }
 
-/// On a line over the number of objects.
+/// An endpoint of a series over the number of objects.
 endpoint at(const std::string& objects, double ratio, aabblab::outcome direction) {
     return {.where = {{"objects", objects}},
             .ratio = ratio,
@@ -92,14 +92,14 @@ endpoint at(const std::string& objects, double ratio, aabblab::outcome direction
 
 }  // namespace
 
-TEST_CASE("Every claim holds in a world where it is true, and does not where it is false") {
+TEST_CASE("Every claim holds in a world where it is true and does not hold where it is false") {
     using aabblab::experiment_size;
     for (const experiment_size size : {experiment_size::quick, experiment_size::full})
         for (const auto& [ratio, verdict] : {std::pair{0.6, "holds"}, {1.7, "does not hold"}})
             check_verdicts(judged_worlds({ratio}, 0.01, size), on_all(verdict));
 }
 
-TEST_CASE("A quick run decides claims in the same places as a full one, as many as their lines say") {
+TEST_CASE("A quick run decides claims under the same conditions as a full one, as many as are listed") {
     const aabblab::reproduction quick = judged_worlds({0.6}, 0.01);
     const aabblab::reproduction full = judged_worlds({0.6}, 0.01, aabblab::experiment_size::full);
     const std::vector<aabblab::listed_claim> listed = aabblab::listed_claims();
@@ -110,24 +110,24 @@ TEST_CASE("A quick run decides claims in the same places as a full one, as many 
         const std::set<std::string> places = places_of(full.claims[i]);
         CHECK(places_of(quick.claims[i]) == places);
         CHECK(places.size() == listed[i].primaries);
-        // Written down again, so that none is changed unseen.
-        if (const auto& told = worlds::claim_rows()[i].primaries; !told.empty()) CHECK(places == told);
+        // They are listed twice, so that none changes unnoticed.
+        if (const auto& expected = worlds::claim_rows()[i].primaries; !expected.empty()) CHECK(places == expected);
     }
 }
 
-TEST_CASE("Where nothing differs there is no difference, and what is to be not more holds") {
+TEST_CASE("In a world without differences claims of less show none, and claims of not more hold") {
     check_verdicts(judged_worlds({1}, 0.003), [](const worlds::claim_row& row) { return row.where_equal; });
 }
 
-TEST_CASE("Machines that agree give the verdict of each, and what they differ in is open") {
+TEST_CASE("Machines that agree give their common verdict, and those that disagree leave it undecided") {
     const aabblab::reproduction agreed = judged_worlds({0.6, 0.5}, 0.01);
     check_verdicts(agreed, on_all("holds"));
-    // Elementary tests are timed alike on all pairs; the others have the mean of both.
+    // The ratio is the geometric mean of both.
     CHECK(std::abs(named(agreed, "C1").primary.ratio - std::sqrt(0.6 * 0.5)) < 0.02);
     check_verdicts(judged_worlds({0.6, 1.7}, 0.01), on_all("undecided"));
 }
 
-TEST_CASE("Where noise hides everything, what is timed is undecided") {
+TEST_CASE("Timed claims are undecided under strong noise") {
     check_verdicts(judged_worlds({0.97}, 1), [](const auto& row) { return row.is_timed ? "undecided" : ""; });
 }
 
@@ -136,45 +136,45 @@ TEST_CASE("Without measurements every claim is undecided") {
     check_verdicts(judged(aabblab::measurements(folder.path())), on_all("undecided"));
 }
 
-TEST_CASE("A sentence tells which way a line goes, how much and from where") {
+TEST_CASE("A sentence states direction, ratio and conditions of endpoints") {
     using enum aabblab::outcome;
     using aabblab::quantity;
-    const auto told = [](std::vector<endpoint> all, quantity compared = quantity::time) {
-        for (endpoint& e : all) e.compared = compared;
-        return aabblab::sentence_of(all);
+    const auto text = [](std::vector<endpoint> endpoints, quantity compared = quantity::time) {
+        for (endpoint& e : endpoints) e.compared = compared;
+        return aabblab::sentence_of(endpoints);
     };
-    CHECK(told({at("100", 0.5, less)}) == "On boxes: 2.0 times as fast.");
-    CHECK(told({at("100", 0.9, less)}) == "On boxes: 1.11 times as fast.");
-    CHECK(told({at("100", 3, more)}) == "On boxes: 3.0 times as long.");
-    CHECK(told({at("100", 1.004, same)}) == "On boxes: no difference.");
-    CHECK(told({at("100", 1.004, undecided)}) == "On boxes: undecided.");
-    CHECK(told({at("100", 0.36, less)}, quantity::bytes) == "On boxes: 36 % of the bytes.");
-    // In the order of numbers, not of words or of the file.
-    CHECK(told({at("1000", 0.8, less), at("100", 1.3, more), at("10000", 0.25, less)}) ==
+    CHECK(text({at("100", 0.5, less)}) == "On boxes: 2.0 times as fast.");
+    CHECK(text({at("100", 0.9, less)}) == "On boxes: 1.11 times as fast.");
+    CHECK(text({at("100", 3, more)}) == "On boxes: 3.0 times as long.");
+    CHECK(text({at("100", 1.004, same)}) == "On boxes: no difference.");
+    CHECK(text({at("100", 1.004, undecided)}) == "On boxes: undecided.");
+    CHECK(text({at("100", 0.36, less)}, quantity::bytes) == "On boxes: 36 % of the bytes.");
+    // Numbers are ordered by value, not as words or as in the file.
+    CHECK(text({at("1000", 0.8, less), at("100", 1.3, more), at("10000", 0.25, less)}) ==
           "On boxes: 1.30 times as long with 100 objects, 1.25 to 4.0 times as fast with 1,000 or more objects.");
     CHECK(
-        told({at("100", 1.6, more), at("1000", 1.2, more), at("10000", 1, same), at("20000", 0.5, less)}) ==
+        text({at("100", 1.6, more), at("1000", 1.2, more), at("10000", 1, same), at("20000", 0.5, less)}) ==
         "On boxes: 1.20 to 1.6 times as long with up to 1,000 objects, no difference with 10,000 objects, 2.0 times as "
         "fast with 20,000 objects.");
     std::vector<endpoint> scenes{at("1", 0.4, less), at("2", 1.3, more), at("3", 0.5, less)};
     for (endpoint& e : scenes) e.along.clear();
-    CHECK(told(scenes) == "On boxes: from 2.5 times as fast to 1.30 times as long.");
+    CHECK(text(scenes) == "On boxes: from 2.5 times as fast to 1.30 times as long.");
     scenes[0].direction = undecided;
-    CHECK(told(scenes) == "On boxes: from 2.0 times as fast to 1.30 times as long in 2 of 3 conditions, 1 undecided.");
+    CHECK(text(scenes) == "On boxes: from 2.0 times as fast to 1.30 times as long in 2 of 3 conditions, 1 undecided.");
     scenes[1].subject.reset();
-    CHECK(told(scenes) == "On boxes: 2.0 times as fast in 1 of 2 conditions, 1 undecided.");
+    CHECK(text(scenes) == "On boxes: 2.0 times as fast in 1 of 2 conditions, 1 undecided.");
     CHECK(aabblab::sentence_of({}) == "There are no measurements that decide it.");
     CHECK(aabblab::sentence_of(std::vector{at("1", 2, more)}, "Per element") ==
           "Per element, on boxes: 2.0 times as long.");
-    // Within the band it is no difference, wherever its interval lies; quantities of one subject share its label.
-    CHECK(told({at("100", 0.97, less)}) == "On boxes: no difference.");
+    // A ratio within the band is no difference for any interval; quantities of one subject share its label.
+    CHECK(text({at("100", 0.97, less)}) == "On boxes: no difference.");
     std::vector<endpoint> quantities{at("1", 1.2, more), at("1", 0.36, less), at("1", 0.009, less)};
     quantities[1].compared = quantity::bytes;
     quantities[2].compared = quantity::slowdown;
     CHECK(aabblab::sentence_of(quantities) == "On boxes: 1.20 times as long, 36 % of the bytes, 0.9 %.");
 }
 
-TEST_CASE("A claim is the same whatever the band where it is far from it, and another where it is near") {
+TEST_CASE("A verdict depends on the band only if its ratio is close to it") {
     const aabblab::table bands = judged_worlds({0.93}, 0.003).bands.content;
     REQUIRE(bands.columns.size() == 6);
     const auto row_of = [&](const std::string& id) {
@@ -186,8 +186,8 @@ TEST_CASE("A claim is the same whatever the band where it is far from it, and an
     CHECK(row_of("C2")[5] == "holds");
 }
 
-TEST_CASE("A run that waited for a processor, or whose repeats differ, says so") {
-    const auto told = [](double waiting, double difference) {
+TEST_CASE("A run that waited for a processor or whose repeats differ reports it") {
+    const auto disturbance_with = [](double waiting, double difference) {
         return reproduction_where(
                    "three_lists",
                    [&](const worlds::played&, aabblab::row& r) {
@@ -196,26 +196,26 @@ TEST_CASE("A run that waited for a processor, or whose repeats differ, says so")
                    [&](aabblab::row& r) { r.update_ms = *r.update_ms + waiting; })
             .disturbance;
     };
-    CHECK(told(0, 0).empty());
-    CHECK(told(0, 0.1).empty());
-    CHECK(told(1, 0) ==
+    CHECK(disturbance_with(0, 0).empty());
+    CHECK(disturbance_with(0, 0.1).empty());
+    CHECK(disturbance_with(1, 0) ==
           "The machine was not quiet. The program waited for a processor during 25.0 % of the time of all frames; on a "
           "quiet machine it is less than 2 %. The errors of ratios may exceed their intervals.");
-    CHECK(told(0, 0.6).starts_with(
+    CHECK(disturbance_with(0, 0.6).starts_with(
         "The machine was not quiet. The median difference between successive repeats is 18.2 %"));
 }
 
-TEST_CASE("What waits for a processor changes no ratio") {
+TEST_CASE("Waiting for a processor changes no ratio") {
     const auto ratios = [](const std::function<void(aabblab::row&)>& disturb) {
         const temporary_folder folder;
         worlds::write_world(folder.path(), 0.8, 0.05, aabblab::experiment_size::quick, disturb);
-        std::vector<std::string> all;
+        std::vector<std::string> texts;
         for (const claim_result& c : judged(aabblab::measurements(folder.path())).claims)
             for (const auto& endpoints : {primaries_of(c), secondaries_of(c)})
-                for (const endpoint& e : endpoints) all.push_back(c.id + " " + ratio_text(e));
-        return all;
+                for (const endpoint& e : endpoints) texts.push_back(c.id + " " + ratio_text(e));
+        return texts;
     };
-    // Another share for every composition.
+    // Every composition waits for a different share.
     const auto wait = [](aabblab::row& r) {
         const double times = 1 + static_cast<double>(text_of(r.name).size() % 7);
         for (auto* ms : {&r.first_ms, &r.update_ms, &r.search_ms, &r.detect_ms}) *ms = times * **ms;
@@ -223,7 +223,7 @@ TEST_CASE("What waits for a processor changes no ratio") {
     CHECK(ratios(wait) == ratios([](aabblab::row&) {}));
 }
 
-TEST_CASE("The null control finds nothing where there is nothing, and says so where it finds something") {
+TEST_CASE("The null control reports a difference only if there is one") {
     const auto outcomes = [](double of_second_name) {
         const auto slower = [&](const worlds::played& p, aabblab::row& r) {
             if (p.has("gaps=ciura")) r.search_ms = of_second_name;
@@ -245,81 +245,81 @@ TEST_CASE("The null control finds nothing where there is nothing, and says so wh
     CHECK(holds(something, " " + std::to_string(half.at("a difference")) + " are decided as a difference"));
 }
 
-TEST_CASE("A claim that is true from some size on says from which") {
-    const auto all = reproduction_where("figure1", [](const worlds::played& p, aabblab::row& r) {
+TEST_CASE("A claim that holds from some size on states this size") {
+    const auto results = reproduction_where("figure1", [](const worlds::played& p, aabblab::row& r) {
         const bool improved = p.has("shell") && p.has("axial_cut");
         const bool many = r.objects >= 1000;
         r.search_ms = improved && !many ? 2 : improved ? 0.1 : 1;
         r.update_ms = r.search_ms;
         r.detect_ms = 0;
     });
-    const claim_result& c1 = named(all, "C1");
+    const claim_result& c1 = named(results, "C1");
     INFO(c1.sentence);
     CHECK(text_of(c1.verdict) == "holds");
     CHECK(c1.sentence.starts_with(
         "On drifting boxes: 2.0 times as long with 100 objects, 10 times as fast with 1,000 or more objects;"));
 }
 
-TEST_CASE("A composition that was wrong has no rows, and a claim that compares it with others no verdict") {
+TEST_CASE("A claim that compares a wrong composition is undecided") {
     for (const auto& [experiment, part, id] : {std::tuple("c3", "shell", "C3"), {"c5", "cell_size=8", "C5"}}) {
-        const auto all = reproduction_where(experiment, [part](const worlds::played& p, aabblab::row& r) {
+        const auto results = reproduction_where(experiment, [part](const worlds::played& p, aabblab::row& r) {
             if (p.has(part)) r.status = "inexact";
         });
-        CHECK_FALSE(named(all, id).has_primary);
-        CHECK(text_of(named(all, id).verdict) == "undecided");
+        CHECK_FALSE(named(results, id).has_primary);
+        CHECK(text_of(named(results, id).verdict) == "undecided");
     }
 }
 
-TEST_CASE("Every cell size and every number of segments of the configs is judged") {
-    const aabblab::reproduction all = judged_worlds({0.6}, 0.01);
+TEST_CASE("Every cell size and number of segments of the configs is plotted") {
+    const aabblab::reproduction results = judged_worlds({0.6}, 0.01);
     for (const aabblab::experiment& e : worlds::all_experiments(aabblab::experiment_size::quick)) {
         if (e.name != "c4" && e.name != "c5") continue;
         for (const aabblab::candidate& tested : aabblab::candidates_for(e, e.scenes.front())) {
             const std::string& partition = tested.name[aabb::strategy_kind::partition];
             const std::vector<aabb::setting> settings = aabb::parse_strategy(partition).settings;
-            const auto wanted =
+            const auto parameter =
                 std::ranges::find(settings, e.name == "c4" ? "segments" : "cell_size", &aabb::setting::name);
-            if (wanted == settings.end() || wanted->value == "auto") continue;
+            if (parameter == settings.end() || parameter->value == "auto") continue;
             CAPTURE(partition);
-            const aabblab::figure& f = named(all, e.name == "c4" ? "C4" : "C5").figures.front();
+            const aabblab::figure& f = named(results, e.name == "c4" ? "C4" : "C5").figures.front();
             const aabblab::series& line = f.panels.empty() ? f.lines.front() : f.panels.front().lines.front();
-            CHECK(std::ranges::any_of(line.points, [&](const auto& p) { return p.x == std::stod(wanted->value); }));
+            CHECK(std::ranges::any_of(line.points, [&](const auto& p) { return p.x == std::stod(parameter->value); }));
         }
     }
 }
 
-TEST_CASE("A grid of one cell is none") {
-    const auto all = reproduction_where("c5", [](const worlds::played& p, aabblab::row& r) {
+TEST_CASE("A grid of one cell does not count as a grid") {
+    const auto results = reproduction_where("c5", [](const worlds::played& p, aabblab::row& r) {
         const bool is_one_cell = p.tested[aabb::strategy_kind::partition].ends_with("cell_size=64");
         if (is_one_cell) worlds::count_in(r, "subsets") = 1;
         r.search_ms = r.update_ms = is_one_cell ? 0.01 : 1;
     });
-    CHECK(std::abs(named(all, "C5").primary.ratio - 1) < 0.01);
-    for (const aabblab::figure_panel& panel : named(all, "C5").figures.front().panels)
+    CHECK(std::abs(named(results, "C5").primary.ratio - 1) < 0.01);
+    for (const aabblab::figure_panel& panel : named(results, "C5").figures.front().panels)
         for (const aabblab::series& s : panel.lines)
             CHECK(std::ranges::none_of(s.points, [](const aabblab::figure_point& p) { return p.x == 64; }));
 }
 
-TEST_CASE("Where nothing is split, splitting is not judged") {
-    const auto all = reproduction_where("c9", [](const worlds::played& p, aabblab::row& r) {
+TEST_CASE("Splitting is not judged in scenes where nothing is split") {
+    const auto results = reproduction_where("c9", [](const worlds::played& p, aabblab::row& r) {
         if (p.value_of("span") == "0.1") worlds::count_in(r, "pieces") = 0;
     });
-    CHECK(named(all, "C9").has_primary);
-    CHECK(std::ranges::none_of(named(all, "C9").secondary,
+    CHECK(named(results, "C9").has_primary);
+    CHECK(std::ranges::none_of(named(results, "C9").secondary,
                                [](const endpoint& e) { return aabblab::value_of(e.where, "span") == "0.1"; }));
-    CHECK(std::ranges::any_of(named(all, "C9").secondary,
+    CHECK(std::ranges::any_of(named(results, "C9").secondary,
                               [](const endpoint& e) { return aabblab::value_of(e.where, "span") == "0.5"; }));
 }
 
-TEST_CASE("The whole algorithm is judged where global search counts, too") {
-    const auto all = reproduction_where("c11", [](const worlds::played& p, aabblab::row& r) {
+TEST_CASE("The whole algorithm is also judged where global search matters") {
+    const auto results = reproduction_where("c11", [](const worlds::played& p, aabblab::row& r) {
         const bool far_apart = p.value_of("density") == "0.001";
         r.update_ms = r.search_ms = 1;
         r.detect_ms = far_apart ? 1 : 98;
         if (p.has("axial_cut") && far_apart) r.search_ms = 0.1;
         if (p.has("compressed")) r.detect_ms = 1.2 * *r.detect_ms;
     });
-    const claim_result& c11 = named(all, "C11");
+    const claim_result& c11 = named(results, "C11");
     CHECK(text_of(c11.verdict) == "holds in part");
     CHECK(holds(c11.sentence, "Where detailed models touch: 1.20 times as long"));
     CHECK(holds(c11.sentence, "with simple models far apart: 1.30 times as fast"));
@@ -329,8 +329,8 @@ TEST_CASE("The whole algorithm is judged where global search counts, too") {
     CHECK(c11.figures.front().lines.front().points.size() > 1);
 }
 
-TEST_CASE("A cell size that is one cell in a scene is no grid there, and counts in the others") {
-    const auto all = reproduction_where("c5", [](const worlds::played& p, aabblab::row& r) {
+TEST_CASE("A cell size that gives one cell in a scene is excluded only there") {
+    const auto results = reproduction_where("c5", [](const worlds::played& p, aabblab::row& r) {
         const bool brownian = p.scene.kind == "brownian";
         const bool largest = p.has("cell_size=64");
         if (brownian && largest) worlds::count_in(r, "subsets") = 1;
@@ -338,35 +338,36 @@ TEST_CASE("A cell size that is one cell in a scene is no grid there, and counts 
         r.update_ms = r.search_ms = best ? 1 : 2;
         r.detect_ms = 0;
     });
-    CHECK(text_of(named(all, "C5").verdict) == "holds");
-    CHECK(std::abs(named(all, "C5").primary.ratio - 0.5) < 1e-9);
-    CHECK(holds(named(all, "C5").sentence, "takes 2.0 times as long as the best one"));
+    CHECK(text_of(named(results, "C5").verdict) == "holds");
+    CHECK(std::abs(named(results, "C5").primary.ratio - 0.5) < 1e-9);
+    CHECK(holds(named(results, "C5").sentence, "takes 2.0 times as long as the best one"));
 }
 
-TEST_CASE("Input that is more ordered at one size than at others tells nothing of growth") {
-    const auto all = reproduction_where("c2", [](const worlds::played&, aabblab::row& r) {
+TEST_CASE("A size with more ordered input is excluded from the growth") {
+    const auto results = reproduction_where("c2", [](const worlds::played&, aabblab::row& r) {
         if (r.objects != 1'000'000) return;
         for (const char* work : {"comparisons", "moves"}) worlds::count_in(r, work) = 9000 * r.objects;
         worlds::count_in(r, "inversions") = 0;
     });
-    CHECK(text_of(named(all, "C2").verdict) == "holds");
-    CHECK(named(all, "C2").primary.ratio == 1);
-    CHECK(aabblab::value_of(named(all, "C2").primary.where, "elements") == "10000 to 100000");
+    CHECK(text_of(named(results, "C2").verdict) == "holds");
+    CHECK(named(results, "C2").primary.ratio == 1);
+    CHECK(aabblab::value_of(named(results, "C2").primary.where, "elements") == "10000 to 100000");
 }
 
-TEST_CASE("An alternative counts only where the others beside it leave it standing") {
+TEST_CASE("An alternative counts only after the correction for multiple tests") {
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
-    const auto all = reproduction_where("c11", [&](const worlds::played& p, aabblab::row& r) {
+    const auto results = reproduction_where("c11", [&](const worlds::played& p, aabblab::row& r) {
         const bool better = p.value_of("objects") == "100" && p.has("axial_cut");
         r.detect_ms = std::exp((better ? -0.155 : 0.0) + 0.15 * normal(random));
         r.update_ms = r.search_ms = 0;
     });
-    const auto c11 = std::ranges::find(all.choices, "C11", &aabblab::open_choice::claim);
-    REQUIRE(c11 != all.choices.end());
-    const auto same = std::ranges::find_if(
-        named(all, "C11").secondary, [](const endpoint& e) { return aabblab::value_of(e.where, "objects") == "100"; });
-    REQUIRE(same != named(all, "C11").secondary.end());
+    const auto c11 = std::ranges::find(results.choices, "C11", &aabblab::open_choice::claim);
+    REQUIRE(c11 != results.choices.end());
+    const auto same = std::ranges::find_if(named(results, "C11").secondary, [](const endpoint& e) {
+        return aabblab::value_of(e.where, "objects") == "100";
+    });
+    REQUIRE(same != named(results, "C11").secondary.end());
     const auto choice = std::ranges::find_if(
         c11->alternatives, [](const aabblab::open_choice::alternative& a) { return a.label.starts_with("100 "); });
     REQUIRE(choice != c11->alternatives.end());
@@ -375,7 +376,7 @@ TEST_CASE("An alternative counts only where the others beside it leave it standi
     CHECK(same->corrected == support::undecided);
 }
 
-TEST_CASE("What was wrong in a run is said by every later judgement") {
+TEST_CASE("Every later judgement reports what was wrong in a run") {
     const temporary_folder folder;
     worlds::write_world(folder.path(), 0.6, 0.05);
     run_well({"reproduce", "--judge", "--out", folder.path()});
@@ -387,11 +388,11 @@ TEST_CASE("What was wrong in a run is said by every later judgement") {
     CHECK(run_program({"reproduce", "--judge", "--out", folder / "none"}).status == 2);
 }
 
-TEST_CASE("A reproduction is one page without addresses, every table and figure, and every number the paper names") {
+TEST_CASE("A reproduction writes a self-contained page, every table and figure, and every number of the paper") {
     const temporary_folder folder;
     worlds::write_world(folder.path(), 0.6, 0.05);
     const aabblab::measurements results(folder.path());
-    const aabblab::reproduction all = judged(results);
+    const aabblab::reproduction judgement = judged(results);
     const aabblab::figure plot{
         "a_plot", "A plot.", {"x", true}, {"y", true}, {{"", aabblab::series_style::line, {{1, 2, 2, 2}}}}};
     const aabblab::report_section section{"errors",
@@ -399,15 +400,15 @@ TEST_CASE("A reproduction is one page without addresses, every table and figure,
                                           {"A statement with its number."},
                                           {plot},
                                           {{"a_table", "A table.", {{{"triangle", false}}, {{"exact"}}}}}};
-    write_reproduction(folder.path(), {&results, 1}, all, {&section, 1}, {"shell is wrong on brownian, frame 3"});
+    write_reproduction(folder.path(), {&results, 1}, judgement, {&section, 1}, {"shell is wrong on brownian, frame 3"});
 
     const std::string page = bytes_of_file(folder / "report.html");
     CHECK(holds(page, "shell is wrong on brownian, frame 3"));
     CHECK(holds(page, "<style>\n:root{"));
-    // It asks the network for nothing and runs nothing.
+    // The page loads nothing from the network and runs no scripts.
     for (const char* part : {"<script", "<link rel=\"stylesheet", "@import", "url(", "<iframe", "onload"})
         CHECK_FALSE(holds(page, part));
-    // Figures are long addresses, and std::regex takes stack for each character.
+    // Figures are long data URLs, and std::regex uses stack for each character.
     for (const std::string& to : found_in(page, R"((?:src|href)="([^"]{0,5}))"))
         CHECK((to.starts_with("data:") || to.starts_with("#")));
 
@@ -423,7 +424,7 @@ TEST_CASE("A reproduction is one page without addresses, every table and figure,
     CHECK(asked.size() > 20);
     for (const char* kind : {"claim", "measured", "setup", "condition", "favourable", "ratio", "low", "high", "verdict",
                              "because", "endpoints", "for", "against", "same", "undecided"})
-        for (const claim_result& c : all.claims) CHECK(keys.contains(c.id + "." + kind));
+        for (const claim_result& c : judgement.claims) CHECK(keys.contains(c.id + "." + kind));
 
     for (const std::string& name : found_in(paper, R"(\\aabb(?:long)?table(?:\[[^\]]*\])?\{([^}#]*)\})")) {
         CAPTURE(name);
@@ -432,8 +433,8 @@ TEST_CASE("A reproduction is one page without addresses, every table and figure,
     for (const char* file : {"figures/a_plot.svg", "tables/a_table.md"}) CHECK(std::filesystem::exists(folder / file));
     for (const char* report : {"report.html", "report.md"}) {
         const std::string text = bytes_of_file(folder / report);
-        CHECK(holds(text, all.null_control.caption));
-        // The last two: where the file that the program was built with breaks a line, and where it ends.
+        CHECK(holds(text, judgement.null_control.caption));
+        // The last two are at a line break and at the end of the file that is built into the program.
         for (const char* part : {"Error against run time", "A statement with its number.", "A plot.", "A table.",
                                  "Each claim has its primary ratios", "ratios between two compositions, two builds",
                                  "never between runs or machines."})
@@ -446,13 +447,13 @@ TEST_CASE("A reproduction is one page without addresses, every table and figure,
             CAPTURE(name, ending);
             CHECK(std::filesystem::exists(folder / ("figures/" + name + ending)));
         }
-    for (const claim_result& c : all.claims)
+    for (const claim_result& c : judgement.claims)
         for (const aabblab::named_table& t : c.tables)
             for (const char* ending : {".csv", ".md", ".tex"})
                 CHECK(std::filesystem::exists(folder / ("tables/" + t.name + ending)));
 }
 
-TEST_CASE("A ratio near the edge of the band is not rounded to the edge") {
+TEST_CASE("A ratio near a bound of the band is not rounded to it") {
     CHECK(ratio_text(endpoint{.ratio = 1.075, .range = {1.0479, 1.1027}}) == "1.075 (1.048 to 1.103)");
     CHECK(aabblab::text_of(aabblab::factors{{"scene", "line"}, {"elements", "1000 to 1000000"}}) ==
           "line, elements 1,000 to 1,000,000");
