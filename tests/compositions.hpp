@@ -8,9 +8,9 @@
 import aabb;
 import aabb.registry;
 
-/// The values that tests give a parameter: every name of several, every one of a few whole numbers, and auto where it
-/// may be; of more than three the ends and the default; else the default and 3. Of threads not the most, 256, which
-/// make much memory and many allocations of little work: columns.cpp and trees.cpp have them.
+/// The values that tests give a parameter: all names, or all of a few integers, and auto if it is allowed; of more than
+/// three integers the ends and the default; else the default and 3. Not 256 threads, which take much memory and many
+/// allocations for little work: columns.cpp and trees.cpp test them.
 inline std::vector<std::string> values_of(const aabb::parameter_info& parameter) {
     if (parameter.name == "threads") return {parameter.fallback, "3"};
     if (const auto* names = std::get_if<aabb::name_values>(&parameter.values)) return names->names;
@@ -31,7 +31,7 @@ inline std::vector<std::string> values_of(const aabb::parameter_info& parameter)
 
 /// Every strategy of a kind with every combination of these values.
 inline std::vector<aabb::strategy_choice> all_choices(aabb::strategy_kind kind) {
-    std::vector<aabb::strategy_choice> all;
+    std::vector<aabb::strategy_choice> result;
     for (const aabb::strategy_info& info : aabb::strategies(kind)) {
         std::vector<aabb::strategy_choice> choices{{info.name, {}}};
         for (const aabb::parameter_info& parameter : info.parameters) {
@@ -43,22 +43,22 @@ inline std::vector<aabb::strategy_choice> all_choices(aabb::strategy_kind kind) 
                 }
             choices = std::move(multiplied);
         }
-        all.insert(all.end(), choices.begin(), choices.end());
+        result.insert(result.end(), choices.begin(), choices.end());
     }
-    return all;
+    return result;
 }
 
-/// Every combination of a stage's strategies that makes sense, exact or not.
+/// Every valid combination of a stage's strategies, exact or not.
 inline std::vector<aabb::composition> all_compositions(aabb::stage stage) {
-    std::vector<aabb::composition> all(1);
+    std::vector<aabb::composition> result(1);
     for (const aabb::strategy_kind kind : kinds_of(stage)) {
         std::vector<aabb::composition> longer;
-        for (const aabb::composition& c : all)
+        for (const aabb::composition& c : result)
             for (const aabb::strategy_choice& choice : all_choices(kind)) longer.emplace_back(c)[kind] = choice;
-        all = std::move(longer);
+        result = std::move(longer);
     }
-    std::erase_if(all, [&](const aabb::composition& c) { return !rejection_of(c, stage).empty(); });
-    return all;
+    std::erase_if(result, [&](const aabb::composition& c) { return !rejection_of(c, stage).empty(); });
+    return result;
 }
 /// Whether tests run every composition instead of a selection: AABBLAB_COMPOSITIONS=all.
 inline bool wants_every_composition() {
@@ -67,54 +67,55 @@ inline bool wants_every_composition() {
         throw std::invalid_argument("AABBLAB_COMPOSITIONS is '" + std::string(wanted) + "'; it must be all or unset");
     return wanted != nullptr;
 }
-/// Exact compositions for scenes of boxes. The selection contains any strategies of three kinds, with their settings,
-/// that can be combined: hardly a fault needs four (Kuhn, Wallace, Gallo 2004).
+/// Exact compositions for scenes of boxes. The selection covers every valid combination of strategies of three kinds,
+/// with their settings: hardly any fault needs four (Kuhn, Wallace, Gallo 2004).
 inline std::vector<aabb::composition> global_compositions() {
-    using three = std::pair<aabb::strategy_kind, std::string>;
+    using triple = std::pair<aabb::strategy_kind, std::string>;
     constexpr aabb::stage stage = aabb::stage::global_search;
-    std::vector<aabb::composition> all = all_compositions(stage);
-    std::erase_if(all, [](const aabb::composition& c) { return !is_exact(c, stage) || !needs_meshes(c).empty(); });
-    if (wants_every_composition()) return all;
-    std::vector<std::pair<aabb::composition, std::vector<three>>> candidates;
-    for (const aabb::composition& c : all) {
-        std::vector<three>& threes = candidates.emplace_back(c, std::vector<three>()).second;
+    std::vector<aabb::composition> exact = all_compositions(stage);
+    std::erase_if(exact, [](const aabb::composition& c) { return !is_exact(c, stage) || !needs_meshes(c).empty(); });
+    if (wants_every_composition()) return exact;
+    std::vector<std::pair<aabb::composition, std::vector<triple>>> candidates;
+    for (const aabb::composition& c : exact) {
+        std::vector<triple>& triples = candidates.emplace_back(c, std::vector<triple>()).second;
         for (const aabb::strategy_kind left_out : kinds_of(stage)) {
             aabb::composition others = c;
             others[left_out] = {};
-            threes.emplace_back(left_out, to_text(others, stage));
+            triples.emplace_back(left_out, to_text(others, stage));
         }
     }
-    std::vector<aabb::composition> taken;
-    std::set<three> seen;
-    // First those of which most is new.
+    std::vector<aabb::composition> selection;
+    std::set<triple> seen;
+    // First those with the most new triples.
     for (std::ptrdiff_t least_new = 4; least_new > 0; --least_new)
-        for (const auto& [composition, threes] : candidates) {
-            if (std::ranges::count_if(threes, [&](const three& t) { return !seen.contains(t); }) < least_new) continue;
-            seen.insert(threes.begin(), threes.end());
-            taken.push_back(composition);
+        for (const auto& [composition, triples] : candidates) {
+            if (std::ranges::count_if(triples, [&](const triple& t) { return !seen.contains(t); }) < least_new)
+                continue;
+            seen.insert(triples.begin(), triples.end());
+            selection.push_back(composition);
         }
-    return taken;
+    return selection;
 }
 /// The selection combines every tree with the exact triangle test, and each default tree with the other tests: a test
 /// does not depend on the tree that calls it.
 inline std::vector<aabb::composition> local_compositions() {
-    std::vector<aabb::composition> all = all_compositions(aabb::stage::local_detection);
-    if (wants_every_composition()) return all;
-    std::erase_if(all, [](const aabb::composition& c) {
+    std::vector<aabb::composition> compositions = all_compositions(aabb::stage::local_detection);
+    if (wants_every_composition()) return compositions;
+    std::erase_if(compositions, [](const aabb::composition& c) {
         return c[aabb::strategy_kind::triangle].name != "exact" && !c[aabb::strategy_kind::tree].settings.empty();
     });
-    return all;
+    return compositions;
 }
 inline bool is_exact_locally(const aabb::composition& c) {
     return is_exact(c, aabb::stage::local_detection);
 }
 inline std::vector<aabb::composition> exact_local_compositions() {
-    std::vector<aabb::composition> all = local_compositions();
-    std::erase_if(all, [](const aabb::composition& c) { return !is_exact_locally(c); });
-    return all;
+    std::vector<aabb::composition> compositions = local_compositions();
+    std::erase_if(compositions, [](const aabb::composition& c) { return !is_exact_locally(c); });
+    return compositions;
 }
 
-/// These strategies, as the command line takes them, and what goes with them: `composed({{kind::sort, "shell"}})`.
+/// These strategies, as on the command line, and those that complete them: `composed({{kind::sort, "shell"}})`.
 inline aabb::composition composed(std::initializer_list<std::pair<aabb::strategy_kind, const char*>> choices) {
     aabb::named_strategies named;
     for (const auto& [kind, text] : choices) named[kind] = aabb::parse_strategy(text);

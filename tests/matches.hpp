@@ -4,10 +4,10 @@
 
 #include "testing.hpp"
 
-/// What the pattern's first group takes from a text, each time.
+/// The first group of each match of the pattern in a text.
 [[nodiscard]] inline std::vector<std::string> found_in(const std::string& text, const std::string& pattern) {
-    std::vector<std::string> all;
-    const std::regex wanted(pattern);
-    for (std::sregex_iterator i(text.begin(), text.end(), wanted), end; i != end; ++i) all.push_back((*i)[1]);
-    return all;
+    std::vector<std::string> matches;
+    const std::regex regex(pattern);
+    for (std::sregex_iterator i(text.begin(), text.end(), regex), end; i != end; ++i) matches.push_back((*i)[1]);
+    return matches;
 }

@@ -4,7 +4,7 @@
 
 #include "sheets.hpp"
 
-/// In the corner of a cube of that edge.
+/// A tetrahedron in the corner of a cube of that edge.
 inline aabb::mesh tetrahedron(float edge) {
     return {{{0, 0, 0}, {edge, 0, 0}, {0, edge, 0}, {0, 0, edge}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
@@ -15,12 +15,12 @@ inline aabb::mesh tetrahedron(float edge) {
     return p;
 }
 
-/// The test says where things are, and moves vertices itself.
-class told_scene final : public aabb::mesh_scene {
+/// The test sets poses and vertices itself.
+class manual_scene final : public aabb::mesh_scene {
 public:
-    told_scene(std::vector<aabb::mesh> all, std::vector<std::uint32_t> which) {
-        meshes = std::move(all);
-        mesh_of = std::move(which);
+    manual_scene(std::vector<aabb::mesh> given_meshes, std::vector<std::uint32_t> objects) {
+        meshes = std::move(given_meshes);
+        mesh_of = std::move(objects);
     }
     [[nodiscard]] std::size_t frames() const override { return 0; }
     bool next(std::vector<aabb::pose>&) override { return false; }
@@ -29,14 +29,14 @@ public:
     std::uint32_t soft = 0xffffffff;
 };
 
-/// With corners of its own.
+/// Adds a triangle with vertices of its own.
 inline void add_triangle(aabb::mesh& m, const aabb::vec3f& p, const aabb::vec3f& q, const aabb::vec3f& r) {
     const std::uint32_t first = static_cast<std::uint32_t>(m.vertices.size());
     m.vertices.insert(m.vertices.end(), {p, q, r});
     m.triangles.push_back({first, first + 1, first + 2});
 }
 
-/// The same triangles, whose vertices were numbered anew.
+/// The same triangles with renumbered vertices.
 inline aabb::mesh numbered_backwards(aabb::mesh m) {
     std::ranges::reverse(m.vertices);
     for (auto& t : m.triangles)

@@ -6,14 +6,14 @@
 
 import aabb;
 
-/// Evenly in [low, high), from RapidCheck's source.
+/// Uniform in [low, high), from RapidCheck's generator.
 inline double uniform(double low, double high) {
     return low + (high - low) * (*rc::gen::inRange(0, 1 << 30) / static_cast<double>(1 << 30));
 }
 
-/// Each coordinate evenly in [-reach, reach).
-inline aabb::vec3d any_vector(double reach) {
-    return {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)};
+/// Each coordinate is uniform in [-most, most).
+inline aabb::vec3d any_vector(double most) {
+    return {uniform(-most, most), uniform(-most, most), uniform(-most, most)};
 }
 
 /// A rotation by a quaternion w, x, y, z of any length but 0, then a translation.
@@ -32,7 +32,7 @@ inline aabb::pose any_turned(const aabb::vec3d& translation) {
     return turned_by({1.01 + uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}, translation);
 }
 
-/// About any axis, by a quaternion of 1 and numbers up to `turn`.
+/// Rotated about any axis, by a quaternion of 1 and numbers up to `turn`.
 inline aabb::pose turned_up_to(double turn, const aabb::vec3d& translation) {
     return turned_by({1, uniform(-turn, turn), uniform(-turn, turn), uniform(-turn, turn)}, translation);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What most tests include: Catch2, and what they name of the standard library. Other modules are imported after it.
+// What most tests include: Catch2, and what they use of the standard library. Other modules are imported after it.
 
 #include <algorithm>
 #include <array>
@@ -33,7 +33,7 @@ import aabb.std;
         CHECK((value) < (high));        \
     } while (false)
 
-/// The call is refused in this sentence.
+/// The call is rejected with this sentence.
 #define CHECK_REFUSED(call, sentence) CHECK_THROWS_MATCHES(call, aabb::input_error, Catch::Matchers::Message(sentence))
 
 [[nodiscard]] inline bool holds(std::string_view text, std::string_view part) {
@@ -46,7 +46,7 @@ import aabb.std;
     return count;
 }
 
-/// With `by` in place of the first `what`, which must be there.
+/// The text with `by` in place of the first `what`, which must be in it.
 [[nodiscard]] inline std::string replaced(std::string text, std::string_view what, std::string_view by) {
     const std::size_t at = text.find(what);
     REQUIRE(at != std::string::npos);
@@ -54,17 +54,17 @@ import aabb.std;
 }
 
 template <class T, class Allocator>
-[[nodiscard]] std::vector<T, Allocator> sorted(std::vector<T, Allocator> all) {
-    std::ranges::sort(all);
-    return all;
+[[nodiscard]] std::vector<T, Allocator> sorted(std::vector<T, Allocator> values) {
+    std::ranges::sort(values);
+    return values;
 }
 
 template <class T>
-[[nodiscard]] std::vector<T> sorted(std::span<const T> all) {
-    return sorted(std::vector<T>(all.begin(), all.end()));
+[[nodiscard]] std::vector<T> sorted(std::span<const T> values) {
+    return sorted(std::vector<T>(values.begin(), values.end()));
 }
 
-/// The sentence with which a call is refused; "accepted" where it is not.
+/// The sentence with which a call is rejected; "accepted" if it is not.
 template <class Error, class Call>
 std::string refusal_in(Call call) {
     try {

@@ -5,8 +5,8 @@
 
 #include "testing.hpp"
 
-/// Generated pairs of triangles for tests: a pattern says how the two lie to each other, a placement where and how
-/// large the pair is and what rounding does to the pattern.
+/// Generated pairs of triangles for tests: a pattern is how the two lie relative to each other, a placement is where
+/// the pair lies, how large it is, and what rounding does to the pattern.
 namespace triangle_pairs {
 
 using point = std::array<double, 3>;
@@ -23,20 +23,20 @@ inline constexpr std::array<std::string_view, 7> placements = {"as is",   "tenth
 /// The same as a triangle3, rounded to its numbers.
 template <class Triangle>
 Triangle as(const triangle& t) {
-    Triangle made{};
+    Triangle result{};
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
-            made[i][k] = static_cast<std::remove_cvref_t<decltype(made[i][k])>>(
+            result[i][k] = static_cast<std::remove_cvref_t<decltype(result[i][k])>>(
                 t[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
-    return made;
+    return result;
 }
 
 inline int integer(generator& g, int low, int high) {
     return std::uniform_int_distribution<int>(low, high)(g);
 }
 
-inline point grid_point(generator& g, int reach) {
-    return {double(integer(g, -reach, reach)), double(integer(g, -reach, reach)), double(integer(g, -reach, reach))};
+inline point grid_point(generator& g, int most) {
+    return {double(integer(g, -most, most)), double(integer(g, -most, most)), double(integer(g, -most, most))};
 }
 
 /// p + (q - p) · numerator / 4.
@@ -56,11 +56,11 @@ inline triangle flattened(generator& g, const triangle& t) {
 
 /// Corners are multiples of 1/16 within ±64, so the pattern holds exactly.
 inline pair patterned(generator& g, std::size_t pattern) {
-    const int reach = integer(g, 1, 3);
-    pair made{};
-    for (triangle& t : made)
-        for (point& p : t) p = grid_point(g, reach);
-    auto& [s, t] = made;
+    const int most = integer(g, 1, 3);
+    pair result{};
+    for (triangle& t : result)
+        for (point& p : t) p = grid_point(g, most);
+    auto& [s, t] = result;
     switch (pattern) {
         case 1: t[0] = s[1]; break;
         case 2:
@@ -77,7 +77,7 @@ inline pair patterned(generator& g, std::size_t pattern) {
         case 6: {
             const int a = integer(g, -2, 2);
             const int b = integer(g, -2, 2);
-            for (triangle& u : made)
+            for (triangle& u : result)
                 for (point& p : u) p[2] = a * p[0] + b * p[1];
             break;
         }
@@ -93,12 +93,12 @@ inline pair patterned(generator& g, std::size_t pattern) {
     std::shuffle(s.begin(), s.end(), g);
     std::shuffle(t.begin(), t.end(), g);
     if (integer(g, 0, 1) == 1) std::swap(s, t);
-    return made;
+    return result;
 }
 
-/// Where the numbers of type Real take the pattern; values of Real, kept in double.
+/// The pattern moved to where the placement says, with values of type Real, stored in double.
 template <class Real>
-pair placed(generator& g, pair made, std::size_t placement) {
+pair placed(generator& g, pair result, std::size_t placement) {
     using limits = std::numeric_limits<Real>;
     std::array<std::size_t, 3> axes{0, 1, 2};
     std::shuffle(axes.begin(), axes.end(), g);
@@ -106,7 +106,7 @@ pair placed(generator& g, pair made, std::size_t placement) {
     for (point& row : turn)
         for (double& x : row) x = std::uniform_real_distribution(-1.0, 1.0)(g);
     const point offset = grid_point(g, 1'000'000);
-    for (triangle& t : made)
+    for (triangle& t : result)
         for (point& p : t) {
             point q{};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -126,7 +126,7 @@ pair placed(generator& g, pair made, std::size_t placement) {
             }
             p = q;
         }
-    return made;
+    return result;
 }
 
 /// Coordinates whose exponents are spread over the whole range of Real, many of them equal, zero or at its ends.
@@ -137,12 +137,12 @@ pair spread(generator& g) {
     for (std::size_t i = 4; i < values.size(); ++i)
         values[i] = static_cast<Real>(
             std::ldexp(1 + integer(g, 0, 7) / 8.0, integer(g, limits::min_exponent - 20, limits::max_exponent - 1)));
-    pair made{};
-    for (triangle& t : made)
+    pair result{};
+    for (triangle& t : result)
         for (point& p : t)
             for (double& x : p)
                 x = double{values[static_cast<std::size_t>(integer(g, 0, 5))]} * (integer(g, 0, 1) == 0 ? -1 : 1);
-    return made;
+    return result;
 }
 
 }  // namespace triangle_pairs

@@ -1,5 +1,5 @@
-// Counts every allocation of the process but those of large arrays (`large_vector`), which no scene here has: once the
-// buffers have grown to the scene, neither stage may make one.
+// Counts every allocation of the process but those of large arrays (`large_vector`), which no scene here needs: once
+// the buffers have grown to the scene, neither stage may allocate.
 
 #include "../compositions.hpp"
 #include "../meshes.hpp"
@@ -9,7 +9,7 @@ using namespace aabb;
 
 namespace {
 
-/// Boxes on circles around their places, so that lists change order and come back to where they were; some stand still.
+/// Boxes on circles around their places, so that lists change their order and return to it; some boxes rest.
 std::vector<box> orbiting(int frame) {
     std::vector<box> boxes;
     for (int i = 0; i < 300; ++i) {
@@ -31,26 +31,26 @@ TEST_CASE("global search allocates nothing in steady state") {
         const auto stage = global_of(composition, instrumentation::none);
         for (std::uint32_t id = 0; id < frames[0].size(); ++id) stage->insert(id);
         std::vector<index_pair> pairs;
-        bool away = false;
-        std::size_t made = 0;
-        // On several threads, one needs more memory when it first takes a group so large, which may be late; so may be
-        // a list of neighbours that is kept of other boxes than those before, and columns that are planned from a frame
-        // from which none were.
+        bool are_absent = false;
+        std::size_t new_allocations = 0;
+        // A thread needs more memory when it first takes a larger group, which may be late. So may be a Verlet list of
+        // other boxes than the lists before, and columns that are planned from a frame from which none were planned
+        // before.
         const bool may_be_late = composition[strategy_kind::prepare] == strategy_choice{"neighbour_list", {}} ||
                                  composition[strategy_kind::partition].name == "columns";
         const int rounds = may_be_late ? 200 : 4;
-        for (int round = 0; round < rounds && (round < 4 || made > 0); ++round) {
+        for (int round = 0; round < rounds && (round < 4 || new_allocations > 0); ++round) {
             const std::size_t before = allocations.made;
             for (const auto& boxes : frames) {
-                for (const std::uint32_t id : {7U, 30U, 299U}) away ? stage->insert(id) : stage->remove(id);
-                away = !away;
+                for (const std::uint32_t id : {7U, 30U, 299U}) are_absent ? stage->insert(id) : stage->remove(id);
+                are_absent = !are_absent;
                 pairs.clear();
                 stage->update(boxes);
                 stage->search(pairs);
             }
-            made = allocations.made - before;
+            new_allocations = allocations.made - before;
         }
-        CHECK(made == 0);
+        CHECK(new_allocations == 0);
         CHECK_FALSE(pairs.empty());
     }
 }
@@ -58,7 +58,7 @@ TEST_CASE("global search allocates nothing in steady state") {
 TEST_CASE("local detection allocates nothing in steady state") {
     for (const aabb::composition& composition : local_compositions()) {
         INFO(text_of_local(composition));
-        // Fronts are kept of so many leaves only.
+        // Fronts are kept only for meshes with so many leaves.
         mesh m = ripples(keeps_fronts(composition) ? 12 : 6);
         const auto stage = local_of(composition, instrumentation::none);
         const auto model = stage->add_model(m);
@@ -73,14 +73,14 @@ TEST_CASE("local detection allocates nothing in steady state") {
                 if (!stage->first_pair(model, {}, model, moved)) std::abort();
                 if (stage->count_pairs(model, {}, model, moved) != pairs.size()) std::abort();
                 stage->self_pairs(model, pairs);
-                std::size_t handed = 0;
-                stage->each_self_pair(model, [&](index_pair) { ++handed; });
-                if (handed == 0) std::abort();
+                std::size_t visited = 0;
+                stage->each_self_pair(model, [&](index_pair) { ++visited; });
+                if (visited == 0) std::abort();
                 stage->refit(model);
             }
         }
-        const std::size_t made = allocations.made - before;
-        CHECK(made == 0);
+        const std::size_t new_allocations = allocations.made - before;
+        CHECK(new_allocations == 0);
         CHECK_FALSE(pairs.empty());
     }
 }

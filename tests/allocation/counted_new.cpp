@@ -4,10 +4,10 @@ import aabb.std;
 
 namespace {
 
-// Stages may have threads. Not std::atomic: <atomic> cannot be read again behind a module that has it.
+// Stages may use threads. Not std::atomic: <atomic> cannot be included again after a module that has it.
 
-/// Takes note of what malloc gave, or of what it is to be taken for.
-void* noted(void* memory) {
+/// Counts memory from malloc, or throws in its place if this allocation is to fail.
+void* counted(void* memory) {
     if (allocations.fails_in > 0 && __atomic_sub_fetch(&allocations.fails_in, 1, __ATOMIC_RELAXED) == 0) {
         std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc)
         memory = nullptr;
@@ -18,7 +18,7 @@ void* noted(void* memory) {
     return memory;
 }
 
-void give_back(void* memory) noexcept {
+void counted_free(void* memory) noexcept {
     if (memory != nullptr) __atomic_sub_fetch(&allocations.alive, 1, __ATOMIC_RELAXED);
     std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc)
 }
@@ -27,11 +27,11 @@ void give_back(void* memory) noexcept {
 
 // NOLINTBEGIN(cppcoreguidelines-no-malloc)
 void* operator new(std::size_t bytes) {
-    return noted(std::malloc(bytes ? bytes : 1));
+    return counted(std::malloc(bytes ? bytes : 1));
 }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
     const auto multiple = static_cast<std::size_t>(alignment);
-    return noted(std::aligned_alloc(multiple, (bytes + multiple) / multiple * multiple));
+    return counted(std::aligned_alloc(multiple, (bytes + multiple) / multiple * multiple));
 }
 // NOLINTEND(cppcoreguidelines-no-malloc)
 // The sanitizers' own would not match our delete; std::stable_sort calls it.
@@ -43,17 +43,17 @@ void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
     }
 }
 void operator delete(void* memory) noexcept {
-    give_back(memory);
+    counted_free(memory);
 }
 void operator delete(void* memory, const std::nothrow_t&) noexcept {
-    give_back(memory);
+    counted_free(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-    give_back(memory);
+    counted_free(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    give_back(memory);
+    counted_free(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-    give_back(memory);
+    counted_free(memory);
 }

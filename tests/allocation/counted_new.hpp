@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// Every allocation of the process, as the operators new of this program see it.
+/// All allocations of the process, as counted by this program's operators new.
 struct allocation_log {
     std::size_t made = 0;
     std::size_t alive = 0;

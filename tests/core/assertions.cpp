@@ -8,7 +8,7 @@
 import aabb.std;
 import aabb;
 
-TEST_CASE("A broken promise of the caller ends the program, but not where assertions are left out") {
+TEST_CASE("a violated precondition aborts the program, unless assertions are disabled") {
     constexpr std::array descending{aabb::index_pair{2, 3}, aabb::index_pair{0, 1}};
     const pid_t child = fork();
     REQUIRE(child >= 0);

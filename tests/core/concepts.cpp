@@ -18,10 +18,10 @@ static_assert(CounterPolicy<no_counters> && CounterPolicy<work_counters>);
 static_assert(!SortPolicy<fake_sweep> && !SweepPolicy<fake_sort> && !TreePolicy<fake_triangle> &&
               !TrianglePolicy<fake_tree>);
 
-// What refuses another sort takes its own.
+// A sweep that rejects other sorts accepts its own.
 static_assert(rejection<fake_sort, fake_whole_partition, picky_sweep>().empty());
 
-// Without a partition there is nothing in a global search that a partition would need.
+// A global search without a partition has no members that only a partition needs.
 static_assert(sizeof(global_search<fake_sort, fake_whole_partition, fake_sweep>) + 5 * sizeof(std::vector<int>) <=
               sizeof(global_search<fake_sort, fake_cutting_partition, fake_sweep>));
 
@@ -43,13 +43,13 @@ std::vector<index_pair> pairs_with() {
 
 }  // namespace
 
-TEST_CASE("a global search works with the least that a strategy can be") {
+TEST_CASE("a global search works with minimal strategies") {
     CHECK(pairs_with<fake_whole_partition>() == row_pairs);
     CHECK(pairs_with<fake_cutting_partition>() == row_pairs);
     CHECK(pairs_with<fake_whole_partition, fake_coherent_sweep>() == row_pairs);
 }
 
-TEST_CASE("a local detection works with the least that a strategy can be") {
+TEST_CASE("a local detection works with minimal strategies") {
     const mesh steps{
         {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {4, 0, 0}, {5, 0, 0}, {4, 1, 0}, {8, 0, 0}, {9, 0, 0}, {8, 1, 0}},
         {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}}};

@@ -4,7 +4,7 @@ import aabb.costs;
 
 using namespace aabb;
 
-TEST_CASE("every cost has a name and a unit of its own, and none is free") {
+TEST_CASE("every cost has a unique name, a unit and a positive default") {
     static_assert(sizeof(cost_model) == cost_infos.size() * sizeof(double));
     std::set<std::string_view> names;
     cost_model other;
@@ -17,12 +17,12 @@ TEST_CASE("every cost has a name and a unit of its own, and none is free") {
     for (const cost_info& cost : cost_infos) CHECK(other.*cost.value == 0);
 }
 
-TEST_CASE("costs are the defaults until others are set, for the whole process") {
+TEST_CASE("machine costs are the defaults until others are set") {
     CHECK(machine_costs() == cost_model{});
-    cost_model dear;
-    dear.node_visit = 1000;
-    set_machine_costs(dear);
-    CHECK(machine_costs() == dear);
+    cost_model expensive;
+    expensive.node_visit = 1000;
+    set_machine_costs(expensive);
+    CHECK(machine_costs() == expensive);
     set_machine_costs({});
     CHECK(machine_costs() == cost_model{});
 }

@@ -5,16 +5,16 @@ import aabb;
 using namespace aabb;
 
 TEST_CASE("a digest is XXH3-64 of the little-endian u32 triples") {
-    digest none;
-    CHECK(none.text() == "2d06800538d394c2");  // of no bytes, as XXH3 defines it
+    digest empty;
+    CHECK(empty.text() == "2d06800538d394c2");  // of no bytes, as XXH3 defines it
     digest d;
     const std::vector<index_pair> first = {{0, 1}, {2, 3}};
     const std::vector<index_pair> second = {{0, 7}};
     d.add(0, first);
     d.add(1, second);
-    digest flat;
-    flat.add(std::array<std::uint32_t, 9>{0, 0, 1, 0, 2, 3, 1, 0, 7});
-    CHECK(d.value() == flat.value());
+    digest numbers;
+    numbers.add(std::array<std::uint32_t, 9>{0, 0, 1, 0, 2, 3, 1, 0, 7});
+    CHECK(d.value() == numbers.value());
     CHECK(d.text().size() == 16);
     digest other_frame;
     other_frame.add(0, first);
@@ -22,7 +22,7 @@ TEST_CASE("a digest is XXH3-64 of the little-endian u32 triples") {
     CHECK(d.value() != other_frame.value());
 }
 
-TEST_CASE("a digest is the same of many pairs at once and of each for itself") {
+TEST_CASE("a digest is the same whether pairs are added together or one by one") {
     std::vector<index_pair> pairs;
     for (std::uint32_t a = 0; a < 1000; ++a) pairs.push_back({a, a + 1});
     digest at_once;

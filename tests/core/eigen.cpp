@@ -41,7 +41,7 @@ void require_same_motion() {
 
 }  // namespace
 
-TEST_CASE("a pose is what a transform of Eigen's is") {
+TEST_CASE("a pose is the same motion as its Eigen transform") {
     require_same_motion<Eigen::Isometry3d>();
     require_same_motion<Eigen::Affine3d>();
     require_same_motion<Eigen::AffineCompact3d>();
@@ -49,12 +49,12 @@ TEST_CASE("a pose is what a transform of Eigen's is") {
     require_same_motion<row_major_affine>();
 }
 
-TEST_CASE("a transform of floats is a pose to within their rounding") {
+TEST_CASE("a transform of floats becomes a pose up to rounding") {
     const pose p = to_pose(to_transform<Eigen::Isometry3f>(any_pose()));
     for (std::size_t k = 0; k < 9; ++k) REQUIRE(p.rotation[k] == double{static_cast<float>(any_pose().rotation[k])});
 }
 
-TEST_CASE("a transform that is not rigid is refused") {
+TEST_CASE("a transform that is not rigid is rejected") {
     const auto rejects = [](const Eigen::Affine3d& transform, const char* sentence) {
         REQUIRE_THROWS_MATCHES(to_pose(transform), input_error, MessageMatches(ContainsSubstring(sentence)));
     };
@@ -63,7 +63,7 @@ TEST_CASE("a transform that is not rigid is refused") {
     rejects(Eigen::Affine3d(Eigen::Translation3d(0, NAN, 0)), "a translation that is not finite");
 }
 
-TEST_CASE("Eigen maps points, triangles and boxes of ours, in place") {
+TEST_CASE("Eigen maps the library's points, triangles and boxes in place") {
     mesh m = tetrahedron;
     auto points = map_over<Eigen::Map<Eigen::Matrix3Xf>>(m.vertices);
     REQUIRE(points.cols() == 4);
@@ -78,42 +78,42 @@ TEST_CASE("Eigen maps points, triangles and boxes of ours, in place") {
     const auto ends = map_over<Eigen::Map<const bounds>>(boxes);
     REQUIRE(ends(0, 1) == 6);
     REQUIRE(ends(5, 1) == 11);
-    std::vector<vec3f> none;
-    REQUIRE(map_over<Eigen::Map<Eigen::Matrix3Xf>>(none).cols() == 0);
+    std::vector<vec3f> empty;
+    REQUIRE(map_over<Eigen::Map<Eigen::Matrix3Xf>>(empty).cols() == 0);
 }
 
-TEST_CASE("points and boxes are where the user has them, aligned or not") {
+TEST_CASE("points_in and boxes_in refer to the user's memory, aligned or not") {
     std::array<float, 13> memory{};
     for (std::size_t i = 0; i < memory.size(); ++i) memory[i] = static_cast<float>(i);
-    // One float off whatever they were aligned to.
+    // One float off any alignment.
     const Eigen::Map<Eigen::Matrix3Xf> columns(memory.data() + 1, 3, 4);
     REQUIRE(points_in(columns).size() == 4);
     REQUIRE(points_in(columns)[3] == vec3f{10, 11, 12});
     REQUIRE(static_cast<const void*>(points_in(columns).data()) == memory.data() + 1);
     REQUIRE(points_in(Eigen::Map<const rows_of_points>(memory.data() + 1, 4, 3))[1] == vec3f{4, 5, 6});
-    const Eigen::Map<const bounds> two(memory.data() + 1, 6, 2);
-    REQUIRE(boxes_in(two)[1] == box{{7, 8, 9}, {10, 11, 12}});
-    const Eigen::Map<Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> apart(memory.data(), 3, 3, Eigen::OuterStride<>(4));
-    REQUIRE_THROWS_MATCHES(points_in(apart), input_error, MessageMatches(ContainsSubstring("not contiguous")));
-    const Eigen::Map<Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> one(memory.data(), 3, 1, Eigen::OuterStride<>(4));
-    REQUIRE(points_in(one).size() == 1);
+    const Eigen::Map<const bounds> box_columns(memory.data() + 1, 6, 2);
+    REQUIRE(boxes_in(box_columns)[1] == box{{7, 8, 9}, {10, 11, 12}});
+    const Eigen::Map<Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> strided(memory.data(), 3, 3, Eigen::OuterStride<>(4));
+    REQUIRE_THROWS_MATCHES(points_in(strided), input_error, MessageMatches(ContainsSubstring("not contiguous")));
+    const Eigen::Map<Eigen::Matrix3Xf, 0, Eigen::OuterStride<>> single(memory.data(), 3, 1, Eigen::OuterStride<>(4));
+    REQUIRE(points_in(single).size() == 1);
 }
 
-TEST_CASE("a mesh is made of a user's matrices, whichever way points stand in them") {
+TEST_CASE("a mesh is made from a user's matrices, with points in columns or rows") {
     const auto points = map_over<Eigen::Map<const Eigen::Matrix3Xf>>(tetrahedron.vertices);
     const auto corners = map_over<Eigen::Map<const indices>>(tetrahedron.triangles);
     const auto is_tetrahedron = [](const mesh& m) {
         return m.vertices == tetrahedron.vertices && m.triangles == tetrahedron.triangles;
     };
     REQUIRE(is_tetrahedron(to_mesh(points, corners)));
-    const Eigen::MatrixX3d in_rows = points.transpose().cast<double>();
-    const Eigen::MatrixX3i of_rows = corners.transpose().cast<int>();
-    REQUIRE(is_tetrahedron(to_mesh(in_rows, of_rows)));
-    Eigen::Matrix<std::int64_t, Eigen::Dynamic, 3> beyond = of_rows.cast<std::int64_t>();
-    for (const std::int64_t wrong : {std::int64_t{-1}, (std::int64_t{1} << 32) + 1}) {
-        beyond(2, 1) = wrong;
+    const Eigen::MatrixX3d point_rows = points.transpose().cast<double>();
+    const Eigen::MatrixX3i corner_rows = corners.transpose().cast<int>();
+    REQUIRE(is_tetrahedron(to_mesh(point_rows, corner_rows)));
+    Eigen::Matrix<std::int64_t, Eigen::Dynamic, 3> invalid = corner_rows.cast<std::int64_t>();
+    for (const std::int64_t index : {std::int64_t{-1}, (std::int64_t{1} << 32) + 1}) {
+        invalid(2, 1) = index;
         REQUIRE_THROWS_MATCHES(
-            to_mesh(in_rows, beyond), input_error,
-            MessageMatches(ContainsSubstring("triangle 2 uses vertex " + std::to_string(wrong) + ", which")));
+            to_mesh(point_rows, invalid), input_error,
+            MessageMatches(ContainsSubstring("triangle 2 uses vertex " + std::to_string(index) + ", which")));
     }
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The least that each kind of strategy must be. What compiles here is all that the concepts and the stages ask for.
+// Minimal strategies of each kind: what they have is all that the concepts and the stages require.
 
 import aabb.std;
 import aabb;
@@ -36,10 +36,10 @@ struct fake_cutting_partition {
     }
 };
 
-/// Sorts anything by `precedes`, and tells of its swaps.
+/// Sorts anything by `precedes`, and reports its swaps.
 struct fake_swapping_sort {
     static constexpr std::string_view name = "fake_swapping";
-    static constexpr std::string_view summary = "a bubble sort that tells";
+    static constexpr std::string_view summary = "a bubble sort that reports";
     static void sort(auto list, auto&, auto... on_swap) {
         for (std::size_t end = list.size(); end > 1; --end)
             for (std::size_t i = 1; i < end; ++i)
@@ -61,13 +61,13 @@ struct fake_coherent_sweep {
             for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
                 if (objects.contains(a) && objects.contains(b) && overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
     }
-    void search(std::vector<aabb::index_pair>& found) const { found.insert(found.end(), pairs.begin(), pairs.end()); }
+    void search(std::vector<aabb::index_pair>& out) const { out.insert(out.end(), pairs.begin(), pairs.end()); }
     [[nodiscard]] static aabb::axis_set axes() { return 0; }
 
     std::vector<aabb::index_pair> pairs;
 };
 
-/// Every pair of the subset, without looking at the order.
+/// Tests every pair of the subset, whatever the order.
 struct fake_sweep {
     static constexpr std::string_view name = "fake";
     static constexpr std::string_view summary = "all pairs of a subset";
@@ -83,7 +83,7 @@ struct fake_sweep {
     }
 };
 
-/// Refuses every sort but fake_sort.
+/// Rejects every sort but fake_sort.
 struct picky_sweep : fake_sweep {
     template <class Sort, class...>
     static constexpr std::string_view rejects() {
@@ -91,7 +91,7 @@ struct picky_sweep : fake_sweep {
     }
 };
 
-/// A tree of depth one: the root, and a leaf for each triangle, chained.
+/// Builds as many nodes as a tree has, each with the bounds of the mesh.
 struct fake_build {
     static constexpr std::string_view name = "fake";
     static constexpr std::string_view summary = "as many nodes as a tree has, and a box for the root";
@@ -104,32 +104,32 @@ static_assert(aabb::BuildPolicy<fake_build>);
 
 struct fake_tree {
     static constexpr std::string_view name = "fake";
-    static constexpr std::string_view summary = "a list of triangles dressed as a tree";
+    static constexpr std::string_view summary = "a list of triangles as a tree";
     struct cursor {
         std::uint32_t triangle;
         bool leaf;
     };
     static constexpr bool has_leaf_boxes = false;
     void pack(std::span<const aabb::build_node> nodes) {
-        all = nodes[0].bounds;
+        mesh_bounds = nodes[0].bounds;
         triangles = static_cast<std::uint32_t>(nodes.size() / 2 + 1);
     }
-    void refit(const aabb::mesh& m, std::vector<aabb::box>&) { all = bounds_of(m); }
+    void refit(const aabb::mesh& m, std::vector<aabb::box>&) { mesh_bounds = bounds_of(m); }
     [[nodiscard]] cursor root(const aabb::mesh&) const { return {0, triangles == 1}; }
     [[nodiscard]] static bool is_leaf(cursor at) { return at.leaf; }
     [[nodiscard]] std::array<cursor, 2> children(cursor at, const aabb::mesh&) const {
         return {cursor{at.triangle, true}, cursor{at.triangle + 1, at.triangle + 2 == triangles}};
     }
-    [[nodiscard]] aabb::box bounds(cursor) const { return all; }
+    [[nodiscard]] aabb::box bounds(cursor) const { return mesh_bounds; }
     [[nodiscard]] static std::uint32_t triangle(cursor at) { return at.triangle; }
     [[nodiscard]] static aabb::leaf_test_choice leaf_test() { return aabb::leaf_test_choice::none; }
     [[nodiscard]] static aabb::tree_bytes bytes() { return {}; }
 
-    aabb::box all{};
+    aabb::box mesh_bounds{};
     std::uint32_t triangles = 0;
 };
 
-/// Takes the overlap of the triangles' boxes for the answer.
+/// Reports triangles as intersecting if their boxes overlap.
 struct fake_triangle {
     static constexpr std::string_view name = "fake";
     static constexpr std::string_view summary = "boxes of triangles";

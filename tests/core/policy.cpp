@@ -47,7 +47,7 @@ tunable::config read(std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("a strategy with settings goes from text to a choice and back") {
+TEST_CASE("a strategy with settings is parsed from text and written back") {
     const strategy_choice choice = parse_strategy("shell:gaps=ciura,limit=2");
     CHECK(choice == strategy_choice{"shell", {{"gaps", "ciura"}, {"limit", "2"}}});
     CHECK(to_text(choice) == "shell:gaps=ciura,limit=2");
@@ -64,7 +64,7 @@ TEST_CASE("settings become the fields of a config") {
     CHECK(read("tunable:paint=red").paint == tunable::colour::red);
 }
 
-TEST_CASE("a value that is not one is refused with what was expected") {
+TEST_CASE("an invalid value is rejected with what is expected") {
     CHECK_REFUSED(read("tunable:weight=2"), "tunable: weight must be a number above 0 and at most 1, not '2'");
     CHECK_REFUSED(read("tunable:weight=0"), "tunable: weight must be a number above 0 and at most 1, not '0'");
     CHECK_REFUSED(read("tunable:weight=nan"), "tunable: weight must be a number above 0 and at most 1, not 'nan'");
@@ -74,7 +74,7 @@ TEST_CASE("a value that is not one is refused with what was expected") {
     CHECK_REFUSED(configured<plain>(parse_strategy("plain:x=1").settings), "plain takes no parameters, but 'x' is set");
 }
 
-TEST_CASE("a text is taken as it is, and is never empty") {
+TEST_CASE("a text parameter is taken verbatim, and must not be empty") {
     const std::vector<setting> settings{{"file", "a b,\"c\"+d=e"}};
     CHECK(configured<named>(settings).file == "a b,\"c\"+d=e");
     CHECK(configured<named>(settings).style == "plain");
@@ -97,7 +97,7 @@ TEST_CASE("parameters describe themselves") {
     CHECK(parameters_of<plain>().empty());
 }
 
-TEST_CASE("the nearest name is the one a typing slip away") {
+TEST_CASE("the nearest name is one typo away") {
     const std::vector<std::string> names = {"insertion", "std", "shell"};
     CHECK(nearest_name("shel", names) == "shell");
     CHECK(nearest_name("hsell", names) == "shell");
@@ -109,7 +109,7 @@ TEST_CASE("the nearest name is the one a typing slip away") {
     CHECK(edit_distance("same", "same") == 0);
 }
 
-TEST_CASE("a name that is far from all others has no nearest one") {
+TEST_CASE("a name that is far from all others has no nearest name") {
     const std::vector<std::string> names = {"insertion", "std", "shell"};
     for (const char* far : {"", "x", "columns", "bucket", "radix", "shovels", "shells_and_more"})
         CHECK(nearest_name(far, names).empty());

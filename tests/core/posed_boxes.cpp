@@ -2,8 +2,8 @@
 
 using namespace aabb;
 
-TEST_CASE("world boxes follow poses, and meshes that deform") {
-    told_scene scene({tetrahedron(1), tetrahedron(1)}, {1, 0, 1});
+TEST_CASE("world boxes follow poses and deforming meshes") {
+    manual_scene scene({tetrahedron(1), tetrahedron(1)}, {1, 0, 1});
     scene.soft = 1;
     posed_boxes world(scene);
     std::vector<pose> poses(3);
@@ -20,8 +20,8 @@ TEST_CASE("world boxes follow poses, and meshes that deform") {
     CHECK(world.bytes() == 5 * sizeof(box));
 }
 
-TEST_CASE("poses that are none, too few or too far are refused by the object's number") {
-    const told_scene scene({tetrahedron(1)}, {0, 0, 0});
+TEST_CASE("too few poses are rejected, and invalid or distant ones by the object's id") {
+    const manual_scene scene({tetrahedron(1)}, {0, 0, 0});
     posed_boxes world(scene);
     CHECK_REFUSED(world.update(std::vector<pose>(2)), "the scene has 3 objects, but the frame has 2 poses");
     std::vector<pose> poses(3);

@@ -8,10 +8,10 @@ using namespace aabb;
 
 namespace {
 
-/// Remembers what it was given.
-struct listening_sort {
-    static constexpr std::string_view name = "listening";
-    static constexpr std::string_view summary = "a sort that remembers";
+/// Records the ids that it is given.
+struct recording_sort {
+    static constexpr std::string_view name = "recording";
+    static constexpr std::string_view summary = "a sort that records";
     std::vector<std::vector<std::uint32_t>> given;
 
     void sort(std::span<projection> list, auto& counters) {
@@ -33,36 +33,36 @@ std::vector<std::uint32_t> ids_of(std::span<const projection> list) {
 
 }  // namespace
 
-TEST_CASE("only what moved is given to the sort, in the order of the list") {
+TEST_CASE("only moved objects are given to the sort, in the order of the list") {
     std::vector<box> boxes{at(0), at(10), at(20), at(30), at(40)};
     membership objects;
     for (std::uint32_t id = 0; id < 4; ++id) objects.insert(id);
     projection_lists<no_counters> lists;
-    listening_sort sort;
-    no_counters none;
-    const auto play = [&] {
+    recording_sort sort;
+    no_counters counters;
+    const auto run_frame = [&] {
         lists.settle(objects);
         objects.settle();
-        lists.sort(boxes, 0b001, sort, none);
+        lists.sort(boxes, 0b001, sort, counters);
         return ids_of(lists.all(boxes).lists[0]);
     };
-    // What arrives is not for the sort: it would be far from its place.
-    CHECK(play() == std::vector<std::uint32_t>{0, 1, 2, 3});
+    // New objects are not given to the sort: they would be far from their places.
+    CHECK(run_frame() == std::vector<std::uint32_t>{0, 1, 2, 3});
     CHECK(sort.given.empty());
-    CHECK(play() == std::vector<std::uint32_t>{0, 1, 2, 3});
+    CHECK(run_frame() == std::vector<std::uint32_t>{0, 1, 2, 3});
     CHECK(sort.given.empty());
     boxes[3] = at(5);
     boxes[1] = at(22);
-    CHECK(play() == std::vector<std::uint32_t>{0, 3, 2, 1});
+    CHECK(run_frame() == std::vector<std::uint32_t>{0, 3, 2, 1});
     CHECK(sort.given == std::vector<std::vector<std::uint32_t>>{{1, 3}});
     for (box& b : boxes) b.min[0] -= 1;
     objects.insert(4);
     objects.remove(2);
-    CHECK(play() == std::vector<std::uint32_t>{0, 3, 1, 4});
+    CHECK(run_frame() == std::vector<std::uint32_t>{0, 3, 1, 4});
     CHECK(sort.given.back() == std::vector<std::uint32_t>{0, 3, 1});
 }
 
-TEST_CASE("lists are sorted and complete, whatever moves, comes and goes, on whatever axes") {
+TEST_CASE("lists are sorted and complete on any axes, as objects move, come and go") {
     REQUIRE(rc::check([] {
         const auto n = *rc::gen::inRange<std::uint32_t>(0, 50);
         std::vector<box> boxes(n, at(0));
@@ -70,11 +70,11 @@ TEST_CASE("lists are sorted and complete, whatever moves, comes and goes, on wha
         membership objects;
         projection_lists<work_counters> lists;
         fake_sort sort;
-        work_counters some;
+        work_counters counters;
         for (int frame = 0; frame < 8; ++frame) {
-            const int unrest = *rc::gen::element(0, 1, 6);
+            const int one_in = *rc::gen::element(0, 1, 6);
             for (std::uint32_t id = 0; id < n; ++id) {
-                if (unrest > 0 && *rc::gen::inRange(0, unrest) == 0)
+                if (one_in > 0 && *rc::gen::inRange(0, one_in) == 0)
                     for (int k = 0; k < 3; ++k) boxes[id].min[k] = static_cast<float>(*rc::gen::inRange(0, 9));
                 if (*rc::gen::inRange(0, 4) == 0) {
                     present[id] ? objects.remove(id) : objects.insert(id);
@@ -84,7 +84,7 @@ TEST_CASE("lists are sorted and complete, whatever moves, comes and goes, on wha
             const auto axes = *rc::gen::inRange<axis_set>(1, 8);
             lists.settle(objects);
             objects.settle();
-            lists.sort(boxes, axes, sort, some);
+            lists.sort(boxes, axes, sort, counters);
             RC_ASSERT(lists.axes() == axes);
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto list = lists.all(boxes).lists[k];
@@ -99,7 +99,7 @@ TEST_CASE("lists are sorted and complete, whatever moves, comes and goes, on wha
     }));
 }
 
-TEST_CASE("inversions are counted as a double loop would") {
+TEST_CASE("inversions are counted like in a double loop") {
     REQUIRE(rc::check([] {
         std::vector<projection> list(*rc::gen::inRange<std::size_t>(0, 100));
         for (projection& p : list) p = {static_cast<float>(*rc::gen::inRange(0, 20)), 0};

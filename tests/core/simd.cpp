@@ -15,7 +15,7 @@ simd::words numbers(std::uint32_t factor, std::uint32_t offset) {
 
 }  // namespace
 
-TEST_CASE("a set of lanes is stored one after the other") {
+TEST_CASE("compress_store stores a set of lanes contiguously") {
     for (std::uint32_t set = 0; set <= simd::every_lane; set += n == 16 ? 37 : 1) {
         std::array<std::uint32_t, 2 * n> to{};
         const simd::words v = numbers(3, 5);
@@ -26,18 +26,18 @@ TEST_CASE("a set of lanes is stored one after the other") {
     }
 }
 
-TEST_CASE("lanes below an end are none below 0, and at most all") {
+TEST_CASE("lanes_below is empty up to 0, and at most all lanes") {
     for (int end = -3; end < static_cast<int>(n) + 3; ++end) {
         const std::uint32_t expected = end <= 0                     ? 0
                                        : end >= static_cast<int>(n) ? simd::every_lane
                                                                     : (std::uint32_t{1} << end) - 1;
-        const simd::words all = simd::lanes_below(simd::broadcast(static_cast<std::uint32_t>(end)));
-        for (std::size_t i = 0; i < n; ++i) REQUIRE(all[i] == expected);
+        const simd::words lanes = simd::lanes_below(simd::broadcast(static_cast<std::uint32_t>(end)));
+        for (std::size_t i = 0; i < n; ++i) REQUIRE(lanes[i] == expected);
         if (end >= 0) REQUIRE(simd::lanes_below(static_cast<std::size_t>(end)) == expected);
     }
 }
 
-TEST_CASE("rows become columns and columns rows") {
+TEST_CASE("rows are transposed to columns and back") {
     std::vector<float> sixes(6 * n);
     for (std::size_t i = 0; i < sixes.size(); ++i) sixes[i] = static_cast<float>(i);
     simd::floats columns[6];
@@ -55,7 +55,7 @@ TEST_CASE("rows become columns and columns rows") {
     REQUIRE(back == fours);
 }
 
-TEST_CASE("numbers of 16 bits are multiplied and taken from each other in halves") {
+TEST_CASE("16-bit halves are multiplied, and subtracted with saturation") {
     const simd::words a = numbers(0x1234'5679U, 0xffff'0001U);
     const simd::words b = numbers(0x0f31'7a11U, 0x8001'ffffU);
     const simd::words products = simd::high_products(a, b);
@@ -69,7 +69,7 @@ TEST_CASE("numbers of 16 bits are multiplied and taken from each other in halves
         }
 }
 
-TEST_CASE("sums run, places are gathered, comparisons become bits") {
+TEST_CASE("prefix sums, gathers and comparison bits equal those of scalar code") {
     const simd::words v = numbers(11, 2);
     const simd::words sums = simd::prefix_sum(v);
     std::array<std::uint32_t, 4 * n> table{};
@@ -89,24 +89,24 @@ TEST_CASE("sums run, places are gathered, comparisons become bits") {
     REQUIRE(simd::bits(simd::places() == simd::places()) == simd::every_lane);
 }
 
-TEST_CASE("eight numbers at a time: taken by place, whole parts as bytes, compared each with each") {
+TEST_CASE("eight numbers are permuted, converted to bytes and compared each with each") {
     const std::array<float, 8> from{-1, 0.5F, 254.9F, 255, 256, 1e30F, std::numeric_limits<float>::quiet_NaN(), 7.99F};
     const simd::eight_words places{7, 8, 1, 2, 3, 4, 13, 15};
     const simd::eight_floats taken = simd::permuted(from.data(), places);
     for (int i = 0; i < 8; ++i) {
-        const float wanted = from[places[i] & 7U];
-        REQUIRE((taken[i] == wanted || (taken[i] != taken[i] && wanted != wanted)));
+        const float source = from[places[i] & 7U];
+        REQUIRE((taken[i] == source || (taken[i] != taken[i] && source != source)));
     }
     const simd::eight_bytes whole = simd::whole_bytes(simd::load_eight<simd::eight_floats>(from.data()));
     const std::array<int, 8> expected{0, 0, 254, 254, 254, 254, 0, 7};
     for (int i = 0; i < 8; ++i) REQUIRE(int{whole[i]} == expected[static_cast<std::size_t>(i)]);
     const std::array<std::uint8_t, 8> a{0, 1, 127, 128, 200, 254, 255, 7};
-    const std::uint64_t held = simd::pairs_no_greater(a.data(), whole);
+    const std::uint64_t no_greater = simd::pairs_no_greater(a.data(), whole);
     for (unsigned j = 0; j < 8; ++j)
-        for (unsigned i = 0; i < 8; ++i) REQUIRE((held >> (8 * j + i) & 1U) == (a[i] <= whole[j] ? 1U : 0U));
+        for (unsigned i = 0; i < 8; ++i) REQUIRE((no_greater >> (8 * j + i) & 1U) == (a[i] <= whole[j] ? 1U : 0U));
 }
 
-TEST_CASE("the whole part of a number in 16 bits never falls when the number grows") {
+TEST_CASE("conversion to 16-bit integers is monotone") {
     constexpr float inf = std::numeric_limits<float>::infinity();
     const simd::sixteen_floats growing{-inf, -1e38F, -32768, -32767, -32766.5F, -2.5F, -1,   -0.5F,
                                        0,    1e-40F, 0.999F, 1,      32766.5F,  32767, 1e9F, inf};
@@ -117,13 +117,13 @@ TEST_CASE("the whole part of a number in 16 bits never falls when the number gro
     CHECK(simd::bits_of_sixteen(whole < simd::sixteen_halves{}) == 0x7fU);
     CHECK(simd::least(-growing) == -inf);
     for (int i = 0; i < 16; ++i) {
-        simd::sixteen_floats one{};
-        one[i] = -1;
-        CHECK(simd::least(one) == -1);
+        simd::sixteen_floats values{};
+        values[i] = -1;
+        CHECK(simd::least(values) == -1);
     }
 }
 
-TEST_CASE("places of set bits come in order") {
+TEST_CASE("the indices of set bits are stored in order") {
     for (const std::uint64_t set : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{1} << 63, ~std::uint64_t{0},
                                     std::uint64_t{0x8421f00d00c0ffee}}) {
         std::array<std::uint8_t, 64> places{};
@@ -134,7 +134,7 @@ TEST_CASE("places of set bits come in order") {
     }
 }
 
-TEST_CASE("sixteen numbers of one to four bytes are read, the first one in place of those that are not there") {
+TEST_CASE("unpack_sixteen reads numbers of one to four bytes, and repeats the first for missing ones") {
     for (std::size_t bytes = 1; bytes <= 4; ++bytes)
         for (std::uint32_t count = 1; count <= 16; ++count) {
             std::array<std::byte, 64 + 64> from{};
@@ -165,7 +165,7 @@ TEST_CASE("columns that share a number are found") {
         }
 }
 
-TEST_CASE("eight points become three columns") {
+TEST_CASE("eight points are transposed to three columns") {
     std::array<std::array<float, 3>, 8> points{};
     std::array<const float*, 8> from{};
     for (std::size_t i = 0; i < 8; ++i) {

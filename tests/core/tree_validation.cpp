@@ -6,10 +6,10 @@ using namespace aabb;
 
 namespace {
 
-/// A tree as it is told to be, right or wrong.
-struct told_tree {
-    static constexpr std::string_view name = "told";
-    static constexpr std::string_view summary = "what a test says";
+/// A tree as the test gives it, valid or not.
+struct given_tree {
+    static constexpr std::string_view name = "given";
+    static constexpr std::string_view summary = "what a test gives";
     static constexpr bool has_leaf_boxes = true;
     using cursor = std::size_t;
 
@@ -29,43 +29,43 @@ struct told_tree {
     [[nodiscard]] std::uint32_t triangle(cursor at) const { return nodes[at].triangle; }
     [[nodiscard]] static tree_bytes bytes() { return {}; }
 };
-static_assert(TreePolicy<told_tree>);
+static_assert(TreePolicy<given_tree>);
 
-const mesh two{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}}, {{0, 1, 2}, {3, 3, 3}}};
-const box all{{0, 0, 0}, {5, 5, 5}};
+const mesh two_triangles{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}}, {{0, 1, 2}, {3, 3, 3}}};
+const box root_box{{0, 0, 0}, {5, 5, 5}};
 const box left{{0, 0, 0}, {1, 1, 0}};
 const box right{{5, 5, 5}, {5, 5, 5}};
 
-tree_validation validate_tree(std::vector<told_tree::node> nodes) {
-    return validate(told_tree{std::move(nodes)}, two);
+tree_validation validate_tree(std::vector<given_tree::node> nodes) {
+    return validate(given_tree{std::move(nodes)}, two_triangles);
 }
 
 }  // namespace
 
-TEST_CASE("a survey finds nothing wrong with a tree that is right") {
-    const tree_validation validated = validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
-    CHECK(validated.fault.empty());
-    CHECK(validated.depth == 1);
-    CHECK(validated.tight);
-    CHECK(validated.area_inflation == 0);
+TEST_CASE("validation finds no fault in a valid tree") {
+    const tree_validation validation = validate_tree({{root_box, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
+    CHECK(validation.fault.empty());
+    CHECK(validation.depth == 1);
+    CHECK(validation.tight);
+    CHECK(validation.area_inflation == 0);
 }
 
-TEST_CASE("a survey tells of boxes that are larger than they must be") {
-    const tree_validation validated =
+TEST_CASE("validation reports boxes that are larger than necessary") {
+    const tree_validation validation =
         validate_tree({{{{0, 0, 0}, {5, 5, 10}}, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}});
-    CHECK(validated.fault.empty());
-    CHECK_FALSE(validated.tight);
-    CHECK(validated.area_inflation == (250.0 + 2) / (150.0 + 2) - 1);
+    CHECK(validation.fault.empty());
+    CHECK_FALSE(validation.tight);
+    CHECK(validation.area_inflation == (250.0 + 2) / (150.0 + 2) - 1);
 }
 
-TEST_CASE("a survey finds what is wrong with a tree") {
+TEST_CASE("validation finds the fault of an invalid tree") {
     CHECK(validate_tree({{{{0, 0, 0}, {4, 5, 5}}, {1, 2}, 0}, {left, {}, 0}, {right, {}, 1}}).fault ==
           "a box does not contain the triangles below it");
-    CHECK(validate_tree({{all, {1, 2}, 0}, {{{0, 0, 0}, {1, 0.5F, 0}}, {}, 0}, {right, {}, 1}}).fault ==
+    CHECK(validate_tree({{root_box, {1, 2}, 0}, {{{0, 0, 0}, {1, 0.5F, 0}}, {}, 0}, {right, {}, 1}}).fault ==
           "a box does not contain the triangles below it");
-    CHECK(validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {left, {}, 0}}).fault == "triangle 0 is in two leaves");
-    CHECK(validate_tree({{all, {1, 2}, 0}, {left, {}, 0}, {right, {}, 7}}).fault ==
+    CHECK(validate_tree({{root_box, {1, 2}, 0}, {left, {}, 0}, {left, {}, 0}}).fault == "triangle 0 is in two leaves");
+    CHECK(validate_tree({{root_box, {1, 2}, 0}, {left, {}, 0}, {right, {}, 7}}).fault ==
           "a leaf holds triangle 7, which the mesh does not have");
     CHECK(validate_tree({{left, {}, 0}}).fault == "triangle 1 is in no leaf");
-    CHECK(validate_tree({{all, {0, 1}, 0}, {right, {}, 1}}).fault == "the tree has more levels than triangles");
+    CHECK(validate_tree({{root_box, {0, 1}, 0}, {right, {}, 1}}).fault == "the tree has more levels than triangles");
 }

@@ -10,7 +10,7 @@ float any_number(float size) {
     return static_cast<float>(uniform(-1, 1)) * size;
 }
 
-/// Of this size on each axis, and so far from the origin.
+/// A box of up to this size on each axis, at this offset from the origin.
 box any_box(const vec3f& size, const vec3f& offset) {
     box b = empty_box();
     for (int i = 0; i < 2; ++i)
@@ -22,8 +22,8 @@ vec3f corner(const box& b, unsigned which) {
     return {which & 1 ? b.max[0] : b.min[0], which & 2 ? b.max[1] : b.min[1], which & 4 ? b.max[2] : b.min[2]};
 }
 
-/// Exactly: a corner of the triangle lies in the box, or the triangle meets one of the box's faces.
-bool truly_meets(const triangle3f& t, const box& b) {
+/// Decided exactly: a corner of the triangle lies in the box, or the triangle intersects one of the box's faces.
+bool exactly_intersects(const triangle3f& t, const box& b) {
     for (int i = 0; i < 3; ++i)
         if (contains(b, bounds_of(t[i]))) return true;
     constexpr std::array<std::array<unsigned, 4>, 6> faces = {
@@ -35,14 +35,14 @@ bool truly_meets(const triangle3f& t, const box& b) {
     return false;
 }
 
-/// Through a corner of the box or a point of its edge, so that it touches, as far as floats can tell.
+/// A triangle through a corner of the box or a point of its edge, so that it touches up to rounding.
 triangle3f touching(const box& b, const vec3f& size) {
     const vec3f on = corner(b, *rc::gen::inRange(0U, 8U));
     vec3f along = on;
     const int axis = *rc::gen::inRange(0, 3);
     along[axis] = any_number(size[axis]);
     triangle3f t{{{any_number(size[0]), any_number(size[1]), any_number(size[2])}, {}, {}}};
-    // The corner halves the way, or lies on the triangle's own corner or edge.
+    // The corner is the midpoint of an edge of the triangle, or lies on a corner or another edge of it.
     for (int k = 0; k < 3; ++k) {
         t[1][k] = *rc::gen::element(2 * on[k] - t[0][k], on[k]);
         t[2][k] = *rc::gen::element(along[k], 2 * along[k] - t[0][k], any_number(size[k]));
@@ -52,10 +52,10 @@ triangle3f touching(const box& b, const vec3f& size) {
 
 }  // namespace
 
-TEST_CASE("the triangle-box test never parts what meets; without its margin it would") {
-    int lost_by_the_original = 0;
-    int lost_without_margin = 0;
-    int meeting = 0;
+TEST_CASE("the triangle-box test misses no intersection, but would without its margin") {
+    int missed_by_original = 0;
+    int missed_without_margin = 0;
+    int intersecting = 0;
     int culled = 0;
     REQUIRE(rc::check([&] {
         for (int i = 0; i < 100; ++i) {
@@ -69,43 +69,43 @@ TEST_CASE("the triangle-box test never parts what meets; without its margin it w
             }
             const box b = any_box(size, offset);
             const triangle3f t = touching(b, size);
-            if (truly_meets(t, b)) {
-                ++meeting;
-                lost_without_margin += !triangle_meets_box(t, b, 0, 0);
-                lost_by_the_original += !moller_triangle_meets_box(t, b);
+            if (exactly_intersects(t, b)) {
+                ++intersecting;
+                missed_without_margin += !triangle_meets_box(t, b, 0, 0);
+                missed_by_original += !moller_triangle_meets_box(t, b);
                 RC_ASSERT(triangle_meets_box(t, b));
             } else {
                 culled += !triangle_meets_box(t, b);
             }
         }
     }));
-    CHECK(meeting > 1000);
+    CHECK(intersecting > 1000);
     CHECK(culled > 1000);
-    CHECK(lost_without_margin > 0);
-    CHECK(lost_by_the_original > 0);
+    CHECK(missed_without_margin > 0);
+    CHECK(missed_by_original > 0);
 }
 
-TEST_CASE("the triangle-box test parts what is apart by more than rounding, on each of its axes") {
-    int apart = 0;
+TEST_CASE("the triangle-box test separates what is disjoint by more than rounding, on each of its axes") {
+    int disjoint = 0;
     REQUIRE(rc::check([&] {
         const box b = any_box({1, 1, 1}, {0, 0, 0});
-        box near = b;
+        box grown = b;
         for (int k = 0; k < 3; ++k) {
-            near.min[k] -= 1e-4F;
-            near.max[k] += 1e-4F;
+            grown.min[k] -= 1e-4F;
+            grown.max[k] += 1e-4F;
         }
         triangle3f t;
         for (int i = 0; i < 3; ++i) t[i] = {any_number(2), any_number(2), any_number(2)};
-        if (!truly_meets(t, near)) {
-            ++apart;
+        if (!exactly_intersects(t, grown)) {
+            ++disjoint;
             RC_ASSERT(!triangle_meets_box(t, b));
             RC_ASSERT(!moller_triangle_meets_box(t, b));
-        } else if (truly_meets(t, b)) {
+        } else if (exactly_intersects(t, b)) {
             RC_ASSERT(triangle_meets_box(t, b));
         }
     }));
-    CHECK(apart > 10);
-    // Past an edge of the cube, slanted: no axis of the box and not the normal, but a product of edges tells.
+    CHECK(disjoint > 10);
+    // Slanted, past an edge of the cube: only a cross product of edges separates them, no box axis and not the normal.
     const box cube{{-1, -1, -1}, {1, 1, 1}};
     CHECK_FALSE(triangle_meets_box({{{2.1F, 0.5F, 0}, {0.5F, 2.1F, 0}, {2, 2, 1}}}, cube));
     CHECK_FALSE(moller_triangle_meets_box({{{2.1F, 0.5F, 0}, {0.5F, 2.1F, 0}, {2, 2, 1}}}, cube));

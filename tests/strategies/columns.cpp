@@ -23,7 +23,7 @@ std::vector<box> random_boxes(std::size_t n, double world, double size, unsigned
     return boxes;
 }
 
-/// From one sorted list, in order.
+/// By sweeping a single sorted list.
 std::vector<index_pair> true_pairs(const std::vector<box>& boxes) {
     return found_by(*search_of(composed({{strategy_kind::sort, "std"}}), boxes.size()), boxes);
 }
@@ -39,7 +39,7 @@ struct search_by_columns : global_search<bucket_sort, columns_partition, simd_sw
     }
 };
 
-/// Tests of boxes in a frame, whose pairs must be exact.
+/// The box tests of a frame, whose pairs must be exact.
 std::uint64_t tests_of(search_by_columns& search, const std::vector<box>& boxes,
                        const std::vector<index_pair>& expected) {
     const std::uint64_t before = search.counters()[work::box_tests];
@@ -47,8 +47,8 @@ std::uint64_t tests_of(search_by_columns& search, const std::vector<box>& boxes,
     return search.counters()[work::box_tests] - before;
 }
 
-/// On which axes a frame is flat.
-constexpr std::array<unsigned, 7> level_axes{0, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110};
+/// Sets of axes on which a frame is flat.
+constexpr std::array<unsigned, 7> flat_axes{0, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110};
 
 std::vector<box> flattened(std::vector<box> boxes, unsigned axes) {
     for (box& b : boxes)
@@ -57,13 +57,13 @@ std::vector<box> flattened(std::vector<box> boxes, unsigned axes) {
     return boxes;
 }
 
-/// Of a world in which so many boxes of edge 1 have a few neighbours each.
+/// The side of a world in which n boxes of edge 1 have a few neighbours each.
 double side_of(std::size_t n) {
     return 2 * std::cbrt(static_cast<double>(n));
 }
 
-/// Boxes that are spread evenly over clumps, whose corners are told; the further away, the larger, so that floats can
-/// tell them apart.
+/// Boxes that are spread evenly over clumps with the given corners; the further away, the larger, so that floats can
+/// distinguish them.
 template <class Corner>
 std::vector<box> clumps_of(std::size_t n, std::size_t clumps, Corner corner) {
     std::vector<box> boxes = random_boxes(n, side_of(n / clumps), 1, 7);
@@ -79,8 +79,8 @@ std::vector<box> clumps_of(std::size_t n, std::size_t clumps, Corner corner) {
     return boxes;
 }
 
-/// Work of a frame, exact, and of what follows from it.
-double work_a_box(const std::vector<box>& boxes) {
+/// The work per box of a frame, whose pairs must be exact.
+double work_per_box(const std::vector<box>& boxes) {
     search_by_columns search(boxes.size());
     CHECK(found_by(search, boxes) == true_pairs(boxes));
     std::uint64_t sum = 0;
@@ -91,7 +91,7 @@ double work_a_box(const std::vector<box>& boxes) {
 
 }  // namespace
 
-TEST_CASE("groups of any size find the same pairs, in an order that no number of threads changes") {
+TEST_CASE("groups of any size find the same pairs, in the same order on any number of threads") {
     const std::vector<box> boxes = random_boxes(20'000, 27, 0.7, 1);
     const std::vector<index_pair> expected = true_pairs(boxes);
     const std::vector<box> elsewhere = random_boxes(20'000, 27, 0.7, 2);
@@ -115,12 +115,12 @@ TEST_CASE("groups of any size find the same pairs, in an order that no number of
     }
 }
 
-TEST_CASE("more boxes than one group takes are put into groups") {
+TEST_CASE("boxes that exceed one group are divided into groups") {
     const std::vector<box> boxes = random_boxes(50'000, 80, 1, 2);
     CHECK(found_by(*search_of(columns_with(""), boxes.size()), boxes) == true_pairs(boxes));
 }
 
-TEST_CASE("of a search the share is told that cuts and sorts groups, which is work of an update") {
+TEST_CASE("share_of_update is the share of a search that cuts and sorts groups") {
     for (const auto& [boxes, in_groups] : {std::pair{20'000, false}, std::pair{50'000, true}})
         for (const char* prepare : {"none", "split_large"}) {
             INFO(boxes << " boxes, prepare=" << prepare);
@@ -131,27 +131,27 @@ TEST_CASE("of a search the share is told that cuts and sorts groups, which is wo
             found_by(*search, frame);
             CHECK((search->share_of_update() > 0) == in_groups);
             CHECK(search->share_of_update() < 1);
-            // Of pairs that are kept from the frame before, nothing.
+            // Pairs that are kept from the previous frame have no such share.
             for (int again = 0; again < 2; ++again) found_by(*search, frame);
             CHECK(search->share_of_update() == 0);
         }
 }
 
-TEST_CASE("of a few boxes none is cut, whichever come and go") {
+TEST_CASE("boxes up to the brute-force threshold are not cut, as objects come and go") {
     const std::vector<box> boxes = random_boxes(40, 3, 0.7, 3);
-    const std::vector<index_pair> all = true_pairs(boxes);
+    const std::vector<index_pair> all_pairs = true_pairs(boxes);
     const auto search = global_of(columns_with(":few=20"), instrumentation::counters);
     std::vector<bool> present(boxes.size());
-    // Frames of so many, the lowest ids absent.
+    // Numbers of boxes in the frames; the lowest ids are absent.
     for (const std::size_t n : {std::size_t{3}, std::size_t{20}, std::size_t{21}, std::size_t{40}, std::size_t{20},
                                 std::size_t{17}, std::size_t{33}, std::size_t{0}, std::size_t{1}}) {
         INFO(n << " boxes");
         for (std::uint32_t id = 0; id < boxes.size(); ++id) {
-            const bool wanted = id >= boxes.size() - n;
-            if (wanted != present[id]) wanted ? search->insert(id) : search->remove(id);
-            present[id] = wanted;
+            const bool is_present = id >= boxes.size() - n;
+            if (is_present != present[id]) is_present ? search->insert(id) : search->remove(id);
+            present[id] = is_present;
         }
-        std::vector<index_pair> expected = all;
+        std::vector<index_pair> expected = all_pairs;
         std::erase_if(expected, [&](index_pair p) { return !present[p.a] || !present[p.b]; });
         const work_counters before = search->counters();
         CHECK(found_by(*search, boxes) == expected);
@@ -162,40 +162,40 @@ TEST_CASE("of a few boxes none is cut, whichever come and go") {
     }
 }
 
-TEST_CASE("columns are planned anew once boxes lie elsewhere") {
+TEST_CASE("columns are planned again once boxes have moved") {
     const std::vector<box> heap = random_boxes(3000, 14, 1, 1);
     for (const double wide : {1.6, 4.0, 0.4})
-        for (const float way : {0.0F, 500.0F}) {
+        for (const float shift : {0.0F, 500.0F}) {
             std::vector<box> later = random_boxes(3000, 14 * wide, 1, 1);
-            for (box& b : later) b = moved(b, {way, 0, 0});
-            search_by_columns anew(heap.size());
-            search_by_columns seen(heap.size());
-            found_by(seen, heap);
-            INFO(wide << " times as wide, " << way << " away");
+            for (box& b : later) b = moved(b, {shift, 0, 0});
+            search_by_columns fresh(heap.size());
+            search_by_columns reused(heap.size());
+            found_by(reused, heap);
+            INFO(wide << " times as wide, " << shift << " away");
             const std::vector<index_pair> expected = true_pairs(later);
-            CHECK(tests_of(seen, later, expected) == tests_of(anew, later, expected));
+            CHECK(tests_of(reused, later, expected) == tests_of(fresh, later, expected));
         }
 }
 
-TEST_CASE("a few boxes far away do not widen a plan much") {
+TEST_CASE("a few distant boxes hardly widen a plan") {
     std::vector<box> boxes = random_boxes(12'800, 50, 1, 9);
     for (std::size_t i = 0; i < boxes.size(); i += 200) boxes[i] = moved(boxes[i], {1e6F, 1e6F, 1e6F});
     const column_plan plan = columns_partition().plan(boxes, everywhere);
     for (int k = 0; k < 3; ++k) {
-        // One in 200 is away; one in 64 is left out on either side, not one in 8.
+        // One in 200 is distant; one in 64 is left out at either end, not one in 8.
         CHECK(plan.origin[k] < 3);
         CHECK(65'536 / plan.scale[k] > 46);
         CHECK(65'536 / plan.scale[k] < 53);
     }
 }
 
-TEST_CASE("groups are in proportion to the columns, and cut along them where those are too few") {
-    const auto groups = [](int axis, std::uint32_t u, std::uint32_t v, std::uint32_t along, double wanted) {
+TEST_CASE("groups are proportional to the columns, and cut along them if columns are too few") {
+    const auto groups = [](int axis, std::uint32_t u, std::uint32_t v, std::uint32_t along, double count) {
         column_plan plan;
         plan.axis = axis;
         plan.across = {u, v};
         plan.most_along = along;
-        plan.groups = wanted;
+        plan.groups = count;
         return column_groups::group_grid(plan);
     };
     const auto on_axis = [](const column_plan& plan, int axis) {
@@ -227,9 +227,9 @@ TEST_CASE("groups are in proportion to the columns, and cut along them where tho
     }
 }
 
-TEST_CASE("boxes on a line and in a plane, too, are put into groups, along any axis") {
-    for (const unsigned axes : std::span(level_axes).subspan(1)) {
-        INFO("level on axes " << axes);
+TEST_CASE("boxes on a line or in a plane are divided into groups, along any axis") {
+    for (const unsigned axes : std::span(flat_axes).subspan(1)) {
+        INFO("flat on axes " << axes);
         const std::vector<box> boxes = flattened(random_boxes(3000, 500, 1, 8), axes);
         search_by_columns search(boxes.size(), {.group = 200});
         CHECK(found_by(search, boxes) == true_pairs(boxes));
@@ -238,7 +238,7 @@ TEST_CASE("boxes on a line and in a plane, too, are put into groups, along any a
     }
 }
 
-TEST_CASE("a frame unlike the one that was planned for costs little more than one planned for it") {
+TEST_CASE("a frame unlike the planned one costs little more than with its own plan") {
     const std::size_t n = 12'000;
     const std::vector<box> cubes = random_boxes(n, 50, 1, 3);
     const auto changed = [&](auto change) {
@@ -264,91 +264,91 @@ TEST_CASE("a frame unlike the one that was planned for costs little more than on
         for (const std::uint32_t group : {100'000U, 1'500U}) {
             INFO(name << ", groups of " << group);
             search_by_columns fresh(n, {.group = group});
-            search_by_columns surprised(n, {.group = group});
-            for (int frame = 0; frame < 3; ++frame) found_by(surprised, cubes);
-            CHECK(tests_of(surprised, boxes, expected) < 3 * tests_of(fresh, boxes, expected) + 100 * n);
+            search_by_columns stale(n, {.group = group});
+            for (int frame = 0; frame < 3; ++frame) found_by(stale, cubes);
+            CHECK(tests_of(stale, boxes, expected) < 3 * tests_of(fresh, boxes, expected) + 100 * n);
         }
     }
 }
 
-TEST_CASE("a few boxes far from all others do not spoil the columns of these") {
+TEST_CASE("a few outliers do not spoil the columns of the other boxes") {
     const std::size_t n = 12'000;
     const std::vector<box> cubes = random_boxes(n, 50, 1, 5);
-    const auto tests_with = [&](std::size_t every, float reach) {
-        const auto away = [&](std::size_t i) { return reach * std::sin(static_cast<float>(i)); };
+    const auto tests_with = [&](std::size_t every, float distance) {
+        const auto shift = [&](std::size_t i) { return distance * std::sin(static_cast<float>(i)); };
         std::vector<box> boxes = cubes;
-        for (std::size_t i = 0; i < n; i += every) boxes[i] = moved(boxes[i], {away(i), away(i + 7), away(i + 14)});
+        for (std::size_t i = 0; i < n; i += every) boxes[i] = moved(boxes[i], {shift(i), shift(i + 7), shift(i + 14)});
         search_by_columns search(n);
         return tests_of(search, boxes, true_pairs(boxes));
     };
-    const std::uint64_t without = tests_with(n, 0);
-    CHECK(tests_with(n, 1e6F) < 3 * without);
-    CHECK(tests_with(1000, 1e6F) < 3 * without);
-    CHECK(tests_with(100, 1e5F) < 3 * without);
-    CHECK(tests_with(12, 1e5F) < 20 * without);
+    const std::uint64_t baseline = tests_with(n, 0);
+    CHECK(tests_with(n, 1e6F) < 3 * baseline);
+    CHECK(tests_with(1000, 1e6F) < 3 * baseline);
+    CHECK(tests_with(100, 1e5F) < 3 * baseline);
+    CHECK(tests_with(12, 1e5F) < 20 * baseline);
 }
 
-TEST_CASE("clumps cost about what they would side by side, however far apart") {
+TEST_CASE("clumps cost about as much as evenly spread boxes, at any spacing") {
     for (const std::size_t n : {std::size_t{600}, std::size_t{4000}}) {
-        const double even = work_a_box(random_boxes(n, side_of(n), 1, 1));
+        const double even = work_per_box(random_boxes(n, side_of(n), 1, 1));
         for (const std::size_t clumps : {2, 8, 30})
-            for (const double apart : {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e9, 1e15, 1e30}) {
-                INFO(n << " boxes in " << clumps << " clumps, " << apart << " apart");
-                CHECK(work_a_box(clumps_of(n, clumps, [&](std::size_t c, int k) {
-                          return apart * std::sin(static_cast<double>(1 + 3 * c + static_cast<std::size_t>(k)));
+            for (const double gap : {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e9, 1e15, 1e30}) {
+                INFO(n << " boxes in " << clumps << " clumps, " << gap << " apart");
+                CHECK(work_per_box(clumps_of(n, clumps, [&](std::size_t c, int k) {
+                          return gap * std::sin(static_cast<double>(1 + 3 * c + static_cast<std::size_t>(k)));
                       })) < 6 * even);
             }
     }
 }
 
-TEST_CASE("clumps of clumps, boxes parked far off, and some at the end of the world cost little more") {
+TEST_CASE("nested clumps, distant boxes and boxes at the limits of float cost little more") {
     const std::size_t n = 4000;
-    const double even = work_a_box(random_boxes(n, side_of(n), 1, 1));
-    for (const double apart : {1e2, 1e4, 1e6}) {
-        INFO(apart);
-        CHECK(work_a_box(clumps_of(n, 64, [&](std::size_t c, int k) {
-                  return apart * (apart * static_cast<double>(c / 8 >> k & 1) + static_cast<double>(c % 8 >> k & 1));
+    const double even = work_per_box(random_boxes(n, side_of(n), 1, 1));
+    for (const double gap : {1e2, 1e4, 1e6}) {
+        INFO(gap);
+        CHECK(work_per_box(clumps_of(n, 64, [&](std::size_t c, int k) {
+                  return gap * (gap * static_cast<double>(c / 8 >> k & 1) + static_cast<double>(c % 8 >> k & 1));
               })) < 6 * even);
         for (const int axis : {0, 1, 2})
-            CHECK(work_a_box(clumps_of(n, 2, [&](std::size_t c, int k) {
-                      return k == axis ? -apart * static_cast<double>(c) : 0.0;
+            CHECK(work_per_box(clumps_of(n, 2, [&](std::size_t c, int k) {
+                      return k == axis ? -gap * static_cast<double>(c) : 0.0;
                   })) < 6 * even);
     }
-    // A clump within a world that is evenly filled.
+    // A clump within an evenly filled world.
     std::vector<box> core = random_boxes(n, 1e5, 1, 2);
     std::ranges::copy(random_boxes(n / 2, side_of(n / 2), 1, 3), core.begin());
-    CHECK(work_a_box(core) < 6 * even);
+    CHECK(work_per_box(core) < 6 * even);
     for (const std::size_t every : {2, 3, 5, 10, 100, 1000}) {
-        INFO("one in " << every << " at the end");
+        INFO("one in " << every << " at the limits of float");
         std::vector<box> boxes = random_boxes(n, side_of(n), 1, 4);
         for (std::size_t i = 0; i < n; i += every) {
             const auto k = static_cast<int>(i / every % 3);
-            const float end = std::numeric_limits<float>::max() / 2 * (i / every % 2 == 0 ? 1.0F : -1.0F);
-            boxes[i].min[k] = boxes[i].max[k] = end;
+            const float limit = std::numeric_limits<float>::max() / 2 * (i / every % 2 == 0 ? 1.0F : -1.0F);
+            boxes[i].min[k] = boxes[i].max[k] = limit;
         }
-        CHECK(work_a_box(boxes) < 6 * even);
+        CHECK(work_per_box(boxes) < 6 * even);
     }
 }
 
-TEST_CASE("groups within groups end where boxes are in one place") {
+TEST_CASE("nested groups end where boxes coincide") {
     for (const std::size_t places : {1, 2, 3, 50}) {
         INFO(places);
         const std::size_t n = 1500;
         std::vector<box> boxes(n);
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 3; ++k) boxes[i].min[k] = boxes[i].max[k] = 1e6F * static_cast<float>(i % places);
-        // A vector at a time, each against each in the same place, and some on the way.
-        CHECK(work_a_box(boxes) < 2.0 * static_cast<double>(n) / static_cast<double>(places) + 200);
+        // Boxes in the same place are all tested, a vector at a time; finding the groups takes some tests too.
+        CHECK(work_per_box(boxes) < 2.0 * static_cast<double>(n) / static_cast<double>(places) + 200);
     }
 }
 
-TEST_CASE("groups within groups are the same on any number of threads, and follow what moves") {
+TEST_CASE("nested groups are the same on any number of threads, and follow moving boxes") {
     const std::vector<box> even = random_boxes(3000, side_of(3000), 1, 5);
-    const auto scattered = [](double by) {
+    const auto scattered = [](double spacing) {
         return clumps_of(3000, 12, [=](std::size_t c, int k) {
-            const std::size_t cluster = c / 6;
-            return by * static_cast<double>((7 * c + 3 * static_cast<std::size_t>(k)) % 11) +
-                   by / 1e3 * static_cast<double>(cluster);
+            const std::size_t group = c / 6;
+            return spacing * static_cast<double>((7 * c + 3 * static_cast<std::size_t>(k)) % 11) +
+                   spacing / 1e3 * static_cast<double>(group);
         });
     };
     const std::vector<std::vector<box>> frames{even, scattered(1e5), scattered(1.001e5), scattered(1e2), even, even};
@@ -368,37 +368,37 @@ TEST_CASE("groups within groups are the same on any number of threads, and follo
     }
 }
 
-TEST_CASE("evenly spread boxes are in no groups, in however many dimensions") {
+TEST_CASE("evenly spread boxes are in no groups, in one, two or three dimensions") {
     for (const std::size_t n : {std::size_t{100}, std::size_t{500}, std::size_t{5000}, std::size_t{40'000}})
         for (const double world : {1.0, 2.0, 4.0, 16.0, 1e3})
-            for (const unsigned axes : level_axes) {
-                INFO(n << " boxes in " << world << " times the world, level on axes " << axes);
+            for (const unsigned axes : flat_axes) {
+                INFO(n << " boxes in " << world << " times the world, flat on axes " << axes);
                 const std::vector<box> boxes = flattened(random_boxes(n, world * side_of(n), 1, 8), axes);
                 CHECK(columns_partition().plan(boxes, everywhere).groups == 1);
             }
 }
 
-TEST_CASE("an invalid box is refused wherever it stands, and the next frame is whole") {
+TEST_CASE("an invalid box is rejected at any index, and the next frame is complete") {
     const std::vector<box> boxes = random_boxes(3000, 20, 0.7, 6);
     const std::vector<index_pair> expected = true_pairs(boxes);
-    constexpr float huge = std::numeric_limits<float>::infinity();
-    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     for (const std::uint32_t group : {100'000U, 200U}) {
         search_by_columns search(boxes.size(), {.group = group});
-        for (const std::size_t at : {0UL, 1234UL, 2999UL})
+        for (const std::size_t id : {0UL, 1234UL, 2999UL})
             for (int k = 0; k < 3; ++k)
-                for (const float value : {-huge, huge, none, -1e30F, 1e30F})
+                for (const float value : {-infinity, infinity, nan, -1e30F, 1e30F})
                     for (const bool upper : {false, true}) {
                         std::vector<box> bad = boxes;
-                        (upper ? bad[at].max : bad[at].min)[k] = value;
-                        if (is_valid(bad[at])) continue;
+                        (upper ? bad[id].max : bad[id].min)[k] = value;
+                        if (is_valid(bad[id])) continue;
                         CHECK_THROWS_AS(search.update(bad), input_error);
                         CHECK(found_by(search, boxes) == expected);
                     }
     }
 }
 
-TEST_CASE("nothing is tested while nothing moves, and everything again once something does") {
+TEST_CASE("no boxes are tested while all rest, and all are tested once one moves") {
     std::vector<box> boxes = random_boxes(3000, 12, 0.7, 4);
     for (const std::uint32_t group : {100'000U, 200U}) {
         search_by_columns search(boxes.size(), {.group = group});
@@ -410,10 +410,10 @@ TEST_CASE("nothing is tested while nothing moves, and everything again once some
         };
         expected = true_pairs(boxes);
         CHECK(is_tested());
-        // Once to notice that nothing moves.
+        // The second frame shows that nothing moves.
         CHECK(is_tested());
         for (int frame = 0; frame < 20; ++frame) CHECK_FALSE(is_tested());
-        // One that is not looked at first, and a little. Then they are looked at a frame later than before.
+        // A box outside the sample moves a little. After that, rest is detected one frame later than before.
         boxes[1234].max[1] = std::nextafter(boxes[1234].max[1], 100.0F);
         expected = true_pairs(boxes);
         CHECK(is_tested());
@@ -434,36 +434,36 @@ TEST_CASE("nothing is tested while nothing moves, and everything again once some
     }
 }
 
-TEST_CASE("whole numbers rise with what they stand for, and are the same one by one and in vectors") {
+TEST_CASE("quantized coordinates are monotone, and equal in scalar and vector code") {
     REQUIRE(rc::check([] {
-        const auto any = [] {
+        const auto any_float = [] {
             const auto mantissa = static_cast<float>(*rc::gen::inRange(-1000, 1001));
             return std::ldexp(mantissa, *rc::gen::element(-149, -120, -10, 0, 10, 117));
         };
         box bounds;
         for (int k = 0; k < 3; ++k) {
-            const float a = any();
-            const float b = any();
+            const float a = any_float();
+            const float b = any_float();
             bounds.min[k] = std::min(a, b);
             bounds.max[k] = std::max(a, b);
         }
         column_plan plan;
         plan.fit(bounds);
-        std::vector<float> at{bounds.min[0], bounds.max[0]};
-        for (int i = 0; i < 30; ++i) at.push_back(any());
-        std::ranges::sort(at);
-        std::uint32_t before = 0;
-        for (const float x : at) {
-            const std::uint32_t here = plan.quantized(x, 0);
-            RC_ASSERT(here >= before);
-            RC_ASSERT(here <= 65'535U);
-            RC_ASSERT(plan.quantized(simd::broadcast(x), 0)[0] == here);
-            before = here;
+        std::vector<float> coordinates{bounds.min[0], bounds.max[0]};
+        for (int i = 0; i < 30; ++i) coordinates.push_back(any_float());
+        std::ranges::sort(coordinates);
+        std::uint32_t previous = 0;
+        for (const float x : coordinates) {
+            const std::uint32_t code = plan.quantized(x, 0);
+            RC_ASSERT(code >= previous);
+            RC_ASSERT(code <= 65'535U);
+            RC_ASSERT(plan.quantized(simd::broadcast(x), 0)[0] == code);
+            previous = code;
         }
     }));
 }
 
-TEST_CASE("columns are for a sweep that takes them") {
+TEST_CASE("columns can be combined with the simd sweep only") {
     composition c = columns_with("");
     c[strategy_kind::sweep] = parse_strategy("one_axis");
     CHECK(rejection_of(c, stage::global_search) ==

@@ -5,13 +5,13 @@
 import aabb.std;
 import aabb;
 
-/// Costs in force for one test.
-class these_costs {
+/// Sets the machine's costs while it lives.
+class scoped_costs {
 public:
-    explicit these_costs(const aabb::cost_model& costs) { set_machine_costs(costs); }
-    these_costs(const these_costs&) = delete;
-    these_costs& operator=(const these_costs&) = delete;
-    ~these_costs() { aabb::set_machine_costs({}); }
+    explicit scoped_costs(const aabb::cost_model& costs) { set_machine_costs(costs); }
+    scoped_costs(const scoped_costs&) = delete;
+    scoped_costs& operator=(const scoped_costs&) = delete;
+    ~scoped_costs() { aabb::set_machine_costs({}); }
 };
 
 /// From a billionth of a nanosecond to a second.

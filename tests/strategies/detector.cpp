@@ -1,4 +1,4 @@
-// Detection composed at compile time and at run time, and that what is left out takes no room.
+// Detectors composed at compile time and at run time, in which unused parts take no space.
 
 #include "../meshes.hpp"
 #include "searches.hpp"
@@ -14,11 +14,11 @@ namespace {
 using bare_search = global_search<insertion_sort, none_partition, one_axis_sweep>;
 using counted_search = global_search<insertion_sort, none_partition, one_axis_sweep, work_counters>;
 using cut_search = global_search<insertion_sort, axial_cut_partition, one_axis_sweep>;
-using column_search_of_all = global_search<bucket_sort, columns_partition, simd_sweep>;
+using column_search = global_search<bucket_sort, columns_partition, simd_sweep>;
 using bare_detection = mesh_detection<median_build, canonical_tree, exact_triangle>;
 using counted_detection = mesh_detection<median_build, canonical_tree, exact_triangle, work_counters>;
 
-/// What a search without partition and counters cannot be without.
+/// The members that a search without partition and counters needs.
 struct needed_by_search {
     one_axis_sweep sweep;
     std::span<const box> boxes;
@@ -26,7 +26,7 @@ struct needed_by_search {
     projection_lists<no_counters> lists;
     frame_state frame;
 };
-/// The same of both stages where nothing is divided.
+/// The members that a pipeline of both stages needs if no mesh is divided.
 struct needed_by_pipeline {
     const mesh_scene* scene;
     bare_search* global;
@@ -40,7 +40,7 @@ struct needed_by_pipeline {
     bool searched;
 };
 
-// What is left out takes no byte, and what is put back takes all that it is.
+// What is left out takes no byte, and what is added takes its full size.
 static_assert(sizeof(bare_search) == sizeof(needed_by_search));
 static_assert(sizeof(detector<bare_search>) == sizeof(bare_search) + sizeof(std::vector<index_pair>));
 static_assert(sizeof(counted_search) >= sizeof(bare_search) + sizeof(work_counters));
@@ -49,7 +49,7 @@ static_assert(sizeof(counted_detection) >= sizeof(bare_detection) + sizeof(work_
 static_assert(sizeof(basic_pipeline<bare_search, bare_detection>) == sizeof(needed_by_pipeline));
 static_assert(sizeof(pipeline) >= sizeof(needed_by_pipeline) + sizeof(std::unique_ptr<scene_parts>));
 
-// None can be moved from and asked again, of whatever strategies.
+// No detector and no stage can be moved, so none can be used after a move.
 static_assert(!std::is_move_constructible_v<detector<cut_search>> && !std::is_move_assignable_v<detector<cut_search>>);
 static_assert(!std::is_move_constructible_v<detector<bare_search, bare_detection>> &&
               !std::is_move_assignable_v<detector<bare_search, bare_detection>>);
@@ -80,20 +80,20 @@ std::vector<pose> poses_of(int frame) {
     return poses;
 }
 
-/// What two stages find that are made by name, whole objects held against each other; without the contacts of `away`.
-std::vector<contact> expected_contacts(const std::vector<pose>& poses, std::optional<std::uint32_t> away = {}) {
+/// The contacts of all pairs of whole objects, by stages composed by name; without those of `removed`.
+std::vector<contact> expected_contacts(const std::vector<pose>& poses, std::optional<std::uint32_t> removed = {}) {
     const given_scene scene(meshes, mesh_of);
     const auto local = local_of(composed({{strategy_kind::tree, "canonical"}}));
-    pipeline every_two(scene, *local);
-    every_two.update(poses);
-    every_two.search();
-    every_two.detect();
-    std::vector<contact> found = sorted(every_two.contacts());
-    std::erase_if(found, [&](const contact& c) { return c.a == away || c.b == away; });
-    return found;
+    pipeline brute_force(scene, *local);
+    brute_force.update(poses);
+    brute_force.search();
+    brute_force.detect();
+    std::vector<contact> contacts = sorted(brute_force.contacts());
+    std::erase_if(contacts, [&](const contact& c) { return c.a == removed || c.b == removed; });
+    return contacts;
 }
 
-/// Boxes of which some overlap, others in each frame.
+/// Boxes of which some overlap, different ones in each frame.
 std::vector<box> boxes_of(int frame) {
     std::vector<box> boxes;
     for (int i = 0; i < 40; ++i) {
@@ -105,7 +105,7 @@ std::vector<box> boxes_of(int frame) {
 }
 
 template <class Detector>
-void find_pairs(Detector&& detector) {
+void check_pairs(Detector&& detector) {
     CHECK_THROWS_AS(detector.pairs(boxes_of(0)), input_error);  // nothing was inserted
     insert_all(detector, 40);
     std::vector<bool> without_7(40, true);
@@ -113,29 +113,29 @@ void find_pairs(Detector&& detector) {
     CHECK_REFUSED(detector.insert(3), "object 3 is inserted twice");
     for (int frame = 0; frame < 6; ++frame) {
         const std::vector<box> boxes = boxes_of(frame);
-        const std::vector<index_pair> all = overlapping(boxes);
-        REQUIRE_FALSE(all.empty());
-        CHECK(sorted(detector.pairs(boxes)) == all);
+        const std::vector<index_pair> expected = overlapping(boxes);
+        REQUIRE_FALSE(expected.empty());
+        CHECK(sorted(detector.pairs(boxes)) == expected);
         detector.remove(7);
         CHECK(sorted(detector.pairs(boxes)) == overlapping(boxes, without_7));
         detector.insert(7);
         std::vector<box> inverted = boxes;
         std::swap(inverted[5].min, inverted[5].max);
         CHECK_THROWS_AS(detector.pairs(inverted), input_error);
-        CHECK(sorted(detector.pairs(boxes)) == all);
+        CHECK(sorted(detector.pairs(boxes)) == expected);
     }
 }
 
 template <class Detector>
-void find_contacts(Detector&& detector) {
+void check_contacts(Detector&& detector) {
     for (int frame = 0; frame < 6; ++frame) {
         const std::vector<pose> poses = poses_of(frame);
-        const std::vector<contact> all = expected_contacts(poses);
-        REQUIRE_FALSE(all.empty());
-        CHECK(sorted(detector.contacts(poses)) == all);
-        CHECK(detector.count_contacts(poses) == all.size());
-        CHECK(std::ranges::find(all, detector.first_contact(poses).value()) != all.end());
-        // One that is divided where anything is.
+        const std::vector<contact> expected = expected_contacts(poses);
+        REQUIRE_FALSE(expected.empty());
+        CHECK(sorted(detector.contacts(poses)) == expected);
+        CHECK(detector.count_contacts(poses) == expected.size());
+        CHECK(std::ranges::find(expected, detector.first_contact(poses).value()) != expected.end());
+        // Object 1 is divided if any object is.
         detector.remove(1);
         CHECK_THROWS_AS(detector.remove(1), input_error);
         CHECK(sorted(detector.contacts(poses)) == expected_contacts(poses, 1));
@@ -143,14 +143,14 @@ void find_contacts(Detector&& detector) {
         CHECK_THROWS_AS(detector.insert(1), input_error);
         CHECK_REFUSED(detector.remove(5), "there is no object 5: the scene has 5");
         CHECK_THROWS_AS(detector.contacts(std::span(poses).first(4)), input_error);
-        CHECK(sorted(detector.contacts(poses)) == all);
+        CHECK(sorted(detector.contacts(poses)) == expected);
     }
 }
 
 std::vector<std::string> names(const std::vector<part_bytes>& parts) {
-    std::vector<std::string> all;
-    for (const part_bytes& part : parts) all.push_back(part.part);
-    return all;
+    std::vector<std::string> part_names;
+    for (const part_bytes& part : parts) part_names.push_back(part.part);
+    return part_names;
 }
 
 std::size_t bytes_of_part(const std::vector<part_bytes>& parts, const std::string& name) {
@@ -159,54 +159,53 @@ std::size_t bytes_of_part(const std::vector<part_bytes>& parts, const std::strin
 
 }  // namespace
 
-TEST_CASE(
-    "a detector of boxes finds the pairs that overlap, of whoever is present, and goes on after a refused frame") {
-    find_pairs(detector<bare_search>());
+TEST_CASE("a detector of boxes finds the overlapping pairs of present objects, also after a rejected frame") {
+    check_pairs(detector<bare_search>());
     detector<counted_search> counted;
-    find_pairs(counted);
+    check_pairs(counted);
     CHECK(counted.global().counters()[work::box_tests] > 0);
     axial_cut_partition::config one_axis;
     one_axis.axes = 1;
-    find_pairs(detector<cut_search>(cut_search({}, axial_cut_partition(one_axis), {})));
-    find_pairs(detector<column_search_of_all>());
-    find_pairs(detector<global_search<insertion_sort, none_partition, incremental_sweep>>());
-    find_pairs(detector<prepared_search<split_large_prepare, bare_search>>());
-    find_pairs(auto_detector());
-    find_pairs(auto_detector({"prepare=none", "sort=shell:gaps=ciura", "partition=none"}));
+    check_pairs(detector<cut_search>(cut_search({}, axial_cut_partition(one_axis), {})));
+    check_pairs(detector<column_search>());
+    check_pairs(detector<global_search<insertion_sort, none_partition, incremental_sweep>>());
+    check_pairs(detector<prepared_search<split_large_prepare, bare_search>>());
+    check_pairs(auto_detector());
+    check_pairs(auto_detector({"prepare=none", "sort=shell:gaps=ciura", "partition=none"}));
 }
 
-TEST_CASE("a detector of meshes finds the contacts of whoever is present, and goes on after a refused frame") {
+TEST_CASE("a detector of meshes finds the contacts of present objects, also after a rejected frame") {
     detector<bare_search, bare_detection> bare(meshes, mesh_of);
-    find_contacts(bare);
+    check_contacts(bare);
     detector<counted_search, counted_detection> counted(meshes, mesh_of);
-    find_contacts(counted);
+    check_contacts(counted);
     CHECK(counted.local().counters()[work::triangle_tests] > 0);
-    using usual_detection = mesh_detection<median_build, implicit_tree, exact_triangle>;
-    find_contacts(detector<column_search_of_all, usual_detection>(meshes, mesh_of));
-    detector<prepared_search<split_mesh_prepare, bare_search>, bare_detection> parted(
+    using default_detection = mesh_detection<median_build, implicit_tree, exact_triangle>;
+    check_contacts(detector<column_search, default_detection>(meshes, mesh_of));
+    detector<prepared_search<split_mesh_prepare, bare_search>, bare_detection> divided(
         meshes, mesh_of, prepared_search<split_mesh_prepare, bare_search>(split_mesh_prepare({.size = 1})));
-    find_contacts(parted);
+    check_contacts(divided);
     // Pairs of parts, of which one object pair may have several.
-    CHECK(parted.candidates().size() != bare.candidates().size());
-    find_contacts(auto_detector(meshes, mesh_of));
-    find_contacts(auto_detector(meshes, mesh_of, {"prepare=split_mesh:size=1", "tree=compressed"}, 1));
+    CHECK(divided.candidates().size() != bare.candidates().size());
+    check_contacts(auto_detector(meshes, mesh_of));
+    check_contacts(auto_detector(meshes, mesh_of, {"prepare=split_mesh:size=1", "tree=compressed"}, 1));
 }
 
-TEST_CASE("the bytes of a detector have no part that it is not made of") {
+TEST_CASE("a detector reports the bytes of its own parts only") {
     const std::vector<std::string> bare_parts{"projections", "sort", "sweep", "buffers"};
     detector<bare_search> bare;
     CHECK(names(bare.bytes()) == bare_parts);
     for (const part_bytes& part : bare.bytes()) CHECK(part.bytes == 0);
-    find_pairs(bare);
+    check_pairs(bare);
     CHECK(names(bare.bytes()) == bare_parts);
     CHECK(bytes_of_part(bare.bytes(), "projections") > 0);
     CHECK(bytes_of_part(bare.bytes(), "buffers") > 0);
     detector<cut_search> cut;
-    find_pairs(cut);
+    check_pairs(cut);
     CHECK(bytes_of_part(cut.bytes(), "partition") > 0);
-    // Counters stand in the search itself, so both hold the same of the rest.
+    // Counters are members of the search itself, so the heap bytes of the parts are equal.
     detector<counted_search> counted;
-    find_pairs(counted);
+    check_pairs(counted);
     CHECK(bytes_of_part(counted.bytes(), "sweep") == bytes_of_part(bare.bytes(), "sweep"));
 
     const detector<bare_search, bare_detection> both(meshes, mesh_of);
@@ -219,12 +218,12 @@ TEST_CASE("the bytes of a detector have no part that it is not made of") {
     CHECK(std::ranges::count(names(auto_detector(meshes, mesh_of).bytes()), "nodes") == 1);
 }
 
-TEST_CASE("an auto_detector says what it selected and by which rule, and what it does without") {
+TEST_CASE("an auto_detector reports what it selected, by which rule, and what it leaves out") {
     const auto_detector boxes({"sort=shell:gaps=ciura"}, 1);
     const auto rule_of = [](const auto_detector& detector, strategy_kind kind) {
-        const auto& all = detector.selected();
-        const auto one = std::ranges::find(all, kind, &selected_strategy::kind);
-        return one == all.end() ? "" : to_text(one->choice) + ", " + one->rule;
+        const auto& selected = detector.selected();
+        const auto entry = std::ranges::find(selected, kind, &selected_strategy::kind);
+        return entry == selected.end() ? "" : to_text(entry->choice) + ", " + entry->rule;
     };
     CHECK(rule_of(boxes, strategy_kind::sort) == "shell:gaps=ciura, as named");
     CHECK(rule_of(boxes, strategy_kind::prepare).starts_with("none, fewer than 4 frames"));
@@ -238,7 +237,7 @@ TEST_CASE("an auto_detector says what it selected and by which rule, and what it
     CHECK(leaves_out(many, absence::counters));
 }
 
-TEST_CASE("a detector refuses what it cannot be made of, or asked for, in one sentence") {
+TEST_CASE("a detector rejects invalid arguments and calls in one sentence") {
     const std::string missing = "object 1 is mesh 2, but there are 2 meshes";
     using both = detector<bare_search, bare_detection>;
     CHECK_REFUSED(both(meshes, {0, 2}), missing);

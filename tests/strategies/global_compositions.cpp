@@ -23,17 +23,17 @@ box moved_a_little(const box& b) {
     return moved(b, by);
 }
 
-/// Whether all boxes of a test are so few for it that none is sorted or cut.
-bool tests_all(const aabb::composition& c) {
+/// Whether its brute-force threshold exceeds a test's number of boxes, so that none is sorted or cut.
+bool is_brute_force(const aabb::composition& c) {
     return std::ranges::any_of(c[strategy_kind::partition].settings,
                                [](const auto& s) { return s.name == "few" && s.value == "4096"; });
 }
 
 }  // namespace
 
-// The sort, the splitting and what work costs are drawn with the boxes: a property for each of them too would take
+// The sort, the splitting and the costs of work are drawn with the boxes: a property for each of them too would take
 // minutes. With RC_PARAMS=max_success=14000 in the environment these are more than a million cases.
-TEST_CASE("every composition finds exactly the overlapping pairs while objects come, move and go, whatever work costs",
+TEST_CASE("every composition finds exactly the overlapping pairs as objects come, move and go, whatever work costs",
           "[long]") {
     const std::vector<strategy_choice> sorts = all_choices(strategy_kind::sort);
     std::vector<strategy_choice> prepares = all_choices(strategy_kind::prepare);
@@ -55,13 +55,13 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
             if (compositions.empty()) continue;
             INFO(to_text(partition) << " + " << to_text(sweep));
             REQUIRE(rc::check([&] {
-                const these_costs costs(*rc::gen::arbitrary<bool>() ? any_costs() : cost_model());
+                const scoped_costs costs(*rc::gen::arbitrary<bool>() ? any_costs() : cost_model());
                 const aabb::composition composition = *rc::gen::elementOf(compositions);
                 RC_LOG(text_of_global(composition));
                 const auto stage = global_of(composition);
                 const int world = *rc::gen::element(1, 6, 40);
                 const bool flat = *rc::gen::arbitrary<bool>();
-                // A little, so that lists may serve.
+                // Small steps, so that lists may serve.
                 const bool creeps = *rc::gen::arbitrary<bool>();
                 const auto n = *rc::gen::inRange<std::size_t>(0, 60);
                 std::vector<box> boxes(n);
@@ -69,9 +69,9 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
                 bool any_yet = false;
                 for (int frame = 0; frame < 6; ++frame) {
                     // From frames in which all move to frames in which none does.
-                    const int unrest = *rc::gen::element(0, 1, 4);
+                    const int one_in = *rc::gen::element(0, 1, 4);
                     for (std::uint32_t id = 0; id < n; ++id) {
-                        const bool moves = frame == 0 || (unrest > 0 && *rc::gen::inRange(0, unrest) == 0);
+                        const bool moves = frame == 0 || (one_in > 0 && *rc::gen::inRange(0, one_in) == 0);
                         if (moves) boxes[id] = frame > 0 && creeps ? moved_a_little(boxes[id]) : any_box(world);
                         if (flat) boxes[id].min[1] = boxes[id].max[1] = static_cast<float>(frame / 2 % 2 * id);
                         for (int times = *rc::gen::element(0, 0, 0, 1, 2); times > 0; --times) {
@@ -79,16 +79,16 @@ TEST_CASE("every composition finds exactly the overlapping pairs while objects c
                             present[id] = !present[id];
                         }
                     }
-                    // Before the first object comes there are no boxes: a scene of nobody may begin.
+                    // Before the first object comes there are no boxes: a scene may begin empty.
                     any_yet |= std::ranges::find(present, true) != present.end();
-                    const auto found = found_by(*stage, std::span(boxes).first(any_yet ? n : 0));
-                    RC_ASSERT(found == overlapping(boxes, present));
+                    const auto pairs = found_by(*stage, std::span(boxes).first(any_yet ? n : 0));
+                    RC_ASSERT(pairs == overlapping(boxes, present));
                 }
             }));
         }
 }
 
-TEST_CASE("a composition refuses what makes no sense, searches no frame that it has not taken, and can go on") {
+TEST_CASE("a composition rejects invalid calls, does not search after them, and stays usable") {
     const std::vector<box> boxes(3, cube(0, 1));
     std::vector<box> inverted = boxes;
     inverted[2].max[0] = -1;
@@ -96,37 +96,37 @@ TEST_CASE("a composition refuses what makes no sense, searches no frame that it 
         INFO(text_of_global(composition));
         const auto stage = global_of(composition);
         std::vector<index_pair> pairs;
-        const auto is_not_searched = [&] {
+        const auto check_no_frame = [&] {
             CHECK_REFUSED(stage->search(pairs),
                           "there is no frame to search: update was not called, or did not succeed");
         };
-        is_not_searched();
+        check_no_frame();
         CHECK(found_by(*stage, {}).empty());
         CHECK_REFUSED(stage->update(boxes), "no object was inserted; call insert(id) for each box first");
         insert_all(*stage, 3);
         CHECK_REFUSED(stage->insert(1), "object 1 is inserted twice");
         CHECK_REFUSED(stage->remove(7), "object 7 is removed but was never inserted");
         CHECK_REFUSED(stage->update(std::span(boxes).first(2)), "object 2 is present, but the frame has only 2 boxes");
-        is_not_searched();
+        check_no_frame();
         CHECK(found_by(*stage, boxes).size() == 3);
         CHECK_REFUSED(stage->update(inverted), "box 2 is inverted: its minimum is above its maximum");
-        is_not_searched();
+        check_no_frame();
         CHECK(found_by(*stage, boxes).size() == 3);
         for (std::uint32_t id = 0; id < 3; ++id) stage->remove(id);
         CHECK(found_by(*stage, boxes).empty());
     }
 }
 
-TEST_CASE("every composition finds the pairs where all boxes moved, counted or not, and says what it did") {
+TEST_CASE("every composition finds the pairs after all boxes moved, with and without counters") {
     constexpr std::uint32_t n = 200;
     std::array<std::vector<box>, 2> frames;
     for (std::uint32_t i = 0; i < n; ++i) {
         const auto x = static_cast<float>(i * 37 % 100);
         const auto y = static_cast<float>(i * 61 % 90);
         frames[0].push_back({{x, y, 0}, {x + 5, y + 5, 5}});
-        // Apart from each other by more than any margin.
-        const float way = 0.5F + 20 * static_cast<float>(i % 3);
-        frames[1].push_back(moved(frames[0].back(), {way, way, way}));
+        // Displaced relative to each other by more than any margin.
+        const float shift = 0.5F + 20 * static_cast<float>(i % 3);
+        frames[1].push_back(moved(frames[0].back(), {shift, shift, shift}));
     }
     const std::array expected{overlapping(frames[0]), overlapping(frames[1])};
     for (const aabb::composition& composition : global_compositions()) {
@@ -136,8 +136,8 @@ TEST_CASE("every composition finds the pairs where all boxes moved, counted or n
         insert_all(*plain, n);
         for (std::size_t f = 0; f < frames.size(); ++f)
             for (const auto* stage : {&plain, &counted}) CHECK(found_by(**stage, frames[f]) == expected[f]);
-        // Whoever sorts by comparing counts those, whoever does not the entries moved.
-        if (!tests_all(composition))
+        // Sorts that compare count comparisons, the others moved entries.
+        if (!is_brute_force(composition))
             CHECK(counted->counters()[work::comparisons] + counted->counters()[work::moves] >= n - 1);
         CHECK(counted->counters()[work::box_tests] > 0);
         CHECK(plain->counters()[work::box_tests] == 0);
@@ -152,7 +152,7 @@ TEST_CASE("without a partition there are no cells and no copies") {
     }
     for (const aabb::composition& composition : global_compositions()) {
         INFO(text_of_global(composition));
-        if (tests_all(composition)) continue;
+        if (is_brute_force(composition)) continue;
         const auto stage = search_of(composition, boxes.size());
         found_by(*stage, boxes);
         const bool whole = composition[strategy_kind::partition].name == "none";
@@ -165,7 +165,7 @@ TEST_CASE("without a partition there are no cells and no copies") {
     }
 }
 
-TEST_CASE("a list of an axis that is not needed takes no memory") {
+TEST_CASE("the list of an unused axis takes no memory") {
     std::vector<box> boxes;
     for (int i = 0; i < 500; ++i) boxes.push_back({{1, static_cast<float>(i), 1}, {2, static_cast<float>(i + 1), 2}});
     const auto projections = [&](const char* sweep) {
@@ -177,7 +177,7 @@ TEST_CASE("a list of an axis that is not needed takes no memory") {
     CHECK(projections("one_axis:axis=x") < 500 * (sizeof(projection) + 4));
 }
 
-TEST_CASE("a flat scene drops its flat axis") {
+TEST_CASE("a flat scene has no list of its flat axis") {
     const auto stage = search_of(composed({{strategy_kind::sweep, "all_axes"}}), 40);
     std::vector<box> boxes = scattered(40, 3);
     for (box& b : boxes) b.min[2] = 0, b.max[2] = 1;
@@ -189,7 +189,7 @@ TEST_CASE("a flat scene drops its flat axis") {
     CHECK(stage->bytes()[0].bytes >= two_lists + 40 * sizeof(projection));
 }
 
-TEST_CASE("a grid that no machine can hold is refused") {
+TEST_CASE("a grid of too many cells is rejected") {
     const auto pairs = [](const std::string& cell_size, const std::vector<box>& boxes) {
         const std::string grid = "uniform_grid:cell_size=" + cell_size;
         const auto stage = search_of(composed({{strategy_kind::partition, grid.c_str()}}), boxes.size());
@@ -204,8 +204,8 @@ TEST_CASE("a grid that no machine can hold is refused") {
     CHECK(pairs("1e-310", point) == 1);
 }
 
-TEST_CASE("copies that no machine can hold are counted and refused, and the search goes on") {
-    std::vector<box> nested;  // box i reaches over 300 - i segments of each axis
+TEST_CASE("too many copies are counted and rejected, and the search stays usable") {
+    std::vector<box> nested;  // box i spans 300 - i segments of each axis
     for (int i = 0; i < 300; ++i) {
         const auto low = static_cast<float>(i);
         nested.push_back({{low, low, low}, {1000, 1000, 1000}});
@@ -222,7 +222,7 @@ TEST_CASE("copies that no machine can hold are counted and refused, and the sear
                      "object) are allowed; fewer cuts make fewer copies"}}) {
         const auto stage = search_of(composed({{strategy_kind::partition, partition}}), boxes.size());
         CHECK_REFUSED(stage->update(boxes), sentence);
-        // Nothing of that size was made.
+        // Nothing of that size was allocated.
         CHECK(stage->bytes()[2].bytes < std::size_t{1} << 30);
     }
     for (const auto& [partition, rejected] :
@@ -241,7 +241,7 @@ TEST_CASE("copies that no machine can hold are counted and refused, and the sear
     }
 }
 
-TEST_CASE("far from the origin the axis to sort along is still the one on which objects vary") {
+TEST_CASE("the sort axis is the one on which objects vary, even far from the origin") {
     const auto stage = search_of(composed({{strategy_kind::sweep, "one_axis"}}), 100);
     std::vector<box> boxes;
     for (int i = 0; i < 100; ++i) {

@@ -29,7 +29,7 @@ mesh any_mesh() {
     return m;
 }
 
-/// Turns by multiples of a right angle keep lattices touching; any others do not.
+/// Rotations by multiples of a right angle keep lattices touching; others do not.
 pose any_pose() {
     const double far = *rc::gen::element(0.0, 0.0, 1e3, 1e9);
     vec3d translation;
@@ -51,8 +51,7 @@ std::vector<index_pair> expected(const mesh& a, const pose& pose_a, const mesh& 
 
 }  // namespace
 
-TEST_CASE("every exact composition finds exactly the intersecting triangles of two meshes, however they are asked for",
-          "[long]") {
+TEST_CASE("every exact composition finds exactly the intersecting triangles of two meshes, in every query", "[long]") {
     const std::vector<aabb::composition> compositions = exact_local_compositions();
     REQUIRE(compositions.size() >= 33);
     REQUIRE(rc::check([&] {
@@ -65,7 +64,7 @@ TEST_CASE("every exact composition finds exactly the intersecting triangles of t
             stages.back()->add_model(b);
         }
         for (int query = 0; query < 3; ++query) {
-            // The last query is of a mesh that has changed.
+            // The last query follows a deformation.
             if (query == 2) a.vertices[0] = {1, 2, 0};
             const pose pose_a = any_pose();
             pose pose_b = any_pose();
@@ -75,9 +74,9 @@ TEST_CASE("every exact composition finds exactly the intersecting triangles of t
             for (std::size_t i = 0; i < stages.size(); ++i) {
                 RC_LOG(text_of_local(compositions[i]));
                 if (query == 2) stages[i]->refit(0);
-                std::vector<index_pair> found;
-                stages[i]->all_pairs(0, pose_a, 1, pose_b, found);
-                RC_ASSERT(sorted(found) == truth);
+                std::vector<index_pair> pairs;
+                stages[i]->all_pairs(0, pose_a, 1, pose_b, pairs);
+                RC_ASSERT(sorted(pairs) == truth);
                 RC_ASSERT(stages[i]->count_pairs(0, pose_a, 1, pose_b) == truth.size());
                 const std::optional<index_pair> first = stages[i]->first_pair(0, pose_a, 1, pose_b);
                 RC_ASSERT(first.has_value() == !truth.empty());
@@ -87,7 +86,7 @@ TEST_CASE("every exact composition finds exactly the intersecting triangles of t
     }));
 }
 
-TEST_CASE("every exact composition finds exactly the intersecting triangles of a mesh with itself", "[long]") {
+TEST_CASE("every exact composition finds exactly the self-intersections of a mesh", "[long]") {
     const std::vector<aabb::composition> compositions = exact_local_compositions();
     REQUIRE(rc::check([&] {
         const mesh m = any_mesh();
@@ -98,23 +97,23 @@ TEST_CASE("every exact composition finds exactly the intersecting triangles of a
             RC_LOG(text_of_local(c));
             const auto stage = local_of(c, instrumentation::none);
             stage->add_model(m);
-            // A query that stops half-way leaves nothing behind.
+            // A query that stops early leaves nothing behind.
             (void)stage->first_pair(0, {}, 0, {});
-            std::vector<index_pair> found;
-            stage->self_pairs(0, found);
-            RC_ASSERT(sorted(found) == truth);
+            std::vector<index_pair> pairs;
+            stage->self_pairs(0, pairs);
+            RC_ASSERT(sorted(pairs) == truth);
         }
     }));
 }
 
-// Whatever rounding does to the two points it does alike; boxes that are carried from frame to frame must make up for
-// it by growing (relative_pose). Without that most of these pairs are lost.
-TEST_CASE("a point on a point is found from any pose, far from the origin too", "[long]") {
+// Both points are rounded alike; boxes that are transformed from frame to frame must grow to make up for it
+// (relative_pose), or most of these pairs are missed.
+TEST_CASE("coincident points are found at any pose, even far from the origin", "[long]") {
     const std::vector<aabb::composition> compositions = exact_local_compositions();
     REQUIRE(rc::check([&] {
         const pose pose_a = any_pose();
         pose pose_b = any_pose();
-        // Far off in its mesh, near in A's frame: what double loses on the way are digits that float has.
+        // Far from the origin of its mesh, near in A's frame: double loses digits that float has.
         const double far = *rc::gen::element(1.0, 1e6, 1e9);
         const vec3f x{static_cast<float>(uniform(-far, far)), static_cast<float>(uniform(-far, far)), 0.3F};
         for (int k = 0; k < 3; ++k) {
@@ -133,7 +132,7 @@ TEST_CASE("a point on a point is found from any pose, far from the origin too", 
     }));
 }
 
-TEST_CASE("a leaf test in place of a leaf's box saves triangle tests") {
+TEST_CASE("a leaf test in place of leaf boxes saves triangle tests") {
     const mesh m = ripples(30);
     const pose moved = shifted({0.3, 0.2, 0.4});
     const auto work_of = [&](const strategy_choice& tree) {
@@ -155,14 +154,14 @@ TEST_CASE("a leaf test in place of a leaf's box saves triangle tests") {
         CHECK(box[work::triangle_tests] < none[work::triangle_tests]);
         CHECK(own[work::triangle_tests] < none[work::triangle_tests]);
     }
-    // The tree, tested box by box, is the same.
+    // Both layouts hold the same tree, so the same boxes are tested.
     CHECK(work_of({"canonical", {}})[work::box_tests] == work_of({"shared_planes", {}})[work::box_tests]);
     CHECK(work_of({"canonical", {}})[work::triangle_tests] == work_of({"shared_planes", {}})[work::triangle_tests]);
 }
 
-TEST_CASE("Möller's original triangle-box test loses pairs that touch, and invents none") {
+TEST_CASE("Möller's original triangle-box test misses touching pairs, and has no false positives") {
     const composition original = composed({{strategy_kind::tree, "leafless:leaf_test=moller_triangle_box"}});
-    std::size_t lost = 0;
+    std::size_t false_negatives = 0;
     REQUIRE(rc::check([&] {
         for (int i = 0; i < 10; ++i) {
             const mesh a = any_mesh();
@@ -174,16 +173,16 @@ TEST_CASE("Möller's original triangle-box test loses pairs that touch, and inve
             const auto stage = local_of(original);
             stage->add_model(a);
             stage->add_model(b);
-            std::vector<index_pair> found;
-            stage->all_pairs(0, pose_a, 1, pose_b, found);
-            RC_ASSERT(std::ranges::includes(truth, sorted(found)));
-            lost += truth.size() - found.size();
+            std::vector<index_pair> pairs;
+            stage->all_pairs(0, pose_a, 1, pose_b, pairs);
+            RC_ASSERT(std::ranges::includes(truth, sorted(pairs)));
+            false_negatives += truth.size() - pairs.size();
         }
     }));
-    CHECK(lost > 0);
+    CHECK(false_negatives > 0);
 }
 
-TEST_CASE("only Möller's original makes a leafless tree inexact") {
+TEST_CASE("only Möller's original triangle-box test makes a leafless tree inexact") {
     for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
         const bool original =
             std::ranges::find(tree.settings, "moller_triangle_box", &setting::value) != tree.settings.end();

@@ -1,4 +1,4 @@
-// Which subsets a cutting partition makes of a frame, and which of them owns a pair.
+// The subsets that a cutting partition makes of a frame, and which of them owns a pair.
 
 #include <rapidcheck.h>
 
@@ -10,16 +10,16 @@ using namespace aabb;
 
 namespace {
 
-/// A partition of frames, with the lists that it asks for.
+/// A partition that is fitted to frames, with the lists that it needs.
 template <class Partition>
 struct fitted {
     explicit fitted(const std::vector<setting>& settings = {}) : partition(configured<Partition>(settings)) {}
     fitted(std::vector<box> frame, const std::vector<setting>& settings, axis_set swept = every_axis)
         : fitted(settings) {
-        take(std::move(frame), swept);
+        fit(std::move(frame), swept);
     }
 
-    void take(std::vector<box> frame, axis_set swept = every_axis) {
+    void fit(std::vector<box> frame, axis_set swept = every_axis) {
         boxes = std::move(frame);
         for (auto id = static_cast<std::uint32_t>(objects.size()); id < boxes.size(); ++id) objects.insert(id);
         objects.settle();
@@ -35,22 +35,22 @@ struct fitted {
 
     /// Subsets of a box, with the axes that each owns.
     [[nodiscard]] std::map<std::uint32_t, axis_set> subsets_of(std::uint32_t id) const {
-        std::map<std::uint32_t, axis_set> all;
-        partition.for_each_subset(id, boxes[id], [&](std::uint32_t s, axis_set owned) { all[s] = owned; });
-        return all;
+        std::map<std::uint32_t, axis_set> subsets;
+        partition.for_each_subset(id, boxes[id], [&](std::uint32_t s, axis_set owned) { subsets[s] = owned; });
+        return subsets;
     }
 
     [[nodiscard]] std::vector<std::size_t> sizes() const {
-        std::vector<std::size_t> all(partition.subset_count());
+        std::vector<std::size_t> counts(partition.subset_count());
         for (std::uint32_t id = 0; id < boxes.size(); ++id)
-            for (const auto& [subset, owned] : subsets_of(id)) ++all[subset];
-        return all;
+            for (const auto& [subset, owned] : subsets_of(id)) ++counts[subset];
+        return counts;
     }
 
     [[nodiscard]] std::size_t copies() const {
-        std::size_t all = 0;
-        for (const std::size_t size : sizes()) all += size;
-        return all;
+        std::size_t sum = 0;
+        for (const std::size_t size : sizes()) sum += size;
+        return sum;
     }
 
     std::vector<box> boxes;
@@ -59,7 +59,7 @@ struct fitted {
     axis_set cut = 0;
 };
 using cut_frame = fitted<axial_cut_partition>;
-using planted = fitted<kd_tree_partition>;
+using kd_frame = fitted<kd_tree_partition>;
 
 /// Corners on a coarse lattice, so that many lie on planes of a partition, and a few long boxes.
 box any_box_among_planes() {
@@ -77,7 +77,7 @@ std::vector<box> any_boxes_among_planes(std::size_t least, std::size_t end) {
     return boxes;
 }
 
-/// Of each pair that overlaps, of others at most one.
+/// Requires one owner of each overlapping pair, and at most one of any other.
 template <class Partition>
 void require_one_owner(const fitted<Partition>& p) {
     for (std::uint32_t a = 0; a < p.boxes.size(); ++a) {
@@ -109,12 +109,12 @@ TEST_CASE("segments hold the same number of projections") {
     CHECK(f.sizes() == std::vector<std::size_t>(8, 125));
 }
 
-TEST_CASE("one wide box costs the cuts within it, not those elsewhere") {
+TEST_CASE("a wide box prevents cuts within it, not elsewhere") {
     std::vector<box> boxes = row_of_points(2560);
     boxes[1005].max[0] = 1261;  // a tenth of the axis
     const cut_frame limited(boxes, {{"axes", "1"}, {"segments", "256"}});
     CHECK(limited.partition.segments().wanted == 256);
-    // Of 25 cuts wanted beyond the one that may lie in the box, one is put behind it.
+    // Of the 25 wanted cuts beyond the one that may lie in the box, one is moved behind it.
     CHECK(limited.partition.segments().got == 232);
     CHECK(limited.subsets_of(1005).size() == 2);
     const cut_frame unlimited(boxes, {{"axes", "1"}, {"segments", "256"}, {"limit", "off"}});
@@ -122,25 +122,25 @@ TEST_CASE("one wide box costs the cuts within it, not those elsewhere") {
     CHECK(unlimited.subsets_of(1005).size() == 27);
 }
 
-TEST_CASE("boxes are classified half-open at planes, and touching one is reaching over it") {
+TEST_CASE("a box that touches a plane from below lies on both sides of it") {
     using subsets = std::map<std::uint32_t, axis_set>;
-    // Two segments wanted of four intervals: the cut is the third lower end, 2.
+    // Four intervals in two segments: the cut is the third lower end, 2.
     const cut_frame f({{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{2, 0, 0}, {3, 1, 1}}, {{3, 0, 0}, {4, 1, 1}}},
                       {{"axes", "1"}, {"segments", "2"}});
     // The median of these centres is 2, and no plane divides the three that reach beyond it.
-    const planted p({{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{2, 0, 0}, {2, 1, 1}}, {{3, 0, 0}, {4, 1, 1}}},
-                    {{"leaf", "2"}});
-    CHECK(p.cut == 0);  // it asks for no lists
+    const kd_frame p({{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}, {{2, 0, 0}, {2, 1, 1}}, {{3, 0, 0}, {4, 1, 1}}},
+                     {{"leaf", "2"}});
+    CHECK(p.cut == 0);  // it needs no lists
     CHECK(p.partition.subset_count() == 2);
-    for (const auto& found : {std::array{f.subsets_of(0), f.subsets_of(1), f.subsets_of(2)},
-                              std::array{p.subsets_of(0), p.subsets_of(1), p.subsets_of(2)}}) {
-        CHECK(found[0] == subsets{{0, 0b111}});
-        CHECK(found[1] == subsets{{0, 0b111}, {1, 0b110}});
-        CHECK(found[2] == subsets{{1, 0b111}});
+    for (const auto& actual : {std::array{f.subsets_of(0), f.subsets_of(1), f.subsets_of(2)},
+                               std::array{p.subsets_of(0), p.subsets_of(1), p.subsets_of(2)}}) {
+        CHECK(actual[0] == subsets{{0, 0b111}});
+        CHECK(actual[1] == subsets{{0, 0b111}, {1, 0b110}});
+        CHECK(actual[2] == subsets{{1, 0b111}});
     }
 }
 
-TEST_CASE("no box is cut more than once on an axis, and overlapping boxes have one subset that owns them") {
+TEST_CASE("no box is cut more than once on an axis, and overlapping boxes have one owner") {
     REQUIRE(rc::check([] {
         const std::string axes = *rc::gen::element<std::string>("auto", "1", "2", "3");
         const std::string limit = *rc::gen::element<std::string>("on", "off");
@@ -153,7 +153,7 @@ TEST_CASE("no box is cut more than once on an axis, and overlapping boxes have o
     }));
 }
 
-TEST_CASE("the axes on which centres vary most are cut, the one a sweep sorts along last, flat ones never") {
+TEST_CASE("axes are cut in order of the variance of centres, a swept axis last, flat axes never") {
     std::vector<box> boxes;
     for (std::uint32_t i = 0; i < 64; ++i) {
         const auto x = static_cast<float>(i * 37 % 64);
@@ -167,7 +167,7 @@ TEST_CASE("the axes on which centres vary most are cut, the one a sweep sorts al
     CHECK(cut_frame(std::vector<box>(9, boxes[0]), {{"axes", "3"}, {"segments", "4"}}).partition.subset_count() == 1);
 }
 
-TEST_CASE("auto cuts a large scene finer than a small one, and says how much it wanted") {
+TEST_CASE("auto cuts a large scene finer than a small one, and reports the wanted segments") {
     const auto segments = [](int side) {
         std::vector<box> boxes;
         for (int i = 0; i < side * side; ++i) {
@@ -182,8 +182,7 @@ TEST_CASE("auto cuts a large scene finer than a small one, and says how much it 
     CHECK(segments(60).wanted >= segments(60).got);
 }
 
-TEST_CASE(
-    "auto cuts as many axes as pay: none of a small scene, more of a large one, all where all are sorted anyway") {
+TEST_CASE("auto cuts more axes of larger scenes, and of scenes that are sorted on all axes anyway") {
     const auto cut_of = [](std::uint32_t n, std::vector<setting> settings, axis_set swept) {
         settings.push_back({"axes", "auto"});
         return std::popcount(cut_frame(scattered(n, 2), settings, swept).cut);
@@ -192,34 +191,34 @@ TEST_CASE(
     CHECK(cut_of(3000, {}, 0b001) == 1);
     CHECK(cut_of(20'000, {}, 0b001) == 2);
     CHECK(cut_of(3000, {}, 0b111) > 1);
-    // Whoever says how fine wants a cut.
+    // A named number of segments implies a cut.
     CHECK(cut_of(100, {{"segments", "4"}}, 0b001) > 0);
 }
 
-TEST_CASE("auto keeps to the axes that it cuts until others cost a tenth less") {
+TEST_CASE("auto changes the axes that it cuts only if others cost a tenth less") {
     cut_frame f({{"axes", "auto"}});
     std::vector<int> axes;
     for (const float extent : {1.0F, 2.5F, 8.0F, 2.5F}) {
-        f.take(scattered(3000, extent), 0b001);
+        f.fit(scattered(3000, extent), 0b001);
         axes.push_back(std::popcount(f.cut));
     }
     CHECK(axes == std::vector{1, 1, 2, 2});
 }
 
-TEST_CASE("the more segments are wanted, the more there are, up to the limit") {
+TEST_CASE("more wanted segments make more segments, up to the limit") {
     REQUIRE(rc::check([] {
         const std::vector<box> boxes = any_boxes_among_planes(1, 200);
         std::uint64_t got = 0;
         for (const char* wanted : {"2", "8", "64", "65535"}) {
             const segment_counts counts = cut_frame(boxes, {{"axes", "1"}, {"segments", wanted}}).partition.segments();
-            // Cuts at other places may be in each other's way, but not many.
+            // Cuts in other places may exclude each other, but only a few do.
             RC_ASSERT(counts.got + 2 >= got);
             got = counts.got;
         }
     }));
 }
 
-TEST_CASE("more subsets than a machine can hold are refused") {
+TEST_CASE("too many subsets are rejected") {
     std::vector<box> boxes;
     for (std::uint32_t i = 0; i < 3000; ++i) {
         const vec3f p{static_cast<float>(i), static_cast<float>(i * 7 % 3000), static_cast<float>(i * 11 % 3000)};
@@ -229,89 +228,89 @@ TEST_CASE("more subsets than a machine can hold are refused") {
                   "axial_cut: 3000 segments per axis make 27000000000 subsets, more than 2^26");
 }
 
-TEST_CASE("overlapping boxes have one leaf that owns them, whatever frames came before") {
+TEST_CASE("overlapping boxes are owned by one leaf, whatever the earlier frames") {
     REQUIRE(rc::check([] {
-        planted p({{"leaf", *rc::gen::element<std::string>("auto", "2", "5")}});
+        kd_frame p({{"leaf", *rc::gen::element<std::string>("auto", "2", "5")}});
         std::vector<box> boxes = any_boxes_among_planes(0, 200);
         for (int frame = 0; frame < 4; ++frame) {
-            // Some go elsewhere, or all.
+            // Some boxes move, or all.
             for (box& b : boxes)
                 if (*rc::gen::inRange(0, 4) < frame) b = any_box_among_planes();
-            p.take(boxes, *rc::gen::element<axis_set>(0b001, 0b100, 0b111));
+            p.fit(boxes, *rc::gen::element<axis_set>(0b001, 0b100, 0b111));
             RC_ASSERT(p.copies() <= 16 * boxes.size());
             require_one_owner(p);
         }
     }));
 }
 
-TEST_CASE("overlapping boxes have one leaf that owns them where heaps of them leave their cells") {
+TEST_CASE("overlapping boxes are owned by one leaf as many boxes leave their cells") {
     REQUIRE(rc::check([] {
-        planted p({{"leaf", *rc::gen::element<std::string>("auto", "2", "5")}});
+        kd_frame p({{"leaf", *rc::gen::element<std::string>("auto", "2", "5")}});
         std::vector<box> boxes = any_boxes_among_planes(50, 200);
         for (int frame = 0; frame < 20; ++frame) {
-            const float from = static_cast<float>(*rc::gen::inRange(-10, 40));
+            const float low = static_cast<float>(*rc::gen::inRange(-10, 40));
             const auto k = *rc::gen::inRange(0, 3);
-            const float way = static_cast<float>(*rc::gen::inRange(-20, 21));
+            const float shift = static_cast<float>(*rc::gen::inRange(-20, 21));
             for (box& b : boxes)
-                if (frame > 0 && b.min[k] >= from && b.min[k] < from + 15) b.min[k] += way, b.max[k] += way;
-            p.take(boxes);
+                if (frame > 0 && b.min[k] >= low && b.min[k] < low + 15) b.min[k] += shift, b.max[k] += shift;
+            p.fit(boxes);
             require_one_owner(p);
         }
     }));
 }
 
-TEST_CASE("leaves hold like numbers of boxes, however unlike the densities") {
+TEST_CASE("leaves hold similar numbers of boxes at any density") {
     std::vector<box> boxes = cubes(2000, {1000, 1000, 1000});
-    // As many in a millionth of the space.
+    // As many boxes in a millionth of the space.
     for (const box& b : cubes(2000, {10, 10, 10}))
         boxes.push_back({{b.min[0] / 10, b.min[1] / 10, b.min[2] / 10}, {b.max[0] / 10, b.max[1] / 10, b.max[2] / 10}});
-    const planted p(boxes, {{"leaf", "40"}});
+    const kd_frame p(boxes, {{"leaf", "40"}});
     CHECK(p.partition.subset_count() > 100);
     CHECK(std::ranges::max(p.sizes()) < 100);
     CHECK(p.copies() < 3 * boxes.size());
 }
 
-TEST_CASE("planes stay while boxes do, and are chosen anew only where these went elsewhere") {
+TEST_CASE("planes are kept while the density stays, and chosen again only where it changed") {
     const vec3f world{60, 60, 60};
     std::vector<box> boxes = cubes(4000, world);
-    planted p(boxes, {});
+    kd_frame p(boxes, {});
     const std::size_t nodes = p.partition.built_nodes();
     CHECK(nodes == 2 * p.partition.subset_count() - 1);
     CHECK(nodes > 50);
-    SECTION("none where each moves a little, or all are elsewhere but as many everywhere") {
+    SECTION("none if all boxes move but the density stays") {
         for (std::uint32_t seed = 2; seed < 5; ++seed) {
-            p.take(cubes(4000, world, seed));
+            p.fit(cubes(4000, world, seed));
             CHECK(p.partition.built_nodes() == 0);
         }
     }
-    SECTION("some where a corner empties into another") {
+    SECTION("some if the boxes of one corner move to another") {
         for (box& b : boxes)
             if (b.max[0] < 20 && b.max[1] < 20 && b.max[2] < 20)
                 for (int k = 0; k < 3; ++k) b.min[k] = 45 + b.min[k] / 3, b.max[k] = b.min[k] + 1;
-        // It waits for the next frame.
-        p.take(boxes);
+        // The rebuild waits for the next frame.
+        p.fit(boxes);
         CHECK(p.partition.built_nodes() == 0);
-        p.take(boxes);
+        p.fit(boxes);
         CHECK_BETWEEN(0, p.partition.built_nodes(), nodes / 2);
-        p.take(boxes);
+        p.fit(boxes);
         CHECK(p.partition.built_nodes() == 0);
     }
-    SECTION("all at once where the frame would be much dearer") {
+    SECTION("all at once if the frame would cost much more") {
         for (box& b : boxes)
             for (int k = 0; k < 3; ++k) b.min[k] /= 60, b.max[k] = b.min[k] + 1.0F / 60;
-        p.take(boxes);
+        p.fit(boxes);
         CHECK(p.partition.built_nodes() > 50);
     }
-    SECTION("all where another axis is swept") {
-        p.take(boxes, 0b001);
+    SECTION("all if another axis is swept") {
+        p.fit(boxes, 0b001);
         CHECK(p.partition.built_nodes() == 2 * p.partition.subset_count() - 1);
     }
 }
 
-TEST_CASE("an axis that is swept is not cut") {
+TEST_CASE("a swept axis is not cut") {
     for (std::size_t k = 0; k < 3; ++k) {
         CAPTURE(k);
-        const planted p(cubes(4000, {60, 60, 60}), {}, axis_set{1} << k);
+        const kd_frame p(cubes(4000, {60, 60, 60}), {}, axis_set{1} << k);
         CHECK(p.partition.subset_count() > 20);
         std::size_t cut = 0;
         for (std::uint32_t id = 0; id < 4000; ++id)
@@ -321,8 +320,8 @@ TEST_CASE("an axis that is swept is not cut") {
 }
 
 TEST_CASE("boxes that no plane divides stay together") {
-    planted p(std::vector<box>(1000, cube(0, 1)), {});
+    kd_frame p(std::vector<box>(1000, cube(0, 1)), {});
     CHECK(p.partition.subset_count() == 1);
-    p.take({});
+    p.fit({});
     CHECK(p.partition.subset_count() == 1);
 }

@@ -10,8 +10,8 @@ using namespace aabb;
 
 namespace {
 
-constexpr float most = std::numeric_limits<float>::max();
-constexpr float least = std::numeric_limits<float>::denorm_min();
+constexpr float largest = std::numeric_limits<float>::max();
+constexpr float smallest = std::numeric_limits<float>::denorm_min();
 
 /// Any finite float, each exponent as often as any other.
 float any_float(std::mt19937& random) {
@@ -23,9 +23,9 @@ float any_float(std::mt19937& random) {
 std::pair<float, float> any_interval(std::mt19937& random) {
     std::pair<float, float> ends;
     switch (random() % 8) {
-        case 0: ends = {-most, most}; break;
-        case 1: ends = {most, std::nextafter(most, 0.0F)}; break;
-        case 2: ends = {-least, static_cast<float>(random() % 100) * least}; break;
+        case 0: ends = {-largest, largest}; break;
+        case 1: ends = {largest, std::nextafter(largest, 0.0F)}; break;
+        case 2: ends = {-smallest, static_cast<float>(random() % 100) * smallest}; break;
         case 3: ends = {-0.0F, 0.0F}; break;
         case 4: ends = {1e7F, 1e7F + static_cast<float>(random() % 4)}; break;
         case 5: ends = {any_float(random), any_float(random)}; break;
@@ -34,15 +34,15 @@ std::pair<float, float> any_interval(std::mt19937& random) {
     return std::minmax(ends.first, ends.second);
 }
 
-/// A float between two others, often one of them or beside it.
+/// A float between two others, often one of them or next to it.
 float any_between(std::mt19937& random, float low, float high) {
-    const double share = std::uniform_real_distribution<double>(0, 1)(random);
+    const double fraction = std::uniform_real_distribution<double>(0, 1)(random);
     switch (random() % 6) {
         case 0: return low;
         case 1: return high;
         case 2: return std::nextafter(low, high);
         case 3: return std::nextafter(high, low);
-        default: return std::clamp(static_cast<float>(low + (double{high} - low) * share), low, high);
+        default: return std::clamp(static_cast<float>(low + (double{high} - low) * fraction), low, high);
     }
 }
 
@@ -55,7 +55,7 @@ box any_within(std::mt19937& random, const box& outer) {
     return b;
 }
 
-/// Triangles that come and go along a spiral, of all sizes.
+/// Triangles of two sizes along a spiral.
 mesh spiral(std::uint32_t n) {
     mesh m;
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -68,22 +68,22 @@ mesh spiral(std::uint32_t n) {
     return m;
 }
 
-/// The same mesh where float has few bits left for it, none to spare, or none at all.
+/// Variants of a mesh for which float has few bits left, none to spare, or none at all.
 std::vector<mesh> extremes(const mesh& m) {
-    std::vector<mesh> all;
+    std::vector<mesh> variants;
     const auto add = [&](auto moved) {
-        mesh& made = all.emplace_back(m);
-        for (vec3f& v : made.vertices)
+        mesh& variant = variants.emplace_back(m);
+        for (vec3f& v : variant.vertices)
             for (int k = 0; k < 3; ++k) v[k] = moved(v[k], k);
     };
     add([](float x, int) { return x * 1e36F; });
-    add([](float x, int k) { return k == 0 ? (x > 0 ? most : -most) : x; });
-    add([](float x, int) { return std::round(x) * least; });
+    add([](float x, int k) { return k == 0 ? (x > 0 ? largest : -largest) : x; });
+    add([](float x, int) { return std::round(x) * smallest; });
     add([](float x, int) { return x * 1e-38F; });
     add([](float x, int) { return x + 1e7F; });
     add([](float x, int k) { return k == 1 ? -0.0F : x; });
     add([](float, int) { return 3.0F; });
-    return all;
+    return variants;
 }
 
 quantized_tree with_bits(unsigned bits) {
@@ -93,14 +93,14 @@ quantized_tree with_bits(unsigned bits) {
 }
 
 double inflation_of(const model<quantized_tree>& m) {
-    const tree_validation validate_tree = validate(m.tree(), m.triangles());
-    CHECK(validate_tree.fault.empty());
-    return validate_tree.area_inflation;
+    const tree_validation validation = validate(m.tree(), m.triangles());
+    CHECK(validation.fault.empty());
+    return validation.area_inflation;
 }
 
 }  // namespace
 
-TEST_CASE("a quantized plane never cuts a child, and the next code would") {
+TEST_CASE("a quantized plane never cuts a child, but the next code would") {
     std::mt19937 random(1);
     for (unsigned bits = quantized_planes::least_bits; bits <= quantized_planes::most_bits; ++bits) {
         const quantized_planes planes(bits);
@@ -120,7 +120,7 @@ TEST_CASE("a quantized plane never cuts a child, and the next code would") {
             }
             for (int k = 0; k < 3; ++k) {
                 const double length = double{parent.max[k]} - double{parent.min[k]};
-                if (length > most || length < 1e-30) continue;
+                if (length > largest || length < 1e-30) continue;
                 // A step, and what rounding to float takes at this distance from the origin.
                 const double slack =
                     length * std::ldexp(1.0, -static_cast<int>(bits)) * 1.001 +
@@ -134,20 +134,20 @@ TEST_CASE("a quantized plane never cuts a child, and the next code would") {
     }
 }
 
-TEST_CASE("quantized boxes hold what is below them, the closer the more bits they have") {
+TEST_CASE("quantized boxes contain what is below them, and are tighter with more bits") {
     const mesh m = spiral(501);
-    double before = 1e9;
+    double previous = 1e9;
     for (unsigned bits = quantized_planes::least_bits; bits <= quantized_planes::most_bits; ++bits) {
         INFO(bits << " bits");
         const double inflation = inflation_of({m, median_build(), with_bits(bits)});
-        CHECK_BETWEEN(0, inflation, before);
-        before = inflation;
+        CHECK_BETWEEN(0, inflation, previous);
+        previous = inflation;
         for (const mesh& extreme : extremes(m)) CHECK(inflation_of({extreme, median_build(), with_bits(bits)}) >= 0);
     }
-    CHECK(before < 1e-3);
+    CHECK(previous < 1e-3);
 }
 
-TEST_CASE("quantized boxes are made afresh by each refit, and do not grow") {
+TEST_CASE("each refit recomputes quantized boxes, so that they do not grow") {
     mesh m = spiral(300);
     const mesh at_rest = m;
     for (const unsigned bits : {4U, 7U, 16U}) {
@@ -167,7 +167,7 @@ TEST_CASE("quantized boxes are made afresh by each refit, and do not grow") {
     }
 }
 
-TEST_CASE("quantized trees lose no pair, whatever the bits and wherever the meshes lie") {
+TEST_CASE("quantized trees miss no pair, at any number of bits and any coordinates") {
     for (const mesh& m : extremes(spiral(150))) {
         const auto pairs_of = [&](const std::string& tree) {
             const auto stage = local_of(composed({{strategy_kind::tree, tree.c_str()}}));
@@ -185,16 +185,16 @@ TEST_CASE("quantized trees lose no pair, whatever the bits and wherever the mesh
     }
 }
 
-TEST_CASE("a quantized tree takes six codes, a symbol and one index for two siblings, and an index a triangle") {
+TEST_CASE("a quantized tree takes six codes, a symbol and an index per sibling pair, and an index per triangle") {
     for (std::uint32_t n = 2; n <= 60; ++n) {
         const mesh m = spiral(n);
         for (unsigned bits = quantized_planes::least_bits; bits <= quantized_planes::most_bits; ++bits) {
-            const model<quantized_tree> made(m, median_build(), with_bits(bits));
+            const model<quantized_tree> packed(m, median_build(), with_bits(bits));
             const std::size_t pairs = n / 2;
             const std::size_t records = n - 1 - pairs;
             INFO(n << " triangles, " << bits << " bits");
-            CHECK(made.tree().bytes().nodes == 24 + records * (1 + (6 * bits + 7) / 8));
-            CHECK(made.tree().bytes().indices == 4 * records + 8 * pairs);
+            CHECK(packed.tree().bytes().nodes == 24 + records * (1 + (6 * bits + 7) / 8));
+            CHECK(packed.tree().bytes().indices == 4 * records + 8 * pairs);
         }
     }
 }

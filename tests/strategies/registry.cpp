@@ -2,7 +2,7 @@
 
 using namespace aabb;
 
-TEST_CASE("every strategy of every kind says what it is and has sound defaults") {
+TEST_CASE("every strategy of every kind has a summary and valid defaults") {
     for (const strategy_kind kind : strategy_kinds) {
         REQUIRE_FALSE(strategies(kind).empty());
         for (const strategy_info& info : strategies(kind)) {
@@ -16,7 +16,7 @@ TEST_CASE("every strategy of every kind says what it is and has sound defaults")
     }
 }
 
-TEST_CASE("an unknown strategy is refused with the nearest name") {
+TEST_CASE("an unknown strategy is rejected with the nearest name") {
     CHECK_REFUSED(require_known(strategy_kind::sort, {"insrtion", {}}),
                   "unknown sort 'insrtion'; did you mean 'insertion'?");
     CHECK_REFUSED(global_of(composed({{strategy_kind::partition, "grid"}})),
@@ -30,7 +30,7 @@ TEST_CASE("an unknown strategy is refused with the nearest name") {
                   "unknown parameter of leafless 'leaftest'; did you mean 'leaf_test'?");
 }
 
-TEST_CASE("a strategy of another kind is refused with its kind, and never with a name that is far") {
+TEST_CASE("a strategy of another kind is rejected with its kind, and never with a distant name") {
     CHECK_REFUSED(require_known(strategy_kind::partition, {"bucket", {}}),
                   "'bucket' is of the kind sort, not partition");
     CHECK_REFUSED(composed({{strategy_kind::sort, "columns:threads=2"}}),
@@ -41,13 +41,13 @@ TEST_CASE("a strategy of another kind is refused with its kind, and never with a
     CHECK_REFUSED(require_known(strategy_kind::sort, {"none", {}}), "unknown sort 'none'; expected one of " + sorts);
 }
 
-TEST_CASE("a parameter that is a kind of its own is refused with the new spelling") {
+TEST_CASE("a parameter that is now a kind is rejected with the new spelling") {
     CHECK_REFUSED(require_known(strategy_kind::tree, parse_strategy("canonical:build=sah")),
                   "canonical has no parameter build, which is a kind of its own: write build = \"sah\" "
                   "or --build sah");
 }
 
-TEST_CASE("what is not named is the best where nothing is, and goes with what is") {
+TEST_CASE("unnamed strategies are the defaults if nothing is named, else those that fit") {
     const auto completed = [](strategy_kind kind, const char* name) {
         return text_of_global(composed({{kind, name}}));
     };
@@ -55,21 +55,21 @@ TEST_CASE("what is not named is the best where nothing is, and goes with what is
     CHECK(completed(strategy_kind::sort, "shell") == "shell + none + one_axis");
     CHECK(completed(strategy_kind::sweep, "all_axes") == "std + none + all_axes");
     CHECK(completed(strategy_kind::partition, "axial_cut") == "std + axial_cut + one_axis");
-    // one_axis is refused by columns, so the others are what serves best.
+    // columns rejects one_axis, so the others are the defaults.
     CHECK(completed(strategy_kind::partition, "columns:axes=1") == "bucket + columns:axes=1 + simd");
-    // Refused whatever goes with it: the sentence names what most have.
+    // Neither set of defaults fits: the rejection names the usual companions.
     CHECK(completed(strategy_kind::sweep, "incremental") == "std + none + incremental");
     for (const strategy_info& info : strategies(strategy_kind::sort))
         CHECK(rejection_of(composed({{strategy_kind::sort, info.name.c_str()}}), stage::global_search).empty());
     CHECK_REFUSED(composed({{strategy_kind::sort, "shall"}}), "unknown sort 'shall'; did you mean 'shell'?");
 }
 
-TEST_CASE("every kind has a stage, and a usual strategy that exists and makes sense") {
+TEST_CASE("every kind has a stage and a valid default strategy") {
     for (const strategy_kind kind : strategy_kinds)
         CHECK_NOTHROW(require_known(kind, {std::string(info_of(kind).fallback), {}}));
     for (const stage of : {stage::global_search, stage::local_detection}) {
         CHECK(rejection_of(composition{}, of).empty());
-        // What stands apart is told where it is not the usual one.
+        // Standalone kinds are written only if they are not the default.
         CHECK(to_text(composed({{strategy_kind::prepare, "split_large"}, {strategy_kind::build, "sah"}}), of) ==
               (of == stage::global_search ? "split_large + bucket + columns + simd" : "sah + implicit + exact"));
         CHECK(to_text(composition{}, of) ==

@@ -3,7 +3,7 @@
 #include "../boxes.hpp"
 #include "../compositions.hpp"
 
-/// Objects 0 to n - 1 come.
+/// Inserts objects 0 to n - 1.
 template <class Search>
 void insert_all(Search& search, std::size_t n) {
     for (std::uint32_t id = 0; id < n; ++id) search.insert(id);
@@ -15,11 +15,11 @@ inline std::unique_ptr<aabb::global_stage> search_of(const aabb::composition& c,
     return search;
 }
 
-/// Does it say that it does without this?
+/// Whether the search reports that it leaves this out.
 template <class Search>
 bool leaves_out(const Search& search, aabb::absence what) {
-    const std::vector<aabb::omission> all = search.left_out();
-    return std::ranges::find(all, what, &aabb::omission::feature) != all.end();
+    const std::vector<aabb::omission> omissions = search.left_out();
+    return std::ranges::find(omissions, what, &aabb::omission::feature) != omissions.end();
 }
 
 inline aabb::box cube(float at, float edge) {
@@ -30,7 +30,7 @@ inline aabb::box moved(const aabb::box& b, const aabb::vec3f& by) {
     return {b.min + by, b.max + by};
 }
 
-/// Everywhere in a world of about 100, alike in every run.
+/// Scattered over a world of about 100, the same in every run.
 inline std::vector<aabb::box> scattered(std::uint32_t n, float edge) {
     std::vector<aabb::box> boxes;
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -41,7 +41,7 @@ inline std::vector<aabb::box> scattered(std::uint32_t n, float edge) {
     return boxes;
 }
 
-/// Unit cubes that begin anywhere in a box of these widths.
+/// Unit cubes whose lower corners lie anywhere in a box of these widths.
 inline std::vector<aabb::box> cubes(std::size_t n, const aabb::vec3f& widths, std::uint32_t seed = 1) {
     std::mt19937 random(seed);
     std::vector<aabb::box> boxes(n);

@@ -26,19 +26,19 @@ bool by_id(const projection& p, const projection& q) {
 template <class Sort>
 void check_sorts(Sort sort) {
     REQUIRE(rc::check([&] {
-        const std::vector<projection> given = any_list();
-        std::vector<projection> list = given;
-        no_counters none;
-        sort.sort(std::span(list), none);
+        const std::vector<projection> original = any_list();
+        std::vector<projection> list = original;
+        no_counters counters;
+        sort.sort(std::span(list), counters);
         RC_ASSERT(std::ranges::is_sorted(list, precedes));
         std::ranges::sort(list, by_id);
         for (std::size_t i = 0; i < list.size(); ++i)
-            RC_ASSERT(list[i].id == given[i].id && list[i].key == given[i].key);
+            RC_ASSERT(list[i].id == original[i].id && list[i].key == original[i].key);
     }));
 }
 
 template <class... Sorts>
-void check_all(type_list<Sorts...>) {
+void check_each(type_list<Sorts...>) {
     (check_sorts(Sorts{}), ...);
 }
 
@@ -50,8 +50,8 @@ std::vector<projection> list_of(const std::vector<float>& keys) {
 
 }  // namespace
 
-TEST_CASE("every sort sorts all finite keys, zeros of both signs as equal, and loses nothing") {
-    check_all(sorts{});
+TEST_CASE("every sort sorts all finite keys, with zeros of both signs equal, and keeps every entry") {
+    check_each(sorts{});
     const auto& gaps = std::get<0>(shell_sort::parameters);
     for (const std::string_view choice : gaps.names) {
         const auto config = configured<shell_sort>(std::vector<setting>{{std::string(gaps.name), std::string(choice)}});
@@ -59,7 +59,7 @@ TEST_CASE("every sort sorts all finite keys, zeros of both signs as equal, and l
     }
 }
 
-TEST_CASE("radix sort leaves a list in order as it is, and passes over digits that all keys share") {
+TEST_CASE("radix sort does not move a sorted list, and skips digits that all keys share") {
     const auto moves = [](float step, bool backwards) {
         std::vector<float> keys;
         for (int i = 0; i < 1000; ++i) keys.push_back(1 + step * static_cast<float>(backwards ? 999 - i : i));
@@ -77,20 +77,20 @@ TEST_CASE("radix sort leaves a list in order as it is, and passes over digits th
     CHECK(moves(1.37F, true) == 4000);
 }
 
-TEST_CASE("insertion sort moves and compares as its inversions say") {
+TEST_CASE("insertion sort moves and compares in proportion to the inversions") {
     work_counters counted;
     auto list = list_of({3, 1, 2, 5, 4});
     insertion_sort::sort(std::span(list), counted);
-    // Three inversions; one comparison each, and one that ends the way of each entry that does not reach the front.
+    // Three inversions: one comparison each, and one more for each entry that stops before the front.
     CHECK(counted[work::comparisons] == 6);
     CHECK(counted[work::moves] == 6);
-    work_counters nothing_to_do;
-    insertion_sort::sort(std::span(list), nothing_to_do);
-    CHECK(nothing_to_do[work::comparisons] == 4);
-    CHECK(nothing_to_do[work::moves] == 0);
+    work_counters already_sorted;
+    insertion_sort::sort(std::span(list), already_sorted);
+    CHECK(already_sorted[work::comparisons] == 4);
+    CHECK(already_sorted[work::moves] == 0);
 }
 
-TEST_CASE("insertion sort tells of each inversion once") {
+TEST_CASE("insertion sort reports each inversion once") {
     REQUIRE(rc::check([] {
         auto list = list_of({});
         for (auto n = *rc::gen::inRange<std::uint32_t>(0, 40); n > 0; --n)
@@ -99,17 +99,17 @@ TEST_CASE("insertion sort tells of each inversion once") {
         for (std::size_t i = 0; i < list.size(); ++i)
             for (std::size_t j = i + 1; j < list.size(); ++j)
                 if (precedes(list[j], list[i])) expected.emplace_back(list[i].id, list[j].id);
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> told;
-        no_counters none;
-        insertion_sort::sort(std::span(list), none, [&](const projection& passed, const projection& moved) {
-            told.emplace_back(passed.id, moved.id);
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> reported;
+        no_counters counters;
+        insertion_sort::sort(std::span(list), counters, [&](const projection& passed, const projection& moved) {
+            reported.emplace_back(passed.id, moved.id);
             return true;
         });
-        RC_ASSERT(sorted(told) == sorted(expected));
+        RC_ASSERT(sorted(reported) == sorted(expected));
     }));
 }
 
-TEST_CASE("insertion sort ends with the swap after which it is told to") {
+TEST_CASE("insertion sort stops after the swap for which the callback returns false") {
     auto list = list_of({5, 4, 3, 2, 1});
     work_counters counted;
     int swaps = 0;
@@ -121,7 +121,7 @@ TEST_CASE("insertion sort ends with the swap after which it is told to") {
     CHECK(keys == std::vector<float>{3, 2, 4, 5, 1});
 }
 
-TEST_CASE("the gap sequences are the published ones: comparisons on a sorted list") {
+TEST_CASE("the gap sequences are the published ones") {
     // A pass over gap g compares each of the n - g entries once.
     const auto comparisons = [](const char* gaps, int n = 1000) {
         std::vector<float> keys;
@@ -133,14 +133,14 @@ TEST_CASE("the gap sequences are the published ones: comparisons on a sorted lis
         return counted[work::comparisons];
     };
     const auto expected = [](const std::vector<std::uint64_t>& gaps, std::uint64_t n = 1000) {
-        std::uint64_t all = 0;
-        for (const std::uint64_t gap : gaps) all += n - gap;
-        return all;
+        std::uint64_t sum = 0;
+        for (const std::uint64_t gap : gaps) sum += n - gap;
+        return sum;
     };
     CHECK(comparisons("shell") == expected({500, 250, 125, 62, 31, 15, 7, 3, 1}));
     CHECK(comparisons("ciura") == expected({701, 301, 132, 57, 23, 10, 4, 1}));
     CHECK(comparisons("tokuda") == expected({525, 233, 103, 46, 20, 9, 4, 1}));
-    // On longer lists the others get further gaps; these do not.
+    // Longer lists extend the other sequences, but not these.
     CHECK(comparisons("ciura", 5000) == expected({3548, 1577, 701, 301, 132, 57, 23, 10, 4, 1}, 5000));
     CHECK(comparisons("ciura_eight", 5000) == expected({701, 301, 132, 57, 23, 10, 4, 1}, 5000));
     CHECK(comparisons("four_one", 5000) == expected({4, 1}, 5000));

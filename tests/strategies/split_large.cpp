@@ -18,14 +18,14 @@ TEST_CASE("a large object is swept as pieces and reported once") {
     boxes.push_back(cube(0, 60));  // overlaps all the others
     const auto stage = splitting(2, 61);
     const std::vector<index_pair> pairs = found_by(*stage, boxes);
-    // The mean extent is 120 / 61; pieces are no longer than twice that, and no more than 16 an axis.
+    // The mean extent is 120 / 61; pieces are no longer than twice that, and no more than 16 per axis.
     CHECK(stage->counters()[work::pieces] == 16 * 16 * 16);
     CHECK(pairs.size() == 59 + 60);
     CHECK(std::ranges::adjacent_find(pairs) == pairs.end());
     CHECK(std::ranges::count(pairs, 60U, &index_pair::b) == 60);
 }
 
-TEST_CASE("a box is cut on those axes only on which it is long") {
+TEST_CASE("a box is split only on axes on which it is long") {
     std::vector<box> boxes(9, cube(0, 1));
     boxes.push_back({{0, 0, 0}, {10, 1, 1}});
     // The mean extent is 1.3: four pieces of at most 2.6.
@@ -34,7 +34,7 @@ TEST_CASE("a box is cut on those axes only on which it is long") {
     CHECK(stage->counters()[work::pieces] == 4);
 }
 
-TEST_CASE("pieces follow objects that grow, shrink, come and go, and frames of other sizes") {
+TEST_CASE("pieces follow objects that grow, shrink, come and go, in frames of any size") {
     const auto stage = splitting(1.5, 4);
     std::vector<box> boxes{cube(0, 1), cube(0.5F, 1), cube(10, 1), cube(0, 1)};
     CHECK(found_by(*stage, boxes).size() == 3);
@@ -72,13 +72,13 @@ TEST_CASE("pieces keep their places in sorted lists when other objects come and 
     CHECK(stage->counters()[work::comparisons] - before < 1000);
 }
 
-TEST_CASE("a size that would make far more pieces than there are objects is refused") {
+TEST_CASE("a size that makes far more pieces than objects is rejected") {
     const auto stage = splitting(1e-6, 20'000);
     CHECK_REFUSED(stage->update(std::vector<box>(20'000, cube(0, 1))),
                   "split_large: this size makes more than 385536 pieces of 20000 objects; a greater size makes fewer");
 }
 
-TEST_CASE("rounding of coordinates splits nothing") {
+TEST_CASE("rounding of coordinates splits no box") {
     std::vector<box> boxes;
     for (int i = 0; i < 200; ++i) boxes.push_back(cube(static_cast<float>(i) * 0.7F + 1000, 1));
     const auto stage = splitting(1, 200);
@@ -86,7 +86,7 @@ TEST_CASE("rounding of coordinates splits nothing") {
     CHECK(stage->counters()[work::pieces] == 0);
 }
 
-TEST_CASE("a box without room for pieces between its floats stays whole") {
+TEST_CASE("a box with no floats between its ends stays whole") {
     const float next = std::nextafter(1.0F, 2.0F);
     std::vector<box> boxes(20, {{1, 1, 1}, {1, 1, 1}});
     boxes.push_back({{1, 1, 1}, {next, next, next}});
@@ -95,7 +95,7 @@ TEST_CASE("a box without room for pieces between its floats stays whole") {
     CHECK(stage->counters()[work::pieces] == 0);
 }
 
-TEST_CASE("the size is a number above 0") {
+TEST_CASE("the size of split_large is a number above 0") {
     for (const std::string text : {"", "on", "0", "-1", "nan", "inf", "2x"})
         CHECK_REFUSED(require_known(strategy_kind::prepare, {"split_large", {{"size", text}}}),
                       "split_large: size must be a number above 0, not '" + text + "'");

@@ -23,16 +23,16 @@ void for_each_build(const auto& check) {
     [&]<class... Builds>(type_list<Builds...>) { (check(Builds{}), ...); }(builds{});
 }
 
-/// What is in a node.
-auto told_of(const build_node& n) {
+/// The content of a node.
+auto content_of(const build_node& n) {
     return std::tuple(n.bounds, n.right, n.is_leaf() ? n.triangle : 0);
 }
 
-mesh many_equal(std::uint32_t n) {
+mesh equal_triangles(std::uint32_t n) {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {n, {0, 1, 2}}};
 }
 
-/// Points, each many times as far out as the one before: a mean split peels them off one by one.
+/// Points, each several times as far out as the one before: a mean split peels them off one by one.
 mesh receding(std::uint32_t n) {
     mesh m;
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -42,7 +42,7 @@ mesh receding(std::uint32_t n) {
     return m;
 }
 
-/// Slivers from the origin, each a little shorter than the one before and its centroid in its own middle: a midpoint
+/// Slivers from the origin, each a little shorter than the one before, with its centroid in its middle: a midpoint
 /// split peels them off one by one.
 mesh nested(std::uint32_t n) {
     mesh m;
@@ -61,30 +61,30 @@ mesh strip(std::uint32_t n) {
 }
 
 std::vector<mesh> meshes() {
-    std::vector<mesh> all = {sheet(9),     sheet(40),     many_equal(3), many_equal(1000),
-                             receding(61), receding(500), nested(300)};
-    for (std::uint32_t n = 1; n <= 40; ++n) all.push_back(strip(n));
-    return all;
+    std::vector<mesh> result = {sheet(9),     sheet(40),     equal_triangles(3), equal_triangles(1000),
+                                receding(61), receding(500), nested(300)};
+    for (std::uint32_t n = 1; n <= 40; ++n) result.push_back(strip(n));
+    return result;
 }
 
 /// Every build of every layout, with the exact triangle test.
-std::vector<composition> all_trees(bool exact_ones = false) {
-    std::vector<composition> all;
+std::vector<composition> all_trees(bool exact_only = false) {
+    std::vector<composition> compositions;
     for (const strategy_choice& build : all_choices(strategy_kind::build))
         for (const strategy_choice& tree : all_choices(strategy_kind::tree)) {
-            composition& c = all.emplace_back();
+            composition& c = compositions.emplace_back();
             c[strategy_kind::build] = build;
             c[strategy_kind::tree] = tree;
         }
-    if (exact_ones) std::erase_if(all, [](const composition& c) { return !is_exact_locally(c); });
-    return all;
+    if (exact_only) std::erase_if(compositions, [](const composition& c) { return !is_exact_locally(c); });
+    return compositions;
 }
 
 std::size_t tree_bytes_of(const local_stage& stage) {
-    std::size_t all = 0;
+    std::size_t sum = 0;
     for (const part_bytes& part : stage.bytes())
-        if (part.part == "nodes" || part.part == "indices") all += part.bytes;
-    return all;
+        if (part.part == "nodes" || part.part == "indices") sum += part.bytes;
+    return sum;
 }
 
 std::unique_ptr<local_stage> stage_of(const composition& c, const mesh& m) {
@@ -100,7 +100,7 @@ std::size_t bytes_of_tree(const strategy_choice& tree, const mesh& m, const stra
     return tree_bytes_of(*stage_of(c, m));
 }
 
-/// Every other vertex moved, and with it most boxes.
+/// Moves every other vertex, and with them most boxes.
 void deform(mesh& m) {
     for (std::size_t v = 0; v < m.vertices.size(); v += 2) {
         m.vertices[v][0] += 0.75F;
@@ -114,20 +114,19 @@ bool is_lossless(const strategy_choice& tree) {
 
 void check(const local_stage& stage, const composition& c, const mesh& m) {
     INFO(text_of_local(c) << ", " << m.triangle_count() << " triangles");
-    const std::optional<tree_validation> validated = stage.validate_tree(0);
-    REQUIRE(validated.has_value());
-    CHECK(validated->fault.empty());
-    if (is_lossless(c[strategy_kind::tree])) CHECK(validated->tight);
-    CHECK(validated->area_inflation >= 0);
-    const auto least = static_cast<std::size_t>(std::bit_width(m.triangle_count() - 1U));
-    CHECK(validated->depth >= least);
-    if (c[strategy_kind::build].name == "median") CHECK(validated->depth == least);
+    const std::optional<tree_validation> validation = stage.validate_tree(0);
+    REQUIRE(validation.has_value());
+    CHECK(validation->fault.empty());
+    if (is_lossless(c[strategy_kind::tree])) CHECK(validation->tight);
+    CHECK(validation->area_inflation >= 0);
+    const auto least_depth = static_cast<std::size_t>(std::bit_width(m.triangle_count() - 1U));
+    CHECK(validation->depth >= least_depth);
+    if (c[strategy_kind::build].name == "median") CHECK(validation->depth == least_depth);
 }
 
-bool same_nodes(const implicit_tree& one, const implicit_tree& other) {
-    const std::size_t bytes = one.bytes().nodes;
-    return bytes == other.bytes().nodes && one.levels() == other.levels() &&
-           std::memcmp(one.level(0), other.level(0), bytes) == 0;
+bool same_nodes(const implicit_tree& a, const implicit_tree& b) {
+    const std::size_t bytes = a.bytes().nodes;
+    return bytes == b.bytes().nodes && a.levels() == b.levels() && std::memcmp(a.level(0), b.level(0), bytes) == 0;
 }
 
 std::tuple<std::uint32_t, std::array<std::uint32_t, 3>, std::vector<std::uint32_t>> parts_of(const vertex_list& list) {
@@ -136,7 +135,7 @@ std::tuple<std::uint32_t, std::array<std::uint32_t, 3>, std::vector<std::uint32_
 
 }  // namespace
 
-TEST_CASE("a tree holds every triangle once, at the least depth when balanced, and refitted in the same memory too",
+TEST_CASE("a tree holds every triangle once, has the least depth if balanced, and keeps its size if refitted",
           "[long]") {
     for (const composition& tree : all_trees())
         for (mesh m : meshes()) {
@@ -150,7 +149,7 @@ TEST_CASE("a tree holds every triangle once, at the least depth when balanced, a
         }
 }
 
-TEST_CASE("a mesh that has lost triangles or turned bad is not refitted") {
+TEST_CASE("a refit rejects meshes with fewer triangles or invalid vertices") {
     for (const composition& tree : all_trees()) {
         mesh m = strip(7);
         const auto stage = stage_of(tree, m);
@@ -162,11 +161,11 @@ TEST_CASE("a mesh that has lost triangles or turned bad is not refitted") {
     }
 }
 
-TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles") {
+TEST_CASE("queries find all pairs in deep trees and in trees of equal triangles") {
     for (const composition& tree : all_trees(true)) {
         INFO(text_of_local(tree));
         const mesh points = receding(300);
-        const mesh equal = many_equal(60);
+        const mesh equal = equal_triangles(60);
         const mesh slivers = nested(300);
         const auto stage = stage_of(tree, points);
         stage->add_model(equal);
@@ -178,7 +177,7 @@ TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles
         // Of the points on the ray from the origin, those that are no further than 1 lie in the triangle's edge.
         const auto near = std::ranges::count_if(points.vertices, [](const vec3f& p) { return p[0] <= 1; });
         CHECK(stage->count_pairs(0, {}, 1, {}) == static_cast<std::uint64_t>(60 * near));
-        // All begin in the corner of every triangle.
+        // All slivers start in a corner of every triangle.
         CHECK(stage->count_pairs(1, {}, 2, {}) == 60 * 300);
         pairs.clear();
         stage->self_pairs(2, pairs);
@@ -186,24 +185,24 @@ TEST_CASE("queries end, and find all, on deep trees and trees of equal triangles
     }
 }
 
-TEST_CASE("the half-steps hold the canonical tree, box by box") {
+TEST_CASE("the intermediate layouts hold the canonical tree, box by box") {
     for_each_build([&](const auto& build) {
         for (const mesh& m : meshes()) {
             const std::vector<build_node> nodes = build.build(m, leaf_arrangement::any);
             canonical_tree canonical;
             canonical.pack(nodes);
-            const auto same = [&](auto self, const auto& other, auto at, auto there, bool lossless) -> void {
-                REQUIRE(canonical.is_leaf(at) == other.is_leaf(there));
-                if (canonical.is_leaf(at)) {
-                    REQUIRE(canonical.triangle(at) == other.triangle(there));
-                    if (other.has_leaf_boxes) REQUIRE(canonical.bounds(at) == other.bounds(there));
+            const auto same = [&](auto self, const auto& other, auto node, auto twin, bool lossless) -> void {
+                REQUIRE(canonical.is_leaf(node) == other.is_leaf(twin));
+                if (canonical.is_leaf(node)) {
+                    REQUIRE(canonical.triangle(node) == other.triangle(twin));
+                    if (other.has_leaf_boxes) REQUIRE(canonical.bounds(node) == other.bounds(twin));
                     return;
                 }
-                if (lossless) REQUIRE(canonical.bounds(at) == other.bounds(there));
-                REQUIRE(contains(other.bounds(there), canonical.bounds(at)));
-                const auto children = canonical.children(at, m);
-                const auto others = other.children(there, m);
-                for (std::size_t side = 0; side < 2; ++side) self(self, other, children[side], others[side], lossless);
+                if (lossless) REQUIRE(canonical.bounds(node) == other.bounds(twin));
+                REQUIRE(contains(other.bounds(twin), canonical.bounds(node)));
+                const auto children = canonical.children(node, m);
+                const auto twins = other.children(twin, m);
+                for (std::size_t side = 0; side < 2; ++side) self(self, other, children[side], twins[side], lossless);
             };
             const auto check_packed = [&](auto other, bool lossless) {
                 other.pack(nodes);
@@ -216,7 +215,7 @@ TEST_CASE("the half-steps hold the canonical tree, box by box") {
     });
 }
 
-TEST_CASE("layouts take the bytes that the paper says, or less") {
+TEST_CASE("layouts take at most the bytes that the paper states") {
     for (std::uint32_t n = 2; n <= 60; ++n) {
         const mesh m = strip(n);
         INFO(n << " triangles");
@@ -225,14 +224,14 @@ TEST_CASE("layouts take the bytes that the paper says, or less") {
         CHECK(bytes_of_tree({"shared_planes", {}}, m) == 37 * n - 33 + 24);
         CHECK(bytes_of_tree({"compressed_literal", {}}, m) == 21 * (n - 1) + 24);
         for (const strategy_choice& build : all_choices(strategy_kind::build)) {
-            // Even: half as many nodes hold two leaves, 8 bytes; the others 33. Odd: one leaf stands beside a node.
+            // Even: half as many nodes hold two leaves, 8 bytes; the others 33. Odd: one leaf is the sibling of a node.
             const std::size_t pairs = n / 2;
             CHECK(bytes_of_tree({"compressed", {}}, m, build) == 8 * pairs + 33 * (n - 1 - pairs) + 24);
         }
     }
 }
 
-TEST_CASE("a balanced tree by surface area is split across the axis that makes boxes small, not the longest") {
+TEST_CASE("a balanced sah tree is split across the axis that makes boxes small, not the longest one") {
     for (const std::uint32_t n : {64U, 256U, 4096U}) {
         CAPTURE(n);
         mesh bars;
@@ -246,7 +245,7 @@ TEST_CASE("a balanced tree by surface area is split across the axis that makes b
     }
 }
 
-TEST_CASE("a balanced tree by surface area is built where nearly all centroids lie at one end") {
+TEST_CASE("a balanced sah tree is built even if nearly all centroids lie at one end") {
     // One large triangle, others in its corner: more than half of them are to go to the left, and lie in the last bin.
     mesh m{{{0, 0, 0}, {1, 0, 1}, {1, 1, 0}}, {{0, 1, 2}}};
     for (int i = 0; i < 128; ++i) {
@@ -257,7 +256,7 @@ TEST_CASE("a balanced tree by surface area is built where nearly all centroids l
     for (std::uint32_t i = 0; i < 129; ++i) CHECK(order[i] == i);
 }
 
-TEST_CASE("trees are refitted to meshes whose vertices were numbered anew") {
+TEST_CASE("trees are refitted to meshes with renumbered vertices") {
     for (const composition& tree : all_trees(true)) {
         INFO(text_of_local(tree));
         mesh m = sheet(12);
@@ -271,7 +270,7 @@ TEST_CASE("trees are refitted to meshes whose vertices were numbered anew") {
     }
 }
 
-TEST_CASE("an implicit tree takes 64 bytes for eight leaves or nodes, and for a triangle the bits of their number") {
+TEST_CASE("an implicit tree takes 64 bytes per eight leaves or nodes, and log2(n) bits per triangle") {
     for (const std::uint32_t n : {1U, 8U, 9U, 64U, 65U, 1000U}) {
         std::size_t nodes = 0;
         for (std::size_t below = (n + 7) / 8; nodes == 0 || below > 1;) nodes += below = (below + 7) / 8;
@@ -287,13 +286,13 @@ TEST_CASE("an implicit tree takes 64 bytes for eight leaves or nodes, and for a 
     CHECK(bytes_of_tree({"implicit", {}}, m) < 8 * m.triangles.size());
 }
 
-TEST_CASE("a mesh in the order of leaves is the same mesh, and has the same tree without a word on which is where") {
-    std::vector<mesh> all = meshes();
-    all.push_back(sheet(70));
-    all.back().vertices.insert(all.back().vertices.begin(), {5, 5, 5});  // of no triangle
-    for (auto& t : all.back().triangles)
+TEST_CASE("a mesh in leaf order is the same mesh, and has the same tree without a list of triangles") {
+    std::vector<mesh> cases = meshes();
+    cases.push_back(sheet(70));
+    cases.back().vertices.insert(cases.back().vertices.begin(), {5, 5, 5});  // used by no triangle
+    for (auto& t : cases.back().triangles)
         for (std::uint32_t& v : t) ++v;
-    for (const mesh& m : all)
+    for (const mesh& m : cases)
         for_each_build([&]<class Build>(Build build) {
             INFO(Build::name << ", " << m.triangles.size() << " triangles");
             const balanced_order order = build.order(m);
@@ -307,9 +306,9 @@ TEST_CASE("a mesh in the order of leaves is the same mesh, and has the same tree
                     next = std::max(next, v + 1);
                 }
             }
-            const auto in_order = [](mesh of) {
-                std::ranges::sort(of.vertices, {}, [](const vec3f& p) { return std::tuple(p[0], p[1], p[2]); });
-                return of.vertices;
+            const auto in_order = [](mesh unordered) {
+                std::ranges::sort(unordered.vertices, {}, [](const vec3f& p) { return std::tuple(p[0], p[1], p[2]); });
+                return unordered.vertices;
             };
             REQUIRE(in_order(ordered) == in_order(m));
 
@@ -325,26 +324,26 @@ TEST_CASE("a mesh in the order of leaves is the same mesh, and has the same tree
         });
 }
 
-TEST_CASE("an implicit tree is packed alike by any number of threads, and anew") {
+TEST_CASE("an implicit tree is the same if packed by any number of threads, or again") {
     const mesh m = sheet(110);
     const balanced_order order = sah_build().order(m);
-    implicit_tree alone;
-    alone.pack(m, order);
+    implicit_tree sequential;
+    sequential.pack(m, order);
     for (const std::uint32_t threads : {1U, 2U, 5U}) {
-        balanced_order shared = order;
-        shared.threads = threads;
+        balanced_order parallel = order;
+        parallel.threads = threads;
         implicit_tree packed;
         if (threads == 2) packed.pack(m, median_build().order(m));
         if (threads == 5) packed.pack(m, file_order_build().order(m));
-        packed.pack(m, shared);
-        CHECK(same_nodes(packed, alone));
+        packed.pack(m, parallel);
+        CHECK(same_nodes(packed, sequential));
         // More leaves than one range of boxes: every child holds its triangles.
         std::size_t triangles_of_child = 8;
         for (std::size_t level = 0; level < packed.levels(); ++level, triangles_of_child *= 8)
             for (std::size_t place = 0; place < m.triangles.size(); ++place) {
                 const std::size_t child = place / triangles_of_child;
-                const box around = packed.level(level)[child / 8].child(child % 8);
-                REQUIRE(contains(around, bounds_of(m.triangle(order.triangles[place]))));
+                const box child_box = packed.level(level)[child / 8].child(child % 8);
+                REQUIRE(contains(child_box, bounds_of(m.triangle(order.triangles[place]))));
             }
         for (std::uint32_t place = 0; place < m.triangle_count(); ++place)
             REQUIRE(packed.triangle_at(place) == order.triangles[place]);
@@ -352,7 +351,7 @@ TEST_CASE("an implicit tree is packed alike by any number of threads, and anew")
             vertex_list list;
             vertex_list expected;
             packed.read_vertices(leaf, list);
-            alone.read_vertices(leaf, expected);
+            sequential.read_vertices(leaf, expected);
             REQUIRE(parts_of(list) == parts_of(expected));
             REQUIRE(list.count > 0);
             for (std::size_t i = 1; i < list.count; ++i) REQUIRE(list.vertices[i - 1] < list.vertices[i]);
@@ -366,13 +365,13 @@ TEST_CASE("an implicit tree is packed alike by any number of threads, and anew")
     }
 }
 
-TEST_CASE("a tree nearly as deep as its mesh is large is built by two threads as by one") {
+TEST_CASE("a tree of nearly linear depth is built the same by two threads as by one") {
     const mesh m = nested(20000);
     const auto nodes = midpoint_build().build(m, leaf_arrangement::any);
-    CHECK(std::ranges::equal(midpoint_build({2}).build(m, leaf_arrangement::any), nodes, {}, told_of, told_of));
+    CHECK(std::ranges::equal(midpoint_build({2}).build(m, leaf_arrangement::any), nodes, {}, content_of, content_of));
 }
 
-TEST_CASE("in a balanced tree triangles are split where halves are full, across one axis, by any number of threads") {
+TEST_CASE("a balanced tree splits triangles into full halves along one axis, on any number of threads") {
     const auto before = [](const mesh& m, std::uint32_t p, std::uint32_t q, int k) {
         const auto centre = [&](std::uint32_t t) {
             const box b = bounds_of(m.triangle(t));
@@ -390,13 +389,13 @@ TEST_CASE("in a balanced tree triangles are split where halves are full, across 
         };
         return (is_across(0) || is_across(1) || is_across(2)) && self(self, m, left) && self(self, m, right);
     };
-    std::vector<mesh> all = meshes();
-    all.push_back(sheet(80));
-    all.push_back(many_equal(3000));
-    mesh& longer_than_floats = all.emplace_back(sheet(12));
-    for (vec3f& p : longer_than_floats.vertices)
+    std::vector<mesh> cases = meshes();
+    cases.push_back(sheet(80));
+    cases.push_back(equal_triangles(3000));
+    mesh& beyond_float = cases.emplace_back(sheet(12));
+    for (vec3f& p : beyond_float.vertices)
         for (int k = 0; k < 3; ++k) p[k] = (p[k] - 6) * 5e37F;
-    for (const mesh& m : all)
+    for (const mesh& m : cases)
         for_each_build([&]<class Build>(Build) {
             INFO(Build::name << ", " << m.triangles.size() << " triangles");
             const balanced_order order = Build().order(m);
@@ -409,24 +408,24 @@ TEST_CASE("in a balanced tree triangles are split where halves are full, across 
                 CHECK(is_split(is_split, m, order.triangles));
             REQUIRE(order.bounds.size() == (ascending.size() + 7) / 8);
             for (std::size_t leaf = 0; leaf < order.bounds.size(); ++leaf) {
-                box around = empty_box();
+                box leaf_bounds = empty_box();
                 for (std::size_t i = 8 * leaf; i < std::min(8 * leaf + 8, ascending.size()); ++i)
-                    around = merged(around, bounds_of(m.triangle(order.triangles[i])));
-                REQUIRE(order.bounds[leaf] == around);
+                    leaf_bounds = merged(leaf_bounds, bounds_of(m.triangle(order.triangles[i])));
+                REQUIRE(order.bounds[leaf] == leaf_bounds);
             }
             for (const std::uint32_t threads : {2U, 5U, 256U}) {
-                const Build together({threads});
-                CHECK(together.order(m).triangles == order.triangles);
-                CHECK(together.order(m).bounds == order.bounds);
+                const Build parallel({threads});
+                CHECK(parallel.order(m).triangles == order.triangles);
+                CHECK(parallel.order(m).bounds == order.bounds);
                 for (const auto arrangement : {leaf_arrangement::any, leaf_arrangement::pairs})
-                    CHECK(std::ranges::equal(together.build(m, arrangement), Build().build(m, arrangement), {}, told_of,
-                                             told_of));
+                    CHECK(std::ranges::equal(parallel.build(m, arrangement), Build().build(m, arrangement), {},
+                                             content_of, content_of));
             }
         });
 }
 
-TEST_CASE("builds split where they say") {
-    // With a tree that takes splits as they come; `implicit` prescribes them.
+TEST_CASE("builds split by their own rules") {
+    // With a tree that takes any splits; `implicit` prescribes them.
     const auto split_by = [](const char* build) {
         return composed({{strategy_kind::build, build}, {strategy_kind::tree, "canonical"}});
     };
@@ -444,7 +443,7 @@ TEST_CASE("builds split where they say") {
     };
     CHECK(left_end(midpoint_build()) == 0);
     CHECK(left_end(mean_build()) == 6);
-    // Work that the heuristic is made for: two clusters of different sizes.
+    // A case that the heuristic is made for: two clusters of different sizes.
     mesh clusters;
     for (int i = 0; i < 300; ++i) {
         const float x = i < 200 ? static_cast<float>(i) / 200 : 100 + static_cast<float>(i) / 300;
@@ -458,7 +457,7 @@ TEST_CASE("builds split where they say") {
     CHECK(tests("sah") < tests("median"));
 }
 
-TEST_CASE("layouts of few bits a plane inflate boxes, compressed_literal a little, and no other layout does") {
+TEST_CASE("only layouts with few bits per plane inflate boxes, compressed_literal only a little") {
     mesh m = sheet(40);
     for (std::size_t v = 0; v < m.vertices.size(); ++v)
         for (int k = 0; k < 3; ++k)

@@ -22,38 +22,38 @@ const triangle3f face{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 template <class Real, class Check>
 void for_all_pairs(int count, Check check) {
     triangle_pairs::generator random(7);
-    const auto take = [&](const triangle_pairs::pair& made) {
-        check(triangle_pairs::as<triangle3<Real>>(made[0]), triangle_pairs::as<triangle3<Real>>(made[1]));
+    const auto check_pair = [&](const triangle_pairs::pair& pair) {
+        check(triangle_pairs::as<triangle3<Real>>(pair[0]), triangle_pairs::as<triangle3<Real>>(pair[1]));
     };
     for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
         for (std::size_t placement = 0; placement < triangle_pairs::placements.size(); ++placement)
             for (int i = 0; i < count; ++i)
-                take(triangle_pairs::placed<Real>(random, triangle_pairs::patterned(random, pattern), placement));
-    for (int i = 0; i < 20 * count; ++i) take(triangle_pairs::spread<Real>(random));
+                check_pair(triangle_pairs::placed<Real>(random, triangle_pairs::patterned(random, pattern), placement));
+    for (int i = 0; i < 20 * count; ++i) check_pair(triangle_pairs::spread<Real>(random));
 }
 
 template <class Real>
 void check_intervals() {
-    const interval_arithmetic_triangle sure;
-    const interval_arithmetic_triangle unsure({.fallback = fallback_choice::intersects});
+    const interval_arithmetic_triangle with_fallback;
+    const interval_arithmetic_triangle without_fallback({.fallback = fallback_choice::intersects});
     int wrong = 0;
-    int missed = 0;
+    int false_negatives = 0;
     int false_positives = 0;
     for_all_pairs<Real>(400, [&](const triangle3<Real>& s, const triangle3<Real>& t) {
         const bool truth = exact_triangle::intersects(s, t);
-        wrong += sure.intersects(s, t) != truth;
-        const bool found = unsure.intersects(s, t);
-        missed += truth && !found;
-        false_positives += found && !truth;
+        wrong += with_fallback.intersects(s, t) != truth;
+        const bool result = without_fallback.intersects(s, t);
+        false_negatives += truth && !result;
+        false_positives += result && !truth;
     });
     CHECK(wrong == 0);
-    CHECK(missed == 0);
+    CHECK(false_negatives == 0);
     CHECK(false_positives > 0);
 }
 
 }  // namespace
 
-TEST_CASE("every triangle test decides generic pairs, whichever way round they are given") {
+TEST_CASE("every triangle test decides generic pairs, in either order") {
     triangle_pairs::generator random(5);
     for (const strategy_choice& choice : all_choices(strategy_kind::triangle)) {
         INFO(to_text(choice));
@@ -75,7 +75,7 @@ TEST_CASE("every triangle test decides clear pairs") {
     const std::vector<std::pair<triangle3f, bool>> others{{{{{1, 1, -1}, {1, 1, 1}, {5, 5, 1}}}, true},
                                                           {{{{0, 0, 1}, {4, 0, 1}, {0, 4, 1}}}, false},
                                                           {{{{1, 0, 0}, {2, 0, 0}, {1, -1, 1}}}, true},
-                                                          // In one plane.
+                                                          // Coplanar pairs.
                                                           {{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}, true},
                                                           {{{{1, 1, 0}, {1, 2, 0}, {2, 1, 0}}}, true},
                                                           {{{{2, 3, 0}, {3, 2, 0}, {4, 4, 0}}}, false},
@@ -95,45 +95,45 @@ TEST_CASE("every triangle test decides clear pairs") {
     }
 }
 
-TEST_CASE("the epsilon of Möller's test is absolute, absent, or of the pair's own size") {
-    // Two triangles a hundredth of a unit in size, one hovering a tenth of that over the other.
+TEST_CASE("the epsilon of Möller's test is absolute, absent or scaled to the pair") {
+    // Two triangles a hundredth of a unit in size, one a tenth of that above the other.
     const triangle3f low{{{0, 0, 0}, {0.01F, 0, 0}, {0, 0.01F, 0}}};
     const triangle3f high{{{0, 0, 0.001F}, {0.01F, 0, 0.001F}, {0, 0.01F, 0.001F}}};
-    const auto says = [&](const char* test, const char* epsilon) {
+    const auto intersects = [&](const char* test, const char* epsilon) {
         return make_triangle_test({test, {{"epsilon", epsilon}}})->intersects(low, high);
     };
     for (const char* test : {"moller", "moller_double"}) {
         INFO(test);
-        CHECK(says(test, "absolute"));
-        CHECK_FALSE(says(test, "none"));
-        CHECK_FALSE(says(test, "scaled"));
+        CHECK(intersects(test, "absolute"));
+        CHECK_FALSE(intersects(test, "none"));
+        CHECK_FALSE(intersects(test, "scaled"));
     }
-    // A corner that floats put a little off the plane it lies in.
+    // A corner that rounding moves a little off the plane in which it lies.
     const triangle3f slanted{{{0.1F, 0.2F, 0.3F}, {7.3F, 1.9F, 5.1F}, {3.7F, 9.1F, 2.3F}}};
-    vec3f on{};
-    for (int k = 0; k < 3; ++k) on[k] = (slanted[0][k] + slanted[1][k] + slanted[2][k]) / 3;
-    int tried = 0;
-    int lost = 0;
-    int lost_scaled = 0;
+    vec3f centroid{};
+    for (int k = 0; k < 3; ++k) centroid[k] = (slanted[0][k] + slanted[1][k] + slanted[2][k]) / 3;
+    int tested = 0;
+    int missed = 0;
+    int missed_scaled = 0;
     for (int i = 0; i < 4000; ++i) {
         const float a = 1 + static_cast<float>(i % 200) / 7;
-        vec3f tip = on;
+        vec3f tip = centroid;
         const int step = i / 200 - 10;
         tip[2] += static_cast<float>(step) * 0x1p-22F;
         const float down = i % 2 == 0 ? 9 : -9;
         const triangle3f other{{tip, {tip[0] + a, tip[1] - 2, tip[2] - down}, {tip[0] + 3, tip[1] - a, tip[2] - down}}};
         if (!exact_triangle::intersects(slanted, other)) continue;
-        ++tried;
-        lost += !moller_triangle(moller_triangle::config{.epsilon = epsilon_choice::none}).intersects(slanted, other);
-        lost_scaled +=
+        ++tested;
+        missed += !moller_triangle(moller_triangle::config{.epsilon = epsilon_choice::none}).intersects(slanted, other);
+        missed_scaled +=
             !moller_triangle(moller_triangle::config{.epsilon = epsilon_choice::scaled}).intersects(slanted, other);
     }
-    CHECK(tried > 100);
-    CHECK(lost > 0);
-    CHECK(lost_scaled == 0);
+    CHECK(tested > 100);
+    CHECK(missed > 0);
+    CHECK(missed_scaled == 0);
 }
 
-TEST_CASE("tests in double take doubles as they are") {
+TEST_CASE("tests in double do not round doubles") {
     const triangle3d base{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
     const triangle3d above{{{0.25, 0.25, 1e-12}, {0.5, 0.25, 1}, {0.25, 0.5, 1}}};
     const triangle3d below{{{0.25, 0.25, -1e-12}, {0.5, 0.25, 1}, {0.25, 0.5, 1}}};
@@ -148,7 +148,7 @@ TEST_CASE("tests in double take doubles as they are") {
     CHECK(make_triangle_test({"moller_double", {}})->intersects(base, above));
 }
 
-TEST_CASE("plain double errs where exact does not") {
+TEST_CASE("a test in plain double has errors where the exact test has none") {
     triangle_pairs::generator random(11);
     int wrong = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -161,49 +161,49 @@ TEST_CASE("plain double errs where exact does not") {
     CHECK_BETWEEN(0, wrong, 1500);
 }
 
-TEST_CASE("intervals decide exactly with their fallback, and without it never miss a pair") {
+TEST_CASE("intervals decide exactly with their fallback, and miss no pair without it") {
     check_intervals<float>();
     check_intervals<double>();
 }
 
-TEST_CASE("tests that may err do so where they must tell apart what touches, less in double") {
+TEST_CASE("inexact tests err on touching pairs, less often in double") {
     const devillers_guigue_triangle guigue_float({.precision = precision_choice::float32});
     const separating_axes_triangle axes_float;
     const separating_axes_triangle axes_double({.precision = precision_choice::float64});
-    int by_guigue = 0;
-    int by_axes = 0;
-    int by_axes_double = 0;
+    int guigue_errors = 0;
+    int axes_errors = 0;
+    int axes_double_errors = 0;
     triangle_pairs::generator random(3);
     for (int i = 0; i < 3000; ++i) {
-        // A corner in the plane of a face, turned to where floats only come near it.
+        // A corner in the plane of a face, rotated so that floats only come near the plane.
         const auto [a, b] = triangle_pairs::placed<float>(random, triangle_pairs::patterned(random, 3), 5);
         const triangle3f s = triangle_pairs::as<triangle3f>(a);
         const triangle3f t = triangle_pairs::as<triangle3f>(b);
         const bool truth = exact_triangle::intersects(s, t);
-        by_guigue += guigue_float.intersects(s, t) != truth;
-        by_axes += axes_float.intersects(s, t) != truth;
-        by_axes_double += axes_double.intersects(s, t) != truth;
+        guigue_errors += guigue_float.intersects(s, t) != truth;
+        axes_errors += axes_float.intersects(s, t) != truth;
+        axes_double_errors += axes_double.intersects(s, t) != truth;
     }
-    CHECK(by_guigue > 0);
-    CHECK(by_axes > 0);
-    CHECK(by_axes_double < by_axes);
+    CHECK(guigue_errors > 0);
+    CHECK(axes_errors > 0);
+    CHECK(axes_double_errors < axes_errors);
 }
 
-TEST_CASE("without divisions Möller's test leaves the range of float sooner") {
+TEST_CASE("Möller's test without division leaves the range of float sooner") {
     const moller_triangle divided({.epsilon = epsilon_choice::none});
-    const moller_triangle free({.epsilon = epsilon_choice::none, .division = division_choice::no});
-    // Apart along the line of the two planes.
+    const moller_triangle undivided({.epsilon = epsilon_choice::none, .division = division_choice::no});
+    // Disjoint along the line of the two planes.
     const triangle3f s{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
     const triangle3f t{{{0.5F, 2, -1}, {0.5F, 2, 1}, {0.5F, 3, 0}}};
-    const auto scaled = [](triangle3f of, float by) {
-        for (vec3f& corner : of.corner)
-            for (float& x : corner.at) x *= by;
-        return of;
+    const auto scaled = [](triangle3f triangle, float factor) {
+        for (vec3f& corner : triangle.corner)
+            for (float& x : corner.at) x *= factor;
+        return triangle;
     };
     CHECK_FALSE(divided.intersects(s, t));
-    CHECK_FALSE(free.intersects(s, t));
+    CHECK_FALSE(undivided.intersects(s, t));
     CHECK_FALSE(divided.intersects(scaled(s, 1e-5F), scaled(t, 1e-5F)));
-    CHECK(free.intersects(scaled(s, 1e-5F), scaled(t, 1e-5F)));
+    CHECK(undivided.intersects(scaled(s, 1e-5F), scaled(t, 1e-5F)));
 }
 
 // The baseline must err as the original does.
@@ -220,24 +220,24 @@ TEST_CASE("Möller's epsilon is absolute and applies to distances times the norm
     CHECK_FALSE(moller_triangle{}.intersects(unit, hovering(1.1e-6F)));
 }
 
-TEST_CASE("Möller's test errs where products underflow or overflow, and at a triangle without a normal") {
+TEST_CASE("Möller's test errs if products underflow or overflow, and at a triangle without a normal") {
     const triangle3f segment{{{0, 0, -1}, {0, 0, 1}, {0, 0, 1}}};
     const struct {
         const char* what;
         triangle3f s, t;
-        bool answer;
-    } all[] = {{"a corner inside is lost: its products underflow",
-                {{{0, 0, 0}, {4e-12F, 0, 0}, {0, 4e-12F, 0}}},
-                {{{1e-12F, 1e-12F, 0}, {2e-12F, 1e-12F, 0}, {1e-12F, 2e-12F, 0}}},
-                false},
-               {"yes, as it has overflowed",
-                {{{-1e38F, -1e38F, 1e37F}, {1e38F, -1e38F, 2e37F}, {0, 1e38F, 3e37F}}},
-                {{{9e37F, 9e37F, -1e38F}, {9e37F, 9e37F, 1e38F}, {8e37F, 9e37F, 1e38F}}},
-                true},
-               {"looked at along y, along x they cross", segment, {{{1, -1, 0}, {2, 1, 0}, {1, 1, 0}}}, false},
-               {"looked at along y, along y they cross", segment, {{{-1, 1, 0}, {1, 1, 0}, {1, 2, 0}}}, true}};
-    for (const auto& [what, s, t, answer] : all) {
+        bool result;
+    } cases[] = {{"a corner inside is missed: its products underflow",
+                  {{{0, 0, 0}, {4e-12F, 0, 0}, {0, 4e-12F, 0}}},
+                  {{{1e-12F, 1e-12F, 0}, {2e-12F, 1e-12F, 0}, {1e-12F, 2e-12F, 0}}},
+                  false},
+                 {"a false positive: its products overflow",
+                  {{{-1e38F, -1e38F, 1e37F}, {1e38F, -1e38F, 2e37F}, {0, 1e38F, 3e37F}}},
+                  {{{9e37F, 9e37F, -1e38F}, {9e37F, 9e37F, 1e38F}, {8e37F, 9e37F, 1e38F}}},
+                  true},
+                 {"projected along y, but crossing along x", segment, {{{1, -1, 0}, {2, 1, 0}, {1, 1, 0}}}, false},
+                 {"projected along y, and crossing along y", segment, {{{-1, 1, 0}, {1, 1, 0}, {1, 2, 0}}}, true}};
+    for (const auto& [what, s, t, result] : cases) {
         INFO(what);
-        CHECK(moller_triangle{}.intersects(s, t) == answer);
+        CHECK(moller_triangle{}.intersects(s, t) == result);
     }
 }

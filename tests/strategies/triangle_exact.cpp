@@ -3,7 +3,7 @@
 import aabb;
 import aabb.triangle.exact;
 
-// Known answers; tests/validation compares with CGAL.
+// Known results; tests/validation compares with CGAL.
 
 using aabb::triangle3d;
 using aabb::triangle3f;
@@ -11,25 +11,25 @@ using aabb::vec3d;
 
 namespace {
 
-struct known {
+struct known_case {
     std::string what;
     triangle3d s;
     triangle3d t;
-    bool meet;
+    bool intersect;
 };
 
 const triangle3d face{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
-const std::vector<known> answers = {
-    {"one through the other", face, {{{1, 1, -1}, {1, 1, 1}, {5, 5, 1}}}, true},
-    {"beside it", face, {{{3, 3, -1}, {3, 3, 1}, {5, 5, 1}}}, false},
+const std::vector<known_case> known_cases = {
+    {"through the face", face, {{{1, 1, -1}, {1, 1, 1}, {5, 5, 1}}}, true},
+    {"beside the face", face, {{{3, 3, -1}, {3, 3, 1}, {5, 5, 1}}}, false},
     {"parallel", face, {{{0, 0, 1}, {4, 0, 1}, {0, 4, 1}}}, false},
     {"corner on the face", face, {{{1, 1, 0}, {1, 1, 1}, {2, 1, 1}}}, true},
     {"corner on the plane only", face, {{{3, 3, 0}, {3, 3, 1}, {2, 2, 1}}}, false},
     {"edge on edge in one point", face, {{{2, 2, -1}, {2, 2, 1}, {4, 4, 0}}}, true},
     {"edges along one line", face, {{{1, 0, 0}, {2, 0, 0}, {1, -1, 1}}}, true},
     {"edges along one line, apart", face, {{{5, 0, 0}, {6, 0, 0}, {-1, -1, 1}}}, false},
-    {"one corner shared", face, {{{4, 0, 0}, {5, 0, 1}, {5, 1, 1}}}, true},
-    {"the same", face, face, true},
+    {"shared corner", face, {{{4, 0, 0}, {5, 0, 1}, {5, 1, 1}}}, true},
+    {"identical", face, face, true},
     {"coplanar, one inside", face, {{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}, true},
     {"coplanar, edges cross only", face, {{{-1, 1, 0}, {5, 1, 0}, {-1, 2, 0}}}, true},
     {"coplanar, touching edges", face, {{{1, 3, 0}, {3, 1, 0}, {4, 4, 0}}}, true},
@@ -54,7 +54,7 @@ const std::vector<known> answers = {
      true},
     {"segments on one line, apart", {{{0, 0, 0}, {2, 2, 2}, {1, 1, 1}}}, {{{3, 3, 3}, {4, 4, 4}, {5, 5, 5}}}, false},
     {"parallel segments", {{{0, 0, 0}, {2, 2, 2}, {1, 1, 1}}}, {{{1, 0, 0}, {3, 2, 2}, {3, 2, 2}}}, false},
-    {"a point twice", {{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}}, {{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}}, true},
+    {"coincident points", {{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}}, {{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}}, true},
     {"a point inside a segment", {{{0, 0, 0}, {2, 2, 2}, {2, 2, 2}}}, {{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}}, true},
     {"a point beside a segment", {{{0, 0, 0}, {2, 2, 2}, {2, 2, 2}}}, {{{1, 1, 2}, {1, 1, 2}, {1, 1, 2}}}, false},
     {"negative zero", {{{-0.0, -0.0, -0.0}, {4, 0, -0.0}, {0, 4, 0}}}, {{{1, 1, 0}, {1, 1, 1}, {2, 1, 1}}}, true},
@@ -68,12 +68,12 @@ triangle3d scaled(triangle3d t, double factor) {
 
 }  // namespace
 
-TEST_CASE("known answers hold at every scale that floats and doubles reach") {
-    for (const known& k : answers) {
+TEST_CASE("known results hold at every scale of float and double") {
+    for (const known_case& k : known_cases) {
         CAPTURE(k.what);
         for (const int exponent : {-1074, -1030, -700, -340, -149, 0, 120, 335, 1000})
             CHECK(aabb::exact_triangle::intersects(scaled(k.s, std::ldexp(1.0, exponent)),
-                                                   scaled(k.t, std::ldexp(1.0, exponent))) == k.meet);
+                                                   scaled(k.t, std::ldexp(1.0, exponent))) == k.intersect);
         for (const float factor : {0x1p-149F, 1.0F, 0x1p120F}) {
             triangle3f s;
             triangle3f t;
@@ -82,7 +82,7 @@ TEST_CASE("known answers hold at every scale that floats and doubles reach") {
                     s[i][axis] = static_cast<float>(k.s[i][axis]) * factor;
                     t[i][axis] = static_cast<float>(k.t[i][axis]) * factor;
                 }
-            CHECK(aabb::exact_triangle::intersects(s, t) == k.meet);
+            CHECK(aabb::exact_triangle::intersects(s, t) == k.intersect);
         }
     }
 }
@@ -95,7 +95,7 @@ TEST_CASE("one ulp decides") {
     const triangle3d level{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
     CHECK(aabb::exact_triangle::intersects(level, corner_at(1.0)));
     CHECK_FALSE(aabb::exact_triangle::intersects(level, corner_at(above)));
-    // The whole range of doubles in one pair: the corner hangs over the face by the smallest of them.
+    // The whole range of doubles in one pair: the corner lies above the face by the smallest of them.
     const triangle3d huge{{{-1e300, -1e300, 0}, {1e300, -1e300, 0}, {0, 1e300, 0}}};
     CHECK(aabb::exact_triangle::intersects(huge, corner_at(0)));
     CHECK_FALSE(aabb::exact_triangle::intersects(huge, corner_at(0x1p-1074)));

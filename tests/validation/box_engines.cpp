@@ -4,7 +4,7 @@ using namespace aabb;
 
 namespace {
 
-void require_found_by_all(const std::vector<box>& boxes) {
+void require_exact_engines(const std::vector<box>& boxes) {
     for_each_box_engine([&](global_stage& engine) {
         for (std::uint32_t id = 0; id < boxes.size(); ++id) engine.insert(id);
         REQUIRE(found_by(engine, boxes) == overlapping(boxes));
@@ -14,8 +14,8 @@ void require_found_by_all(const std::vector<box>& boxes) {
 }  // namespace
 
 TEST_CASE("engines find every pair of overlapping boxes once") {
-    constexpr float most = std::numeric_limits<float>::max();
-    constexpr float least = std::numeric_limits<float>::denorm_min();
+    constexpr float largest = std::numeric_limits<float>::max();
+    constexpr float smallest = std::numeric_limits<float>::denorm_min();
     std::mt19937 random(1);
     std::vector<box> points = lattice_boxes(random, 300);
     for (box& b : points) b.max = b.min;
@@ -32,18 +32,18 @@ TEST_CASE("engines find every pair of overlapping boxes once") {
         {"two that touch", {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}}},
         {"two that do not", {{{0, 0, 0}, {1, 1, 1}}, {{1.0000001F, 1, 1}, {2, 2, 2}}}},
         {"the ends of float",
-         {{{-most, -most, -most}, {most, most, most}},
-          {{most, most, most}, {most, most, most}},
-          {{-most, -most, -most}, {-most, -most, -most}},
-          {{0, 0, 0}, {least, least, least}},
+         {{{-largest, -largest, -largest}, {largest, largest, largest}},
+          {{largest, largest, largest}, {largest, largest, largest}},
+          {{-largest, -largest, -largest}, {-largest, -largest, -largest}},
+          {{0, 0, 0}, {smallest, smallest, smallest}},
           {{-0.0F, -0.0F, -0.0F}, {0, 0, 0}},
-          {{least, least, least}, {1, 1, 1}}}}};
+          {{smallest, smallest, smallest}, {1, 1, 1}}}}};
     for (const auto& [name, boxes] : scenes) {
         INFO(name);
-        require_found_by_all(boxes);
+        require_exact_engines(boxes);
     }
-    // A few that are all one point.
-    for (std::size_t n = 2; n <= 9; ++n) require_found_by_all(std::vector<box>(n, {{1, 2, 3}, {1, 2, 3}}));
+    // A few equal points.
+    for (std::size_t n = 2; n <= 9; ++n) require_exact_engines(std::vector<box>(n, {{1, 2, 3}, {1, 2, 3}}));
 }
 
 TEST_CASE("engines follow boxes that move and objects that come and go") {
@@ -74,7 +74,7 @@ TEST_CASE("engines follow boxes that move and objects that come and go") {
     });
 }
 
-TEST_CASE("an object that goes and comes back between frames is there once") {
+TEST_CASE("an object that is removed and inserted between frames is present once") {
     const std::vector<box> boxes(3, {{0, 0, 0}, {1, 1, 1}});
     for_each_box_engine([&](global_stage& engine) {
         for (std::uint32_t id = 0; id < 3; ++id) engine.insert(id);
@@ -85,16 +85,16 @@ TEST_CASE("an object that goes and comes back between frames is there once") {
     });
 }
 
-TEST_CASE("engines refuse bad boxes and bad ids") {
+TEST_CASE("engines refuse invalid boxes and invalid ids") {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     for_each_box_engine([&](global_stage& engine) {
-        const std::vector<box> one(1, {{0, 0, 0}, {1, 1, 1}});
-        CHECK_REFUSED(engine.update(one), "no object was inserted; call insert(id) for each box first");
+        const std::vector<box> single(1, {{0, 0, 0}, {1, 1, 1}});
+        CHECK_REFUSED(engine.update(single), "no object was inserted; call insert(id) for each box first");
         engine.insert(0);
         engine.insert(1);
         CHECK_REFUSED(engine.insert(1), "object 1 is inserted twice");
         CHECK_REFUSED(engine.remove(7), "object 7 is removed but was never inserted");
-        CHECK_REFUSED(engine.update(one), "object 1 is present, but the frame has only 1 boxes");
+        CHECK_REFUSED(engine.update(single), "object 1 is present, but the frame has only 1 boxes");
         std::vector<box> bad(2, {{0, 0, 0}, {1, 1, 1}});
         bad[1].min[2] = nan;
         CHECK_REFUSED(engine.update(bad), "box 1 has a coordinate that is not finite");
@@ -103,7 +103,7 @@ TEST_CASE("engines refuse bad boxes and bad ids") {
     });
 }
 
-TEST_CASE("ODE's hashed grid refuses more objects than it can count pairs of") {
+TEST_CASE("ODE's hashed grid rejects more objects than it can count pairs of") {
     if (is_left_out("ode_hash")) SKIP(rejection_of_engine("ode_hash"));
     constexpr std::uint32_t most = 131'071;
     const auto engine = make_box_engine("ode_hash");
@@ -114,7 +114,7 @@ TEST_CASE("ODE's hashed grid refuses more objects than it can count pairs of") {
         "ode_hash takes at most 131071 objects, but there are 131072: ODE counts the bytes for their pairs in an int");
 }
 
-TEST_CASE("engines say what they hold") {
+TEST_CASE("engines report their memory") {
     std::mt19937 random(3);
     const std::vector<box> boxes = random_boxes(random, 100, 1);
     for_each_box_engine([&](global_stage& engine) {

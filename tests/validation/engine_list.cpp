@@ -6,7 +6,7 @@ using namespace aabb;
 
 namespace {
 
-/// As CMake has them, with blanks.
+/// As CMake lists them, separated by spaces.
 std::vector<std::string> declared_names() {
     std::istringstream text(AABBLAB_ENGINE_NAMES);
     std::vector<std::string> names;
@@ -16,7 +16,7 @@ std::vector<std::string> declared_names() {
 
 }  // namespace
 
-TEST_CASE("the engines are listed with what they can do") {
+TEST_CASE("engines are listed with what they can do") {
     std::vector<std::string> names;
     for (const engine_info& info : engines()) {
         INFO(info.name);
@@ -33,17 +33,17 @@ TEST_CASE("the engines are listed with what they can do") {
         REQUIRE(std::ranges::find(names, always) != names.end());
 }
 
-TEST_CASE("an engine is in the build or left out, and not both") {
+TEST_CASE("every engine is either in the build or left out") {
     for (const char* name :
          {"fcl", "fcl_aabb", "libccd", "embree", "embree_refit", "embree_meshes", "embree_meshes_low",
           "embree_meshes_refit", "boost_rtree", "bullet_dbvt", "bullet_sap", "ode_hash", "ode_sap"}) {
-        const auto there = std::ranges::count(engines(), name, &engine_info::name);
+        const auto built = std::ranges::count(engines(), name, &engine_info::name);
         const auto left_out = std::ranges::count(left_out_engines(), name, &left_out_engine::name);
-        REQUIRE(there + left_out == 1);
+        REQUIRE(built + left_out == 1);
     }
 }
 
-TEST_CASE("an engine that was left out is refused for that") {
+TEST_CASE("an engine that was left out is rejected for that reason") {
     const std::vector<engine_info> built = {{"one", "", true, true, true}};
     const std::vector<left_out_engine> left_out = {{"two", "Two's library"}};
     REQUIRE(rejection_of_engine("one", built, left_out).empty());
@@ -57,12 +57,12 @@ TEST_CASE("an engine that was left out is refused for that") {
     }
 }
 
-TEST_CASE("an engine nobody knows is refused with the nearest name") {
+TEST_CASE("an unknown engine is rejected with the nearest name") {
     CHECK_REFUSED(make_box_engine("cgl"), "unknown engine 'cgl'; did you mean 'cgal'?");
     CHECK_REFUSED(make_mesh_engine("libcd"), "unknown engine 'libcd'; did you mean 'libccd'?");
 }
 
-TEST_CASE("an engine is refused for what it cannot do") {
+TEST_CASE("an engine is rejected for a stage that it does not have") {
     for (const engine_info& info : engines()) {
         if (!info.searches_boxes)
             CHECK_REFUSED(make_box_engine(info.name),

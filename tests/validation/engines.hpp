@@ -9,28 +9,28 @@ import aabb.validation;
 
 namespace aabb {
 
-/// Is the engine one that this build lacks?
+/// Whether this build lacks the engine.
 inline bool is_left_out(const char* engine) {
     return std::ranges::find(left_out_engines(), engine, &left_out_engine::name) != left_out_engines().end();
 }
 
-/// @param take an engine that has taken nothing yet
-template <class Take>
-void for_each_box_engine(Take take) {
+/// @param visit is called with a new instance of each engine
+template <class Visit>
+void for_each_box_engine(Visit visit) {
     for (const engine_info& info : engines()) {
         if (!info.searches_boxes) continue;
         INFO(info.name);
-        take(*make_box_engine(info.name));
+        visit(*make_box_engine(info.name));
     }
 }
 
-/// @param take an engine that has taken nothing yet, and what is said of it
-template <class Take>
-void for_each_mesh_engine(Take take) {
+/// @param visit is called with a new instance of each engine, and its description
+template <class Visit>
+void for_each_mesh_engine(Visit visit) {
     for (const engine_info& info : engines()) {
         if (!info.collides_meshes) continue;
         INFO(info.name);
-        take(*make_mesh_engine(info.name), info);
+        visit(*make_mesh_engine(info.name), info);
     }
 }
 

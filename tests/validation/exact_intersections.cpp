@@ -4,7 +4,7 @@
 
 import aabb.triangle.intersection;
 
-// CGAL's exact construction behind plain types, and what is held against it.
+// CGAL's exact construction behind plain types, and what is compared with it.
 
 using aabb::intersection_kind;
 using aabb::triangle3d;
@@ -19,7 +19,7 @@ const triangle3d through{{{2, 1, -1}, {2, 1, 2}, {4, 1, 2}}};
 
 }  // namespace
 
-TEST_CASE("an intersection is held against the exact one, however its corners are numbered") {
+TEST_CASE("an intersection is compared with the exact one in any order of its corners") {
     const aabb::exact_intersection segment(face, through);
     CHECK(segment.kind() == intersection_kind::transversal);
     triangle_intersection computed = aabb::intersection_of(face, through);
@@ -42,7 +42,7 @@ TEST_CASE("an intersection is held against the exact one, however its corners ar
     const aabb::exact_intersection polygon(face, star);
     triangle_intersection hexagon = aabb::intersection_of(face, star);
     REQUIRE(hexagon.size == 6);
-    for (int turn = 0; turn < 6; ++turn) {
+    for (int rotation = 0; rotation < 6; ++rotation) {
         CHECK(polygon.errors_of(hexagon).within);
         triangle_intersection reversed = hexagon;
         std::ranges::reverse(reversed.corners);
@@ -54,13 +54,13 @@ TEST_CASE("an intersection is held against the exact one, however its corners ar
     --hexagon.size;
     CHECK_FALSE(polygon.errors_of(hexagon).same);
 
-    const aabb::exact_intersection apart(face, {{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}});
-    CHECK(apart.kind() == intersection_kind::none);
-    CHECK(apart.errors_of({}).same);
-    CHECK(apart.errors_of({}).within);
+    const aabb::exact_intersection disjoint(face, {{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}});
+    CHECK(disjoint.kind() == intersection_kind::none);
+    CHECK(disjoint.errors_of({}).same);
+    CHECK(disjoint.errors_of({}).within);
 }
 
-TEST_CASE("an error where none is stated is infinitely greater than that") {
+TEST_CASE("an error is infinitely greater than a bound of zero") {
     const aabb::exact_intersection segment(face, through);
     triangle_intersection computed = segment.rounded();
     computed.error = {};
@@ -69,8 +69,7 @@ TEST_CASE("an error where none is stated is infinitely greater than that") {
     CHECK(errors.of_bound > 1e300);
 }
 
-TEST_CASE(
-    "the exact intersection rounded is off by less than the distance of two doubles, and ours is within its bound") {
+TEST_CASE("the rounded exact intersection is off by a few ulps at most, and ours is within its bound") {
     triangle_pairs::generator g{11};
     std::size_t hits = 0;
     triangle_pairs::check_each_pair<double>(g, 100, [&](const aabb::triangle_pair<double>& pair) {
@@ -93,10 +92,10 @@ TEST_CASE(
     CHECK(doubles.error == aabb::vec3d{0, 0, 0});
 }
 
-TEST_CASE("what is carried to the world is within its error there, and stays as it is where nothing moves") {
+TEST_CASE("what is carried to the world is within its error there, and unchanged if nothing moves") {
     using number = CGAL::Exact_rational;
     triangle_pairs::generator g{12};
-    const auto any = [&](double reach) { return std::uniform_real_distribution<double>(-reach, reach)(g); };
+    const auto any_number = [&](double most) { return std::uniform_real_distribution<double>(-most, most)(g); };
     int wrong = 0;
     for (int i = 0; i < 2000; ++i) {
         const double scale = std::ldexp(1, triangle_pairs::integer(g, -1070, 60));
@@ -105,17 +104,17 @@ TEST_CASE("what is carried to the world is within its error there, and stays as 
         triangle_intersection computed = exact;
         for (std::size_t c = 0; c < 6; ++c)
             for (int k = 0; k < 3; ++k) {
-                exact.corners[c][k] = any(1) * scale;
-                const double off = any(1) * scale * std::ldexp(1, triangle_pairs::integer(g, -53, 0));
-                computed.corners[c][k] = exact.corners[c][k] + off;
+                exact.corners[c][k] = any_number(1) * scale;
+                const double offset = any_number(1) * scale * std::ldexp(1, triangle_pairs::integer(g, -53, 0));
+                computed.corners[c][k] = exact.corners[c][k] + offset;
                 const double error = std::abs(computed.corners[c][k] - exact.corners[c][k]);
                 computed.error[k] = std::max(computed.error[k], std::nextafter(error, 1e300));
             }
         aabb::pose pose;
-        const double angle = any(4);
+        const double angle = any_number(4);
         pose.rotation = {std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1};
         for (int k = 0; k < 3; ++k)
-            pose.translation[k] = any(1) * scale * std::ldexp(1, triangle_pairs::integer(g, -30, 30));
+            pose.translation[k] = any_number(1) * scale * std::ldexp(1, triangle_pairs::integer(g, -30, 30));
         const triangle_intersection world = aabb::transformed(computed, pose);
         for (std::size_t c = 0; c < 6; ++c)
             for (int k = 0; k < 3; ++k) {
@@ -126,14 +125,14 @@ TEST_CASE("what is carried to the world is within its error there, and stays as 
             }
         CHECK(aabb::transformed(computed, {}).corners == computed.corners);
         CHECK(aabb::transformed(computed, {}).error == computed.error);
-        // What the pose adds is some roundings, not more.
-        double reach = 0;
+        // The pose adds a few roundings, not more.
+        double largest = 0;
         for (std::size_t c = 0; c < 6; ++c)
             for (int k = 0; k < 3; ++k)
-                reach = std::max(reach, std::abs(world.corners[c][k]) + std::abs(pose.translation[k]));
+                largest = std::max(largest, std::abs(world.corners[c][k]) + std::abs(pose.translation[k]));
         for (int k = 0; k < 3; ++k)
             CHECK(world.error[k] <= 2 * (computed.error[0] + computed.error[1] + computed.error[2]) +
-                                        0x1p-48 * (reach + 3 * scale) + 0x1p-1068);
+                                        0x1p-48 * (largest + 3 * scale) + 0x1p-1068);
     }
     CHECK(wrong == 0);
 }

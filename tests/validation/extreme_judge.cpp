@@ -11,10 +11,10 @@ using namespace aabb;
 namespace {
 
 extreme_judge judge_of(const std::string& name) {
-    std::vector<extreme_scene> all = extreme_scenes(extreme_size::small);
-    const auto found = std::ranges::find(all, name, &extreme_scene::name);
-    REQUIRE(found != all.end());
-    return extreme_judge(*found);
+    std::vector<extreme_scene> scenes = extreme_scenes(extreme_size::small);
+    const auto scene = std::ranges::find(scenes, name, &extreme_scene::name);
+    REQUIRE(scene != scenes.end());
+    return extreme_judge(*scene);
 }
 
 extreme_result judged(const extreme_judge& judge, std::function<void(pair_list&)> change) {
@@ -34,7 +34,7 @@ void reject() {
 
 }  // namespace
 
-TEST_CASE("the judge catches a global search that loses, invents, repeats, refuses or breaks off") {
+TEST_CASE("the judge detects missing, extra and repeated pairs, rejections and failures of a global search") {
     const extreme_judge judge = judge_of("two_objects");
     const extreme_result exact = judged(judge, [](pair_list&) {});
     CHECK(exact.outcome == verdict::exact);
@@ -53,42 +53,42 @@ TEST_CASE("the judge catches a global search that loses, invents, repeats, refus
                  {[](pair_list&) { reject(); }, verdict::rejected, 0, 0, "not today"},
                  {[](pair_list&) { throw std::runtime_error("no more"); }, verdict::wrong, 0, 0, "fails: no more"}};
     for (const auto& [change, outcome, false_negatives, false_positives, reason] : wrong) {
-        const extreme_result judged_stage = judged(judge, change);
-        CHECK(judged_stage.outcome == outcome);
-        CHECK(judged_stage.false_negatives == false_negatives);
-        CHECK(judged_stage.false_positives == false_positives);
-        CHECK(judged_stage.reason == reason);
-        CHECK_FALSE(is_as_expected(judge.scene(), judged_stage));
+        const extreme_result result = judged(judge, change);
+        CHECK(result.outcome == outcome);
+        CHECK(result.false_negatives == false_negatives);
+        CHECK(result.false_positives == false_positives);
+        CHECK(result.reason == reason);
+        CHECK_FALSE(is_as_expected(judge.scene(), result));
     }
-    // One that need not be exact may be wrong.
+    // A stage that need not be exact may be wrong.
     CHECK(is_as_expected(judge.scene(), judged(judge, wrong[0].change), false));
 }
 
-TEST_CASE("the judge hears of a pair that is lost in a later frame only") {
+TEST_CASE("the judge detects a pair that is missing in a later frame only") {
     const extreme_judge judge = judge_of("all_leave");
     int searches = 0;
-    const extreme_result judged_stage = judged(judge, [&](pair_list& pairs) {
+    const extreme_result result = judged(judge, [&](pair_list& pairs) {
         if (++searches == 6) pairs.pop_back();
     });
     CHECK(searches == 6);
-    CHECK(judged_stage.false_negatives == 1);
-    CHECK(judged_stage.reason.starts_with("frame 5: the pair "));
+    CHECK(result.false_negatives == 1);
+    CHECK(result.reason.starts_with("frame 5: the pair "));
 }
 
-TEST_CASE("the judge catches a local detection that is wrong in any query") {
+TEST_CASE("the judge detects a local detection that is wrong in any query") {
     const extreme_judge judge = judge_of("touch_at_faces");
     CHECK(judged(judge, alterations{}).outcome == verdict::exact);
-    const extreme_result lost = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.pop_back(); }});
-    CHECK(lost.false_negatives == 2);
-    CHECK(lost.false_positives == 0);
-    CHECK(lost.reason.starts_with("frame 0: the pair "));
-    // What touches in a face is coplanar or touching, and nothing is lost in moving it.
+    const extreme_result missing = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.pop_back(); }});
+    CHECK(missing.false_negatives == 2);
+    CHECK(missing.false_positives == 0);
+    CHECK(missing.reason.starts_with("frame 0: the pair "));
+    // Pairs that touch in a face are coplanar or touching, and moving them rounds nothing.
     std::size_t classified = 0;
-    for (const std::size_t count : lost.classes.false_negatives) classified += count;
+    for (const std::size_t count : missing.classes.false_negatives) classified += count;
     CHECK(classified == 2);
     const extreme_result twice = judged(judge, {.all_pairs = [](pair_list& pairs) { pairs.push_back(pairs[0]); }});
     CHECK(twice.false_positives == 2);
-    for (const extreme_result& judged_stage : {lost, twice}) CHECK_FALSE(is_as_expected(judge.scene(), judged_stage));
+    for (const extreme_result& result : {missing, twice}) CHECK_FALSE(is_as_expected(judge.scene(), result));
     const std::pair<alterations, std::string> others[] = {
         {{.first_pair = [](auto& first) { first.reset(); }}, "frame 0: first_pair finds none, but there is one"},
         {{.first_pair = [](auto& first) { first = {0, 4711}; }},
@@ -97,14 +97,14 @@ TEST_CASE("the judge catches a local detection that is wrong in any query") {
         {{.self_pairs = [](pair_list& pairs) { pairs.pop_back(); }}, "self_pairs: the pair "},
         {{.all_pairs = [](pair_list&) { reject(); }}, "not today"}};
     for (const auto& [change, reason] : others) {
-        const extreme_result judged_stage = judged(judge, change);
-        CHECK(judged_stage.reason.starts_with(reason));
-        CHECK((judged_stage.outcome == verdict::rejected) == (reason == "not today"));
-        CHECK_FALSE(is_as_expected(judge.scene(), judged_stage));
+        const extreme_result result = judged(judge, change);
+        CHECK(result.reason.starts_with(reason));
+        CHECK((result.outcome == verdict::rejected) == (reason == "not today"));
+        CHECK_FALSE(is_as_expected(judge.scene(), result));
     }
 }
 
-TEST_CASE("whoever answers where all must refuse is wrong, and so is another reason") {
+TEST_CASE("a result for a scene that must be rejected is wrong, and so is another reason") {
     extreme_scene scene = judge_of("two_objects").scene();
     scene.rejection = "box 7";
     const extreme_judge judge(scene);
@@ -116,8 +116,8 @@ TEST_CASE("whoever answers where all must refuse is wrong, and so is another rea
     CHECK(is_as_expected(scene, judged(judge, [](pair_list&) { throw input_error("box 7 is odd"); })));
 }
 
-TEST_CASE("a stage that answers in other arithmetic is wrong, whichever query it is") {
-    // A stage that asks nothing of the arithmetic in its searches.
+TEST_CASE("a result in other arithmetic is wrong, whichever query returns it") {
+    // A stage that does not check the arithmetic in its searches.
     class careless final : public global_stage {
     public:
         void insert(std::uint32_t) override {}
@@ -128,46 +128,46 @@ TEST_CASE("a stage that answers in other arithmetic is wrong, whichever query it
         [[nodiscard]] std::vector<part_bytes> bytes() const override { return {}; }
         [[nodiscard]] std::vector<omission> left_out() const override { return {}; }
     };
-    // Of the scenes that this processor has.
+    // The scenes that this processor supports.
     std::vector<const char*> names = {"upward_boxes"};
     if (can_flush_denormals()) names.push_back("flushed_boxes");
     for (const char* name : names) {
         const extreme_judge judge = judge_of(name);
-        const extreme_result judged_stage =
+        const extreme_result result =
             judge.judge([]() -> std::unique_ptr<global_stage> { return std::make_unique<careless>(); });
-        CHECK(judged_stage.outcome == verdict::wrong);
-        CHECK(judged_stage.reason == "search returns a result, but must reject the scene");
+        CHECK(result.outcome == verdict::wrong);
+        CHECK(result.reason == "search returns a result, but must reject the scene");
     }
 }
 
-TEST_CASE("other arithmetic is that of a thread of its own") {
+TEST_CASE("in_arithmetic changes the arithmetic of its own thread only") {
     const volatile double least = 5e-324;
-    const volatile double one = 1;
+    const volatile double unit = 1;
     bool flushed = false;
     bool upward = false;
-    if (can_flush_denormals()) in_arithmetic(arithmetic::denormals_flushed, [&] { flushed = least * one == 0; });
+    if (can_flush_denormals()) in_arithmetic(arithmetic::denormals_flushed, [&] { flushed = least * unit == 0; });
     CHECK(flushed == can_flush_denormals());
-    in_arithmetic(arithmetic::rounded_upward, [&] { upward = one + least != 1; });
+    in_arithmetic(arithmetic::rounded_upward, [&] { upward = unit + least != 1; });
     CHECK(upward);
-    CHECK(least * one != 0);
-    CHECK(one + least == 1);
+    CHECK(least * unit != 0);
+    CHECK(unit + least == 1);
     CHECK_THROWS_AS(in_arithmetic(arithmetic::ieee, reject), input_error);
 }
 
-TEST_CASE("more memory than a scene states is wrong") {
+TEST_CASE("exceeding the memory limit of a scene is wrong") {
     extreme_scene scene;
     scene.most_bytes = 100;
-    extreme_result judged_stage;
-    judged_stage.bytes = 100;
-    require_stated_memory(scene, judged_stage);
-    CHECK(judged_stage.outcome == verdict::exact);
-    judged_stage.bytes = 101;
-    require_stated_memory(scene, judged_stage);
-    CHECK(judged_stage.outcome == verdict::wrong);
-    CHECK(judged_stage.reason == "holds 101 bytes, more than the limit of 100");
+    extreme_result result;
+    result.bytes = 100;
+    require_stated_memory(scene, result);
+    CHECK(result.outcome == verdict::exact);
+    result.bytes = 101;
+    require_stated_memory(scene, result);
+    CHECK(result.outcome == verdict::wrong);
+    CHECK(result.reason == "holds 101 bytes, more than the limit of 100");
 }
 
-TEST_CASE("the exact answer is that of the definition") {
+TEST_CASE("the ground truth equals the definition") {
     known_boxes boxes({{{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{1.5F, 0, 0}, {3, 3, 3}}},
                        {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{1.5F, 0, 0}, {3, 3, 3}}}},
                       {{1, 1, 0}, {0, 1, 1}});
@@ -178,19 +178,19 @@ TEST_CASE("the exact answer is that of the definition") {
     CHECK(exact[0].arrivals == std::vector<std::uint32_t>{0, 1});
     CHECK(exact[1].arrivals == std::vector<std::uint32_t>{2});
     CHECK(exact[1].departures == std::vector<std::uint32_t>{0});
-    // Three triangles of each cube end in that corner.
+    // Three triangles of each cube share that corner.
     const auto touching = judge_of("touch_at_vertices").scene();
     const auto meshes = touching.make_meshes();
-    const exact_meshes answer = exact_meshes_of(*meshes, extreme_query::all_pairs);
-    REQUIRE(answer.frames.size() == 2);
-    for (const exact_mesh_frame& frame : answer.frames) {
+    const exact_meshes truth = exact_meshes_of(*meshes, extreme_query::all_pairs);
+    REQUIRE(truth.frames.size() == 2);
+    for (const exact_mesh_frame& frame : truth.frames) {
         REQUIRE(frame.objects.size() == 1);
         CHECK(frame.objects[0].intersect);
     }
-    CHECK(answer.frames[0].objects[0].pairs.size() == 9);
+    CHECK(truth.frames[0].objects[0].pairs.size() == 9);
 }
 
-TEST_CASE("every scene is another, and half of its answers are not trivial") {
+TEST_CASE("names of scenes are unique, and many scenes have more than a few pairs") {
     std::set<std::string> names;
     std::size_t with_pairs = 0;
     for (const extreme_scene& scene : extreme_scenes(extreme_size::small)) {
@@ -206,19 +206,19 @@ TEST_CASE("every scene is another, and half of its answers are not trivial") {
     CHECK(with_pairs > 40);
 }
 
-TEST_CASE("a case is played in every order of its corners and of the two") {
-    const triangle_case one{.name = "a",
-                            .source = "",
-                            .about = "",
-                            .kind = "",
-                            .first = {{{0, 0, 0}, {1, 0, 0}, {0, 0.1, 0}}},
-                            .second = {{{5, 5, 5}, {6, 5, 5}, {5, 6, 5}}},
-                            .intersect = false,
-                            .intersect_double = false};
-    const std::vector<triangle_pair<float>> all = every_order<float>(one);
-    CHECK(all.size() == 72);
-    CHECK(every_order<double>(one)[0].a[2][1] == 0.1);
-    CHECK(all[0].a[2][1] == 0.1F);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) CHECK_FALSE((all[i].a == all[j].a && all[i].b == all[j].b));
+TEST_CASE("a case is run in every order of its corners and of the two triangles") {
+    const triangle_case separated{.name = "a",
+                                  .source = "",
+                                  .about = "",
+                                  .kind = "",
+                                  .first = {{{0, 0, 0}, {1, 0, 0}, {0, 0.1, 0}}},
+                                  .second = {{{5, 5, 5}, {6, 5, 5}, {5, 6, 5}}},
+                                  .intersect = false,
+                                  .intersect_double = false};
+    const std::vector<triangle_pair<float>> orders = every_order<float>(separated);
+    CHECK(orders.size() == 72);
+    CHECK(every_order<double>(separated)[0].a[2][1] == 0.1);
+    CHECK(orders[0].a[2][1] == 0.1F);
+    for (std::size_t i = 0; i < orders.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) CHECK_FALSE((orders[i].a == orders[j].a && orders[i].b == orders[j].b));
 }

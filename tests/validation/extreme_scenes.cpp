@@ -9,22 +9,21 @@ using namespace aabb;
 namespace {
 
 std::vector<extreme_judge> judges() {
-    std::vector<extreme_judge> all;
-    for (extreme_scene& scene : extreme_scenes(extreme_size::small)) all.emplace_back(std::move(scene));
-    return all;
+    std::vector<extreme_judge> result;
+    for (extreme_scene& scene : extreme_scenes(extreme_size::small)) result.emplace_back(std::move(scene));
+    return result;
 }
 
-void require_expected(const extreme_scene& scene, const extreme_result& judged_stage, bool must_be_exact = true) {
-    INFO(scene.name << ": " << verdict_names[static_cast<std::size_t>(judged_stage.outcome)] << " "
-                    << judged_stage.reason);
-    CHECK(is_as_expected(scene, judged_stage, must_be_exact));
+void require_expected(const extreme_scene& scene, const extreme_result& result, bool must_be_exact = true) {
+    INFO(scene.name << ": " << verdict_names[static_cast<std::size_t>(result.outcome)] << " " << result.reason);
+    CHECK(is_as_expected(scene, result, must_be_exact));
 }
 
 }  // namespace
 
-TEST_CASE("every global search is exact on every extreme scene, or refuses what must be refused") {
+TEST_CASE("every global search is exact on every extreme scene, or rejects it as required") {
     std::vector<aabb::composition> compositions = global_compositions();
-    // Cells of 3 in worlds of any size no machine can hold.
+    // Cells of edge 3 do not fit in memory in worlds of any size.
     std::erase_if(compositions, [](const aabb::composition& c) {
         return c[strategy_kind::partition] == strategy_choice{"uniform_grid", {{"cell_size", "3"}}};
     });
@@ -43,7 +42,7 @@ TEST_CASE("every global search is exact on every extreme scene, or refuses what 
     }
 }
 
-TEST_CASE("every local detection is exact on every extreme scene, or refuses what must be refused") {
+TEST_CASE("every local detection is exact on every extreme scene, or rejects it as required") {
     for (const extreme_judge& judge : judges()) {
         if (!judge.scene().make_meshes) continue;
         for (const engine_info& engine : engines()) {
@@ -53,9 +52,9 @@ TEST_CASE("every local detection is exact on every extreme scene, or refuses wha
         }
         for (const aabb::composition& c : exact_local_compositions()) {
             INFO(text_of_local(c));
-            extreme_result judged_stage = judge.judge([&] { return local_of(c); });
-            require_stated_memory(judge.scene(), judged_stage);
-            require_expected(judge.scene(), judged_stage);
+            extreme_result result = judge.judge([&] { return local_of(c); });
+            require_stated_memory(judge.scene(), result);
+            require_expected(judge.scene(), result);
         }
     }
 }

@@ -10,30 +10,30 @@ struct frame {
     std::vector<index_pair> pairs;
 };
 
-constexpr float most = std::numeric_limits<float>::max();
+constexpr float largest = std::numeric_limits<float>::max();
 
-/// Boxes with every coordinate one of these, and their pairs by the definition.
+/// Boxes whose coordinates are among these, and their pairs by the definition.
 frame any_frame(std::mt19937& random, std::uint32_t objects, const std::vector<float>& ends) {
-    frame made;
+    frame result;
     for (std::uint32_t i = 0; i < objects; ++i) {
-        box& b = made.boxes.emplace_back();
+        box& b = result.boxes.emplace_back();
         for (int k = 0; k < 3; ++k) {
             b.min[k] = ends[random() % ends.size()];
             b.max[k] = ends[random() % ends.size()];
             if (b.min[k] > b.max[k]) std::swap(b.min[k], b.max[k]);
         }
     }
-    made.pairs = overlapping(made.boxes);
-    return made;
+    result.pairs = overlapping(result.boxes);
+    return result;
 }
 
-/// Frames in which boxes reach to both greatest floats, or to one.
+/// Frames in which boxes reach the largest floats of both signs, or of one.
 std::vector<frame> frames_of(std::uint32_t objects, std::uint32_t seed) {
     std::mt19937 random(seed);
-    return {any_frame(random, objects, {-most, -1, 0, 1, most}), any_frame(random, objects, {0, 1, most})};
+    return {any_frame(random, objects, {-largest, -1, 0, 1, largest}), any_frame(random, objects, {0, 1, largest})};
 }
 
-void require_all_found(global_stage& stage, const std::vector<frame>& frames) {
+void require_exact(global_stage& stage, const std::vector<frame>& frames) {
     for (std::uint32_t id = 0; id < frames[0].boxes.size(); ++id) stage.insert(id);
     for (const frame& f : frames) {
         REQUIRE_FALSE(f.pairs.empty());
@@ -43,39 +43,39 @@ void require_all_found(global_stage& stage, const std::vector<frame>& frames) {
 
 }  // namespace
 
-TEST_CASE("engines find every pair of boxes that reach to the greatest floats") {
-    // CGAL, given floats, loses pairs of few such scenes, so there are many of them.
+TEST_CASE("engines find every pair of boxes that reach the largest floats") {
+    // CGAL on floats misses pairs in few such scenes, so there are many of them.
     for (std::uint32_t seed = 0; seed < 100; ++seed)
         for (const std::uint32_t objects : {20U, 300U}) {
             const std::vector<frame> frames = frames_of(objects, seed);
             INFO(objects << " objects, seed " << seed);
-            for_each_box_engine([&](global_stage& engine) { require_all_found(engine, frames); });
+            for_each_box_engine([&](global_stage& engine) { require_exact(engine, frames); });
         }
 }
 
-TEST_CASE("compositions find every pair of boxes that reach to the greatest floats") {
-    // Most of them overlap, so that each further object is many pairs.
+TEST_CASE("compositions find every pair of boxes that reach the largest floats") {
+    // Most boxes overlap, so each further object adds many pairs.
     const std::vector<frame> frames = frames_of(120, 1);
     for (aabb::composition composition : global_compositions()) {
-        // Cells of 3 in this world no machine can hold.
+        // Cells of edge 3 do not fit in memory in this world.
         if (strategy_choice& partition = composition[strategy_kind::partition];
             partition == strategy_choice{"uniform_grid", {{"cell_size", "3"}}})
             partition.settings[0].value = "1e38";
         INFO(text_of_global(composition));
-        require_all_found(*global_of(composition, instrumentation::none), frames);
+        require_exact(*global_of(composition, instrumentation::none), frames);
         if (composition[strategy_kind::prepare].name != "split_large" ||
             composition[strategy_kind::sort].name != "insertion")
             continue;
         composition[strategy_kind::prepare].settings = {{"size", "0.5"}};
         INFO("into more pieces");
-        require_all_found(*global_of(composition, instrumentation::none), frames);
+        require_exact(*global_of(composition, instrumentation::none), frames);
     }
 }
 
-TEST_CASE("CGAL proposes every pair of triangles whose boxes reach to the greatest float") {
+TEST_CASE("CGAL finds every pair of triangles whose boxes reach the largest float") {
     for (std::uint32_t seed = 0; seed < 200; ++seed) {
         std::mt19937 random(seed);
-        const auto end = [&] { return random() % 2 ? most : 0; };
+        const auto end = [&] { return random() % 2 ? largest : 0; };
         const auto any_mesh = [&] {
             mesh m;
             for (std::uint32_t t = 0; t < 20; ++t) {

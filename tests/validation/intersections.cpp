@@ -2,7 +2,7 @@
 
 import aabb.triangle.intersection;
 
-// What two triangles have in common, against CGAL's exact construction.
+// Intersections of two triangles, compared with CGAL's exact construction.
 
 namespace {
 
@@ -31,15 +31,15 @@ void compare_all(int count) {
 
 }  // namespace
 
-TEST_CASE("what triangles of floats have in common is what CGAL constructs, within the stated error") {
+TEST_CASE("what triangles of floats have in common equals what CGAL constructs, within the stated error") {
     compare_all<float>(300);
 }
 
-TEST_CASE("what triangles of doubles have in common is what CGAL constructs, within the stated error") {
+TEST_CASE("what triangles of doubles have in common equals what CGAL constructs, within the stated error") {
     compare_all<double>(300);
 }
 
-TEST_CASE("corners that are corners of a triangle are exact") {
+TEST_CASE("intersection corners that are corners of a triangle are exact") {
     using aabb::intersection_kind;
     const aabb::triangle3d face{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
     const auto point = aabb::intersection_of(face, {{{1, 1, 0}, {1, 1, 3}, {2, 1, 3}}});
@@ -53,7 +53,7 @@ TEST_CASE("corners that are corners of a triangle are exact") {
                                             {{{0, 4, 0}, {6, 4, 0}, {3, -2, 0}}});
     REQUIRE(star.size == 6);
     int turns = 0;
-    for (std::size_t i = 0; i < 6; ++i) {  // round about the middle, always the same way
+    for (std::size_t i = 0; i < 6; ++i) {  // around the middle, always in the same direction
         const aabb::vec3d p = star.corners[i];
         const aabb::vec3d q = star.corners[(i + 1) % 6];
         turns += (p[0] - 3) * (q[1] - 2) > (p[1] - 2) * (q[0] - 3) ? 1 : -1;
@@ -63,13 +63,13 @@ TEST_CASE("corners that are corners of a triangle are exact") {
     CHECK(aabb::intersection_of(face, {{{1, 1, -1}, {1, 1, 3}, {2, 1, 3}}}).kind == intersection_kind::transversal);
     CHECK(aabb::intersection_of(face, {{{1, 0, 0}, {2, 0, 0}, {1, 0, 3}}}).kind == intersection_kind::segment);
     CHECK(name_of(intersection_kind::transversal) == "transversal");
-    // An end that is a cut of one triangle and a corner of the other.
+    // An end point that is cut from one triangle and a corner of the other.
     const aabb::triangle3d slanted{{{0, 0, 0}, {49, 49, 0}, {0, 49, 0}}};
     const aabb::triangle3d upright{{{1, 1, 0}, {1, 0, 1}, {1, 2, 1}}};
-    for (const auto& made : {aabb::intersection_of(slanted, upright), aabb::intersection_of(upright, slanted)}) {
-        CHECK(made.kind == intersection_kind::point);
-        CHECK(made.corners[0] == aabb::vec3d{1, 1, 0});
-        CHECK(made.error == aabb::vec3d{0, 0, 0});
+    for (const auto& result : {aabb::intersection_of(slanted, upright), aabb::intersection_of(upright, slanted)}) {
+        CHECK(result.kind == intersection_kind::point);
+        CHECK(result.corners[0] == aabb::vec3d{1, 1, 0});
+        CHECK(result.error == aabb::vec3d{0, 0, 0});
     }
     const auto pierced = aabb::intersection_of(aabb::triangle3d{{{1, 1, 0}, {3, 0, 0}, {0, 4, 0}}},
                                                {{{1, 1, 49}, {1, 1, -3}, {1, 1, -3}}});

@@ -18,29 +18,29 @@ std::vector<triangle_pair<Real>> all_pairs(int count) {
 template <class Real>
 void check_against_exact(const triangle_test& test) {
     const std::vector<triangle_pair<Real>> pairs = all_pairs<Real>(40);
-    std::vector<std::uint8_t> answers(pairs.size());
-    test.intersect(pairs, answers);
+    std::vector<std::uint8_t> results(pairs.size());
+    test.intersect(pairs, results);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        wrong += (answers[i] == 1) != exact_triangle::intersects(pairs[i].a, pairs[i].b);
-        if ((answers[i] == 1) != test.intersects(pairs[i].a, pairs[i].b)) FAIL("pair " << i << " alone and in a batch");
+        wrong += (results[i] == 1) != exact_triangle::intersects(pairs[i].a, pairs[i].b);
+        if ((results[i] == 1) != test.intersects(pairs[i].a, pairs[i].b)) FAIL("pair " << i << " alone and in a batch");
     }
     CHECK(wrong == 0);
 }
 
 }  // namespace
 
-TEST_CASE("libraries' exact triangle tests equal ours, alone and in batches") {
-    std::size_t tried = 0;
+TEST_CASE("exact triangle tests of libraries equal ours, alone and in batches") {
+    std::size_t tested = 0;
     for (const library_test_info& info : library_tests()) {
         if (!info.exact) continue;
         INFO(info.name);
-        ++tried;
+        ++tested;
         const auto test = make_library_test({info.name, {}});
         check_against_exact<float>(*test);
         check_against_exact<double>(*test);
     }
-    CHECK(tried >= 2);
+    CHECK(tested >= 2);
 }
 
 TEST_CASE("every triangle test of a library decides clear pairs") {
@@ -56,7 +56,7 @@ TEST_CASE("every triangle test of a library decides clear pairs") {
     }
 }
 
-TEST_CASE("a test that only decides refuses to construct; epeck constructs what exact does") {
+TEST_CASE("epeck constructs the same intersections as exact, which other tests of libraries reject") {
     const triangle3d face{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
     const triangle3d edge{{{1, 0, 0}, {2, 0, 0}, {1, 0, 3}}};
     for (const library_test_info& info : library_tests()) {
@@ -72,20 +72,20 @@ TEST_CASE("a test that only decides refuses to construct; epeck constructs what 
     }
 }
 
-TEST_CASE("every triangle test of a library comes to an end, whatever the pair") {
+TEST_CASE("every triangle test of a library terminates on any pair") {
     const auto floats = all_pairs<float>(30);
     const auto doubles = all_pairs<double>(30);
-    std::vector<std::uint8_t> answers(floats.size());
+    std::vector<std::uint8_t> results(floats.size());
     for (const library_test_info& info : library_tests()) {
         INFO(info.name);
         const auto test = make_library_test({info.name, {}});
-        test->intersect(floats, answers);
-        test->intersect(doubles, answers);
-        CHECK(std::ranges::any_of(answers, [](std::uint8_t hit) { return hit == 1; }));
+        test->intersect(floats, results);
+        test->intersect(doubles, results);
+        CHECK(std::ranges::any_of(results, [](std::uint8_t hit) { return hit == 1; }));
     }
 }
 
-TEST_CASE("a library's triangle test is refused by the nearest name, and by settings that it has not") {
+TEST_CASE("a library's triangle test is rejected with the nearest name, or for unknown or invalid settings") {
     CHECK_REFUSED(make_library_test({"epik", {}}), "unknown triangle test 'epik'; did you mean 'epick'?");
     CHECK_REFUSED(make_library_test({"epick", {{"epsilon", "none"}}}),
                   "epick takes no parameters, but 'epsilon' is set");

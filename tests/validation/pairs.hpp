@@ -9,20 +9,20 @@ import aabb.validation;
 
 namespace triangle_pairs {
 
-/// As the library has it.
+/// As a type of the library.
 template <class Real>
-aabb::triangle_pair<Real> of_type(const pair& made) {
-    return {as<aabb::triangle3<Real>>(made[0]), as<aabb::triangle3<Real>>(made[1])};
+aabb::triangle_pair<Real> of_type(const pair& p) {
+    return {as<aabb::triangle3<Real>>(p[0]), as<aabb::triangle3<Real>>(p[1])};
 }
 
-/// Takes `count` pairs of every pattern in every placement.
-/// @param after is called behind each of them with the number of the pattern
-template <class Real, class Take, class After>
-void for_each_pair(generator& g, int count, Take take, After after) {
+/// Visits `count` pairs of every pattern in every placement.
+/// @param after is called after each placement of a pattern, with the number of the pattern
+template <class Real, class Visit, class After>
+void for_each_pair(generator& g, int count, Visit visit, After after) {
     for (std::size_t pattern = 0; pattern < patterns.size(); ++pattern)
         for (std::size_t placement = 0; placement < placements.size(); ++placement) {
             CAPTURE(patterns[pattern], placements[placement]);
-            for (int i = 0; i < count; ++i) take(of_type<Real>(placed<Real>(g, patterned(g, pattern), placement)));
+            for (int i = 0; i < count; ++i) visit(of_type<Real>(placed<Real>(g, patterned(g, pattern), placement)));
             after(pattern);
         }
 }

@@ -14,19 +14,19 @@ TEST_CASE("every composed local detection with an exact triangle test equals CGA
     }
 }
 
-TEST_CASE("two meshes moved together keep their pairs, up to 10^7 times their size") {
+TEST_CASE("two meshes moved together keep their pairs, as far as 10^7 times their size") {
     const mesh ball = sphere(8);
-    const pose still = turned({1, 2, 3}, 0.4, {0, 0, 0});
+    const pose unmoved = turned({1, 2, 3}, 0.4, {0, 0, 0});
     const pose near = turned({3, -1, 1}, 1.3, {0.6, 0.3, -0.2});
     for (const aabb::composition& composition : exact_local_compositions()) {
         INFO(text_of_local(composition));
         const auto stage = local_of(composition, instrumentation::none);
-        const std::vector<index_pair> pairs = pairs_of(*stage, ball, still, ball, near);
-        const std::vector<index_pair> touching = pairs_of(*stage, ball, still, ball, still);
+        const std::vector<index_pair> pairs = pairs_of(*stage, ball, unmoved, ball, near);
+        const std::vector<index_pair> touching = pairs_of(*stage, ball, unmoved, ball, unmoved);
         REQUIRE(pairs.size() > 50);
         REQUIRE(touching.size() > 1000);
         for (const double far : {1e3, 1e5, 1e7}) {
-            pose a = still;
+            pose a = unmoved;
             pose b = near;
             for (pose* p : {&a, &b})
                 for (int k = 0; k < 3; ++k) p->translation[k] += far * (k + 1);
@@ -36,7 +36,7 @@ TEST_CASE("two meshes moved together keep their pairs, up to 10^7 times their si
     }
 }
 
-TEST_CASE("every composition and engine holds a mesh against itself alike, and again when it has deformed") {
+TEST_CASE("all compositions and engines find the same self-intersections, also after a deformation") {
     mesh ball = sphere(6);
     const auto self_pairs = [](local_stage& stage) {
         std::vector<index_pair> pairs;

@@ -5,12 +5,12 @@
 
 namespace aabb {
 
-/// In [low, high), alike in every standard library.
+/// Uniform in [low, high), the same with every standard library.
 inline float uniform(std::mt19937& random, float low, float high) {
     return low + (high - low) * (static_cast<float>(random() >> 8) * 0x1p-24F);
 }
 
-/// What a local stage finds for two meshes.
+/// The pairs that a local stage finds for two meshes.
 inline std::vector<index_pair> pairs_of(local_stage& stage, const mesh& a, const pose& pose_a, const mesh& b,
                                         const pose& pose_b) {
     const std::uint32_t model_a = stage.add_model(a);
@@ -31,7 +31,7 @@ inline std::vector<box> random_boxes(std::mt19937& random, std::size_t count, fl
     return boxes;
 }
 
-/// A turn about an axis through the origin (Rodrigues), then a shift.
+/// A rotation about an axis through the origin (Rodrigues), then a translation.
 inline pose turned(vec3d axis, double angle, vec3d shift) {
     const double length = std::sqrt(dot(axis, axis));
     const double x = axis[0] / length;

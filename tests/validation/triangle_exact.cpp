@@ -6,7 +6,7 @@ import aabb.triangle.exact;
 
 namespace {
 
-/// Misclassified pairs, and whether intersecting and disjoint ones were among all.
+/// Misclassified pairs, and whether there were both intersecting and disjoint ones.
 struct tally {
     std::size_t intersecting = 0;
     std::size_t disjoint = 0;
@@ -18,10 +18,10 @@ struct tally {
         ++(expected ? intersecting : disjoint);
         wrong += aabb::exact_triangle::intersects(pair.a, pair.b) != expected ? 1 : 0;
     }
-    void check(bool may_all_meet = false) {
+    void check(bool may_all_intersect = false) {
         CHECK(wrong == 0);
         CHECK(intersecting > 0);
-        CHECK((disjoint > 0 || may_all_meet));
+        CHECK((disjoint > 0 || may_all_intersect));
         *this = {};
     }
 };
@@ -29,12 +29,12 @@ struct tally {
 template <class Real>
 void compare_all(int count) {
     triangle_pairs::generator g{1};
-    tally counted;
+    tally pairs;
     triangle_pairs::for_each_pair<Real>(
-        g, count, [&](const auto& pair) { counted.add(pair); },
-        [&](std::size_t pattern) { counted.check(pattern == 1 || pattern == 2); });
-    for (int i = 0; i < count; ++i) counted.add(triangle_pairs::of_type<Real>(triangle_pairs::spread<Real>(g)));
-    counted.check();
+        g, count, [&](const auto& pair) { pairs.add(pair); },
+        [&](std::size_t pattern) { pairs.check(pattern == 1 || pattern == 2); });
+    for (int i = 0; i < count; ++i) pairs.add(triangle_pairs::of_type<Real>(triangle_pairs::spread<Real>(g)));
+    pairs.check();
 }
 
 }  // namespace
