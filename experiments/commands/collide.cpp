@@ -13,6 +13,13 @@ namespace aabblab {
 
 namespace {
 
+/// The values of --self, with their earlier names; a flag without a value is "true".
+const std::map<std::string, self_pairs> self_choices{{"true", self_pairs::intersecting},
+                                                     {"all", self_pairs::all},
+                                                     {"together", self_pairs::all},
+                                                     {"no-adjacent", self_pairs::no_adjacent},
+                                                     {"apart", self_pairs::no_adjacent}};
+
 struct collide_request {
     std::string a;
     std::optional<std::string> b;
@@ -20,15 +27,14 @@ struct collide_request {
     method_options method{{aabb::stage::local_detection}};
     std::optional<std::string> out, poses_of_b;
     std::size_t repeats = 1;
-    std::string self;  ///< how to treat pairs that share a vertex: "true" (together) or `apart`; empty without --self
+    std::string self;  ///< a key of `self_choices`; empty without --self
     bool first = false, count = false, geometry = false, exit_code = false, json = false;
 
     [[nodiscard]] std::vector<std::string> meshes() const { return b ? std::vector{a, *b} : std::vector{a}; }
     [[nodiscard]] mesh_query query() const {
         const query_kind ask = count ? query_kind::count : first ? query_kind::first : query_kind::pairs;
         return {.ask = ask,
-                .self = !self.empty(),
-                .neighbours = !self.empty() && self != "apart",
+                .self = self.empty() ? std::nullopt : std::optional(self_choices.at(self)),
                 .by_pose = poses_of_b.has_value(),
                 .repeats = repeats,
                 .between = a + " against " + b.value_or("itself")};
@@ -58,6 +64,7 @@ void print_json(const collide_request& request, const mesh_result& result) {
     if (result.digest) summary["digest"] = *result.digest;
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
     if (result.neighbours) summary["neighbours"] = *result.neighbours;
+    if (result.degenerate) summary["degenerate"] = *result.degenerate;
     nlohmann::ordered_json first, geometry;
     for (const std::optional<intersecting_pair>& pair : result.first) {
         first.push_back(pair ? nlohmann::ordered_json{pair->triangles.a, pair->triangles.b} : nullptr);
@@ -86,9 +93,11 @@ void print_results(const collide_request& request, const mesh_result& result) {
     print(fmt::format(
         "{}{} of triangles{}{}\n", request.poses_of_b ? counted(result.counts.size(), "pose") + " of it: " : "",
         counted(std::accumulate(result.counts.begin(), result.counts.end(), std::uint64_t{0}), "intersecting pair"),
-        request.self.empty() ? "" : " that share no vertex", result.digest ? ", digest " + *result.digest : ""));
+        request.self.empty() || request.query().self == self_pairs::intersecting ? "" : " that share no vertex",
+        result.digest ? ", digest " + *result.digest : ""));
     if (result.neighbours)
         print(fmt::format("{} more among triangles that share a vertex\n", grouped(*result.neighbours)));
+    if (result.degenerate.value_or(0) > 0) print(counted(*result.degenerate, "triangle") + " without area\n");
 }
 
 void print_text(const collide_request& request, const mesh_result& result) {
@@ -116,14 +125,14 @@ void reject_contradictions(const collide_request& request) {
     if (request.self.empty()) {
         reject_if(!request.b, "collide: expected B, the other mesh, or --self");
     } else {
-        const std::vector<std::string> choices{"together", "apart"};
-        if (request.self != "true" && std::ranges::find(choices, request.self) == choices.end())
-            throw aabb::input_error(aabb::unknown_name("value of --self", request.self, choices));
-        reject_if(request.b.has_value(),
-                  "--self takes one mesh, so give no second one; --self=apart excludes adjacent triangles");
+        const std::vector<std::string> names{"all", "no-adjacent"};
+        if (!self_choices.contains(request.self))
+            throw aabb::input_error(aabb::unknown_name("value of --self", request.self, names));
+        reject_if(request.b.has_value(), "--self takes one mesh, so give no second one");
         reject_if(request.poses[0] || request.poses[1] || request.poses_of_b,
                   "--self finds self-intersections, which no pose changes; omit the poses");
-        reject_if(request.first, "--self finds every pair, so --first cannot be combined with it; --count can");
+        reject_if(request.first && request.self != "true",
+                  "--first stops at a self-intersection; omit the value of --self");
     }
     reject_if(request.poses[1] && request.poses_of_b, "--pose-b and --poses both set the pose of B; give one of them");
     reject_if(request.first && request.count, "--first and --count exclude each other");
@@ -138,7 +147,10 @@ std::optional<number_table> open_rows(const collide_request& request) {
     if (!request.out) return std::nullopt;
     require_no_mesh(*request.out, request.meshes());
     if (request.poses_of_b) require_other_file(*request.out, *request.poses_of_b);
-    std::string columns = request.query().neighbours ? "a,b,shared_vertices" : request.poses_of_b ? "pose,a,b" : "a,b";
+    std::string columns = request.query().self.value_or(self_pairs::no_adjacent) != self_pairs::no_adjacent
+                              ? "a,b,shared_vertices"
+                          : request.poses_of_b ? "pose,a,b"
+                                               : "a,b";
     if (request.geometry) columns += "," + std::string(intersection_columns);
     return std::optional<number_table>(std::in_place, *request.out, columns);
 }
@@ -179,8 +191,9 @@ void add_collide(const command_parser& program) {
     command.option("--poses FILE", &request.poses_of_b,
                    "Search with B at each pose of this file, one per line, as for --pose-b; trees are built once");
     request.method.add_to(command, "build, tree and triangle test");
-    command.flag("--self [=apart]", &request.self,
-                 "Find self-intersections of A, and count pairs that share a vertex separately; apart: exclude these");
+    command.flag("--self [=all]", &request.self,
+                 "Find self-intersections of A: triangles with more in common than the corners that they share and the "
+                 "edge between these; all: every pair with a common point, no-adjacent: those without a common corner");
     command.flag("--first", &request.first, "Stop at the first pair found");
     command.flag("--count", &request.count, "Count the pairs without storing them");
     const auto take_repeats = [&request](const std::string& text) {
@@ -188,12 +201,12 @@ void add_collide(const command_parser& program) {
             parse_whole(text, 1, 1'000'000, "--repeat is the number of searches: a whole number from 1 to 1,000,000");
     };
     command.option("--repeat N", take_repeats, "Search N times at each pose; --json lists the time of every search");
-    command.option("--out FILE", &request.out,
-                   "CSV file for pairs: a,b; with --self a,b,shared_vertices; --self=apart a,b; --poses pose,a,b");
+    command.option(
+        "--out FILE", &request.out,
+        "CSV file for pairs: a,b; with --self a,b,shared_vertices; --self=no-adjacent a,b; --poses pose,a,b");
     command.flag("--geometry", &request.geometry,
                  "Add to each pair the triangles' intersection, in world coordinates: kind, vertices, error bound");
-    command.flag("--exit-code", &request.exit_code,
-                 "Exit with status 1 (as diff) if triangles intersect; with --self, if any that share no vertex do");
+    command.flag("--exit-code", &request.exit_code, "Exit with status 1 (as diff) if triangles intersect");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

@@ -1,6 +1,7 @@
 module aabblab.queries;
 
 import aabb.digest;
+import aabb.triangle.self_intersection;
 import aabblab.fmt;
 import aabblab.stopwatch;
 
@@ -106,6 +107,13 @@ std::uint64_t merge_neighbours(const aabb::mesh& m, std::span<const aabb::index_
     return count;
 }
 
+/// The number of triangles without area.
+std::uint64_t count_degenerate(const aabb::mesh& m) {
+    std::uint64_t count = 0;
+    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) count += !aabb::self_intersection::has_area(m.triangle(t));
+    return count;
+}
+
 /// A scene of one object per mesh, in which the second one takes all poses frame by frame, once per repeat.
 class posed_meshes final : public aabb::mesh_scene {
 public:
@@ -133,19 +141,28 @@ private:
 };
 
 struct query_result {
-    std::uint64_t count = 0;              ///< within one mesh, of pairs that share no vertex
-    std::uint64_t neighbours = 0;         ///< within one mesh, of pairs that share a vertex
+    std::uint64_t count = 0;              ///< of `self_pairs::all`, pairs that share no vertex
+    std::uint64_t neighbours = 0;         ///< of `self_pairs::all`, pairs that share a vertex
     std::vector<aabb::index_pair> pairs;  ///< the stored pairs, without those that `detect` leaves in the runner
 };
 
-/// Runs the query. Within one mesh, neighbours (pairs that share a vertex) are counted apart, and stored on request.
+/// Whether a pair of intersecting triangles is among the pairs that the query reports.
+bool is_reported(const aabb::mesh& m, aabb::index_pair pair, self_pairs wanted) {
+    if (!share_vertex(m, pair)) return true;
+    return wanted == self_pairs::intersecting &&
+           aabb::self_intersection::intersects(m.triangle(pair.a), m.triangle(pair.b));
+}
+
+/// Runs the query. Within one mesh, neighbours (pairs that share a vertex) are counted separately, and stored on
+/// request.
 query_result result_of(stage_runner& runner, const mesh_query& query, const aabb::mesh& m, bool neighbours_too) {
     query_result result;
     if (query.self) {
         runner.each_self_pair(0, [&](aabb::index_pair pair) {
-            const bool neighbours = share_vertex(m, pair);
-            ++(neighbours ? result.neighbours : result.count);
-            if (neighbours ? neighbours_too : query.ask != query_kind::count) result.pairs.push_back(pair);
+            const bool reported = is_reported(m, pair, *query.self);
+            ++(reported ? result.count : result.neighbours);
+            if (reported ? query.ask != query_kind::count : neighbours_too) result.pairs.push_back(pair);
+            return reported && query.ask == query_kind::first;
         });
         return result;
     }
@@ -175,7 +192,7 @@ public:
         if (method_.geometry)
             method_.geometry->set_meshes(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
         if (query_.ask == query_kind::first) result_.first.emplace_back();
-        if (!query_.neighbours || neighbours_too) return add_sorted(hits.pairs);
+        if (query_.self != self_pairs::all || neighbours_too) return add_sorted(hits.pairs);
         const std::uint64_t neighbours = merge_neighbours(
             meshes.front(), hits.pairs, [&](std::span<const aabb::index_pair> pairs) { add_sorted(pairs); });
         if (neighbours != hits.neighbours)
@@ -199,7 +216,7 @@ private:
     void add_row(const intersecting_pair& pair) {
         const auto [a, b] = pair.triangles;
         const std::string cells = pair.common ? to_cells(*pair.common) : "";
-        if (query_.neighbours)
+        if (query_.self && query_.self != self_pairs::no_adjacent)
             rows_->add({a, b, shared_vertices(scene_.meshes()->meshes.front(), pair.triangles)}, cells);
         else if (query_.by_pose)
             rows_->add({pose_, a, b}, cells);
@@ -246,7 +263,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     // Within one mesh, pairs that share a vertex may dominate: n triangles around one vertex have n²/2 of them. They
     // are stored only if they are reported and an inexact method may have missed some; with an exact method, they
     // follow from the mesh.
-    const bool neighbours_too = query.neighbours && !result.method.exact && query.ask != query_kind::count;
+    const bool neighbours_too = query.self == self_pairs::all && !result.method.exact && query.ask != query_kind::count;
     pair_record record(query, scene, result, rows);
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
         query_result hits;
@@ -261,7 +278,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
                 fmt::format("{}{}: {}", poses_b.place_of(frame % poses), query.between, error.what()));
         }
         if (frame >= poses) continue;
-        if (query.self) result.neighbours = hits.neighbours;
+        if (query.self && query.self != self_pairs::intersecting) result.neighbours = hits.neighbours;
         if (!query.self && query.ask != query_kind::count) {
             for (const aabb::contact& c : searcher->sorted_contacts())
                 hits.pairs.push_back({c.triangle_a, c.triangle_b});
@@ -270,6 +287,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
         result.counts.push_back(hits.count);
         if (query.ask != query_kind::count) record.add(frame, std::move(hits), neighbours_too);
     }
+    if (query.self) result.degenerate = count_degenerate(scene.meshes()->meshes.front());
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);
     if (query.ask != query_kind::count) result.digest = record.digest();

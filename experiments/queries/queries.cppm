@@ -75,11 +75,17 @@ struct frames_result {
 /// @throws defect if a result is found twice.
 [[nodiscard]] frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows);
 
+/// The pairs of triangles that a query of one mesh with itself reports.
+enum class self_pairs {
+    intersecting,  ///< those with more in common than shared corners and edges (`aabb::self_intersection`)
+    all,           ///< all that share a point, with those that share a vertex counted separately
+    no_adjacent    ///< those that share a point but no vertex
+};
+
 /// A query of two meshes, or of one mesh with itself.
 struct mesh_query {
     query_kind ask = query_kind::pairs;
-    bool self = false;         ///< one mesh with itself: pairs that share a vertex are counted separately
-    bool neighbours = false;   ///< whether those pairs are reported too
+    std::optional<self_pairs> self = {};
     bool by_pose = false;      ///< whether rows include the pose
     std::size_t repeats = 1;   ///< each runs all poses
     std::string between = {};  ///< "a.off against b.off", for messages
@@ -91,10 +97,11 @@ struct intersecting_pair {
 };
 
 struct mesh_result {
-    search_method method;                                 ///< the method that searched
-    std::vector<std::uint32_t> triangles;                 ///< their number, by mesh
-    std::vector<std::uint64_t> counts;                    ///< by pose; within one mesh, pairs that share no vertex
-    std::optional<std::uint64_t> neighbours;              ///< within one mesh: pairs that share a vertex
+    search_method method;                     ///< the method that searched
+    std::vector<std::uint32_t> triangles;     ///< their number, by mesh
+    std::vector<std::uint64_t> counts;        ///< by pose; of `self_pairs::all`, those without a common vertex
+    std::optional<std::uint64_t> neighbours;  ///< within one mesh, pairs that share a vertex and are not in `counts`
+    std::optional<std::uint64_t> degenerate;  ///< within one mesh: triangles without area
     std::vector<std::optional<intersecting_pair>> first;  ///< by pose, if the query asks for any one pair
     std::optional<std::string> digest;                    ///< of all reported pairs; empty if they are only counted
     double build_ms = 0;

@@ -107,8 +107,9 @@ public:
     /// Alternatives to `detect` for meshes: any one contact of the frame, and the number of contacts.
     [[nodiscard]] std::optional<aabb::contact> first_contact() { return pipeline_->first_contact(); }
     [[nodiscard]] std::uint64_t count_contacts() { return pipeline_->count_contacts(); }
-    /// Reports the pairs a < b of intersecting triangles of one undivided mesh with itself, in no particular order.
-    void each_self_pair(std::uint32_t mesh, const std::function<void(aabb::index_pair)>& take) {
+    /// Passes the pairs a < b of intersecting triangles of one undivided mesh with itself to `take`, in no particular
+    /// order, until it returns true.
+    void each_self_pair(std::uint32_t mesh, const std::function<bool(aabb::index_pair)>& take) {
         stages_.local->each_self_pair(mesh, take);
     }
 

@@ -69,16 +69,18 @@ public:
     /// Appends every pair of intersecting triangles a < b of one mesh, including neighbours that share a vertex.
     void self_pairs(const model<Tree>& m, std::vector<index_pair>& pairs) {
         append_guard guard(pairs);
-        each_self_pair(m, [&](index_pair pair) { pairs.push_back(pair); });
+        each_self_pair(m, [&](index_pair pair) {
+            pairs.push_back(pair);
+            return false;
+        });
         guard.keep();
     }
 
-    /// Passes each of the same pairs to `take` as it is found, without storing any.
+    /// Passes each of the same pairs to `take` as it is found, without storing any, until it returns true.
     template <class Take>
     void each_self_pair(const model<Tree>& m, const Take& take) {
         walk_.find_self_pairs(triangle_, m, [&](std::span<const index_pair> batch) {
-            for (const index_pair p : batch) take(ordered_pair(p.a, p.b));
-            return false;
+            return std::ranges::any_of(batch, [&](const index_pair& p) { return take(ordered_pair(p.a, p.b)); });
         });
     }
 

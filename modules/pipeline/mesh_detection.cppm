@@ -95,7 +95,7 @@ public:
     void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) override {
         detection_.self_pairs(model, pairs);
     }
-    void each_self_pair(std::uint32_t model, const std::function<void(index_pair)>& take) override {
+    void each_self_pair(std::uint32_t model, const std::function<bool(index_pair)>& take) override {
         detection_.each_self_pair(model, take);
     }
     void refit(std::uint32_t model) override { detection_.refit(model); }

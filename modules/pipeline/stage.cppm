@@ -78,12 +78,12 @@ public:
     /// neighbours, which intersect in the vertices that they share.
     virtual void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) = 0;
 
-    /// Calls `take` with each of the same pairs. Stages that can do so store none, since a vertex of n triangles alone
-    /// yields n²/2 pairs.
-    virtual void each_self_pair(std::uint32_t model, const std::function<void(index_pair)>& take) {
+    /// Calls `take` with each of the same pairs until it returns true. Stages that can do so store none, since a vertex
+    /// of n triangles alone yields n²/2 pairs.
+    virtual void each_self_pair(std::uint32_t model, const std::function<bool(index_pair)>& take) {
         std::vector<index_pair> pairs;
         self_pairs(model, pairs);
-        for (const index_pair pair : pairs) take(pair);
+        static_cast<void>(std::ranges::any_of(pairs, take));
     }
 
     /// Updates the tree after vertices of its mesh have moved. If this throws, queries throw until a refit succeeds.

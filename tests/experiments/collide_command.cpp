@@ -56,7 +56,7 @@ TEST_CASE("collide finds the same triangle pairs with every tree and build") {
     REQUIRE(holds(rows, "\n" + bytes_of_file(folder / "first.csv").substr(4)));
 }
 
-TEST_CASE("collide --self finds all neighbours around a vertex of many triangles") {
+TEST_CASE("collide --self=all finds all neighbours around a vertex of many triangles") {
     const temporary_folder folder;
     constexpr int triangles = 200;
     // Every third triangle has its own vertex at the apex, and one triangle intersects some of the others.
@@ -78,7 +78,7 @@ TEST_CASE("collide --self finds all neighbours around a vertex of many triangles
     const std::string mesh = folder.write("fan.off", "OFF\n" + std::to_string(next + 3) + " " +
                                                          std::to_string(triangles + 1) + " 0\n" + vertices + faces);
     const auto summary = [&](const std::vector<std::string>& more) {
-        return json_of(joined({"collide", mesh, "--self", "--json"}, more));
+        return json_of(joined({"collide", mesh, "--self=all", "--json"}, more));
     };
     const auto exact = summary({"--out", folder / "exact.csv", "--engine", "brute_force"});
     CHECK(exact["neighbours"] == triangles * (triangles - 1) / 2);
@@ -93,7 +93,7 @@ TEST_CASE("collide --self finds all neighbours around a vertex of many triangles
     CHECK(summary({"--count"})["neighbours"] == exact["neighbours"]);
 }
 
-TEST_CASE("collide --self reports neighbours separately") {
+TEST_CASE("collide --self=all reports neighbours separately") {
     const temporary_folder folder;
     // Two intersecting tetrahedra, and a triangle that shares a corner with the first by position only.
     const std::string mesh =
@@ -102,7 +102,7 @@ TEST_CASE("collide --self reports neighbours separately") {
                      "0.2 0.2 -0.5\n1.2 0.2 -0.5\n0.2 1.2 -0.5\n0.2 0.2 0.5\n"
                      "0 0 0\n-1 0 0\n0 -1 0\n"
                      "3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n3 4 5 6\n3 4 5 7\n3 4 6 7\n3 5 6 7\n3 8 9 10\n");
-    const std::vector<std::string> base = {"collide", mesh, "--self", "--json", "--out", folder / "self.csv"};
+    const std::vector<std::string> base = {"collide", mesh, "--self=all", "--json", "--out", folder / "self.csv"};
     const auto reference = json_of(joined(base, {"--engine", "brute_force"}));
     const std::string rows = bytes_of_file(folder / "self.csv");
     REQUIRE(rows.starts_with("a,b,shared_vertices\n0,1,2\n"));
@@ -117,21 +117,59 @@ TEST_CASE("collide --self reports neighbours separately") {
     REQUIRE(summary["neighbours"] == reference["neighbours"]);
     REQUIRE(summary["digest"] == reference["digest"]);
     REQUIRE(bytes_of_file(folder / "self.csv") == rows);
-    const auto counted = json_of({"collide", mesh, "--self", "--count", "--json"});
+    const auto counted = json_of({"collide", mesh, "--self=all", "--count", "--json"});
     REQUIRE(counted["pairs"] == summary["pairs"]);
     REQUIRE(counted["neighbours"] == summary["neighbours"]);
     REQUIRE(counted["digest"].is_null());
     // Without neighbours only the other pairs are written, and neighbours are still counted.
     const auto excluded =
-        json_of({"collide", mesh, "--self=apart", "--json", "--tree", tree, "--out", folder / "apart.csv"});
+        json_of({"collide", mesh, "--self=no-adjacent", "--json", "--tree", tree, "--out", folder / "rest.csv"});
     REQUIRE(excluded["pairs"] == summary["pairs"]);
     REQUIRE(excluded["neighbours"] == summary["neighbours"]);
     REQUIRE(excluded["digest"] != summary["digest"]);
     std::string expected = "a,b\n";
     for (const std::string& row : lines_of(rows))
         if (row.ends_with(",0")) expected += row.substr(0, row.size() - 2) + "\n";
-    REQUIRE(bytes_of_file(folder / "apart.csv") == expected);
-    REQUIRE(holds(run_program({"collide", mesh, "--self"}).out, "15 more among triangles that share a vertex"));
+    REQUIRE(bytes_of_file(folder / "rest.csv") == expected);
+    REQUIRE(holds(run_program({"collide", mesh, "--self=all"}).out, "15 more among triangles that share a vertex"));
+    // Earlier names.
+    REQUIRE(json_of({"collide", mesh, "--self=together", "--json"})["neighbours"] == summary["neighbours"]);
+    REQUIRE(json_of({"collide", mesh, "--self=apart", "--json"})["digest"] == excluded["digest"]);
+    // Two tetrahedra intersect; the neighbours have no more in common than what they share.
+    const auto beyond = json_of({"collide", mesh, "--self", "--json", "--tree", tree});
+    REQUIRE(beyond["pairs"] == summary["pairs"]);
+    REQUIRE(!beyond.contains("neighbours"));
+}
+
+TEST_CASE("collide --self finds triangles that share more than corners and edges") {
+    const temporary_folder folder;
+    // A bow-tie through a common corner, a fold and a double face intersect; a tent and two halves of a square do not.
+    const std::string square = "OFF\n4 2 0\n0 0 0\n4 0 0\n2 3 0\n";
+    const std::vector<std::pair<std::string, std::string>> files{
+        {"bow_tie", "OFF\n5 2 0\n0 0 0\n6 0 0\n6 3 0\n4 1 -2\n4 1 2\n3 0 1 2\n3 0 3 4\n"},
+        {"fold", square + "2 1 0\n3 0 1 2\n3 1 0 3\n"},
+        {"double", "OFF\n3 2 0\n0 0 0\n4 0 0\n2 3 0\n3 0 1 2\n3 0 1 2\n"},
+        {"tent", "OFF\n4 2 0\n0 0 0\n4 0 0\n2 3 1\n2 -3 1\n3 0 1 2\n3 1 0 3\n"},
+        {"flat", square + "2 -3 0\n3 0 1 2\n3 1 0 3\n"}};
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const std::string mesh = folder.write(files[i].first + ".off", files[i].second);
+        const bool intersects = i < 3;
+        CAPTURE(mesh);
+        const auto summary = json_of({"collide", mesh, "--self", "--json", "--out", folder / "pairs.csv"});
+        CHECK(summary["pairs"] == (intersects ? 1 : 0));
+        CHECK(summary["degenerate"] == 0);
+        CHECK(lines_of(bytes_of_file(folder / "pairs.csv")).size() == (intersects ? 2 : 1));
+        CHECK(run_program({"collide", mesh, "--self", "--exit-code"}).status == (intersects ? 1 : 0));
+        const std::string any = run_program({"collide", mesh, "--self", "--first"}).out;
+        CHECK(holds(any, intersects ? "triangles 0 and 1 intersect\n" : "0 intersecting pairs of triangles"));
+        CHECK(json_of({"collide", mesh, "--self", "--count", "--json"})["pairs"] == summary["pairs"]);
+    }
+    // The third triangle is a segment that passes through the first.
+    const std::string spike =
+        folder.write("spike.off", "OFF\n5 2 0\n0 0 0\n4 0 0\n2 3 0\n2 1 1\n2 1 -1\n3 0 1 2\n3 3 4 4\n");
+    const std::string text = run_program({"collide", spike, "--self"}).out;
+    CHECK(holds(text, "1 intersecting pair of triangles"));
+    CHECK(holds(text, "\n1 triangle without area\n"));
 }
 
 TEST_CASE("collide --geometry writes each intersection in world coordinates") {
@@ -197,7 +235,7 @@ TEST_CASE("neighbours in a mesh intersect in their shared edge or vertex") {
     const two_files files;
     const auto& [folder, a, b] = files;
     for (const auto& [mesh, edges, points] : {std::tuple(a, 6, 0), std::tuple(b, 9, 6)}) {
-        run_well({"collide", mesh, "--self", "--geometry", "--out", folder / "self.csv"});
+        run_well({"collide", mesh, "--self=all", "--geometry", "--out", folder / "self.csv"});
         int segment = 0, point = 0;
         for (const auto& row : fields_of(bytes_of_file(folder / "self.csv"))) {
             segment += static_cast<int>(row[2] == "2" && row[3] == "segment" && row[4] == "2" && row[5] == "0");

@@ -53,12 +53,12 @@ TEST_CASE("pairs and run on boxes hash the rows frame,a,b") {
     CHECK(digest_of_run(folder, "kind = \"brownian\"\nobjects = 80\nframes = 3\ndensity = 1\n") == pairs.digest);
 }
 
-TEST_CASE("collide hashes 0,a,b for each row, with --self too") {
+TEST_CASE("collide hashes 0,a,b for each row, with --self=all too") {
     const temporary_folder folder;
     const std::string knot = "torus_knot:triangles=600";
     const outcome both(folder, {"collide", knot, "icosphere:triangles=320"});
     CHECK(both.digest == digest_of(in_frame_0(both.written)));
-    const outcome self(folder, {"collide", knot, "--self"});
+    const outcome self(folder, {"collide", knot, "--self=all"});
     CHECK(self.written[0].size() == 3);
     CHECK(self.digest == digest_of(in_frame_0(self.written)));
 }

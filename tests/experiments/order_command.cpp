@@ -22,7 +22,8 @@ TEST_CASE("order writes a mesh whose tree needs no triangle indices") {
     REQUIRE(old_numbers.contains("1999"));
 
     const auto self_collision = [](const std::string& name, const std::string& build) {
-        return json_of({"collide", name, "--self", "--json", "--build", build, "--tree", "implicit:vertices=fetched"});
+        return json_of(
+            {"collide", name, "--self=all", "--json", "--build", build, "--tree", "implicit:vertices=fetched"});
     };
     const auto before = self_collision(mesh, "sah");
     const auto after = self_collision(written, "file_order");

@@ -90,10 +90,10 @@ TEST_CASE("collide rejects invalid options and leaves no file behind") {
         {
             {{}, "collide: expected B, the other mesh, or --self"},
             {{a, "--self"}, "--self takes one mesh, so give no second one"},
-            {{"--self=appart"}, "did you mean 'apart'?"},
+            {{"--self=no_adjacent"}, "did you mean 'no-adjacent'?"},
             {{"--self", "--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0"}, "which no pose changes"},
             {{"--self", "--poses", "poses.txt"}, "which no pose changes"},
-            {{"--self", "--first"}, "--self finds every pair, so --first cannot be combined with it"},
+            {{"--self=all", "--first"}, "--first stops at a self-intersection; omit the value of --self"},
             {{a, "--first", "--count"}, "--first and --count exclude each other"},
             {{a, "--count", "--out", folder / "x.csv"}, "--count stores no pairs"},
             {{a, "--geometry"}, "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair"},

@@ -188,7 +188,16 @@ TEST_CASE("A runner without global search tests all pairs of objects, and can co
     CHECK(tested.count_contacts() == contacts.size());
     CHECK(std::ranges::find(contacts, tested.first_contact().value()) != contacts.end());
     std::vector<aabb::index_pair> neighbours;
-    tested.each_self_pair(0, [&](aabb::index_pair pair) { neighbours.push_back(pair); });
+    std::size_t most = 2;
+    const auto take = [&](aabb::index_pair pair) {
+        neighbours.push_back(pair);
+        return neighbours.size() == most;
+    };
+    tested.each_self_pair(0, take);
+    CHECK(neighbours.size() == 2);
+    neighbours.clear();
+    most = 100;
+    tested.each_self_pair(0, take);
     CHECK(neighbours.size() == 6);
 }
 
