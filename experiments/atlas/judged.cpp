@@ -10,12 +10,12 @@ namespace {
 
 using scene_filter = std::function<bool(const atlas_scene&)>;
 
-/// A ratio of times over a set of scenes: of a candidate to another, its baseline.
+/// A ratio of times over a set of scenes: of a candidate, expected to be the faster one, to another, its baseline.
 struct stated_ratio {
     std::string where, candidate, baseline;
     scene_filter scenes;
     expectation expected = expectation::less;
-    double band = equivalence_band;
+    double band = equivalence_band;  // of no difference: 0.05 for 1/1.05 to 1.05, 1 for 1/2 to 2
     /// If set, the ratio is divided by the same ratio in these scenes.
     scene_filter reference_scenes = nullptr;
 };
@@ -26,7 +26,7 @@ struct statement {
 };
 
 // The labels of the compositions and engines.
-const std::string columns = "bucket + columns + simd";
+const std::string columns = "bucket + columns + simd";  // also for box pruning: both sort and sweep anew per frame
 const std::string verlet_list = "neighbour_list:margin=0.1 + bucket + columns + simd";
 const std::string incremental = "insertion + incremental";
 const std::string subdivided = "insertion + subdivided";
@@ -105,7 +105,7 @@ std::vector<stated_ratio> by_count(const std::string& candidate, const std::stri
     return ratios;
 }
 
-/// The statements as published, with the ratios that decide them.
+/// The statements as published, with the ratios that decide them. The candidate expected to be faster comes first.
 const std::vector<statement>& statements() {
     static const std::vector<statement> published{
         {"B1",
@@ -172,12 +172,12 @@ const std::vector<statement>& statements() {
         {"B10", "The manual of dyn4j",
          "A sweep along one axis and a dynamic tree take about the same time: the slower one, the tree, takes at "
          "most twice as long.",
-         by_count(dynamic_tree, one_axis, {100, 1000, 10000}, expectation::not_more, 1.0)},
+         by_count(dynamic_tree, one_axis, {100, 1000, 10000}, expectation::not_more, /*band=*/1.0)},
         {"B11",
          "The manual of Unity, Physics, broadphase type",
          "In large flat worlds sweep and prune finds many false overlaps, and a grid over it helps.",
          {{"flat", columns, simd_sweep, kind_is("flat")},
-          relative("flat over cubic", columns, simd_sweep, kind_is("flat"), kind_is("brownian"))}},
+          relative("flat over cubic", columns, simd_sweep, kind_is("flat"), /*in a cube*/ kind_is("brownian"))}},
         {"B12",
          "Y. Serpa, M. Rodrigues, Computer Graphics Forum 38, 2019, title",
          "A kd-tree that exploits temporal coherence is fast and scales.",

@@ -132,16 +132,17 @@ std::vector<metric_plot> plots_of(const document& doc) {
     return plots;
 }
 
-/// The experiment for the curves of compositions, which run whole scenes, as `run` does, and not single pairs. Its
-/// scenes are those of the experiment that the config names, and its own.
+/// The experiment for curves of compositions, which run whole scenes of the config, as `run` does, and not single
+/// pairs. A curve is a line of a plot, through compositions that differ in parameters.
 experiment scene_experiment_of(const document& doc, const error_study& study, experiment_size size) {
     experiment e;
-    if (study.scene_experiment) e.scenes = study.scene_experiment->scenes;
+    if (study.scene_experiment) e.scenes = study.scene_experiment->scenes;  // of the other size, checked already
     e.name = study.name;
     e.file = doc.file();
     e.text = study.text;
     e.quick = size == experiment_size::quick;
     read_measure(doc, size, e);
+    // Here one process asks for all pairs, with warm caches, and plots name the metrics.
     if (const node* measure = doc.root().find("measure"))
         for (const char* key : {"processes", "ask", "caches", "metrics"})
             if (const node* entry = measure->find(key))
@@ -172,7 +173,7 @@ void read_triangles(const document& doc, experiment_size size, error_study& stud
     for (const node& table : doc.tables_of("scene")) require_meshes(doc, table);
     if (doc.root().find("scene")) {
         experiment with_scenes;
-        with_scenes.scenes = study.scenes;
+        with_scenes.scenes = study.scenes;  // of the other size, checked already
         read_scenes(doc, size, with_scenes);
         study.scenes = with_scenes.scenes;
         study.notes.insert(study.notes.end(), with_scenes.notes.begin(), with_scenes.notes.end());

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t most_frames = 40;
 constexpr std::size_t rounds = 5;
-/// With more objects, the slower sort and sweep strategies would take minutes.
-constexpr std::size_t most_objects_of_all_kinds = 20'000;
+/// With more objects, only some kinds are varied: the slower sort and sweep strategies would take minutes.
+constexpr std::size_t most_objects_to_vary_every_kind = 20'000;
 
 /// A composition that runs in the same rounds as the selected one.
 struct variant {
@@ -28,7 +28,7 @@ struct variant {
     bool is_hopeless = false;             ///< far slower than the selected one
 };
 
-/// Its name without a column for the kind.
+/// The variant's name where no column shows its kind.
 std::string label_of(const variant& v) {
     return v.name == "none" ? v.kind + " none" : v.name;
 }
@@ -47,7 +47,7 @@ std::vector<variant> variants_by_strategy(const aabb::composition& selected, aab
     return variants;
 }
 
-/// Compositions that have, by other settings of this kind, what the selected composition leaves out.
+/// Compositions with other settings of this kind, which switch on features that the selected composition may leave out.
 std::vector<variant> variants_by_settings(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
     std::vector<variant> variants;
     for (const aabb::strategy_info& info : aabb::strategies(kind))
@@ -64,7 +64,7 @@ double median_ms(std::span<const observation> times) {
     return quartiles_of(frame_ms_of(times)).median;
 }
 
-/// The omissions, without their reasons.
+/// The features that a variant leaves out, such as a Verlet list, each once and without the reason.
 std::vector<aabb::absence> omitted_by(const variant& v) {
     std::vector<aabb::absence> absences;
     for (const aabb::omission& absent : omissions_of(v.tested.name, v.times.back().left_out))
@@ -174,17 +174,19 @@ std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector
 }
 
 /// Prints what each choice of the selected composition saves, by runs interleaved with variants that differ in one.
-/// Variants that differ in a setting are not rows of the table; `print_omissions` compares them.
+/// Variants by settings are not rows of the table. Each has a feature, such as a Verlet list, that the selected one may
+/// lack; `print_omissions` shows what such an omission saves.
 /// @returns false if variants report different pairs
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
     const scene_frames& scene = staged.scene();
     const bool meshes = scene.meshes() != nullptr;
-    const bool is_small = scene.objects() <= most_objects_of_all_kinds;
+    const bool is_small = scene.objects() <= most_objects_to_vary_every_kind;
     std::vector<variant> variants{{"", "as selected", candidate_of(selected, meshes)}};
     std::vector<variant> by_settings;
     std::string unreplaced;  // kinds without any other strategy that fits the composition
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
+        // The kinds that are compiled alone, prepare and build, have no strategy that is too slow for many objects.
         if (!is_small && !info_of(kind).is_compiled_alone) continue;
         const std::vector<variant> of_kind = variants_by_strategy(selected, kind, meshes);
         variants.insert(variants.end(), of_kind.begin(), of_kind.end());
@@ -222,7 +224,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     if (!unreplaced.empty()) print_paragraph(unreplaced + ": no other strategy can be composed with the rest.");
     if (!is_small)
         print_paragraph(fmt::format("With more than {}, only prepare and build are replaced, to save time.",
-                                    counted(most_objects_of_all_kinds, "object")));
+                                    counted(most_objects_to_vary_every_kind, "object")));
     print_paragraph(ms_per_frame_text);
     print_paragraph(fmt::format(
         "ratio: ms/frame relative to the selected composition in the same round; times and ratios are medians over "

@@ -67,8 +67,9 @@ void text_decoder::add(std::string_view bytes, std::string& text) {
         bytes = kept;
     }
     if (!encoding_ || !problem_.empty()) return;
+    // Only UTF-8 and UTF-16 with a mark are left: `detect_encoding` sets a problem for others.
     if (*encoding_ == text_encoding::utf8)
-        append_normalised(bytes, text);
+        append_with_line_feeds(bytes, text);
     else
         append_utf16(bytes, text);
 }
@@ -129,7 +130,7 @@ void text_decoder::append_utf16(std::string_view bytes, std::string& text) {
 void text_decoder::append_character(char32_t character, std::string& text) {
     std::string utf8;
     append_utf8(character, utf8);
-    append_normalised(utf8, text);
+    append_with_line_feeds(utf8, text);
 }
 
 /// Whether the bytes can be copied: lines end in line feeds, and no byte may be padding.
@@ -137,8 +138,8 @@ bool text_decoder::is_unchanged(std::string_view utf8) const noexcept {
     return line_end_ == line_end::feed && padding_ == ' ' && std::ranges::none_of(utf8, is_padding);
 }
 
-/// Appends UTF-8 with its line ends converted and padding dropped, at once if neither can occur in it.
-void text_decoder::append_normalised(std::string_view utf8, std::string& text) {
+/// Appends UTF-8 with line ends converted to line feeds and padding dropped, at once if neither can occur in it.
+void text_decoder::append_with_line_feeds(std::string_view utf8, std::string& text) {
     if (is_unchanged(utf8)) {
         line_ += static_cast<std::size_t>(std::ranges::count(utf8, '\n'));
         text += utf8;

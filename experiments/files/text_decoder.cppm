@@ -24,7 +24,7 @@ private:
     void detect_encoding(bool is_at_end);
     void append_utf16(std::string_view bytes, std::string& text);
     void append_character(char32_t character, std::string& text);
-    void append_normalised(std::string_view utf8, std::string& text);
+    void append_with_line_feeds(std::string_view utf8, std::string& text);
     void append_byte(char c, std::string& text);
     [[nodiscard]] bool is_unchanged(std::string_view utf8) const noexcept;
 

@@ -1,7 +1,6 @@
 module aabblab.race;
 
 import aabb.base;
-import aabb.costs;
 import aabblab.configs;
 import aabblab.files;
 import aabblab.fmt;
@@ -79,8 +78,9 @@ std::string page_of(const std::string& scene, const race_result& race, const std
         "Dropped: a candidate was stopped after this many frames, since it took this many times as long as the "
         "fastest, both in total and per frame after the first; or its run did not finish. Strategies have their "
         "default parameters.");
-    const calibrated_costs used = label_costs(aabb::machine_costs());
-    report.paragraph(fmt::format("aabblab {}, {}, {}, {}", used.version, used.date, used.processor, used.instructions));
+    // Only the label counts: it names the program, machine and date, on which these times depend as costs do.
+    const calibrated_costs here = label_costs(/*costs=*/{});
+    report.paragraph(fmt::format("aabblab {}, {}, {}, {}", here.version, here.date, here.processor, here.instructions));
     return report.html();
 }
 

@@ -10,7 +10,7 @@ namespace {
 /// An experiment of the atlas; they run in this order.
 struct part {
     std::string_view name;
-    bool is_unseen;  ///< left out when a model is fitted, to test it
+    bool is_held_out;  ///< left out when a model is fitted, to test it
 };
 constexpr std::array<part, 3> parts{{{"atlas", false}, {"atlas_large", false}, {"atlas_unseen", true}}};
 
@@ -47,7 +47,7 @@ std::vector<atlas_scene> measured_atlas(const std::filesystem::path& folder) {
     std::vector<atlas_scene> atlas;
     for (const part& p : parts)
         if (std::filesystem::exists(folder / p.name / "results.csv"))
-            std::ranges::move(read_atlas(folder / p.name, p.is_unseen), std::back_inserter(atlas));
+            std::ranges::move(read_atlas(folder / p.name, p.is_held_out), std::back_inserter(atlas));
     return atlas;
 }
 

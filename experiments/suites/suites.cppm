@@ -71,7 +71,7 @@ struct suite_report {
                                              bool shown);
 [[nodiscard]] suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vector<std::string>& studies,
                                            bool quick, bool shown);
-/// Rebuilds the report from the rows in a folder, or from a stored report of earlier versions; empty if there is none.
+/// The report from what a suite stored in the folder; empty if that is nothing, or an interrupted extreme suite.
 /// @throws aabb::input_error if the files have another format.
 [[nodiscard]] std::optional<suite_report> stored_report(const std::filesystem::path& folder);
 /// The pairs of triangles that `validate extreme` uses by default.

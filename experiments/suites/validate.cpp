@@ -187,7 +187,9 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     return report;
 }
 
-/// The report of a suite from what its run stored: a report, as earlier versions did, or rows; empty if there is none.
+/// The suite stored a whole report, as earlier versions did, rows of the extreme suite, or a result per study of stiff
+/// contacts. Any studies make a report, since each is complete and can be run alone. An interrupted extreme suite makes
+/// none: without its cases it might seem to pass.
 std::optional<suite_report> stored_report(const std::filesystem::path& folder) {
     if (std::filesystem::exists(folder / "report.json")) return read_report(folder / "report.json");
     if (std::filesystem::exists(folder / "extreme.csv")) {

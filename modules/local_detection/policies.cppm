@@ -10,7 +10,7 @@ export namespace aabb {
 struct build_node {
     box bounds;
     std::uint32_t right;     ///< index of the right child; 0 in a leaf
-    std::uint32_t triangle;  ///< index of the triangle in a leaf
+    std::uint32_t triangle;  ///< index of the triangle in a leaf; not read in internal nodes
 
     [[nodiscard]] bool is_leaf() const noexcept { return right == 0; }
 };

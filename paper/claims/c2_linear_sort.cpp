@@ -9,12 +9,13 @@ namespace {
 /// The work of a sort at all sizes, on input with one displacement.
 struct work_by_size {
     std::vector<double> log_n;
-    std::vector<cells> per_element;  // logarithms
+    std::vector<cells> log_per_element;
 
-    /// The growth of work per element when N grows tenfold, by linear regression against log N; none if it is O(N).
+    /// The growth of work per element when N grows tenfold, as a logarithm; 0 if the work is O(N). A linear regression
+    /// of the work per element, not of its logarithm, against log N gives its increase, which is divided by its mean.
     [[nodiscard]] double growth(const resample& d) const {
         std::vector<double> y;
-        for (const cells& logs : per_element) y.push_back(std::exp(d.mean_of(logs)));
+        for (const cells& logs : log_per_element) y.push_back(std::exp(d.mean_of(logs)));
         const auto [slope, mean_y] = line_through(log_n, y);
         // A steep fall would extrapolate to a negative value, which has no meaning.
         return std::log(std::max(1e-6, 1 + slope / mean_y));
@@ -45,7 +46,7 @@ constexpr std::pair<const char*, const char*> sorts[] = {{"insertion", "insertio
                                                          {"shell:gaps=tokuda", "with Tokuda's gaps"},
                                                          {"shell:gaps=shell", "with Shell's own gaps"}};
 
-/// The median over all sizes.
+/// The median of the inversions per element over all sizes.
 std::optional<double> inversions_of(const std::vector<const condition*>& conditions) {
     std::vector<double> values;
     for (const condition* c : conditions)
@@ -53,9 +54,9 @@ std::optional<double> inversions_of(const std::vector<const condition*>& conditi
     return values.empty() ? std::nullopt : std::optional(quartiles_of(values).median);
 }
 
-/// The sizes from which growth is computed: with few elements the passes of the largest gaps are incomplete, and far
-/// from the origin, where floats cannot represent a move of a hundredth of an edge, the input has fewer inversions.
-std::vector<const condition*> comparable_sizes(std::vector<const condition*> conditions) {
+/// The sizes for the regression: so large that the passes of the largest gaps are complete, with equal inversions per
+/// element. Far from the origin, where floats cannot represent a move of a hundredth of an edge, there are fewer.
+std::vector<const condition*> equally_ordered_sizes(std::vector<const condition*> conditions) {
     constexpr double fewest_elements = 10'000;
     constexpr double most_deviation = 0.1;
     std::erase_if(conditions, [](const condition* c) { return number_of(c->scene(), "objects") < fewest_elements; });
@@ -71,6 +72,7 @@ std::vector<const condition*> comparable_sizes(std::vector<const condition*> con
 
 /// Claim C2: the growth of each sort's counted work per element, by displacement; a sort in O(N) has the ratio 1.
 draft c2_claim(const measurements& m) {
+    // The paper leaves the number of gaps open: fixed numbers, two and eight, which keep O(N), are primary, too.
     draft c2{.claim = {.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too",
                        .measured =
                            "comparisons and moves per element at 10 N elements over those at N, by linear regression "
@@ -86,11 +88,11 @@ draft c2_claim(const measurements& m) {
     for (const auto& [sort, subject] : sorts)
         for (const auto& [displacement, of_all_sizes] : by_displacement) {
             work_by_size measured_work;
-            const std::vector<const condition*> conditions = comparable_sizes(of_all_sizes);
+            const std::vector<const condition*> conditions = equally_ordered_sizes(of_all_sizes);
             if (conditions.size() < 2) continue;
             for (const condition* c : conditions) {
                 measured_work.log_n.push_back(std::log10(number_of(c->scene(), "objects")));
-                measured_work.per_element.push_back(c->logs({{kind::sort, sort}}, per_object(work())));
+                measured_work.log_per_element.push_back(c->logs({{kind::sort, sort}}, per_object(work())));
             }
             endpoint growth;
             growth.where = {{"scene", "line"},
@@ -100,7 +102,7 @@ draft c2_claim(const measurements& m) {
                                              value_of(conditions.back()->scene(), "objects")}};
             if (const auto inversions = inversions_of(conditions))
                 growth.observed = {{"inversions", three_digits(*inversions)}};
-            growth.log_ratios = {bootstrap(measured_work.per_element.front().size(),
+            growth.log_ratios = {bootstrap(measured_work.log_per_element.front().size(),
                                            [&](const resample& d) { return measured_work.growth(d); })};
             growth.source = "c2: growth of comparisons and moves of sort=" + std::string(sort);
             c2.add(std::move(growth), subject, "inversions", quantity::work);

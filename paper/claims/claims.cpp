@@ -49,7 +49,7 @@ std::string evidence_text(std::span<const endpoint> endpoints) {
                                {count_of(others, support::undecided), "is undecided", "are undecided"}});
 }
 
-/// The verdict on a drafted claim from its decided endpoints, with the sentences and the table that report it.
+/// The verdict on a drafted claim from its decided endpoints, with sentences, and the table of all ratios as the first.
 claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoints) {
     claim_result claim = drafted.claim;
     claim.verdict = verdict_of(endpoints);
@@ -69,7 +69,7 @@ claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoi
     std::ranges::stable_partition(ordered, &endpoint::is_primary);
     claim.has_primary = !ordered.empty() && ordered.front().is_primary;
     if (claim.has_primary) claim.primary = ordered.front();
-    claim.secondary.assign(ordered.begin() + (claim.has_primary ? 1 : 0), ordered.end());
+    claim.others.assign(ordered.begin() + (claim.has_primary ? 1 : 0), ordered.end());
     std::string name = claim.id;
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     table ratios = endpoint_table(
@@ -162,13 +162,13 @@ factors factors_of(const endpoint& e) {
 std::vector<endpoint> primaries_of(const claim_result& claim) {
     std::vector<endpoint> primaries;
     if (claim.has_primary) primaries.push_back(claim.primary);
-    std::ranges::copy_if(claim.secondary, std::back_inserter(primaries), &endpoint::is_primary);
+    std::ranges::copy_if(claim.others, std::back_inserter(primaries), &endpoint::is_primary);
     return primaries;
 }
 
 std::vector<endpoint> secondaries_of(const claim_result& claim) {
     std::vector<endpoint> secondaries;
-    std::ranges::remove_copy_if(claim.secondary, std::back_inserter(secondaries), &endpoint::is_primary);
+    std::ranges::remove_copy_if(claim.others, std::back_inserter(secondaries), &endpoint::is_primary);
     return secondaries;
 }
 

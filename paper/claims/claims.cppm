@@ -23,7 +23,7 @@ struct endpoint {
     interval range{};                          ///< 95 %, of this endpoint alone
     std::optional<expectation> expected{};     ///< in a draft empty if it is the claim's
     support corrected = support::undecided;    ///< with Holm's correction
-    outcome direction = outcome::undecided;    ///< the same
+    outcome direction = outcome::undecided;    ///< with Holm's correction, too
     support uncorrected = support::undecided;  ///< without correction, from its own interval
     bool is_primary = false;
     quantity compared = quantity::time;
@@ -53,10 +53,10 @@ struct claim_result {
     std::string evidence{};  ///< the numbers that decide
     bool has_primary = false;
     endpoint primary{};                      ///< the first primary endpoint
-    std::vector<endpoint> secondary{};       ///< all others, further primary ones first
+    std::vector<endpoint> others{};          ///< all but `primary`: further primary ones first, then the secondary ones
     std::vector<std::string> experiments{};  ///< the experiments that measured it
     std::vector<factors> scenes{};           ///< of these experiments
-    std::vector<named_table> tables{};
+    std::vector<named_table> tables{};       ///< in a draft, the claim's own; `judged` inserts that of all ratios first
     std::vector<figure> figures{};
 };
 
@@ -163,7 +163,7 @@ struct claim_source {
 }
 /// The factors of its condition and the observed ones.
 [[nodiscard]] factors factors_of(const endpoint& e);
-/// The outcome of an endpoint, as sentences report it: no difference if it is decided and the ratio is within the band.
+/// An endpoint's outcome as sentences report it, begun like `outcome`: `same` if it is decided and within the band.
 enum class wording : unsigned char { less, same, more, not_more, open };
 [[nodiscard]] wording wording_of(const endpoint& e);
 /// A number of things and what they do: "1 holds", "3 hold".

@@ -12,7 +12,7 @@ constexpr double factor_threshold = 1.5;
 /// Ratios within this factor are reported as a single one.
 constexpr double equality_threshold = 1.1;
 
-/// Empty for quantities that labels name.
+/// In the order of `quantity`; empty where labels name the quantity.
 std::string noun_of(quantity compared) {
     constexpr std::array nouns{"time", "bytes", "box tests", "", "", "time (divided by the cut's)"};
     return nouns[static_cast<std::size_t>(compared)];
@@ -165,7 +165,7 @@ clause first_clause(std::span<const claim_result> claims, const std::string& id)
     const claim_result* claim = claim_named(claims, id);
     if (!claim || !claim->has_primary || !claim->primary.subject) return {"", "not measured"};
     std::vector<endpoint> endpoints{claim->primary};
-    endpoints.insert(endpoints.end(), claim->secondary.begin(), claim->secondary.end());
+    endpoints.insert(endpoints.end(), claim->others.begin(), claim->others.end());
     return clause_of(endpoints, claim->primary);
 }
 

@@ -7,7 +7,8 @@ namespace aabblab {
 
 namespace {
 
-/// The nominal size of nodes: n triangles have n - 1 internal nodes.
+/// The nominal size of nodes: n triangles have n - 1 internal nodes. Parts have the paper's names: the scope is the
+/// stored planes, and the symbol the bits that say which planes these are and which children are leaves.
 struct layout {
     const char* name;
     const char* tree;  // with its parameters
@@ -27,11 +28,12 @@ selection selection_of(const layout& l, const std::string& build) {
     return {{kind::tree, l.tree}, {kind::build, build}};
 }
 
-/// Bytes per triangle of every layout of trees: nominal, from the sizes of its nodes, and allocated.
+/// Bytes per triangle of every layout of trees: nominal, from the sizes of its nodes, and allocated (`tree_bytes`).
 table bytes_table(const condition& c) {
     table t = empty_table({"tree", "internal node", "leaf"},
                           {"bytes per triangle, nominal", "allocated", "of these, boxes and symbols", "indices"});
     for (const layout& l : layouts) {
+        // The bytes of these layouts depend on the number of triangles only, so that any build would do.
         const selection composition = selection_of(l, "median");
         if (!c.value(composition, measured("tree_bytes"))) continue;
         const auto text_of = [&](const row_value& bytes) {

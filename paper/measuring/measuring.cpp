@@ -258,7 +258,7 @@ void require_different(std::span<const measurements> runs) {
 }
 
 /// A sentence on how the verdicts agree with the published run of this size, an archive in the repository; or empty.
-std::string agreement_with_published(std::span<const measurements> runs, const reproduction& reproduced) {
+std::string verdict_agreement_with_published(std::span<const measurements> runs, const reproduction& reproduced) {
     const std::string name = is_quick(runs.front().folder()) ? "quick_run.tar.xz" : "full_run.tar.xz";
     const std::filesystem::path archive = std::filesystem::path(AABBLAB_ARCHIVES) / name;
     if (!std::filesystem::exists(archive)) return {};
@@ -272,7 +272,7 @@ std::string agreement_with_published(std::span<const measurements> runs, const r
             return is_sealed_record(run.folder()) && seal_of_record(run.folder()) == seal_of_record(source.folder);
         };
         if (std::ranges::all_of(runs, is_published)) return "The results are those of " + published + ".";
-        return agreement_of(reproduced.claims, judged(results).claims, published);
+        return agreement_of_verdicts(reproduced.claims, judged(results).claims, published);
     } catch (const aabb::input_error& error) {
         note("verdicts are not compared with the published ones: " + std::string(error.what()));
         return {};
@@ -291,15 +291,15 @@ int judge(const std::filesystem::path& out, std::span<const measurements> runs) 
                                     " are of different sizes, quick and full, and cannot be judged together");
     require_different(runs);
     const reproduction reproduced = judged(runs);
-    const std::string agreement = agreement_with_published(runs, reproduced);
+    const std::string verdict_agreement = verdict_agreement_with_published(runs, reproduced);
     write_reproduction(out, runs, reproduced, sections_of_reproduction(first.folder(), is_quick(first.folder())),
-                       failures, agreement);
+                       failures, verdict_agreement);
     print(verdict_text(reproduced));
     if (!failures.empty())
         print(fmt::format("\n{} results are wrong; compositions with wrong results have no times:\n", failures.size()));
     for (const std::string& failure : failures) print("  " + failure + "\n");
     print("\nThe report is " + visible((out / "report.html").string()) + "\n");
-    if (!agreement.empty()) print_paragraph(agreement);
+    if (!verdict_agreement.empty()) print_paragraph(verdict_agreement);
     return failures.empty() ? 0 : 1;
 }
 

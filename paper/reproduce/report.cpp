@@ -179,8 +179,8 @@ void add_claim_rows(page& out, const reproduction& reproduced) {
         out.add_markdown("![" + f.caption + "](figures/" + f.name + ".svg)\n\n" + f.caption + "\n\n");
 }
 
-/// Adds the section on the rule of verdicts: a picture, the meaning of each verdict, rule.md and the null control.
-void add_rule(page& out, const reproduction& reproduced) {
+/// Adds the section on the decision rule: a picture, the meaning of each verdict, rule.md and the null control.
+void add_decision_rule(page& out, const reproduction& reproduced) {
     out.heading("How a verdict is reached", "rule");
     out.add_html(rule_picture() + "\n");
     std::string words;
@@ -199,8 +199,8 @@ void add_rule(page& out, const reproduction& reproduced) {
     out.folded("Every ratio of the null control", reproduced.null_control);
 }
 
-/// Adds the section on choices that the paper leaves open, with the claim's ratio under each alternative.
-void add_choices(page& out, const reproduction& reproduced) {
+/// Adds the section on choices that the paper leaves open: ours, and a claim's ratio under each alternative.
+void add_open_choices(page& out, const reproduction& reproduced) {
     out.heading("What the paper leaves open", "open");
     std::string list;
     for (const open_choice& c : reproduced.choices) {
@@ -229,7 +229,7 @@ table rule_table() {
     return t;
 }
 
-/// Composes the report's page: warnings and headline first, then claims, the rule, details per claim, and provenance.
+/// Composes the report's page: warnings and headline, claims, the decision rule, details per claim, and provenance.
 page report_of(const reproduction& reproduced, std::span<const report_section> sections, const provenance& origin,
                const std::vector<std::string>& failures) {
     page out("AABB Lab: the paper, reproduced", embedded::report_css);
@@ -245,7 +245,7 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         out.add_markdown(sentence + "\n\n");
     }
     out.add_html(element("div", {{"class", "headline"}}, headline) + "\n");
-    if (!origin.agreement.empty()) out.paragraph(origin.agreement);
+    if (!origin.verdict_agreement.empty()) out.paragraph(origin.verdict_agreement);
     out.paragraph(
         fmt::format(
             "\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and {} claims, "
@@ -258,7 +258,7 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         "soft");
     for (const std::string& note : origin.notes) out.paragraph("Note: " + note + ".", "soft");
     add_claim_rows(out, reproduced);
-    add_rule(out, reproduced);
+    add_decision_rule(out, reproduced);
     out.heading("Under other bands of no difference", "bands");
     out.add(reproduced.bands);
     for (const claim_result& c : reproduced.claims) {
@@ -269,6 +269,7 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         if (c.evidence != c.sentence) out.paragraph(c.evidence);
         out.paragraph("The ratio: " + c.measured + ".", "soft");
         for (const figure& f : c.figures) out.add(f);
+        // `judged` inserted the table of all ratios first. It is long, so it is folded and comes last.
         for (const named_table& t : c.tables)
             if (&t != c.tables.data()) out.add(t);
         if (!c.tables.empty()) out.folded("Every ratio", c.tables.front());
@@ -279,7 +280,7 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
     }
     out.heading("Table 1: sizes of nodes", "table1");
     for (const named_table& t : reproduced.tables) out.add(t);
-    add_choices(out, reproduced);
+    add_open_choices(out, reproduced);
     for (const report_section& section : sections) {
         out.heading(section.title, section.id);
         for (const std::string& text : section.paragraphs) out.paragraph(text);

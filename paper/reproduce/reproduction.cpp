@@ -57,7 +57,7 @@ void add_claim(macros& tex, const claim_result& c) {
     set("sentence", c.sentence);
     set("because", c.evidence == c.sentence ? "" : c.evidence);
     tex.set_tex(c.id + ".figures", list_of(c.figures));
-    // The first table has the endpoints and belongs to the appendix.
+    // The first table, which `judged` inserted, has all ratios and belongs to the appendix.
     tex.set_tex(c.id + ".tables", list_of(c.tables, 1));
     set("setup", setup_of(c));
     set("favourable", c.expected == expectation::less ? "below 1" : "below 1.05");
@@ -90,7 +90,7 @@ table endpoints_of(const reproduction& reproduced) {
     };
     for (const claim_result& c : reproduced.claims) {
         if (c.has_primary) add(c, c.primary);
-        for (const endpoint& e : c.secondary) add(c, e);
+        for (const endpoint& e : c.others) add(c, e);
     }
     return t;
 }
@@ -216,11 +216,11 @@ provenance provenance_of(const measurements& results, const reproduction& reprod
 /// Writes all files of the report; with several runs, its figures and provenance are those of the first.
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
-                        const std::vector<std::string>& failures, const std::string& agreement) {
+                        const std::vector<std::string>& failures, const std::string& verdict_agreement) {
     reproduction reproduced = judged_claims;
     reproduced.figures.push_back(verdict_figure(reproduced));
     provenance origin = provenance_of(runs.front(), reproduced);
-    origin.agreement = agreement;
+    origin.verdict_agreement = verdict_agreement;
     for (const measurements& other : runs.subspan(1)) {
         const provenance other_origin = provenance_of(other, reproduced);
         origin.notes.push_back("ratios and verdicts are of this run and of " + other.name() + " together (" +
@@ -254,8 +254,8 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     write_file(folder / "report.html", report.html());
 }
 
-std::string agreement_of(std::span<const claim_result> claims, std::span<const claim_result> other_claims,
-                         const std::string& other) {
+std::string agreement_of_verdicts(std::span<const claim_result> claims, std::span<const claim_result> other_claims,
+                                  const std::string& other) {
     std::string differing;
     std::size_t agreeing = 0;
     for (const claim_result& c : claims) {

@@ -28,29 +28,29 @@ struct report_section {
 /// @param runs the judged runs; the report shows the figures of the first one
 /// @param sections sections of the reports only
 /// @param failures the errors that validation found, one sentence each
-/// @param agreement the comparison with published verdicts; empty without one
+/// @param verdict_agreement a sentence that compares the verdicts with published ones; empty without these
 /// @throws aabb::input_error if a file cannot be read or written.
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& reproduced, std::span<const report_section> sections,
-                        const std::vector<std::string>& failures, const std::string& agreement = {});
+                        const std::vector<std::string>& failures, const std::string& verdict_agreement = {});
 
 /// Compares two judgements in a sentence: the number of equal verdicts, and the claims whose verdicts differ.
 /// @param other the name of the other judgement: "the published run"
-[[nodiscard]] std::string agreement_of(std::span<const claim_result> claims, std::span<const claim_result> other_claims,
-                                       const std::string& other);
+[[nodiscard]] std::string agreement_of_verdicts(std::span<const claim_result> claims,
+                                                std::span<const claim_result> other_claims, const std::string& other);
 
 }  // namespace aabblab
 
 // Shared by the units of the module.
 namespace aabblab {
 
-/// The origin of the results, from the manifests and rows of all experiments.
+/// The origin of the results, from the manifests and rows of all experiments, and how they agree with published ones.
 struct provenance {
     std::string date, commit, compiler, flags, cpu;
     std::string size;  ///< "full" or "quick"
     std::size_t rows = 0, compositions = 0, scenes = 0, processes = 0, seeds = 0, repeats = 0;
     std::vector<std::string> notes;
-    std::string agreement;  ///< the parameter of `write_reproduction`
+    std::string verdict_agreement;  ///< the parameter of `write_reproduction`
 
     struct config {
         std::string experiment;
@@ -60,7 +60,7 @@ struct provenance {
     std::vector<config> configs;
 };
 
-/// The verdicts and their meanings.
+/// The kinds of verdicts, and when the decision rule gives each.
 [[nodiscard]] table rule_table();
 [[nodiscard]] page report_of(const reproduction& reproduced, std::span<const report_section> sections,
                              const provenance& origin, const std::vector<std::string>& failures);

@@ -36,9 +36,9 @@ public:
     [[nodiscard]] balanced_order build(std::uint32_t threads) {
         worker_threads workers(threads);
         const std::size_t n = mesh_.triangles.size();
-        std::vector<box> bounds((n + least_shared - 1) / least_shared);
-        workers.for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
-            bounds[begin / least_shared] = read_items(begin, end).as_box();
+        std::vector<box> bounds((n + share_size - 1) / share_size);
+        workers.for_each_range(n, share_size, [&](std::size_t begin, std::size_t end) {
+            bounds[begin / share_size] = read_items(begin, end).as_box();
         });
         box root = empty_box();
         for (const box& b : bounds) root = merged(root, b);
@@ -102,9 +102,9 @@ private:
             bounds.take(items);
             return bounds.as_box();
         }
-        std::vector<item_bounds> partial((items.size() + least_shared - 1) / least_shared);
-        workers.for_each_range(items.size(), least_shared, [&](std::size_t begin, std::size_t end) {
-            partial[begin / least_shared].take(items.subspan(begin, end - begin));
+        std::vector<item_bounds> partial((items.size() + share_size - 1) / share_size);
+        workers.for_each_range(items.size(), share_size, [&](std::size_t begin, std::size_t end) {
+            partial[begin / share_size].take(items.subspan(begin, end - begin));
         });
         for (const item_bounds& b : partial) bounds.take(b);
         return bounds.as_box();
@@ -172,7 +172,7 @@ private:
         return best;
     }
 
-    /// The share of one thread in a range that is split.
+    /// A part of the items of a range that is split; one thread at a time works on it.
     struct share {
         std::size_t begin;
         std::size_t end;
@@ -180,7 +180,7 @@ private:
         std::array<std::size_t, 3> next{};  // output positions below, in and above the bin that is split
     };
 
-    /// Splits many items by a histogram; several threads take shares of the items in turn.
+    /// Splits many items by a histogram; several threads take shares of `share_size` items, or the rest, in turn.
     void split_many(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
                     std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers) const {
         if (workers.count() == 1) {
@@ -188,8 +188,8 @@ private:
             return split_by_histogram(from, to, bounds, left_count, bin_of_item, workers, std::span(&all_items, 1));
         }
         std::vector<share> shares;
-        for (std::size_t begin = 0; begin < from.size(); begin += least_shared)
-            shares.push_back({begin, std::min(from.size(), begin + least_shared)});
+        for (std::size_t begin = 0; begin < from.size(); begin += share_size)
+            shares.push_back({begin, std::min(from.size(), begin + share_size)});
         split_by_histogram(from, to, bounds, left_count, bin_of_item, workers, shares);
     }
 

@@ -21,8 +21,8 @@ struct threaded_build {
     std::uint32_t threads = 1;
 };
 
-/// The number of triangles that repay another thread.
-inline constexpr std::size_t least_shared = 2048;
+/// The triangles per share of multithreaded work, as many as repay another thread. The last share may have fewer.
+inline constexpr std::size_t share_size = 2048;
 
 /// Balanced splits need no more than 14 levels for 2^31 triangles and 256 threads.
 inline constexpr std::size_t most_shared_levels = 64;
@@ -35,7 +35,7 @@ inline constexpr std::size_t most_shared_levels = 64;
 template <class Part, class Split, class Finish>
 void split_recursively(worker_threads& workers, const Part& whole, const Split& split, const Finish& finish) {
     const std::size_t size_to_finish =
-        workers.count() > 1 ? std::max(least_shared, whole.size() / (std::size_t{16} * workers.count())) : whole.size();
+        workers.count() > 1 ? std::max(share_size, whole.size() / (std::size_t{16} * workers.count())) : whole.size();
     const auto split_part = [&](const auto& self, const Part& p, std::size_t levels) -> void {
         if (p.size() <= size_to_finish || levels == 0) return finish(p);
         const auto halves = split(p);

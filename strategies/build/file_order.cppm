@@ -29,7 +29,7 @@ struct file_order_build : threaded_build {
         balanced_order order_of_file{large_vector<std::uint32_t>(n),
                                      large_vector<box>((n + in_leaf - 1) / in_leaf, empty_box()), threads};
         std::iota(order_of_file.triangles.begin(), order_of_file.triangles.end(), 0U);  // the identity
-        worker_threads(threads).for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
+        worker_threads(threads).for_each_range(n, share_size, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {
                 box& leaf = order_of_file.bounds[t / in_leaf];
                 leaf = merged(leaf, bounds_of(m.triangle(static_cast<std::uint32_t>(t))));

@@ -48,7 +48,7 @@ public:
         worker_threads workers(threads);
         const std::size_t n = mesh_.triangles.size();
         elements_.resize(n);
-        workers.for_each_range(n, least_shared, [&](std::size_t begin, std::size_t end) {
+        workers.for_each_range(n, share_size, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t)
                 elements_[t] = element_of_triangle(mesh_, static_cast<std::uint32_t>(t));
         });
@@ -60,8 +60,8 @@ public:
     }
 
 private:
-    /// Writes the node of a range and partitions the range by the rule. Nodes are in preorder: the left child follows
-    /// its parent, and the right child the 2 n - 1 nodes of the left subtree of n triangles.
+    /// Writes the internal node of two or more elements and partitions them by the rule. Nodes are in preorder: the
+    /// left child follows its parent, and the right child the 2 n - 1 nodes of the left subtree of n triangles.
     [[nodiscard]] std::array<task, 2> split_task(const task& t) {
         const std::span range = std::span(elements_).subspan(t.begin, t.size());
         const box bounds = bounds_of(range);
@@ -72,7 +72,7 @@ private:
             std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
                                      centroid_order{chosen.axis});
         const auto right = static_cast<std::uint32_t>(t.node + 2 * left);
-        nodes_[t.node] = {bounds, right, range[0].triangle};
+        nodes_[t.node] = {bounds, right, /*triangle=*/0};
         return {task{t.begin, t.begin + left, t.node + 1}, task{t.begin + left, t.end, right}};
     }
 

@@ -86,7 +86,7 @@ public:
             index_bits_ = std::bit_width(triangles_ - 1);
             packed_indices_.resize((std::size_t{triangles_} * index_bits_ + 7) / 8 + read_beyond);
             std::fill(packed_indices_.end() - read_beyond, packed_indices_.end(), std::byte{});
-            workers.for_each_range(triangles_, least_shared_triangles, [&](std::size_t begin, std::size_t end) {
+            workers.for_each_range(triangles_, triangles_per_share, [&](std::size_t begin, std::size_t end) {
                 pack_triangle_indices(order.triangles, begin, end);
             });
         }
@@ -121,7 +121,7 @@ public:
             for (std::uint32_t i = 0; i < triangles_; ++i) order[i] = triangle_at(i);
             vertices_ = vertex_lists(m, order, single_thread);
         }
-        encode_nodes(merge_in_eights(boxes), single_thread);
+        encode_nodes(merge_siblings(boxes), single_thread);
     }
 
     [[nodiscard]] inline cursor root(const mesh&) const noexcept {
@@ -181,8 +181,8 @@ public:
 
 private:
     static constexpr std::size_t read_beyond = 8;
-    static constexpr std::size_t least_shared_triangles = 8 * 512;  // repay another thread
-    static constexpr std::size_t least_shared_boxes = wide_node::most_children * 256;
+    static constexpr std::size_t triangles_per_share = 8 * 512;  // as many as repay another thread
+    static constexpr std::size_t boxes_per_share = wide_node::most_children * 256;
     static constexpr std::uint32_t leaf_height = 3;
     static constexpr std::size_t most_levels = 10;
     static_assert(std::uint64_t{1} << (leaf_height + 3 * most_levels) > most_triangles);
@@ -219,23 +219,24 @@ private:
     /// @param boxes the boxes of the leaves, which are overwritten
     void encode_nodes(std::span<box> boxes, worker_threads& workers) {
         for (std::size_t l = 0; l < levels(); ++l) {
-            workers.for_each_range(boxes.size(), least_shared_boxes, [&](std::size_t begin, std::size_t end) {
+            workers.for_each_range(boxes.size(), boxes_per_share, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; i += wide_node::most_children)
                     nodes_[begins_[l] + i / wide_node::most_children].encode(
                         boxes.subspan(i, std::min(wide_node::most_children, end - i)));
-                merge_in_eights(boxes.subspan(begin, end - begin));
+                merge_siblings(boxes.subspan(begin, end - begin));
             });
             // Compacts the boxes, which each range left at its beginning.
             std::size_t merged_count = 0;
-            for (std::size_t begin = 0; begin < boxes.size(); begin += least_shared_boxes)
-                for (std::size_t i = 0; i < groups_of(std::min(least_shared_boxes, boxes.size() - begin)); ++i)
+            for (std::size_t begin = 0; begin < boxes.size(); begin += boxes_per_share)
+                for (std::size_t i = 0; i < groups_of(std::min(boxes_per_share, boxes.size() - begin)); ++i)
                     boxes[merged_count++] = boxes[begin + i];
             boxes = boxes.first(merged_count);
         }
     }
 
-    /// Merges boxes in groups of eight, in place.
-    static std::span<box> merge_in_eights(std::span<box> boxes) noexcept {
+    /// Merges the boxes of siblings, the up to `most_children` nodes or triangles of one parent, into the parent's box.
+    /// @returns the boxes of all parents, which overwrite the first ones; those behind them have no meaning any more
+    static std::span<box> merge_siblings(std::span<box> boxes) noexcept {
         std::size_t merged_count = 0;
         for (std::size_t i = 0; i < boxes.size(); i += wide_node::most_children) {
             box group = empty_box();

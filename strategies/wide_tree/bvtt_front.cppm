@@ -131,8 +131,8 @@ private:
     std::uint32_t queries_to_wait_ = 0;
 };
 
-/// Caches the fronts of many pairs of objects. Queries carry no object ids: a front is recognised by its models and
-/// their last pose, or because its pairs are still valid.
+/// Caches the fronts of many pairs of objects. Queries carry no object ids: a front is recognised by its models, A and
+/// B, and their last pose, or because its pairs are still valid. Poses are those of B in A's frame (`box_motion`).
 class front_cache {
 public:
     static constexpr std::size_t most = 1024;
@@ -158,7 +158,8 @@ private:
     static constexpr std::size_t width = 8;
     using row = std::array<float, width>;
 
-    /// The centre of B's box in A's frame, which moves no further than the furthest point of B.
+    /// The centre of B's box in A's frame. As a point of the box, it moves no further than `displacement_bound`, so
+    /// that a front in whose last query it was further than `near` away is not near and need not be compared in full.
     [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& motion, const box& bounds) noexcept {
         vec3d centre = motion.shift;
         for (int j = 0; j < 3; ++j)

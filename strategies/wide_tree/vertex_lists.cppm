@@ -36,8 +36,8 @@ public:
     vertex_lists(const mesh& m, std::span<const std::uint32_t> order, worker_threads& workers) {
         while (index_bytes_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * index_bytes_) ++index_bytes_;
         begins_.resize((order.size() + triangles - 1) / triangles);
-        const std::size_t most_bytes_of_part = least_shared * (header + index_bytes_ * vertex_list::most);
-        std::vector<std::size_t> sizes((begins_.size() + least_shared - 1) / least_shared);
+        const std::size_t most_bytes_of_part = leaves_per_share * (header + index_bytes_ * vertex_list::most);
+        std::vector<std::size_t> sizes((begins_.size() + leaves_per_share - 1) / leaves_per_share);
         large_vector<std::byte> parts(sizes.size() * most_bytes_of_part);
         const auto triangles_of = [&](std::size_t leaf) {
             const std::size_t begin = std::min(leaf * triangles, order.size());
@@ -46,7 +46,7 @@ public:
         workers.for_each_index(sizes.size(), [&](std::size_t p, std::size_t) {
             std::byte* const begin = &parts[p * most_bytes_of_part];
             std::byte* end = begin;
-            for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l) {
+            for (std::size_t l = p * leaves_per_share; l < std::min(begins_.size(), (p + 1) * leaves_per_share); ++l) {
                 for (const std::uint32_t t : triangles_of(l + ahead)) __builtin_prefetch(&m.triangles[t]);
                 begins_[l] = static_cast<std::uint32_t>(end - begin);
                 end = write_list(m, triangles_of(l), end);
@@ -62,7 +62,7 @@ public:
         std::fill(lists_.end() - read_beyond, lists_.end(), std::byte{});
         workers.for_each_index(sizes.size(), [&](std::size_t p, std::size_t) {
             std::memcpy(&lists_[offsets[p]], &parts[p * most_bytes_of_part], sizes[p]);
-            for (std::size_t l = p * least_shared; l < std::min(begins_.size(), (p + 1) * least_shared); ++l)
+            for (std::size_t l = p * leaves_per_share; l < std::min(begins_.size(), (p + 1) * leaves_per_share); ++l)
                 begins_[l] += static_cast<std::uint32_t>(offsets[p]);
         });
     }
@@ -96,8 +96,8 @@ private:
     static constexpr std::size_t header = 1 + sizeof vertex_list::positions;
     static constexpr std::size_t read_beyond = 64;
     static constexpr std::size_t most_bytes = 0xffffffff;
-    static constexpr std::size_t ahead = 4;            // leaves whose triangles are prefetched
-    static constexpr std::size_t least_shared = 1024;  // leaves that repay another thread
+    static constexpr std::size_t ahead = 4;                // leaves whose triangles are prefetched
+    static constexpr std::size_t leaves_per_share = 1024;  // as many as repay another thread
 
     /// Writes the list of one leaf: one byte for the number of vertices, 0 if there are more than sixteen; for each
     /// corner, the positions of eight triangles in the list, in 4 bits each; and the indices of the vertices.

@@ -305,9 +305,9 @@ TEST_CASE("Splitting is not judged in scenes where nothing is split") {
         if (p.value_of("span") == "0.1") worlds::count_in(r, "pieces") = 0;
     });
     CHECK(named(results, "C9").has_primary);
-    CHECK(std::ranges::none_of(named(results, "C9").secondary,
+    CHECK(std::ranges::none_of(named(results, "C9").others,
                                [](const endpoint& e) { return aabblab::value_of(e.where, "span") == "0.1"; }));
-    CHECK(std::ranges::any_of(named(results, "C9").secondary,
+    CHECK(std::ranges::any_of(named(results, "C9").others,
                               [](const endpoint& e) { return aabblab::value_of(e.where, "span") == "0.5"; }));
 }
 
@@ -364,10 +364,9 @@ TEST_CASE("An alternative counts only after the correction for multiple tests") 
     });
     const auto c11 = std::ranges::find(results.choices, "C11", &aabblab::open_choice::claim);
     REQUIRE(c11 != results.choices.end());
-    const auto same = std::ranges::find_if(named(results, "C11").secondary, [](const endpoint& e) {
-        return aabblab::value_of(e.where, "objects") == "100";
-    });
-    REQUIRE(same != named(results, "C11").secondary.end());
+    const auto same = std::ranges::find_if(
+        named(results, "C11").others, [](const endpoint& e) { return aabblab::value_of(e.where, "objects") == "100"; });
+    REQUIRE(same != named(results, "C11").others.end());
     const auto choice = std::ranges::find_if(
         c11->alternatives, [](const aabblab::open_choice::alternative& a) { return a.label.starts_with("100 "); });
     REQUIRE(choice != c11->alternatives.end());

@@ -45,10 +45,10 @@ struct reports {
     std::string html, markdown, macros;
 };
 
-reports written(const aabblab::reproduction& reproduction, const std::string& agreement = {}) {
+reports written(const aabblab::reproduction& reproduction, const std::string& verdict_agreement = {}) {
     const temporary_folder folder;
     const aabblab::measurements no_results(folder.path());
-    write_reproduction(folder.path(), {&no_results, 1}, reproduction, {}, {}, agreement);
+    write_reproduction(folder.path(), {&no_results, 1}, reproduction, {}, {}, verdict_agreement);
     return {bytes_of_file(folder / "report.html"), bytes_of_file(folder / "report.md"),
             bytes_of_file(folder / "macros.tex")};
 }
@@ -84,12 +84,12 @@ TEST_CASE("Reports begin with the headline, preceded by any disturbance of the r
 
 TEST_CASE("Verdicts are compared with those of another run, and differences are listed") {
     const std::vector<claim_result> here = fictitious().claims;
-    CHECK(agreement_of(here, here, "the other") == "5 of 5 verdicts agree with the other.");
+    CHECK(agreement_of_verdicts(here, here, "the other") == "5 of 5 verdicts agree with the other.");
     std::vector<claim_result> there = here;
     there[0].verdict = verdict_kind::in_part;
     there[3].verdict = verdict_kind::does_not_hold;
     there.pop_back();
-    CHECK(agreement_of(here, there, "the other") ==
+    CHECK(agreement_of_verdicts(here, there, "the other") ==
           "2 of 5 verdicts agree with the other: C1: here holds, there holds in part; C8: here no difference, there "
           "does not hold; C9: here undecided, there none.");
     const reports out = written(fictitious(), "4 of 5 verdicts agree with the other.");
