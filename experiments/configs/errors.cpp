@@ -136,7 +136,8 @@ std::vector<metric_plot> plots_of(const document& doc) {
 /// pairs. A curve is a line of a plot, through compositions that differ in parameters.
 experiment scene_experiment_of(const document& doc, const error_study& study, experiment_size size) {
     experiment e;
-    if (study.scene_experiment) e.scenes = study.scene_experiment->scenes;  // of the other size, checked already
+    // `read_scenes` does not check the files of these scenes, of the other size, again.
+    if (study.scene_experiment) e.scenes = study.scene_experiment->scenes;
     e.name = study.name;
     e.file = doc.file();
     e.text = study.text;
@@ -173,7 +174,7 @@ void read_triangles(const document& doc, experiment_size size, error_study& stud
     for (const node& table : doc.tables_of("scene")) require_meshes(doc, table);
     if (doc.root().find("scene")) {
         experiment with_scenes;
-        with_scenes.scenes = study.scenes;  // of the other size, checked already
+        with_scenes.scenes = study.scenes;  // of the other size, whose files are not checked again
         read_scenes(doc, size, with_scenes);
         study.scenes = with_scenes.scenes;
         study.notes.insert(study.notes.end(), with_scenes.notes.begin(), with_scenes.notes.end());

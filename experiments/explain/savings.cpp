@@ -186,7 +186,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     std::string unreplaced;  // kinds without any other strategy that fits the composition
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
-        // The kinds that are compiled alone, prepare and build, have no strategy that is too slow for many objects.
+        // A slow sort, partition or sweep, kinds that are not compiled alone, would take too long with many objects.
         if (!is_small && !info_of(kind).is_compiled_alone) continue;
         const std::vector<variant> of_kind = variants_by_strategy(selected, kind, meshes);
         variants.insert(variants.end(), of_kind.begin(), of_kind.end());

@@ -28,7 +28,8 @@ selection selection_of(const layout& l, const std::string& build) {
     return {{kind::tree, l.tree}, {kind::build, build}};
 }
 
-/// Bytes per triangle of every layout of trees: nominal, from the sizes of its nodes, and allocated (`tree_bytes`).
+/// Bytes per triangle of every layout of trees: nominal, from the sizes of its nodes, and allocated: `nodes` (boxes,
+/// and the paper's symbols, bits that say which planes a child inherits and which children are leaves) and `indices`.
 table bytes_table(const condition& c) {
     table t = empty_table({"tree", "internal node", "leaf"},
                           {"bytes per triangle, nominal", "allocated", "of these, boxes and symbols", "indices"});

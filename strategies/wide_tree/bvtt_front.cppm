@@ -158,8 +158,8 @@ private:
     static constexpr std::size_t width = 8;
     using row = std::array<float, width>;
 
-    /// The centre of B's box in A's frame. As a point of the box, it moves no further than `displacement_bound`, so
-    /// that a front in whose last query it was further than `near` away is not near and need not be compared in full.
+    /// The centre of B's box in A's frame, a cheap first comparison: if it has moved by more than `near` since the last
+    /// query of a front, `displacement_bound`, which holds for all points of the box, is greater than `near`, too.
     [[nodiscard]] static std::array<float, 3> centre_of(const box_motion& motion, const box& bounds) noexcept {
         vec3d centre = motion.shift;
         for (int j = 0; j < 3; ++j)
