@@ -131,8 +131,7 @@ void reject_contradictions(const collide_request& request) {
         reject_if(request.b.has_value(), "--self takes one mesh, so give no second one");
         reject_if(request.poses[0] || request.poses[1] || request.poses_of_b,
                   "--self finds self-intersections, which no pose changes; omit the poses");
-        reject_if(request.first && request.self != "true",
-                  "--first stops at a self-intersection; omit the value of --self");
+        reject_if(request.first && request.self != "true", "--first works with plain --self only");
     }
     reject_if(request.poses[1] && request.poses_of_b, "--pose-b and --poses both set the pose of B; give one of them");
     reject_if(request.first && request.count, "--first and --count exclude each other");
@@ -191,9 +190,11 @@ void add_collide(const command_parser& program) {
     command.option("--poses FILE", &request.poses_of_b,
                    "Search with B at each pose of this file, one per line, as for --pose-b; trees are built once");
     request.method.add_to(command, "build, tree and triangle test");
-    command.flag("--self [=all]", &request.self,
-                 "Find self-intersections of A: triangles with more in common than the corners that they share and the "
-                 "edge between these; all: every pair with a common point, no-adjacent: those without a common corner");
+    command.flag(
+        "--self [=all|no-adjacent]", &request.self,
+        "Find self-intersections of A: pairs of triangles with more in common than the corners that they share and "
+        "the edge between two of these; all: every pair with a common point; no-adjacent: only pairs without "
+        "a common corner");
     command.flag("--first", &request.first, "Stop at the first pair found");
     command.flag("--count", &request.count, "Count the pairs without storing them");
     const auto take_repeats = [&request](const std::string& text) {
@@ -206,7 +207,9 @@ void add_collide(const command_parser& program) {
         "CSV file for pairs: a,b; with --self a,b,shared_vertices; --self=no-adjacent a,b; --poses pose,a,b");
     command.flag("--geometry", &request.geometry,
                  "Add to each pair the triangles' intersection, in world coordinates: kind, vertices, error bound");
-    command.flag("--exit-code", &request.exit_code, "Exit with status 1 (as diff) if triangles intersect");
+    command.flag("--exit-code", &request.exit_code,
+                 "Exit with status 1 (as diff) if triangles intersect, with a value of --self only those without a "
+                 "common corner");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

@@ -70,7 +70,7 @@ public:
     }
     /// @param names with the placeholder of the value in the help: "--n,--objects V"
     parsed_option option(const std::string& names, const option_value& value, const std::string& help) const;
-    /// @param value a text if the flag has an optional value, as in "--self [=apart]"; "true" without a value
+    /// @param value a text if the flag has an optional value, as in "--self [=all]"; "true" without a value
     parsed_option flag(const std::string& name, std::variant<bool*, std::string*> value, const std::string& help) const;
     /// @param text a function is called only for the help
     void footer(const std::variant<std::string, std::function<std::string()>>& text) const;

@@ -287,7 +287,8 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
         result.counts.push_back(hits.count);
         if (query.ask != query_kind::count) record.add(frame, std::move(hits), neighbours_too);
     }
-    if (query.self) result.degenerate = count_degenerate(scene.meshes()->meshes.front());
+    if (query.self && query.ask != query_kind::first)
+        result.degenerate = count_degenerate(scene.meshes()->meshes.front());
     result.bytes = searcher->local_bytes();
     result.bytes_per_triangle = bytes_per_triangle_of(result);
     if (query.ask != query_kind::count) result.digest = record.digest();

@@ -77,7 +77,7 @@ struct frames_result {
 
 /// The pairs of triangles that a query of one mesh with itself reports.
 enum class self_pairs {
-    intersecting,  ///< those with more in common than shared corners and edges (`aabb::self_intersection`)
+    intersecting,  ///< those with more in common than shared corners and the edge between two
     all,           ///< all that share a point, with those that share a vertex counted separately
     no_adjacent    ///< those that share a point but no vertex
 };
@@ -101,7 +101,8 @@ struct mesh_result {
     std::vector<std::uint32_t> triangles;     ///< their number, by mesh
     std::vector<std::uint64_t> counts;        ///< by pose; of `self_pairs::all`, those without a common vertex
     std::optional<std::uint64_t> neighbours;  ///< within one mesh, pairs that share a vertex and are not in `counts`
-    std::optional<std::uint64_t> degenerate;  ///< within one mesh: triangles without area
+    std::optional<std::uint64_t>
+        degenerate;  ///< within one mesh, unless any one pair is asked for: triangles without area
     std::vector<std::optional<intersecting_pair>> first;  ///< by pose, if the query asks for any one pair
     std::optional<std::string> digest;                    ///< of all reported pairs; empty if they are only counted
     double build_ms = 0;

@@ -69,8 +69,9 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
         rows_ = read_rows(table);
         for (const row& r : rows_) keys_.insert(r.key());
         if (!rows_.empty() && existing == existing_results::reject)
-            throw aabb::input_error("results are already in " + folder_.string() +
-                                    "; --resume continues them; --out DIR, or another name in the config, puts new ones elsewhere");
+            throw aabb::input_error(
+                "results are already in " + folder_.string() +
+                "; --resume continues them; --out DIR, or another name in the config, puts new ones elsewhere");
         drop_torn_row(table);
     }
     if (!rows_.empty()) {

@@ -19,11 +19,11 @@ public:
                     walk_goal /*goal*/, Emit emit) {
         begin();
         push_if_overlapping(a, b, to_a, {a.root(), b.root(), to_a(b.bounds())}, new_node::both);
-        test_pending(test, a, b, to_a, emit);
+        static_cast<void>(test_pending(test, a, b, to_a, emit));
     }
 
-    /// Passes each pair of intersecting triangles of one mesh to `emit`, in either order, by testing the two children
-    /// of each node against each other.
+    /// Passes each pair of intersecting triangles of one mesh to `emit`, in either order, until it returns true, by
+    /// testing the two children of each node against each other.
     template <class Emit>
     void find_self_pairs(const Triangle& test, const model<Tree>& m, Emit emit) {
         constexpr same_frame identity;
@@ -37,7 +37,7 @@ public:
             nodes_.push_back(left);
             nodes_.push_back(right);
             push_if_overlapping(m, m, identity, {left, right, m.tree().bounds(right)}, new_node::both);
-            test_pending(test, m, m, identity, emit);
+            if (test_pending(test, m, m, identity, emit)) return;
         }
         assert(stack_.empty());
     }
@@ -73,8 +73,10 @@ private:
 
     /// Opens the pending node pairs, the longer node first, and tests the triangles of two leaves, until no pair is
     /// pending or `emit` returns true.
+    /// @returns whether it did
     template <class Frame, class Emit>
-    void test_pending(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a, Emit& emit) {
+    [[nodiscard]] bool test_pending(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a,
+                                    Emit& emit) {
         const Tree& tree_a = a.tree();
         const Tree& tree_b = b.tree();
         while (!stack_.empty()) {
@@ -86,7 +88,7 @@ private:
             if (a_is_leaf && b_is_leaf) {
                 if (!triangles_intersect(test, a, b, to_a, p)) continue;
                 const index_pair triangles{tree_a.triangle(p.a), tree_b.triangle(p.b)};
-                if (emit(std::span<const index_pair>(&triangles, 1))) return;
+                if (emit(std::span<const index_pair>(&triangles, 1))) return true;
             } else if (b_is_leaf || (!a_is_leaf && longest_extent(tree_a.bounds(p.a)) >= longest_extent(p.b_bounds))) {
                 const auto [left, right] = tree_a.children(p.a, a.triangles());
                 push_if_overlapping(a, b, to_a, {right, p.b, p.b_bounds}, new_node::a);
@@ -97,6 +99,7 @@ private:
                 push_if_overlapping(a, b, to_a, {p.a, left, bounds_in_a(b, to_a, left, p.b_bounds)}, new_node::b);
             }
         }
+        return false;
     }
 
     template <class Frame>

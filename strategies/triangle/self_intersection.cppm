@@ -3,6 +3,8 @@ export module aabb.triangle.self_intersection;
 import aabb.std;
 import aabb.triangle.orientation_test;
 
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
+
 export namespace aabb {
 
 /// Self-intersection of a mesh as meshing means it: two triangles intersect if they have more in common than the

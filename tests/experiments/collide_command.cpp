@@ -138,7 +138,9 @@ TEST_CASE("collide --self=all reports neighbours separately") {
     // Two tetrahedra intersect; the neighbours have no more in common than what they share.
     const auto beyond = json_of({"collide", mesh, "--self", "--json", "--tree", tree});
     REQUIRE(beyond["pairs"] == summary["pairs"]);
+    REQUIRE(beyond["pairs"] > 1);
     REQUIRE(!beyond.contains("neighbours"));
+    REQUIRE(json_of({"collide", mesh, "--self", "--first", "--json", "--tree", tree})["pairs"] == 1);
 }
 
 TEST_CASE("collide --self finds triangles that share more than corners and edges") {
@@ -164,7 +166,7 @@ TEST_CASE("collide --self finds triangles that share more than corners and edges
         CHECK(holds(any, intersects ? "triangles 0 and 1 intersect\n" : "0 intersecting pairs of triangles"));
         CHECK(json_of({"collide", mesh, "--self", "--count", "--json"})["pairs"] == summary["pairs"]);
     }
-    // The third triangle is a segment that passes through the first.
+    // The second triangle is a segment that passes through the first.
     const std::string spike =
         folder.write("spike.off", "OFF\n5 2 0\n0 0 0\n4 0 0\n2 3 0\n2 1 1\n2 1 -1\n3 0 1 2\n3 3 4 4\n");
     const std::string text = run_program({"collide", spike, "--self"}).out;

@@ -93,7 +93,7 @@ TEST_CASE("collide rejects invalid options and leaves no file behind") {
             {{"--self=no_adjacent"}, "did you mean 'no-adjacent'?"},
             {{"--self", "--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0"}, "which no pose changes"},
             {{"--self", "--poses", "poses.txt"}, "which no pose changes"},
-            {{"--self=all", "--first"}, "--first stops at a self-intersection; omit the value of --self"},
+            {{"--self=all", "--first"}, "--first works with plain --self only"},
             {{a, "--first", "--count"}, "--first and --count exclude each other"},
             {{a, "--count", "--out", folder / "x.csv"}, "--count stores no pairs"},
             {{a, "--geometry"}, "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair"},
