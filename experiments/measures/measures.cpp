@@ -197,7 +197,7 @@ table measures_table(const scene_measures& m) {
             add("flat axis", std::string(1, "xyz"[k]));
     add("size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
                           ", the greatest edge over the median greatest edge of a box");
-    add("density", fmt::format("{:.3g} overlapping pairs per object", m.pairs_per_object));
+    add("pairs", fmt::format("{:.3g} overlapping pairs per object", m.pairs_per_object));
     add("clustering", fmt::format("{:.3g} times the pairs of uniformly distributed boxes", m.clustering));
     if (!m.motion) return measured;
     const double unit = m.boxes.typical_extent > 0 ? m.boxes.typical_extent : 1;
@@ -205,7 +205,7 @@ table measures_table(const scene_measures& m) {
     if (m.boxes.typical_extent > 0)
         add("unit", fmt::format("typical extent: {:.3g}, the mean edge without outliers", m.boxes.typical_extent));
     add("displacement", fmt::format("{:.3g} {} per frame, the mean", m.motion->displacement / unit, unit_name));
-    add("relative", fmt::format("{:.3g} {} per frame: half the displacements' range",
+    add("relative", fmt::format("{:.3g} {} per frame: half of max - min on an axis",
                                 m.motion->relative_displacement / unit, unit_name));
     add("inversions", fmt::format("{:.3g} per object per frame, on the {} axis", m.motion->inversions,
                                   "xyz"[std::ranges::min_element(o) - o.begin()]));

@@ -95,7 +95,11 @@ std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
     if (factor == "axes") return " on " + values + (values == "1" ? " axis" : " axes");
     if (factor == "inversions") return " at " + values + " inversions per element";
     if (factor == "displacement") return " at " + values + (values == "1" ? " extent" : " extents") + " per frame";
-    return " at a " + (factor == "ratio" ? "size ratio" : factor) + " of " + values;
+    return " at a " +
+           (factor == "ratio"     ? "size ratio"
+            : factor == "density" ? "volume fraction"
+                                  : factor) +
+           " of " + values;
 }
 
 /// Reports ordered endpoints by stretches: "1.30 times as long with 100 objects, 2.0 times as fast with 1,000 or more".
