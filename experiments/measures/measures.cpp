@@ -205,7 +205,7 @@ table measures_table(const scene_measures& m) {
     if (m.boxes.typical_extent > 0)
         add("unit", fmt::format("typical extent: {:.3g}, the mean edge without outliers", m.boxes.typical_extent));
     add("displacement", fmt::format("{:.3g} {} per frame, the mean", m.motion->displacement / unit, unit_name));
-    add("relative", fmt::format("{:.3g} {} per frame: half of max - min on an axis",
+    add("relative", fmt::format("{:.3g} {} per frame at most, less common motion",
                                 m.motion->relative_displacement / unit, unit_name));
     add("inversions", fmt::format("{:.3g} per object per frame, on the {} axis", m.motion->inversions,
                                   "xyz"[std::ranges::min_element(o) - o.begin()]));
