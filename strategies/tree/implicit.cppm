@@ -181,7 +181,7 @@ public:
 
 private:
     static constexpr std::size_t read_beyond = 8;
-    static constexpr std::size_t triangles_per_share = 8 * 512;  // as many as repay another thread
+    static constexpr std::size_t triangles_per_share = 8 * 512;  // fewer are not worth another thread
     static constexpr std::size_t boxes_per_share = wide_node::most_children * 256;
     static constexpr std::uint32_t leaf_height = 3;
     static constexpr std::size_t most_levels = 10;

@@ -97,7 +97,7 @@ private:
     static constexpr std::size_t read_beyond = 64;
     static constexpr std::size_t most_bytes = 0xffffffff;
     static constexpr std::size_t ahead = 4;                // leaves whose triangles are prefetched
-    static constexpr std::size_t leaves_per_share = 1024;  // as many as repay another thread
+    static constexpr std::size_t leaves_per_share = 1024;  // fewer are not worth another thread
 
     /// Writes the list of one leaf: one byte for the number of vertices, 0 if there are more than sixteen; for each
     /// corner, the positions of eight triangles in the list, in 4 bits each; and the indices of the vertices.

@@ -58,7 +58,7 @@ TEST_CASE("global search allocates nothing in steady state") {
 TEST_CASE("local detection allocates nothing in steady state") {
     for (const aabb::composition& composition : local_compositions()) {
         INFO(text_of_local(composition));
-        // Fronts are kept only for meshes with so many leaves.
+        // Fronts are kept only for meshes with at least this many leaves.
         mesh m = ripples(keeps_fronts(composition) ? 12 : 6);
         const auto stage = local_of(composition, instrumentation::none);
         const auto model = stage->add_model(m);

@@ -173,7 +173,7 @@ void require_exact_search(Make make, bool frees_all) {
 
 /// Squares along a side of a sheet.
 constexpr std::uint32_t few_squares = 3;
-constexpr std::uint32_t squares_for_fronts = 12;  // which are kept only for so many leaves
+constexpr std::uint32_t squares_for_fronts = 12;  // which need this many to have enough leaves
 
 /// A wavy sheet, which intersects its moved copy.
 mesh sheet(float height, std::uint32_t squares = few_squares) {

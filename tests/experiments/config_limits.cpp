@@ -106,7 +106,7 @@ TEST_CASE("Names are checked before lists are expanded and scenes generated") {
           "test.toml:8: unknown tree 'leafles'; did you mean 'leafless'?");
     CHECK(rejection_of(head + scene + "[compose]\nsort = { name = [\"std\", \"shel\"], a = [1, 2] }\n") ==
           "test.toml:6: unknown sort 'shel'; did you mean 'shell'?");
-    // A scene with so many objects does not fit into memory.
+    // A scene with this many objects does not fit into memory.
     CHECK(rejection_of(head + "[[scene]]\nkind = [\"brownian\", \"stil\"]\nobjects = 4000000000\n") ==
           "test.toml:3: unknown scene 'stil'; did you mean 'still'?");
 }

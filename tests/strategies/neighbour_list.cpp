@@ -303,7 +303,7 @@ TEST_CASE("the margin is a number of at least 0, or auto") {
 TEST_CASE("boxes that came to rest are not tested again") {
     const auto listed = list_stage(1000);
     std::vector<box> boxes = row(1000, 0.8F);
-    // The number of frames that take tests, with so many of the boxes moving along y.
+    // The number of frames with tests if this number of boxes moves along y.
     const auto tested_frames = [&](int frames, std::size_t moving) {
         int tested = 0;
         for (int frame = 0; frame < frames; ++frame) {

@@ -71,3 +71,24 @@ TEST_CASE("self-intersection of neighbours is decided where doubles cannot") {
             CHECK(self_intersection::intersects(face, at_corner) == exceeds_shared_corners(face, at_corner));
         }
 }
+
+TEST_CASE("self-intersection of neighbours in one plane is found where doubles round their volume") {
+    // Volumes of integers below 2^22 have up to 66 bits. In a skew plane they are 0, but not if they are rounded.
+    std::mt19937 g(54);
+    std::uniform_int_distribution<int> coordinate(-(1 << 21), 1 << 21);
+    int missed = 0;
+    for (int i = 0; i < 2'000; ++i) {
+        const auto corner = [&] {
+            return aabb::vec3f{static_cast<float>(coordinate(g)), static_cast<float>(coordinate(g)),
+                               static_cast<float>(coordinate(g))};
+        };
+        const aabb::vec3f p = corner();
+        const aabb::vec3f q = corner();
+        const triangle3f face{{{0, 0, 0}, p, q}};
+        const triangle3f at_edge{{{0, 0, 0}, p, p + q}};
+        const triangle3f at_corner{{{0, 0, 0}, p + q, p + p + q}};
+        for (const triangle3f& t : {at_edge, at_corner})
+            missed += !self_intersection::intersects(face, t) + !self_intersection::intersects(t, face);
+    }
+    CHECK(missed == 0);
+}
