@@ -53,9 +53,9 @@ double median_of(std::vector<double> values) {
 
 /// The Huber weight of each observation: 1 for usual residuals, smaller for outliers.
 std::vector<double> weights_of(std::span<const timed_work> observations, const Eigen::VectorXd& costs) {
-    constexpr double most_deviations = 1.345;  // standard deviations: 95 % efficient for normal errors
-    constexpr double deviations_per_median = 1.4826;
-    constexpr double least_scale = 1e-9;
+    constexpr double most_deviations = 1.345;         // standard deviations: 95 % efficient for normal errors
+    constexpr double deviations_per_median = 1.4826;  // of absolute normal errors
+    constexpr double least_scale = 1e-9;              // if most residuals are 0
     std::vector<double> residuals;
     for (const timed_work& o : observations) residuals.push_back(std::abs(work_of(o).dot(costs) / median_of(o.ns) - 1));
     const double threshold = most_deviations * std::max(least_scale, deviations_per_median * median_of(residuals));

@@ -37,15 +37,17 @@ void method_options::add_to(const command_parser& command, const std::string& re
     command.footer("aabblab list shows every strategy with its parameters.");
 }
 
-/// What to search with. Compositions that are invalid for every input are rejected here, before any file is read.
+/// Reads the options: what to search with. An engine replaces the last stage, so it excludes strategies of that stage.
+/// Compositions that are invalid for every input are rejected here, before any file is read.
 search_choice method_options::choice(bool geometry) const {
     if (geometry && engine_)
         throw aabb::input_error("--geometry needs a triangle test, so --engine cannot be combined with it");
     const auto is_set = [&](aabb::strategy_kind kind) { return values_[kind].has_value(); };
-    if (engine_ && std::ranges::any_of(kinds_of(stages_.back()), is_set))
-        throw aabb::input_error(fmt::format("--engine replaces {}, so give it {}", option_names(stages_.back()),
+    const aabb::stage replaced_by_engine = stages_.back();
+    if (engine_ && std::ranges::any_of(kinds_of(replaced_by_engine), is_set))
+        throw aabb::input_error(fmt::format("--engine replaces {}, so give it {}", option_names(replaced_by_engine),
                                             stages_.size() == 1 ? "alone" : "without them"));
-    search_choice choice{stages_, {}, engine_, geometry};
+    search_choice choice{stages_, /*named=*/{}, engine_, geometry};
     for (const aabb::stage stage : stages_)
         for (const aabb::strategy_kind kind : kinds_of(stage)) {
             if (!is_set(kind)) continue;
@@ -53,7 +55,7 @@ search_choice method_options::choice(bool geometry) const {
                 throw aabb::input_error(fmt::format("--{} auto: omit the option to have one selected", name_of(kind)));
             choice.named[kind] = aabb::parse_strategy(*values_[kind]);
         }
-    static_cast<void>(method_of(choice, /*traits=*/{}));
+    static_cast<void>(method_of(choice, /*traits=*/{}));  // rejects invalid compositions
     return choice;
 }
 

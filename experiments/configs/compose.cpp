@@ -67,12 +67,12 @@ void add_others(const document& doc, aabb::strategy_kind kind, const std::vector
         }
 }
 
-/// The strategies that a config lists for a kind.
-/// @param value null if the config leaves the kind out
+/// Reads the strategies of a kind: those listed by name, and with others_but all others except those it excludes.
+/// @param value null if the config leaves the kind out; then nullopt, the default, is the only choice
 listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, const node* value) {
-    if (!value) return {{std::nullopt}, {}};
+    if (!value) return {.choices = {std::nullopt}, .others = {}};
     node named = *value;
-    const auto excluded = doc.take_others(named);
+    const auto excluded = doc.take_others(named);  // leaves the names
     const auto require = [kind](const aabb::strategy_choice& choice) {
         if (choice.name == "auto")
             throw aabb::input_error("auto is not a " + std::string(name_of(kind)) + " strategy: omit " +

@@ -43,6 +43,7 @@ aabb::triangle3d triangle_of(const document& doc, const node& table, const std::
     return triangle;
 }
 
+/// Reads a [[case]]: two triangles, whether they intersect as floats, and if that differs, as doubles.
 aabb::triangle_case case_of(const document& doc, const node& table) {
     doc.require_table("case", table);
     doc.require_keys(table, " of [[case]]",

@@ -346,6 +346,7 @@ std::vector<figure> metric_figures(const error_study& study, std::span<const sce
     return figures;
 }
 
+/// A sentence about the Pareto front of each plot in each scene in which its metrics are traded against each other.
 std::vector<std::string> metric_statements(const error_study& study, std::span<const scene_summary> scenes) {
     std::vector<std::string> statements;
     for (const scene_summary& scene : scenes)

@@ -78,13 +78,13 @@ std::string cell_of(const row_list& rows) {
 }
 
 /// One row per scene or class: the first columns summarise its rows, then there is one column per candidate.
-/// @param text the scene or the class of a row
+/// @param key the scene or the class of a row
 template <class Summary>
-table candidate_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* text,
+table candidate_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* key,
                       const std::vector<std::string>& names, Summary summary_cells) {
     table t{std::move(columns), {}};
     for (const std::string& name : names) t.columns.push_back({name});
-    for (const auto& [value, group] : grouped_by(rows, text)) {
+    for (const auto& [value, group] : grouped_by(rows, key)) {
         std::vector<std::string>& cells = t.rows.emplace_back(1, value);
         std::ranges::move(summary_cells(group), std::back_inserter(cells));
         for (const std::string& name : names) cells.push_back(cell_of(rows_with(group, &extreme_row::candidate, name)));
@@ -100,14 +100,14 @@ std::vector<extreme_row> filtered(std::span<const extreme_row> rows, Wanted want
 }
 
 /// The errors of triangle tests; scenes or classes without errors are omitted.
-/// @param text the scene or the class of a row, by which they are grouped
-table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* text) {
+/// @param key the scene or the class of a row, by which they are grouped
+table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* key) {
     const auto tests = filtered(rows, [](const extreme_row& row) { return row.role == candidate_role::triangle_test; });
     std::set<std::string> wrong;
     for (const extreme_row& row : tests)
-        if (row.result.outcome == aabb::verdict::wrong) wrong.insert(row.*text);
-    const auto shown = filtered(tests, [&](const extreme_row& row) { return wrong.contains(row.*text); });
-    return candidate_table({{title, /*is_number=*/false}}, shown, text,
+        if (row.result.outcome == aabb::verdict::wrong) wrong.insert(row.*key);
+    const auto shown = filtered(tests, [&](const extreme_row& row) { return wrong.contains(row.*key); });
+    return candidate_table({{title, /*is_number=*/false}}, shown, key,
                            candidates_in(tests, candidate_role::triangle_test),
                            /*summary_cells=*/[](const row_list&) { return std::vector<std::string>(); });
 }

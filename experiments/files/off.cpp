@@ -15,24 +15,24 @@ enum class arrangement : std::uint8_t {
 };
 
 /// Reads "OFF" with any prefix of ST, C, N: texture coordinates, colours and normals follow positions and are skipped.
-/// @returns the number of values to skip per vertex
+/// @returns how many numbers of these a vertex has
 std::size_t read_keyword(text_scanner& in) {
     if (!in.next_line()) in.fail_at_end("before the keyword OFF");
     const std::string_view keyword = in.word();
     const std::size_t off = keyword.find("OFF");
     if (off == std::string_view::npos) in.fail_expected("the keyword OFF", keyword);
     std::string_view prefix = keyword.substr(0, off);
-    std::size_t skipped_values = 0;
-    for (const auto& [mark, values] : {std::pair<std::string_view, std::size_t>{"ST", 2}, {"C", 4}, {"N", 3}})
+    std::size_t attributes = 0;
+    for (const auto& [mark, numbers] : {std::pair<std::string_view, std::size_t>{"ST", 2}, {"C", 4}, {"N", 3}})
         if (prefix.starts_with(mark)) {
             prefix.remove_prefix(mark.size());
-            skipped_values += values;
+            attributes += numbers;
         }
     if (prefix == "4" || prefix == "n" || prefix == "4n") in.fail("only OFF in three dimensions is read");
     if (!prefix.empty()) in.fail_expected("the keyword OFF", keyword);
     // Some writers omit the blank between the keyword and the first count.
     in.back_to(keyword.substr(off + 3));
-    return skipped_values;
+    return attributes;
 }
 
 class off_reader {
@@ -40,9 +40,11 @@ public:
     off_reader(const file_text& file, arrangement tried)
         : in_(file, /*comment=*/'#'), name_(file.name), arrangement_(tried), mesh_(file.name) {}
 
-    /// Reads the whole file; throws an input_error if its numbers are not arranged in lines as assumed.
+    /// Reads the whole file as if its line ends had the meaning of `arrangement_`: they end each vertex and face
+    /// (`lines`), each face (`face_lines`), or nothing (`words`). If the file contradicts that, throws an input_error,
+    /// and the caller tries another meaning.
     [[nodiscard]] loaded_mesh read() {
-        const std::size_t skipped_values = read_keyword(in_);
+        const std::size_t attributes = read_keyword(in_);
         const auto before_counts = [] { return std::string("before the numbers of vertices and faces"); };
         advance_to_word(before_counts);
         const auto vertices = in_.integer<std::uint64_t>("the number of vertices");
@@ -52,7 +54,7 @@ public:
             advance_to_word([] { return std::string("before the number of edges"); });
             static_cast<void>(in_.integer<std::uint64_t>("the number of edges"));
         }
-        for (std::uint64_t v = 0; v < vertices; ++v) read_vertex(v, vertices, skipped_values);
+        for (std::uint64_t v = 0; v < vertices; ++v) read_vertex(v, vertices, attributes);
         if (arrangement_ == arrangement::face_lines && in_.has_word())
             in_.fail_expected("the end of the line after the last vertex", in_.word());
         for (std::uint64_t f = 0; f < faces; ++f) read_face(f, faces);
@@ -73,8 +75,9 @@ private:
         if (!in_.has_word() && !in_.next_line()) in_.fail_at_end(where());
     }
 
-    /// Reads vertex v of `count`, and skips what follows its position: the rest of its line, or values without a line.
-    void read_vertex(std::uint64_t v, std::uint64_t count, std::size_t skipped_values) {
+    /// Reads vertex v of `count`, and skips what follows its position: the rest of its line, or without lines the
+    /// numbers of its attributes (colour, normal, texture coordinates).
+    void read_vertex(std::uint64_t v, std::uint64_t count, std::size_t attributes) {
         const bool has_line = arrangement_ == arrangement::lines;
         const auto where = [&] { return "after " + std::to_string(v) + " of " + std::to_string(count) + " vertices"; };
         if (has_line && !in_.next_line()) in_.fail_at_end(where());
@@ -83,7 +86,7 @@ private:
             if (!has_line) advance_to_word(where);
             p[k] = in_.coordinate(in_.word());
         }
-        for (std::size_t i = 0; !has_line && i < skipped_values; ++i) {
+        for (std::size_t i = 0; !has_line && i < attributes; ++i) {
             advance_to_word(where);
             static_cast<void>(in_.word());
         }

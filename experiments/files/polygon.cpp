@@ -182,7 +182,8 @@ bool polygon_cutter::is_needle(const corner& b) const noexcept {
 }
 
 /// Classifies a corner b that turns left. It is an ear if no edge of the boundary enters its triangle and the boundary
-/// winds around the triangle once. Edges that lie beside the bounding box of the triangle, or above it, are skipped.
+/// winds around the triangle once; the ear is touched if the triangle's boundary has other corners. A ray downwards
+/// counts windings, so edges that lie beside the bounding box of the triangle, or above it, are skipped.
 polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
     const int x = (axis_ + 1) % 3;
     const int y = (axis_ + 2) % 3;
@@ -197,7 +198,7 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
         const std::array<int, 3> sides = {turn(p, q, t0), turn(p, q, t1), turn(p, q, t2)};
         return std::ranges::min(sides) < 0 && std::ranges::max(sides) > 0;
     };
-    // The winding number at a point of the triangle next to t1, on the edge to t0: signed crossings of a ray downwards.
+    // The winding number at a point of the triangle next to t1, on the edge to t0: signed crossings of the ray.
     const bool is_right_of_corner = precedes(t1, t0);
     int winding = 0;
     const auto count_below = [&](const vec3d& p, const vec3d& q) {

@@ -114,8 +114,9 @@ private:
         std::size_t done = 0;
         for (racer& r : running_) {
             bool is_done = run_candidate(r, frames, time_limit(least, margin), seconds_left() - reserved);
-            if (!is_done && is_first_round && !std::isfinite(least) && r.broken_off->end == ending::stopped &&
-                r.frames > 0) {
+            const bool has_too_many_frames = !is_done && is_first_round && !std::isfinite(least) &&
+                                             r.broken_off->end == ending::stopped && r.frames > 0;
+            if (has_too_many_frames) {
                 frames = r.frames;
                 r.seconds = r.broken_off->seconds_of_frames;
                 r.last = std::move(r.broken_off->seen);
@@ -180,7 +181,8 @@ private:
         for (racer& r : running_) r.slowdown = r.last ? total_ms(r) / least : 0;
     }
 
-    /// Repeats the runs of candidates that are slightly behind, since the first run may have been disturbed.
+    /// Repeats the runs of candidates that are slightly behind, since the first run may have been disturbed. Half of
+    /// the time is kept for the final.
     void rerun_close_candidates(std::size_t frames, double margin) {
         constexpr double far_behind = 2;
         for (racer& r : running_) {

@@ -77,7 +77,8 @@ ordered_name split_name(std::string_view name, const std::filesystem::path& fold
     if (is_there(name, folder)) return {name, {}};
     for (std::size_t begin = name.find(key); begin != std::string_view::npos; begin = name.find(key, begin + 1)) {
         const std::string_view before = name.substr(0, begin);
-        if (!before.ends_with(':') && !(before.ends_with(',') && before.find(':') != std::string_view::npos)) continue;
+        const bool is_parameter = before.ends_with(':') || (before.ends_with(',') && before.find(':') < before.size());
+        if (!is_parameter) continue;
         const std::string_view build = name.substr(begin + key.size());
         if (build.find_first_of(":,") != std::string_view::npos)
             throw aabb::input_error(

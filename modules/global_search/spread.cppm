@@ -26,10 +26,10 @@ struct spread {
         if (!objects.contains(id)) continue;
         const box& b = boxes[id];
         for (int k = 0; k < 3; ++k) {
-            const double centre = double{b.min[k]} + double{b.max[k]};
-            if (result.objects == 0) first[k] = centre;
-            sum[k] += centre - first[k];
-            squares[k] += (centre - first[k]) * (centre - first[k]);
+            const double doubled_centre = double{b.min[k]} + double{b.max[k]};
+            if (result.objects == 0) first[k] = doubled_centre;
+            sum[k] += doubled_centre - first[k];
+            squares[k] += (doubled_centre - first[k]) * (doubled_centre - first[k]);
             result.extent[k] += double{b.max[k]} - double{b.min[k]};
         }
         ++result.objects;

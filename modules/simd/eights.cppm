@@ -11,7 +11,7 @@ using sixteen_floats = float __attribute__((vector_size(64)));
 using eight_doubles = double __attribute__((vector_size(64)));
 using eight_words = std::uint32_t __attribute__((vector_size(32)));
 using eight_bytes = std::uint8_t __attribute__((vector_size(8)));
-using sixteen_halves = std::int16_t __attribute__((vector_size(32)));
+using sixteen_i16 = std::int16_t __attribute__((vector_size(32)));
 
 template <class Vector, class Number>
 [[nodiscard, gnu::always_inline]] inline Vector load_eight(const Number* from) noexcept {
@@ -52,7 +52,7 @@ template <class Flags>
 }
 
 /// The same for sixteen lanes of 16 bits.
-[[nodiscard, gnu::always_inline]] inline std::uint32_t bits_of_sixteen(sixteen_halves flags) noexcept {
+[[nodiscard, gnu::always_inline]] inline std::uint32_t bits_of_sixteen(sixteen_i16 flags) noexcept {
     using bools = bool __attribute__((ext_vector_type(16)));
     return __builtin_bit_cast(std::uint16_t, __builtin_convertvector(flags, bools));
 }
@@ -73,11 +73,11 @@ template <class Flags>
 }
 
 /// Truncates each lane to an i16, clamped to its range. The conversion is monotone.
-[[nodiscard, gnu::always_inline]] inline sixteen_halves whole_halves(sixteen_floats v) noexcept {
+[[nodiscard, gnu::always_inline]] inline sixteen_i16 whole_i16(sixteen_floats v) noexcept {
     using sixteen_ints = std::int32_t __attribute__((vector_size(64)));
     const sixteen_floats most = sixteen_floats{} + 32767;
     const sixteen_floats above = v > -most ? v : -most;
-    return __builtin_convertvector(__builtin_convertvector(above < most ? above : most, sixteen_ints), sixteen_halves);
+    return __builtin_convertvector(__builtin_convertvector(above < most ? above : most, sixteen_ints), sixteen_i16);
 }
 
 }  // namespace aabb::simd

@@ -186,41 +186,41 @@ private:
     using eight_floats = simd::eight_floats;
     static constexpr std::size_t width = 8;
     static constexpr std::size_t lanes = 16;    // of the longest vector
-    static constexpr float half_range = 32500;  // of 16-bit integers
+    static constexpr float half_range = 32500;  // of i16, less a margin for rounding
     using row = std::array<float, most>;
 
-    /// Quantises the centres to 16 bits between the least and the greatest, so that one vector compares twice as many.
+    /// Quantises the centres on an axis to i16, the range from the least to the greatest: a vector of these compares
+    /// twice as many as one of floats. If a float cannot hold the scale, as for equal centres, all become equal.
     inline void quantize_centres(std::size_t axis, std::size_t vectors) noexcept {
         std::array<simd::sixteen_floats, most / lanes> centre;
         simd::sixteen_floats least = simd::sixteen_floats{} + std::numeric_limits<float>::infinity();
-        simd::sixteen_floats most_negated = least;
+        simd::sixteen_floats negated_greatest = least;
         for (std::size_t v = 0; v < vectors; ++v) {
-            simd::sixteen_floats lower;
-            simd::sixteen_floats negated_upper;
+            simd::sixteen_floats lower, negated_upper;
             std::memcpy(&lower, &lower_[axis][v * lanes], sizeof lower);
             std::memcpy(&negated_upper, &negated_upper_[axis][v * lanes], sizeof negated_upper);
             centre[v] = 0.5F * lower - 0.5F * negated_upper;
             least = centre[v] < least ? centre[v] : least;
-            most_negated = -centre[v] < most_negated ? -centre[v] : most_negated;
+            negated_greatest = -centre[v] < negated_greatest ? -centre[v] : negated_greatest;
         }
         const float low = simd::least(least);
-        const float steps = 2 * half_range / (-simd::least(most_negated) - low);
-        const bool differ = steps > 0 && steps < std::numeric_limits<float>::max();
+        const float scale = 2 * half_range / (-simd::least(negated_greatest) - low);
+        const bool is_finite = scale > 0 && scale < std::numeric_limits<float>::max();
         for (std::size_t v = 0; v < vectors; ++v) {
-            const simd::sixteen_halves numbers =
-                differ ? simd::whole_halves((centre[v] - low) * steps - half_range) : simd::sixteen_halves{};
-            std::memcpy(&centre_[axis][v * lanes], &numbers, sizeof numbers);
+            const simd::sixteen_i16 codes =
+                is_finite ? simd::whole_i16((centre[v] - low) * scale - half_range) : simd::sixteen_i16{};
+            std::memcpy(&centre_[axis][v * lanes], &codes, sizeof codes);
         }
     }
 
-    /// Counts the items before each, which moves none. `Vectors`, enough for all, is a constant to keep them in
+    /// Counts the items before each, which moves none. `Vectors`, enough for all, is a constant so that they stay in
     /// registers.
     template <std::size_t Vectors>
     [[nodiscard]] inline std::uint64_t mask_by_vectors(std::int16_t number, std::size_t axis) const noexcept {
         if constexpr (Vectors * lanes < most)
             if (count_ > Vectors * lanes) return mask_by_vectors<2 * Vectors>(number, axis);
-        std::array<simd::sixteen_halves, Vectors> centre;
-        std::array<simd::sixteen_halves, Vectors> before{};
+        std::array<simd::sixteen_i16, Vectors> centre;
+        std::array<simd::sixteen_i16, Vectors> before{};
         std::memcpy(centre.data(), centre_[axis].data(), sizeof centre);
         for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t v = 0; v < Vectors; ++v) before[v] -= centre_[axis][i] < centre[v];

@@ -152,8 +152,8 @@ private:
         return copies_.size() <= most_copies;
     }
 
-    /// Turns counts into start indices and pads each column to a whole number of vectors.
-    /// @returns the number of entries, including padding
+    /// Places the columns one after another: turns the counts of their buckets into start indices, and pads each column
+    /// to a whole number of vectors. @returns the number of entries, including padding
     std::uint32_t allocate_columns() {
         const std::uint32_t columns = plan_.columns();
         const std::size_t most = block_.boxes.size() + copies_.size() + std::size_t{columns} * (width - 1);
@@ -167,8 +167,8 @@ private:
         const column_entry padding{~std::uint32_t{0}, 0, columns << bucket_bits_, 0};
         std::uint32_t next = 0;
         for (std::uint32_t c = 0; c < columns; ++c) {
-            std::uint32_t* const ends = &ends_[c << bucket_bits_];
-            next = buckets >= width ? bucket_starts(ends, buckets, next) : std::exchange(*ends, next) + next;
+            std::uint32_t* const counts = &ends_[c << bucket_bits_];  // of one bucket, or of at least a vector
+            next = buckets >= width ? bucket_starts(counts, buckets, next) : std::exchange(*counts, next) + next;
             while (next % width != 0) entries_[next++] = padding;
         }
         ends_[columns << bucket_bits_] = 0;  // padding ends before every entry, so it overlaps none

@@ -295,17 +295,18 @@ private:
         return bounds;
     }
 
-    /// Whether, on any axis, the extent of the scene has grown by half or shrunk by a third since it was planned for,
-    /// or its centre has moved by half of the extent. Short axes count as a 64th of the longest one.
+    /// Whether a plan no longer suits the scene: on any axis, the extent has grown by half or shrunk by a third since,
+    /// or the centre has moved by half of the extent. Short axes count as a 64th of the longest one, as any motion
+    /// would be large relative to a flat scene.
     [[nodiscard]] static bool bounds_have_changed(const box& current, const box& planned) noexcept {
         const auto width_of = [](const box& b, int k) { return double{b.max[k]} - double{b.min[k]}; };
         const double longest = width_of(planned, longest_axis(planned));
         for (int k = 0; k < 3; ++k) {
             const double width = std::max(width_of(planned, k), longest / 64);
             const double change = width_of(current, k) - width_of(planned, k);
-            const double displacement =
+            const double doubled_displacement =
                 double{current.min[k]} - double{planned.min[k]} + double{current.max[k]} - double{planned.max[k]};
-            if (change > width / 2 || change < -width / 3 || std::abs(displacement) > width) return true;
+            if (change > width / 2 || change < -width / 3 || std::abs(doubled_displacement) > width) return true;
         }
         return false;
     }

@@ -48,22 +48,22 @@ public:
     axial_cut_partition() = default;
     explicit axial_cut_partition(const config& c) : config_(c) {}
 
-    /// Chooses the axes with hysteresis, since a new list is sorted from scratch: a cut axis is replaced only if the
-    /// variance on another is 50% greater, and their number changes only if that costs 10% less. Axes without variance
-    /// are not cut.
+    /// Chooses the axes with hysteresis, since similar axes would replace each other as boxes move, and a new list is
+    /// sorted from scratch: a cut axis is replaced only if the variance on another is 50% greater, and their number
+    /// changes only if that costs 10% less. Axes without variance are not cut.
     axis_set axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
         const spread along = spread_of(boxes, objects);
         const std::array<int, 3> order = axes_by_variance(along, swept);
         const bool may_leave_out = !config_.axes && !config_.segments;
         candidate_cut best{.cut = 0, .segments = 1, .cost = may_leave_out ? cost_without_cuts(along, swept) : never};
-        if (cut_ == 0) best.cost *= preference;
+        if (cut_ == 0) best.cost *= cost_bonus;
         axis_set cut = 0;
         for (std::uint32_t n = 1; n <= config_.axes.value_or(3); ++n) {
             const int k = order[n - 1];
             if (along.variance[k] > 0) cut |= axis_set{1} << k;
             if (n < config_.axes.value_or(1) || cut == 0) continue;
             candidate_cut candidate = cheapest_cut(along, cut, swept);
-            if (cut == cut_) candidate.cost *= preference;
+            if (cut == cut_) candidate.cost *= cost_bonus;
             if (candidate.cost < best.cost) best = candidate;
         }
         wanted_ = best.segments;
@@ -94,6 +94,7 @@ public:
         return segments_on(0) * segments_on(1) * segments_on(2);
     }
 
+    /// The wanted and the actual number of segments over all cut axes; equal ends and the limit make fewer.
     [[nodiscard]] segment_counts segments() const noexcept {
         segment_counts counts{0, 0};
         for (std::size_t k = 0; k < 3; ++k)
@@ -190,7 +191,7 @@ private:
         std::array<int, 3> order{0, 1, 2};
         const auto varies = [&](int k) { return along.variance[k] > 0; };
         const auto is_last = [&](int k) { return swept == axis_set{1} << k; };
-        const auto weight = [&](int k) { return along.variance[k] * (has_axis(cut_, index(k)) ? 1.5 : 1.0); };
+        const auto weight = [&](int k) { return along.variance[k] * (has_axis(cut_, index(k)) ? variance_bonus : 1); };
         std::ranges::sort(order, [&](int k, int l) {
             if (varies(k) != varies(l)) return varies(k);
             if (is_last(k) != is_last(l)) return is_last(l);
@@ -205,7 +206,7 @@ private:
         double cost;             // per frame, in nanoseconds
     };
     static constexpr double never = std::numeric_limits<double>::infinity();
-    static constexpr double preference = 0.9;
+    static constexpr double cost_bonus = 0.9, variance_bonus = 1.5;  // factors for what is cut already
 
     /// The extent of a mean box relative to that of the scene; a uniform distribution is sqrt(12) deviations wide.
     [[nodiscard]] static vec3d shares_of(const spread& along) {
@@ -245,9 +246,7 @@ private:
         const cost_model& ns = machine_costs();
         const double most = config_.segments.value_or(65'535);
         for (double s = config_.segments.value_or(1); s <= most; s = std::ceil(s * 1.1)) {
-            double subsets = 1;
-            double copies = objects;
-            double swept_share = 1;
+            double subsets = 1, copies = objects, swept_share = 1;
             for (int k = 0; k < 3; ++k) {
                 const bool is_cut = has_axis(cut, index(k));
                 if (is_cut) {

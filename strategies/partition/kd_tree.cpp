@@ -203,8 +203,9 @@ void kd_tree_partition::build_subtree(std::span<const box> boxes, std::size_t fi
     ++leaves_;
 }
 
-/// Pushes the boxes right of a plane, then those left of it, onto the stack of ids; `counts` are left, right.
-/// @returns false if that makes too many copies, or one side has all boxes
+/// Splits the `count` boxes from `first` at a plane: pushes those right of it, then those left of it, onto the stack of
+/// ids. Boxes on the plane are copied to both sides. `counts` are left, right.
+/// @returns false, with the stack as before, if one side has all boxes or the copies are too many
 bool kd_tree_partition::divide(std::span<const box> boxes, std::size_t first, std::size_t count, const split& at,
                                std::array<std::size_t, 2>& counts) {
     const std::size_t end = first + count;
@@ -221,10 +222,10 @@ bool kd_tree_partition::divide(std::span<const box> boxes, std::size_t first, st
     }
     counts = {ids_.size() - left, right - end};
     const std::uint64_t copies = counts[0] + counts[1] - count;
-    const bool splits = counts[0] < count && counts[1] < count &&
-                        extra_copies_ + copies <= (most_copies - 1) * present_.size() &&
-                        (!config_.leaf || 2 * copies <= count);
-    if (!splits) {
+    const bool separates = counts[0] < count && counts[1] < count;
+    // If the leaf size is configured, no cost has been compared, so a plane through most boxes is rejected here.
+    const bool is_worth_it = !config_.leaf || 2 * copies <= count;
+    if (!separates || !is_worth_it || extra_copies_ + copies > (most_copies - 1) * present_.size()) {
         ids_.resize(end);
         return false;
     }

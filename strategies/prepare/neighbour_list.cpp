@@ -181,7 +181,8 @@ private:
                              .in_new_memory = grown_.capacity() == 0};
     }
 
-    /// Measures how far boxes have moved since they were kept, and what that means for the kept pairs.
+    /// Measures how far boxes have moved since they were kept, unless the result depends on less, and returns what that
+    /// means for the kept pairs.
     [[nodiscard]] observation observe_motion(std::span<const box> boxes, bool any_arrivals) {
         if (state_ == state::nothing) return observation::changed;
         if (state_ == state::searching) return observe_sample(boxes);
@@ -193,11 +194,12 @@ private:
         ++age_;
         // While watching no result depends on the motion, so it is measured at power-of-two ages only.
         if (state_ == state::watching && !std::has_single_bit(age_)) return observation::complete;
-        const bool is_due = config_.every > 0 && age_ >= config_.every;
-        if (config_.every > 0 && config_.margin) return is_due ? observation::changed : observation::complete;
+        const bool has_fixed_age = config_.every > 0;
+        const observation at_fixed_age = age_ >= config_.every ? observation::changed : observation::complete;
+        if (has_fixed_age && config_.margin) return at_fixed_age;
         const relative_motion before = std::exchange(moved_, motion_between(kept_, boxes, objects_));
         estimate_.law.observe(age_, moved_.margin);
-        if (config_.every > 0) return is_due ? observation::changed : observation::complete;
+        if (has_fixed_age) return at_fixed_age;
         if (state_ != state::listing || moved_.margin > margin_) return observation::changed;
         if (!is_adaptive()) return observation::complete;
         if (age_ == age_when_made_ + 1 && !is_list_worth_it(objects_.size(), estimate_.pairs, list_.size())) {

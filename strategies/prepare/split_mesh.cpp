@@ -58,7 +58,8 @@ public:
     split_mesh_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
         : search_(std::move(search)), size_(size), counted_(counted) {}
 
-    /// Divides meshes longer than `size_` mean extents of the objects into parts, by the centroids of their triangles.
+    /// Divides meshes longer than `size_` mean extents of the objects into parts, by the centroids of their triangles,
+    /// since the box of a long object overlaps many others. Returns null if no mesh is so long.
     [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) override {
         std::vector<box> bounds;
         for (const mesh& m : scene.meshes) {
@@ -68,10 +69,10 @@ public:
         knows_meshes_ = true;
         const std::size_t objects = scene.mesh_of.size();
         if (objects == 0) return nullptr;
-        double extents = 0;
+        double sum_of_extents = 0;
         for (const std::uint32_t m : scene.mesh_of)
-            for (int k = 0; k < 3; ++k) extents += extent_of(bounds[m], k);
-        const double longest = size_ * extents / (3 * static_cast<double>(objects));
+            for (int k = 0; k < 3; ++k) sum_of_extents += extent_of(bounds[m], k);
+        const double longest = size_ * sum_of_extents / (3 * static_cast<double>(objects));
         mesh_division division;
         for (std::size_t m = 0; m < scene.meshes.size(); ++m)
             division.push_back(parts_of(scene.meshes[m], bounds[m], longest));

@@ -142,11 +142,11 @@ private:
         return stay;
     }
 
-    /// Tests the entries of the vector against each other.
+    /// Tests the entries of the vector against each other: each against the later ones that begin before it ends.
     void test_within(const column_block& block, const vector_of_entries& vector, std::uint32_t number,
                      std::size_t first) noexcept {
-        const simd::words after = simd::broadcast(~std::uint32_t{1}) << simd::places();
-        const simd::words lanes = simd::lanes_below(vector.ends - static_cast<std::uint32_t>(first)) & after;
+        const simd::words later = simd::broadcast(~std::uint32_t{1}) << simd::places();
+        const simd::words lanes = simd::lanes_below(vector.ends - static_cast<std::uint32_t>(first)) & later;
         lane_overlaps met{};
 #pragma clang loop unroll(full)
         for (std::size_t l = 0; l + 1 < width; ++l)
@@ -178,7 +178,8 @@ private:
         candidate_count_ = 0;
     }
 
-    /// Converts a list to entries, quantized over the bounds of its boxes.
+    /// Converts a sorted list to the entries of one column, quantized over the bounds of its boxes, so that the sweep
+    /// of columns serves lists too.
     template <class Subset, class List>
     void convert_to_entries(const Subset& subset, const List& list) {
         column_plan plan;
@@ -187,7 +188,8 @@ private:
         for (const auto& e : list) bounds = merged(bounds, subset.boxes[e.id]);
         plan.fit(bounds);
         const std::size_t n = (list.size() + width - 1) / width * width;
-        entries_.assign(n, {~std::uint32_t{0}, 0, static_cast<std::uint32_t>(list.size()), 0});
+        const column_entry padding{~std::uint32_t{0}, 0, static_cast<std::uint32_t>(list.size()), 0};  // overlaps none
+        entries_.assign(n, padding);
         list_ends_.assign(list.size() + 1, 0);
         const int u = plan.axis_across(0);
         const int v = plan.axis_across(1);

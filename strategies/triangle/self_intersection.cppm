@@ -40,8 +40,9 @@ public:
         }
     };
 
+    /// Whether the triangles have more in common than the corners that they share and the edge between two of these.
     [[nodiscard]] static bool intersects(const triangle3f& s, const triangle3f& t) noexcept {
-        if (are_clean_neighbours(s, t)) return false;
+        if (are_clean_neighbours(s, t)) return false;  // a fast filter for the most frequent pairs
         const corner_sets corners(s, t);
         if (corners.shared.size == 0) return orientation_test<orientations>::intersects(s, t);
         if (corners.shared.size == 3) return has_area(s);

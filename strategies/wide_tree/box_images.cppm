@@ -20,10 +20,10 @@ public:
         }
     }
 
-    /// Stores the boxes of a node's children in the other frame: computes in double, adds the margin of the motion, and
-    /// rounds to nearest, which is monotone, as for vertices. Planes lie further out than the vertices that the margin
-    /// is for, by a 60th of the node, 2^-22 of the coordinate or the smallest step. The additional rounding errors stay
-    /// within the rest of the margin, or within `least`.
+    /// Stores boxes in the other frame that contain the images of a node's children, as boxes of rotated boxes.
+    /// Rounding to nearest is monotone, so the margin of the motion, which is for vertices, nearly suffices. Planes lie
+    /// further out than the vertices, by a 60th of the node, 2^-22 of the coordinate or the smallest step; the
+    /// additional errors stay within the rest of the margin, or within `least`.
     void store(const wide_node& n, eight_boxes& to) const noexcept {
 #pragma clang fp contract(fast)
         // Centres and half extents are exact: integer or half codes times powers of two.

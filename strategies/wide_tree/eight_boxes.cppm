@@ -99,8 +99,8 @@ public:
     /// The extents of a box around all vertices of both meshes.
     [[nodiscard]] const std::array<float, 3>& edges() const noexcept { return edges_; }
     /// Quantises rows 2 i and 2 i + 1 of boxes.
-    [[nodiscard]] inline simd::sixteen_halves numbers(std::size_t i, simd::sixteen_floats two_rows) const noexcept {
-        return simd::whole_halves(two_rows * scale_[i] - offset_[i]);
+    [[nodiscard]] inline simd::sixteen_i16 numbers(std::size_t i, simd::sixteen_floats two_rows) const noexcept {
+        return simd::whole_i16(two_rows * scale_[i] - offset_[i]);
     }
 
 private:

@@ -110,11 +110,11 @@ TEST_CASE("conversion to 16-bit integers is monotone") {
     constexpr float inf = std::numeric_limits<float>::infinity();
     const simd::sixteen_floats growing{-inf, -1e38F, -32768, -32767, -32766.5F, -2.5F, -1,   -0.5F,
                                        0,    1e-40F, 0.999F, 1,      32766.5F,  32767, 1e9F, inf};
-    const simd::sixteen_halves whole = simd::whole_halves(growing);
+    const simd::sixteen_i16 whole = simd::whole_i16(growing);
     const std::array<int, 16> expected{-32767, -32767, -32767, -32767, -32766, -2,    -1,    0,
                                        0,      0,      0,      1,      32766,  32767, 32767, 32767};
     for (int i = 0; i < 16; ++i) REQUIRE(int{whole[i]} == expected[static_cast<std::size_t>(i)]);
-    CHECK(simd::bits_of_sixteen(whole < simd::sixteen_halves{}) == 0x7fU);
+    CHECK(simd::bits_of_sixteen(whole < simd::sixteen_i16{}) == 0x7fU);
     CHECK(simd::least(-growing) == -inf);
     for (int i = 0; i < 16; ++i) {
         simd::sixteen_floats values{};

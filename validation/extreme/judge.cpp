@@ -111,7 +111,7 @@ void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_
     std::ranges::sort(pairs);
     const pair_comparison difference(exact.self_pairs, pairs);
     record_difference(result, difference, "self_pairs");
-    add_classes(scene, difference, {0, 0}, {}, {}, result);
+    add_classes(scene, difference, /*objects=*/{0, 0}, /*pose_a=*/{}, /*pose_b=*/{}, result);
 }
 
 /// Runs every query of a narrow phase over all frames; of invalid scenes only the search, which must be rejected.

@@ -42,7 +42,7 @@ std::unique_ptr<mesh_scene> same_centroid() {
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1, 0, 0)}, {{}, turned(1, {0, 0, 5})}});
 }
 
-/// Each triangle four times, and once more with permuted corners.
+/// Each triangle four times, and once more with permuted corners: no build can separate these, and all of them count.
 std::unique_ptr<mesh_scene> duplicates() {
     mesh m = cube();
     // One face and a half.

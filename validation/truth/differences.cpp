@@ -80,17 +80,18 @@ bool only_touch(const exact_triangle& s, const exact_triangle& t) {
     return std::ranges::any_of(facet_axes(s, t), [&](const auto& axis) { return gap_along(s, t, axis) == 0; });
 }
 
-/// The distance, or negative penetration depth: the greatest gap over all directions between closest features.
+/// The distance, or negative penetration depth: the greatest gap over all directions that closest features can have,
+/// which are normal to a facet or to two edges, join two corners, or lead from a corner straight to an edge.
 double signed_distance(const triangle3d& s, const triangle3d& t) {
     std::vector<vec3d> axes = facet_axes(s, t);
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
-            const vec3d between = t[j] - s[i];
-            axes.push_back(between);
+            const vec3d between_corners = t[j] - s[i];
+            axes.push_back(between_corners);
             for (const triangle3d* u : {&s, &t})
                 for (int k = 0; k < 3; ++k) {
                     const vec3d edge = (*u)[(k + 1) % 3] - (*u)[k];
-                    axes.push_back(cross(edge, cross(between, edge)));
+                    axes.push_back(cross(edge, cross(between_corners, edge)));
                 }
         }
     double greatest = -std::numeric_limits<double>::infinity();

@@ -33,9 +33,10 @@ void add_seed(const row& r, double share, candidate_summary& summary) {
     const auto tree_bytes = measured("tree_bytes")(r);
     if (tree_bytes.value_or(0) > 0) summary.bytes_per_triangle = std::max(summary.bytes_per_triangle, tree_bytes);
     if (r.box_inflation) add(summary.box_inflation, std::optional(*r.box_inflation * share));
-    const double frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
+    const double counted_frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;  // all but the first
     for (std::size_t i = 0; i < r.counts.size(); ++i)
-        if (r.counts[i]) add(summary.counts[i], std::optional(static_cast<double>(*r.counts[i]) / frames * share));
+        if (r.counts[i])
+            add(summary.counts[i], std::optional(static_cast<double>(*r.counts[i]) / counted_frames * share));
     for (std::size_t i = 0; i < r.bytes.size(); ++i)
         summary.bytes_by_part[i] = std::max(summary.bytes_by_part[i], r.bytes[i]);
 }
@@ -157,7 +158,7 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
             group.scene.candidates.push_back(summary_of(repeats));
             set_ratio(group.scene.candidates.back(), repeats, group.candidates[0]);
         }
-        if (group.scene.seeds.size() > 1) group.scene.digest.clear();
+        if (group.scene.seeds.size() > 1) group.scene.digest.clear();  // each seed has its own
         set_labels(group.scene);
         scenes.push_back(std::move(group.scene));
     }

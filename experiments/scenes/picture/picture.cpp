@@ -23,28 +23,31 @@ constexpr double narrowest = 1.0 / 8;  // ratio of the sides of a panel
 struct view_plane {
     /// Chooses the two axes that the picture shows. Objects fall and pile up along z, so z is omitted only if it is
     /// flat or less than a quarter as wide as both others. If one of the two is much longer, each has its own scale.
+    /// @param sides of the world, 0 on axes on which all boxes are equal
     view_plane(const aabb::box& world, const aabb::vec3d& sides) {
         for (int k = 0; k < 3; ++k) {
             const bool is_empty = world.min[k] > world.max[k];
             least[k] = is_empty ? 0 : double{world.min[k]};
             length[k] = is_empty ? 0 : double{world.max[k]} - least[k];
             if (length[k] > 0) continue;
+            // Scales divide by the length, so an axis without one is shown as a unit.
             least[k] -= 0.5;
             length[k] = 1;
         }
         // A single box is flat on all axes, so its lengths decide.
-        aabb::vec3d weight = sides == aabb::vec3d{} ? length : sides;
-        weight[2] *= 4;
+        aabb::vec3d importance = sides == aabb::vec3d{} ? length : sides;
+        importance[2] *= 4;
         int omitted_axis = 2;
         for (const int k : {1, 0})
-            if (weight[k] < weight[omitted_axis]) omitted_axis = k;
+            if (importance[k] < importance[omitted_axis]) omitted_axis = k;
         across = omitted_axis == 0 ? 1 : 0;
         up = omitted_axis == 2 ? 1 : 2;
-        const double ratio = length[up] / length[across];
-        const double shown = std::clamp(ratio, narrowest, 1 / narrowest);
-        has_equal_scales = ratio == shown;
-        width = shown < 0.4 ? wide_panel : shown <= 1 ? panel_side : panel_side / shown;
-        height = width * shown;
+        const double true_aspect = length[up] / length[across];
+        const double aspect = std::clamp(true_aspect, narrowest, 1 / narrowest);
+        has_equal_scales = aspect == true_aspect;
+        // A flat panel has the width of two, as it would be low beside another.
+        width = aspect < 0.4 ? wide_panel : aspect <= 1 ? panel_side : panel_side / aspect;
+        height = width * aspect;
         scale[across] = width / length[across];
         scale[up] = height / length[up];
     }

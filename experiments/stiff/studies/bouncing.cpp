@@ -47,7 +47,7 @@ stiff_result run_bouncing(const stiff_setting& setting) {
     for (const published_errors& reference : published) {
         if (setting.quick && reference.step < 1e-3) break;
         for (const integrator_info& i : integrators()) {
-            if (i.adaptive || i.order == 5) continue;  // not symplectic
+            if (!i.is_symplectic()) continue;
             run_or_record_failure(result, i.name, [&] {
                 simulation balls(world, setting.tested, i);
                 const auto steps = static_cast<std::size_t>(std::llround(seconds / reference.step));

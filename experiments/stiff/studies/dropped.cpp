@@ -188,7 +188,8 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
 }
 
 /// Plots error over detection time, of each symplectic integrator by step size, and of stale Verlet lists by the frames
-/// between rebuilds. The reference has a 16th of the smallest step. The error of energy must fall with the step size.
+/// between rebuilds. The reference has a 16th of the smallest step. The energy of symplectic integrators only deviates,
+/// by a power of the step size that is their order; that of others drifts, so they are left out.
 void compare_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
     const std::vector<double> steps =
         setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};
@@ -198,7 +199,7 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
     const trajectory reference = balls.run(setting.tested, verlet, finest, stored_every(finest), /*with_energy=*/false);
     const auto error_of = [&](const trajectory& t) { return balls.departures(t, reference).back(); };
     for (const integrator_info& i : integrators()) {
-        if (i.adaptive || i.order == 5) continue;
+        if (!i.is_symplectic()) continue;
         std::vector<double> energy_errors;
         for (const double dt : steps) {
             const trajectory t = balls.run(setting.tested, i, dt, stored_every(dt), /*with_energy=*/true);
@@ -210,9 +211,9 @@ void compare_steps(const dropped_balls& balls, const stiff_setting& setting, sti
             energy_errors.push_back(t.energy_error);
         }
         // Each step size is half of the previous one.
-        const double order =
+        const double measured_order =
             std::log2(energy_errors.front() / energy_errors.back()) / static_cast<double>(steps.size() - 1);
-        result.add(at_least(std::string(i.name), "order of the energy error", order, i.order - 0.3));
+        result.add(at_least(std::string(i.name), "order of the energy error", measured_order, i.order - 0.3));
     }
     for (const char* const every : {"8", "16", "32", "64"}) {
         const method m = composed_with(std::string("prepare neighbour_list:margin=0,every=") + every);

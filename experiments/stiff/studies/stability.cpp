@@ -115,7 +115,7 @@ stiff_result run_stability(const stiff_setting& setting) {
                 const std::string subject = std::string(i.name) + ", dt·ω " + short_number(scaled_step);
                 if (i.adaptive) {
                     result.add(reported(subject, "energy drift", drift));
-                } else if (i.order < 5) {
+                } else if (i.is_symplectic()) {
                     result.add(
                         at_most(subject, "energy drift, without sign", std::abs(drift), setting.quick ? 0.05 : 1e-3));
                 } else {

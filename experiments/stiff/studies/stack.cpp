@@ -13,8 +13,8 @@ constexpr double gravity = 9.81;   // m/s²
 constexpr double edge = 0.25;      // m
 constexpr std::size_t bodies = 10;
 
-/// Ten stacked pyramids with masses in geometric progression from 1 kg at the bottom to `ratio` at the top, and a
-/// dashpot that is critical for the slowest mode.
+/// Ten stacked pyramids with masses in geometric progression from 1 kg at the bottom to `ratio` at the top. Dashpots
+/// are critical for the slowest mode, all masses M on n springs in series: c/n = 2 √(M k/n).
 stepped_world stack_of(double ratio) {
     stepped_world world;
     world.meshes = {floor_of(4), hanging_pyramid(edge, 2 * edge)};
