@@ -62,8 +62,7 @@ public:
     /// Adds the determinant of the matrix with columns p, q and r.
     void add_determinant(const vec3d& p, const vec3d& q, const vec3d& r) noexcept {
         for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3;
-            const int k = (i + 2) % 3;
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
             add(p[i], q[j], r[k]);
             subtract(p[i], q[k], r[j]);
         }
@@ -270,8 +269,7 @@ corner_sides exact_sides(const triangle3d& s, const triangle3d& t) noexcept {
 
 /// The orientation of abc projected along an axis, computed like `exact_side`.
 int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
-    const int x = (axis + 1) % 3;
-    const int y = (axis + 2) % 3;
+    const int x = (axis + 1) % 3, y = (axis + 2) % 3;
     grid steps{&a, &b, &c};
     const vec3i origin = steps(a);
     const vec3i p = steps(b) - origin;

@@ -131,8 +131,7 @@ public:
 
     /// The result of `exact_turn`, which is called only if double leaves the sign uncertain and there is no lattice.
     [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
-        const int x = (axis + 1) % 3;
-        const int y = (axis + 2) % 3;
+        const int x = (axis + 1) % 3, y = (axis + 2) % 3;
         const double computed = (b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]);
         const double error = turn_error(x, y);
         const int sign = certain_sign(computed, error);
@@ -143,8 +142,7 @@ public:
     /// Whether, projected along an axis, the line ab has all corners of `t` strictly on one side, and on the other
     /// side, or on the line itself, the triangle of which ab is an edge. `own` is the orientation of that triangle.
     [[nodiscard]] inline bool beyond(const vec3d& a, const vec3d& b, int own, const triangle3d& t, int axis) noexcept {
-        const int x = (axis + 1) % 3;
-        const int y = (axis + 2) % 3;
+        const int x = (axis + 1) % 3, y = (axis + 2) % 3;
         const lanes<double> computed =
             (b[x] - a[x]) * (corners_along(t, y) - a[y]) - (b[y] - a[y]) * (corners_along(t, x) - a[x]);
         const double error = turn_error(x, y);

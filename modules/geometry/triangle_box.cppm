@@ -22,8 +22,7 @@ struct centred_triangle {
         const vec3f& start = t.corner[i];
         const vec3f& opposite = t.corner[(i + 2) % 3];
         for (int k = 0; k < 3; ++k) {
-            const int x = (k + 1) % 3;
-            const int y = (k + 2) % 3;
+            const int x = (k + 1) % 3, y = (k + 2) % 3;
             const float p = e[y] * start[x] - e[x] * start[y];
             const float q = e[y] * opposite[x] - e[x] * opposite[y];
             const float radius = t.half[x] * std::abs(e[y]) + t.half[y] * std::abs(e[x]) + slack;
@@ -79,8 +78,7 @@ export namespace aabb {
     float distance = 0;
     float radius = tiny * (1 + size);
     for (int k = 0; k < 3; ++k) {
-        const int x = (k + 1) % 3;
-        const int y = (k + 2) % 3;
+        const int x = (k + 1) % 3, y = (k + 2) % 3;
         const float p = e[x] * f[y];
         const float q = e[y] * f[x];
         distance += (p - q) * local.corner[0][k];

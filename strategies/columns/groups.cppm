@@ -147,8 +147,7 @@ private:
         p.next_copy.assign(plan_.columns(), 0);
         p.spanning_begin = p.spanning_end = p.begin + part_index * simd::width;
         p.copies = 0;
-        const int u = plan_.axis_across(0);
-        const int v = plan_.axis_across(1);
+        const int u = plan_.axis_across(0), v = plan_.axis_across(1);
         const simd::words across = simd::broadcast(plan_.across[0] | plan_.across[1] << 16);
         simd::flags invalid{};
         for_each_vector(boxes.subspan(p.begin, p.end - p.begin), [&](std::size_t i, const simd::floats(&c)[6],

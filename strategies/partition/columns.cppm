@@ -64,8 +64,7 @@ public:
         for (int axis = 0; axis < 3; ++axis) {
             column_plan candidate;
             candidate.axis = axis;
-            const int u = candidate.axis_across(0);
-            const int v = candidate.axis_across(1);
+            const int u = candidate.axis_across(0), v = candidate.axis_across(1);
             if (!seen.varies(axis) && (seen.varies(u) || seen.varies(v))) continue;
             const double most_u = most_columns_on(seen, u, config_.axes > 0);
             const double most_v = most_columns_on(seen, v, config_.axes > 1);
@@ -243,8 +242,7 @@ private:
     /// whose intervals overlap along the column.
     [[nodiscard]] static double cost_of(const sample& seen, const column_plan& p, std::size_t boxes) {
         const cost_model& ns = machine_costs();
-        const int u = p.axis_across(0);
-        const int v = p.axis_across(1);
+        const int u = p.axis_across(0), v = p.axis_across(1);
         const auto cuts_per_length = [&](int k, std::uint32_t n) { return n > 1 ? n * seen.per_width[k] : 0.0; };
         const double iu = cuts_per_length(u, p.across[0]);
         const double iv = cuts_per_length(v, p.across[1]);
@@ -268,8 +266,7 @@ private:
         /// Quantizes a vector of sampled boxes from index `first_box` on, and finds their columns and buckets.
         void fill(const sample& seen, std::size_t first_box, const column_plan& plan, std::uint32_t bucket_bits) {
             for (std::size_t k = 0; k < 6; ++k) std::memcpy(&ends[k], &seen.ends[k][first_box], sizeof ends[k]);
-            const int u = plan.axis_across(0);
-            const int v = plan.axis_across(1);
+            const int u = plan.axis_across(0), v = plan.axis_across(1);
             const simd::words across = simd::broadcast(plan.across[0] | plan.across[1] << 16);
             lower = plan.quantized(ends[u], u) | plan.quantized(ends[v], v) << 16;
             upper = plan.quantized(ends[3 + u], u) | plan.quantized(ends[3 + v], v) << 16;

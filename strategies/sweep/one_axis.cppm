@@ -37,8 +37,7 @@ public:
         const auto& list = subset.lists[static_cast<std::size_t>(axis_)];
         if (list.size() < 2) return;
         swept_.clear();
-        const int u = (axis_ + 1) % 3;
-        const int v = (axis_ + 2) % 3;
+        const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
         for (const auto& e : list) {
             const box& b = subset.boxes[e.id];
             swept_.push_back(

@@ -77,8 +77,7 @@ private:
     template <class Real>
     [[nodiscard]] static inline bool any_edge_separates(const triangle3<Real>& s, const triangle3<Real>& t,
                                                         int dropped) noexcept {
-        const int x = (dropped + 1) % 3;
-        const int y = (dropped + 2) % 3;
+        const int x = (dropped + 1) % 3, y = (dropped + 2) % 3;
         const auto turn = [&](const vec3<Real>& a, const vec3<Real>& b, const vec3<Real>& c) {
             return (b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]);
         };

@@ -78,8 +78,7 @@ public:
                     [&] { return exact_side(a, b, c, d); });
     }
     [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
-        const int x = (axis + 1) % 3;
-        const int y = (axis + 2) % 3;
+        const int x = (axis + 1) % 3, y = (axis + 2) % 3;
         const auto across = [](const vec3d& p, const vec3d& q, int k) { return interval::difference(p[k], q[k]); };
         return sign(across(b, a, x) * across(c, a, y) - across(b, a, y) * across(c, a, x),
                     [&] { return exact_turn(a, b, c, axis); });

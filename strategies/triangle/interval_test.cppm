@@ -166,8 +166,7 @@ private:
         const vec3<Real> length{std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2])};
         const int y_or_z = length[2] > length[1] ? 2 : 1;
         const int dropped = length[0] > length[1] ? (length[0] > length[2] ? 0 : 2) : y_or_z;
-        const int x = dropped == 0 ? 1 : 0;
-        const int y = dropped == 2 ? 1 : 2;
+        const int x = dropped == 0 ? 1 : 0, y = dropped == 2 ? 1 : 2;
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
                 if (edges_cross(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3], x, y)) return true;

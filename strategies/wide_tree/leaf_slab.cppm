@@ -77,8 +77,7 @@ private:
             q[k] = simd::load_eight<simd::eight_floats>(block.corner[2][k].data()) - first;
         }
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t i = (k + 1) % 3;
-            const std::size_t j = (k + 2) % 3;
+            const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
             normal_[k] = simd::sum(p[i] * q[j] - p[j] * q[i]);
         }
     }
