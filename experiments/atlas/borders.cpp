@@ -35,13 +35,13 @@ std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
     };
     std::vector<double> shares;
     for (std::size_t i = 0; i < draws; ++i) {
-        const double a = drawn(from);
-        const double b = drawn(to);
+        const double a = drawn(from), b = drawn(to);
         // Clamp to an end if one candidate is ahead at both.
         shares.push_back(a >= 0 ? 0 : b <= 0 ? 1 : share(a, b));
     }
     std::ranges::sort(shares);
-    return {share(from.value, to.value), {shares[draws / 40], shares[draws - 1 - draws / 40]}};
+    constexpr std::size_t tail = draws / 40;  // 2.5 %
+    return {share(from.value, to.value), {shares[tail], shares[draws - 1 - tail]}};
 }
 
 /// The fastest candidate with these strategies, whatever their parameters; null if the scene has none.
@@ -55,8 +55,7 @@ const atlas_candidate* fastest_of(const atlas_scene& scene, const std::string& f
 std::optional<border> border_between(const atlas_scene& from, const atlas_scene& to, std::string_view parameter) {
     const atlas_candidate& first_best = from.fastest(per_frame);
     const atlas_candidate& last_best = to.fastest(per_frame);
-    const std::string before = family_of(first_best.label);
-    const std::string after = family_of(last_best.label);
+    const std::string before = family_of(first_best.label), after = family_of(last_best.label);
     if (before == after) return std::nullopt;
     const atlas_candidate* after_at_first = fastest_of(from, after);
     const atlas_candidate* before_at_last = fastest_of(to, before);

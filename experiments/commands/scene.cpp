@@ -34,6 +34,8 @@ public:
     [[nodiscard]] const aabb::mesh_scene& meshes() const { return *scene_.meshes(); }
     [[nodiscard]] std::size_t objects() const override { return scene_.objects(); }
     [[nodiscard]] std::size_t frames() const override { return scene_.frames(); }
+    /// Places the objects of the next frame. A scene that reacts gets the contacts of this frame, to make the one
+    /// after.
     bool next(std::vector<aabb::box>& boxes) override {
         if (!scene_.next()) return false;
         if (motion_) motion_->add(scene_.poses());

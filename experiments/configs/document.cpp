@@ -220,6 +220,7 @@ std::uint64_t document::integer_of(const std::string& key, const node& value, st
     return number;
 }
 
+/// Reads a name or a list of names, as a list.
 std::vector<located_text> document::texts_of(const std::string& key, const node& value) const {
     if (value.kind == node_kind::text) return {{value.text, value.line}};
     if (value.kind != node_kind::list) fail_type(key, value, "a list or a name");

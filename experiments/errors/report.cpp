@@ -224,6 +224,7 @@ private:
 
     /// True if shares of wrong pairs are drawn: since log 0 is infinite, no errors are drawn as one wrong pair.
     [[nodiscard]] bool has_floor() const { return y_.name == "wrong_share" && exact_pairs() > 0; }
+    /// The number of true pairs, from the pairs and the errors of any candidate.
     [[nodiscard]] std::uint64_t exact_pairs() const {
         const candidate_summary& any = scene_.candidates[0];
         return any.contacts.value_or(any.pairs) + any.false_negatives.value_or(0) - any.false_positives.value_or(0);

@@ -75,8 +75,7 @@ private:
         if (!in_.has_word() && !in_.next_line()) in_.fail_at_end(where());
     }
 
-    /// Reads vertex v of `count`, and skips what follows its position: the rest of its line, or without lines the
-    /// numbers of its attributes (colour, normal, texture coordinates).
+    /// Reads vertex v of `count`, and skips what follows its position: the rest of its line, or else its attributes.
     void read_vertex(std::uint64_t v, std::uint64_t count, std::size_t attributes) {
         const bool has_line = arrangement_ == arrangement::lines;
         const auto where = [&] { return "after " + std::to_string(v) + " of " + std::to_string(count) + " vertices"; };

@@ -95,8 +95,7 @@ int polygon_cutter::project() {
     for (const corner& c : corners_) {
         const vec3d& q = c.p;
         for (int k = 0; k < 3; ++k) {
-            const int x = (k + 1) % 3;
-            const int y = (k + 2) % 3;
+            const int x = (k + 1) % 3, y = (k + 2) % 3;
             // The product of two floats is exact in double.
             normal_[static_cast<std::size_t>(k)].add((*p)[x] * q[y]);
             normal_[static_cast<std::size_t>(k)].add(-(*p)[y] * q[x]);
@@ -145,8 +144,7 @@ void polygon_cutter::begin_at_least_corner() {
 
 /// The exact sign of the area of the projected triangle: 1 if the path a, b, c turns left.
 int polygon_cutter::turn(const vec3d& a, const vec3d& b, const vec3d& c) const noexcept {
-    const int x = (axis_ + 1) % 3;
-    const int y = (axis_ + 2) % 3;
+    const int x = (axis_ + 1) % 3, y = (axis_ + 2) % 3;
     const double left = (b[x] - a[x]) * (c[y] - a[y]);
     const double right = (b[y] - a[y]) * (c[x] - a[x]);
     // Shewchuk's error bound; with float coordinates nothing overflows or underflows.
@@ -157,8 +155,7 @@ int polygon_cutter::turn(const vec3d& a, const vec3d& b, const vec3d& c) const n
 }
 
 bool polygon_cutter::precedes(const vec3d& a, const vec3d& b) const noexcept {
-    const int x = (axis_ + 1) % 3;
-    const int y = (axis_ + 2) % 3;
+    const int x = (axis_ + 1) % 3, y = (axis_ + 2) % 3;
     return a[x] < b[x] || (a[x] == b[x] && a[y] < b[y]);
 }
 
@@ -185,8 +182,7 @@ bool polygon_cutter::is_needle(const corner& b) const noexcept {
 /// winds around the triangle once; the ear is touched if the triangle's boundary has other corners. A ray downwards
 /// counts windings, so edges that lie beside the bounding box of the triangle, or above it, are skipped.
 polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
-    const int x = (axis_ + 1) % 3;
-    const int y = (axis_ + 2) % 3;
+    const int x = (axis_ + 1) % 3, y = (axis_ + 2) % 3;
     const vec3d& t0 = corners_[b.before].p;
     const vec3d& t1 = b.p;
     const vec3d& t2 = corners_[b.next].p;

@@ -181,8 +181,7 @@ private:
         for (racer& r : running_) r.slowdown = r.last ? total_ms(r) / least : 0;
     }
 
-    /// Repeats the runs of candidates that are slightly behind, since the first run may have been disturbed. Half of
-    /// the time is kept for the final.
+    /// Repeats runs that were slightly too slow, as they may have been disturbed; half of the time is for the final.
     void rerun_close_candidates(std::size_t frames, double margin) {
         constexpr double far_behind = 2;
         for (racer& r : running_) {

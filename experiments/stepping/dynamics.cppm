@@ -74,7 +74,6 @@ struct integrator_info {
     /// The limit of step times angular frequency below which an undamped oscillation does not grow; may be infinite.
     double stable_below;
     std::unique_ptr<integrator> (*make)(double tolerance);  ///< only adaptive ones use the tolerance
-
     /// Whether the energy of an oscillation does not drift: here, of Euler and Verlet, unlike Runge-Kutta and BDF.
     [[nodiscard]] bool is_symplectic() const { return !adaptive && order <= 2; }
 };

@@ -75,7 +75,8 @@ public:
         return choose(spread_of(boxes, objects), every_axis);
     }
 
-    /// Chooses among some axes, at least one: the last choice, unless the variance on another is 50% greater.
+    /// Chooses among some axes, at least one: the last choice, unless the variance on another is 50% greater. Otherwise
+    /// axes of similar variance would alternate, and each change sorts a new list from scratch.
     int choose(const spread& along, axis_set among) {
         const auto is_among = [among](int k) { return has_axis(among, static_cast<std::size_t>(k)); };
         const double margin = has_chosen_ && is_among(axis_) ? 1.5 : 1.0;

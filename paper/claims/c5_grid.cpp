@@ -43,7 +43,8 @@ public:
     /// The sizes that give a grid in all scenes. The best single size is one of these.
     [[nodiscard]] const std::vector<std::string>& sizes() const { return sizes_in_all_scenes_; }
 
-    /// The regret in a scene is the logarithm of a time over that of the best cell size there.
+    /// The regret in a scene is the logarithm of a time over that of the best cell size there. Ratios are to the cut,
+    /// so its own logarithm is 0.
     [[nodiscard]] double worst_regret_of_cut(const resample& d) const {
         return worst([&](const auto& scene) { return -best(scene, d); });
     }
@@ -216,7 +217,7 @@ draft c5_claim(const measurements& m) {
             "axial_cut over each scene's best cell size",
             "the cut compared with the best cell size, in its worst scene",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
-        const resample as_measured(size.processes, size.seeds, level::none, 0);
+        const resample as_measured(size.processes, size.seeds, level::none, 0);  // every cell once
         c5.claim.remark = fmt::format(
             "With {} objects the best single cell size takes {:.1f} times as long as the best one in its worst scene.",
             number_text(objects), std::exp(scenes.least_worst_regret(as_measured)));

@@ -51,7 +51,7 @@ std::vector<factors> factors_of(const std::vector<condition>& conditions) {
     return scenes;
 }
 
-/// Whether any alternative has another outcome than our choice; undecided ones contradict nothing.
+/// Whether any alternative has another outcome than our choice, the first; undecided ones contradict nothing.
 std::string dependence_of(const open_choice& choice) {
     bool is_undecided = choice.alternatives.empty();
     for (const open_choice::alternative& a : choice.alternatives) {
@@ -173,8 +173,7 @@ named_table null_control(const measurements& m) {
 std::string disturbance_of(std::span<const measurements> machines) {
     std::string text;
     for (const measurements& m : machines) {
-        double wall_ms = 0;
-        double cpu_ms = 0;
+        double wall_ms = 0, cpu_ms = 0;
         std::vector<double> differences;  // of processor time from one repeat to the next, as shares
         for (const std::string& experiment : m.experiments())
             for (const condition& c : m.conditions_of(experiment)) {

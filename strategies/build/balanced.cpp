@@ -138,8 +138,7 @@ private:
                    std::size_t left_count) const noexcept {
         auto [axis, left_mask] = best_split(few_items(from), bounds, left_count);
         while (std::popcount(left_mask) != static_cast<int>(left_count)) left_mask &= ~last_item(from, left_mask, axis);
-        std::size_t next_left = 0;
-        std::size_t next_right = left_count;
+        std::size_t next_left = 0, next_right = left_count;
         for (std::size_t i = 0; i < from.size(); ++i) {
             const bool is_left = left_mask >> i & 1;
             to[is_left ? next_left : next_right] = from[i];

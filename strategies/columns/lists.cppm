@@ -125,8 +125,7 @@ private:
         const auto flush = [&] { copies_.insert(copies_.end(), buffer.begin(), buffer.begin() + std::exchange(n, 0)); };
         for (const std::uint32_t i : std::span(spanning_boxes_).first(spanning_count_)) {
             const quantized_box b = quantized_[i];
-            const std::uint32_t nu = further_columns(b, 0);
-            const std::uint32_t nv = further_columns(b, 1);
+            const std::uint32_t nu = further_columns(b, 0), nv = further_columns(b, 1);
             const auto add = [&](std::uint32_t u, std::uint32_t v, std::uint32_t times) {
                 const std::uint32_t buckets = u * buckets_of_column + v * buckets_of_row;
                 buffer[n] = {i | (u ? begins_earlier[0] : 0) | (v ? begins_earlier[1] : 0), buckets};

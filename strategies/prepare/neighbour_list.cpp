@@ -181,8 +181,7 @@ private:
                              .in_new_memory = grown_.capacity() == 0};
     }
 
-    /// Measures how far boxes have moved since they were kept, unless the result depends on less, and returns what that
-    /// means for the kept pairs.
+    /// What the motion since boxes were kept means for the kept pairs. It is measured only where that depends on it.
     [[nodiscard]] observation observe_motion(std::span<const box> boxes, bool any_arrivals) {
         if (state_ == state::nothing) return observation::changed;
         if (state_ == state::searching) return observe_sample(boxes);

@@ -156,8 +156,7 @@ private:
 
     /// Tests the candidates exactly and appends the overlapping pairs.
     void append_overlapping(const column_block& block, std::size_t window, std::vector<index_pair>& pairs) {
-        std::size_t next = pairs.size();
-        std::size_t most = next;
+        std::size_t next = pairs.size(), most = next;
         for (std::size_t c = 0; c < candidate_count_; ++c)
             most += static_cast<std::size_t>(std::popcount(met_[c] & simd::every_lane));
         if (most > pairs.capacity()) pairs.reserve(std::max(most, 2 * pairs.capacity()));
@@ -178,8 +177,7 @@ private:
         candidate_count_ = 0;
     }
 
-    /// Converts a sorted list to the entries of one column, quantized over the bounds of its boxes, so that the sweep
-    /// of columns serves lists too.
+    /// Converts a sorted list to entries of one column, quantized over its bounds, so that it is swept like columns.
     template <class Subset, class List>
     void convert_to_entries(const Subset& subset, const List& list) {
         column_plan plan;
@@ -191,8 +189,7 @@ private:
         const column_entry padding{~std::uint32_t{0}, 0, static_cast<std::uint32_t>(list.size()), 0};  // overlaps none
         entries_.assign(n, padding);
         list_ends_.assign(list.size() + 1, 0);
-        const int u = plan.axis_across(0);
-        const int v = plan.axis_across(1);
+        const int u = plan.axis_across(0), v = plan.axis_across(1);
         for (std::size_t i = 0; i < list.size(); ++i) {
             const box& b = subset.boxes[list[i].id];
             const axis_set begins_earlier = every_axis & ~Subset::owned(list[i]);

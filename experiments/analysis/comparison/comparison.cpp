@@ -150,8 +150,7 @@ void add_decided(std::span<const measured_candidate> measured,
     std::vector<compared_time> times;
     std::vector<evidence> evidences;
     for (const measured_candidate& entry : measured) {
-        const estimate a = bootstrap(entry.a);
-        const estimate b = bootstrap(entry.b);
+        const estimate a = bootstrap(entry.a), b = bootstrap(entry.b);
         const estimate change = difference_of(b, a);
         const double least_p = least_p_value(count_values(entry.a), count_values(entry.b));
         evidence& entry_evidence = evidences.emplace_back(evidence_of(change));

@@ -33,10 +33,10 @@ void add_seed(const row& r, double share, candidate_summary& summary) {
     const auto tree_bytes = measured("tree_bytes")(r);
     if (tree_bytes.value_or(0) > 0) summary.bytes_per_triangle = std::max(summary.bytes_per_triangle, tree_bytes);
     if (r.box_inflation) add(summary.box_inflation, std::optional(*r.box_inflation * share));
-    const double counted_frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;  // all but the first
+    const double later_frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
     for (std::size_t i = 0; i < r.counts.size(); ++i)
         if (r.counts[i])
-            add(summary.counts[i], std::optional(static_cast<double>(*r.counts[i]) / counted_frames * share));
+            add(summary.counts[i], std::optional(static_cast<double>(*r.counts[i]) / later_frames * share));
     for (std::size_t i = 0; i < r.bytes.size(); ++i)
         summary.bytes_by_part[i] = std::max(summary.bytes_by_part[i], r.bytes[i]);
 }

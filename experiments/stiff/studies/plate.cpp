@@ -80,7 +80,7 @@ stiff_result run_plate(const stiff_setting& setting) {
     const std::size_t shots = setting.quick ? 200 : 2000;
     for (const double ratio : {0.5, 1.0, 1.25, 2.0, 4.0, 8.0, 16.0}) {
         shot moving_body(setting.tested, ratio * extent);
-        const double expected = std::max(0.0, 1 - 1 / ratio);
+        const double expected = std::max(0.0, 1 - 1 / ratio);  // the starts without a frame in contact
         result.plot("tunnelled", tunnelled_share, ratio, expected);
         for (const bool swept : {false, true}) {
             std::size_t missed = 0;
@@ -103,9 +103,8 @@ stiff_study plate_study() {
     return {
         "plate",
         "A body of 100 mm is shot through a mesh plate of 10 mm, at start times spread evenly over a time step. Plain "
-        "boxes "
-        "bound the body at the end of a step. Swept boxes bound it from step to step; if they overlap, the step is "
-        "tested in parts that are too short for the body to tunnel",
+        "boxes bound the body at the end of a step. Swept boxes bound it from step to step; if they overlap, the step "
+        "is tested in parts that are too short for the body to tunnel",
         "1 - extent/displacement if the displacement per step exceeds the extent of body and plate together; none with "
         "swept boxes",
         &run_plate,
