@@ -213,6 +213,7 @@ private:
         }
     }
 
+    /// Writes a pair: after its pose if there are several, or with its number of shared vertices within one mesh.
     void add_row(const intersecting_pair& pair) {
         const auto [a, b] = pair.triangles;
         const std::string cells = pair.common ? to_cells(*pair.common) : "";

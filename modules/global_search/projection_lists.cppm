@@ -11,7 +11,7 @@ export namespace aabb {
 /// Counts the inversions of a list, the measure of "almost sorted", by merge sort in O(n log n).
 class inversion_counter {
 public:
-    /// The number of pairs of entries that are in the wrong order.
+    /// The number of pairs of entries that are in the wrong order, which a merge sort counts in O(n log n).
     [[nodiscard]] std::uint64_t count(std::span<const projection> list) {
         keys_.clear();
         for (const projection& p : list) keys_.push_back(p.key);

@@ -177,7 +177,7 @@ private:
             while (first < cuts.size() && cuts[first] <= p.key) ++first;
             const float upper = boxes[p.id].max[static_cast<int>(k)];
             std::size_t last = first;
-            if (config_.limit == limit_choice::on)
+            if (config_.limit == limit_choice::on)  // which leaves at most one cut in a box
                 last += first < cuts.size() && cuts[first] <= upper;
             else
                 last = static_cast<std::size_t>(std::ranges::upper_bound(cuts, upper) - cuts.begin());
