@@ -23,8 +23,7 @@ draft c10_claim(const measurements& m) {
         .claim = {.claim = "Cutting a box more than once on an axis is not worth its cost",
                   .measured =
                       "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
-                  .lead =
-                      "With segments widened until no box is cut twice on an axis, compared with the number requested",
+                  .lead = "With segments widened until no box spans a whole one, compared with as many as requested",
                   .experiments = {"c10"}},
         .primary = {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.conditions_of("c10"))

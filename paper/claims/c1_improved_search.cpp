@@ -29,7 +29,7 @@ std::string subject_of(const condition& c) {
 /// Each change alone is reported with it, as an explanation, but does not decide the claim.
 draft c1_claim(const measurements& m) {
     draft c1{
-        .claim = {.claim = "Shell sort with axial cut takes less time in the broad phase than insertion sort without",
+        .claim = {.claim = "Shell sort with axial cut takes less time in the broad phase than insertion sort alone",
                   .measured = "time per frame of shell + axial_cut over that of insertion + none, both with the sweep "
                               "one_axis or both with all_axes; and over that of insertion + incremental",
                   .experiments = {"figure1", "three_lists"}},

@@ -175,8 +175,7 @@ figure world_figure(const std::string& name, const std::string& quantity_name, c
 
 }  // namespace
 
-/// Claim C5: the worst slowdown of the axial cut over that of the best single cell size, which is the one with the
-/// least worst slowdown, and growth with the world. A regret is the logarithm of a slowdown.
+/// Claim C5: the worst slowdown of the axial cut over the least one of a single cell size, and growth with the world.
 draft c5_claim(const measurements& m) {
     const std::string over_best_single = "axial_cut over the best single cell size";
     draft c5{
@@ -209,17 +208,17 @@ draft c5_claim(const measurements& m) {
         };
         add(
             over_best_single,
-            "slowdown (time over that of a scene's best cell size) in the worst of four scenes, the cut's over that of "
-            "the best single cell size",
+            "greatest slowdown in four scenes (slowdown: time over that with a scene's fastest cell size), the cut "
+            "compared with the single cell size for which it is least",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(
             "axial_cut over each scene's best cell size",
-            "the cut compared with the best cell size, in its worst scene",
+            "the cut compared with the fastest cell size, in the scene of the cut's greatest slowdown",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
         const resample as_measured(size.processes, size.seeds, level::none, 0);  // every cell once
         c5.claim.remark = fmt::format(
-            "With {} objects the best single cell size takes {:.1f} times as long as the best one in its worst scene.",
+            "With {} objects the cell size of least slowdown takes up to {:.1f} times as long as a scene's fastest.",
             number_text(objects), std::exp(scenes.least_worst_regret(as_measured)));
     }
     const std::vector<condition>& worlds = m.conditions_of("c5_world");

@@ -138,11 +138,11 @@ draft c6_claim(const measurements& m) {
              "with M\u00f6ller's original test, compared with an oriented box on fifteen axes");
     add_test("triangle_aabb", "box", "computing its box and testing that, compared with a transformed box");
     for (const char* test : {"triangle_box", "triangle_aabb"})
-        add_test(test, "box", "compared with its box, neither transformed", std::string(frame_a_suffix));
+        add_test(test, "box", "in the frame of its own mesh, compared with its box", std::string(frame_a_suffix));
     const std::pair<std::string, const char*> queries[] = {
         {"triangle_box", "whole queries of the leafless tree, compared with the canonical one"},
         {"triangle_aabb", "whole queries, boxes of triangles computed on the fly"},
-        {"none", "whole queries if a leaf's triangle is not tested against the boxes of the other tree"}};
+        {"none", "whole queries if a leaf is tested by its parent's box instead"}};
     for (const condition& c : m.conditions_of("figure2"))
         for (const auto& [test, subject] : queries) {
             endpoint ratio = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},

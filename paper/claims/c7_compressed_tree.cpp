@@ -41,6 +41,7 @@ endpoint compressed_over_canonical(const condition& c, const std::string& metric
 draft c7a_claim(const measurements& m) {
     draft c7a{.claim = {.claim = "Compressed storage takes less memory",
                         .measured = "bytes of the compressed tree over those of the canonical one",
+                        .lead = "The compressed tree, compared with the canonical one",
                         .experiments = {"figure2", "figure2_million"}},
               .primary = {large_spheres}};
     for (const condition* c : conditions_by_size(m))
@@ -56,13 +57,13 @@ draft c7a_claim(const measurements& m) {
 draft c7b_claim(const measurements& m) {
     draft c7b{.claim = {.claim = "Compressed storage takes less time",
                         .measured = "time per query of the compressed tree over that of the canonical one",
-                        .lead = "Queries",
+                        .lead = "Queries of the compressed tree, compared with the canonical one",
                         .experiments = {"figure2", "figure2_million"}},
               .primary = {{large_spheres.front(), {"leaf_test", "triangle_box"}}}};
     const std::pair<const char*, const char*> leaf_tests[] = {
         {"triangle_box", ""},
-        {"triangle_aabb", "if the box of a leaf's triangle is computed on the fly"},
-        {"none", "if a leaf's triangle is not tested against the boxes of the other tree"}};
+        {"triangle_aabb", "if a leaf is tested by the box of its triangle, computed on the fly"},
+        {"none", "if a leaf is tested by its parent's box instead"}};
     for (const auto& [leaf_test, subject] : leaf_tests)
         for (const condition* c : conditions_by_size(m))
             c7b.add(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject);

@@ -53,12 +53,14 @@ std::string evidence_text(std::span<const endpoint> endpoints) {
 claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoints) {
     claim_result claim = drafted.claim;
     claim.verdict = verdict_of(endpoints);
-    claim.sentence = sentence_of(endpoints, claim.lead);
-    std::vector<endpoint> of_primary_clauses;
-    std::ranges::copy_if(endpoints, std::back_inserter(of_primary_clauses), [&](const endpoint& e) {
-        return std::ranges::any_of(endpoints, [&](const endpoint& p) { return p.is_primary && is_same_clause(p, e); });
-    });
-    claim.brief = sentence_of(of_primary_clauses, claim.lead);
+    std::vector<endpoint> primary_clauses, secondary_clauses;
+    for (const endpoint& e : endpoints) {
+        const auto makes_primary = [&](const endpoint& p) { return p.is_primary && is_same_clause(p, e); };
+        const bool is_primary = std::ranges::any_of(endpoints, makes_primary);
+        if (is_primary || e.subject) (is_primary ? primary_clauses : secondary_clauses).push_back(e);
+    }
+    claim.sentence = claim.brief = sentence_of(primary_clauses, claim.lead);
+    if (!secondary_clauses.empty()) claim.sentence += " " + sentence_of(secondary_clauses, "secondary ratios");
     std::vector<endpoint> unjudged;
     for (const endpoint& e : drafted.unjudged)
         if (e.is_known()) unjudged.push_back(decided_alone(e));

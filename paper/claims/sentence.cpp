@@ -14,7 +14,7 @@ constexpr double equality_threshold = 1.1;
 
 /// In the order of `quantity`; empty where labels name the quantity.
 std::string noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "", "", "time (divided by the cut's)"};
+    constexpr std::array nouns{"time", "bytes", "box tests", "", "", "time relative to the cut's"};
     return nouns[static_cast<std::size_t>(compared)];
 }
 
@@ -58,9 +58,10 @@ std::string outcome_text(std::span<const endpoint> endpoints, wording form) {
     if (form == wording::less || form == wording::more) return size_text(endpoints);
     const quantity compared = endpoints.front().compared;
     const std::string noun = noun_of(compared);
-    if (form == wording::not_more) return "at most the same" + (noun.empty() ? "" : " " + noun);
-    return (form == wording::same ? "no difference" : "undecided") +
-           (noun.empty() || compared == quantity::time ? "" : " in the " + noun);
+    if (form == wording::not_more) return "no more" + (noun.empty() ? "" : " " + noun);
+    const bool is_named = !noun.empty() && compared != quantity::time;
+    return form == wording::same ? "no difference" + (is_named ? " in the " + noun : "")
+                                 : "undecided" + (is_named ? " for the " + noun : "");
 }
 
 /// Consecutive endpoints of a clause with the same outcome.
@@ -94,7 +95,7 @@ std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
     if (factor == "objects") return " with " + values + (values == "1" ? " object" : " objects");
     if (factor == "axes") return " on " + values + (values == "1" ? " axis" : " axes");
     if (factor == "inversions") return " at " + values + " inversions per element";
-    if (factor == "displacement") return " at " + values + (values == "1" ? " extent" : " extents") + " per frame";
+    if (factor == "displacement") return " at " + values + " mean extent" + (values == "1" ? "" : "s") + " per frame";
     return " at a " +
            (factor == "ratio"     ? "size ratio"
             : factor == "density" ? "volume fraction"

@@ -252,9 +252,9 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
             "one of them taken from the method that it builds on (Li, Feng and Owen, \"SMB: collision detection "
             "based on temporal coherence\", 2006). Broad phase means the paper's global search, narrow phase its "
             "local detection; the scene brownian has drifting cubes. {}, {} size. Commit {}, {}, {}. {} rows of "
-            "{} scenes; up to {} processes, {} seeds and {} repeats, divided among the processes.",
+            "{} scenes, each with up to {} seeds; per composition and seed up to {} repeats in {} processes.",
             reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler, origin.cpu, origin.rows,
-            origin.scenes, origin.processes, origin.seeds, origin.repeats),
+            origin.scenes, origin.seeds, origin.repeats, origin.processes),
         "soft");
     for (const std::string& note : origin.notes) out.paragraph("Note: " + note + ".", "soft");
     add_claim_rows(out, reproduced);
