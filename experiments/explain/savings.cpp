@@ -217,7 +217,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     t.columns.push_back({"bytes", true, 1});
     for (std::size_t i = 0; i < in_table; ++i) add_row(t, variants[i], variants[0]);
     print_paragraph(fmt::format(
-        "savings of each choice: one strategy is replaced at a time, and the variants run interleaved, in {} of {}",
+        "savings of each choice: one strategy is replaced at a time; variants run interleaved, in {} of {} each",
         counted(outcome.rounds, "round"), counted(outcome.frames, "frame")));
     print(to_text(t, output_width()) + "\n");
     print_unfinished(variants);
@@ -228,8 +228,8 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     print_paragraph(ms_per_frame_text);
     print_paragraph(fmt::format(
         "ratio: ms/frame relative to the selected composition in the same round; times and ratios are medians over "
-        "rounds; range: the least and the greatest ratio; ?: undecided, since the range comes within 3 % of 1; a "
-        "ratio above {:.0f} comes from a single round.",
+        "rounds; range: the least and the greatest ratio; ?: undecided, since the range comes within 3 % of 1; "
+        "> {:.0f}: dropped after one run.",
         hopeless_ratio));
     print_paragraph(build_ms_text);
     print_paragraph("bytes: memory after these frames; counters of all work: as selected, with all work counted.");

@@ -186,7 +186,7 @@ table measures_table(const scene_measures& m) {
     const auto add = [&](const char* name, const std::string& value) { measured.rows.push_back({name, value}); };
     add("objects", grouped(m.objects));
     add("frames", m.frames > frames_measured
-                      ? fmt::format("{}, of which the first {} are measured", grouped(m.frames), frames_measured)
+                      ? fmt::format("{}; this table is measured in the first {}", grouped(m.frames), frames_measured)
                       : grouped(m.frames));
     if (m.present != m.objects) add("present", grouped(m.present) + " of them in the first frame");
     if (m.triangles) add("triangles", grouped(*m.triangles) + " in the meshes");
@@ -196,7 +196,7 @@ table measures_table(const scene_measures& m) {
         if (m.present > 2 && o[k] > 0.999 * static_cast<double>(m.present - 1))
             add("flat axis", std::string(1, "xyz"[k]));
     add("size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
-                          ", the greatest edge over the median greatest edge of a box");
+                          ", the longest edge over that of the median box");
     add("pairs", fmt::format("{:.3g} overlapping pairs per object", m.pairs_per_object));
     add("clustering", fmt::format("{:.3g} times the pairs of uniformly distributed boxes", m.clustering));
     if (!m.motion) return measured;
@@ -205,7 +205,7 @@ table measures_table(const scene_measures& m) {
     if (m.boxes.typical_extent > 0)
         add("unit", fmt::format("typical extent: {:.3g}, the mean edge without outliers", m.boxes.typical_extent));
     add("displacement", fmt::format("{:.3g} {} per frame, the mean", m.motion->displacement / unit, unit_name));
-    add("relative", fmt::format("{:.3g} {} per frame at most, less common motion",
+    add("relative", fmt::format("{:.3g} {} per frame at most, common motion removed",
                                 m.motion->relative_displacement / unit, unit_name));
     add("inversions", fmt::format("{:.3g} per object per frame, on the {} axis", m.motion->inversions,
                                   "xyz"[std::ranges::min_element(o) - o.begin()]));

@@ -61,8 +61,7 @@ std::vector<std::string> legend() {
         "confidence interval; -: candidate 1 itself, or too few repeats.";
     return {
         "all ms: build ms, first ms (frame 0) and all further frames. Times are of the repeat with the median all ms.",
-        ratio_text, ms_per_frame_text, build_ms_text,
-        "KiB: memory without meshes. Any break-even number of frames follows from median differences in a repeat."};
+        ratio_text, ms_per_frame_text, build_ms_text, "KiB: memory without meshes."};
 }
 
 /// The report as HTML: the advice, then what it rests on: ranking, measures of the scene, dropped candidates, machine.

@@ -147,11 +147,11 @@ public:
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
         if (state_ <= state::watching)
-            absent.push_back(
-                {absence::neighbour_list, is_below_list_threshold() ? "not worth its cost for so few boxes"
-                                          : expected_ < fewest_frames_of_first_list
-                                              ? "not worth its cost in so few frames"
-                                              : "not worth its cost: boxes move too far, or arrive too often"});
+            absent.push_back({absence::neighbour_list, is_below_list_threshold()
+                                                           ? "none built, not worth its cost for so few boxes"
+                                                       : expected_ < fewest_frames_of_first_list
+                                                           ? "none built, not worth its cost in so few frames"
+                                                           : "none built, boxes move too far or arrive too often"});
         return absent;
     }
 

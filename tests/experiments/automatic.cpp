@@ -107,7 +107,7 @@ TEST_CASE("The table of measures groups digits and shows unknown values as a das
     m.triangles = 12'345;
     std::string text;
     for (const auto& row : aabblab::measures_table(m).rows) text += row[0] + " " + row[1] + "\n";
-    for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, the greatest edge"})
+    for (const char* line : {"objects 1,200\n", "triangles 12,345 in the meshes\n", "size ratio -, the longest edge"})
         CHECK(holds(text, line));
 }
 
@@ -147,10 +147,10 @@ TEST_CASE("explain reports what it measured and selected for a recording, and wh
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "200", "--frames", "80", "--out", file});
     const program_result reported = run_well({"explain", file});
-    for (const char* part : {"objects       200\n", "frames        81, of which the first 4 are measured\n",
+    for (const char* part : {"objects       200\n", "frames        81; this table is measured in the first 4\n",
                              "at rest       0 % of the objects\n", "counters of all work  ",
                              "prepare    neighbour_list  frames are coherent", "    state kept from earlier frames\n",
-                             "one column: no axis is cut", " pairs of boxes, with a skin of ", "as selected",
+                             "a plan of one column: no axis is cut", " pairs of boxes, with a skin of ", "as selected",
                              "split_large", "axial_cut", "build, tree, triangle do not apply to this scene"})
         CHECK(holds(reported.out, part));
     CHECK_FALSE(holds(reported.out, "canonical"));
