@@ -192,9 +192,8 @@ void add_collide(const command_parser& program) {
     request.method.add_to(command, "build, tree and triangle test");
     command.flag(
         "--self [=all|no-adjacent]", &request.self,
-        "Find self-intersections of A: pairs of triangles with more in common than the corners that they share and "
-        "the edge between two of these; all: every pair with a common point; no-adjacent: only pairs without "
-        "a common corner");
+        "Find self-intersections of A: pairs of triangles that meet outside their shared corners and edge; all: every "
+        "pair with a common point, neighbours included; no-adjacent: only pairs without a shared corner");
     command.flag("--first", &request.first, "Stop at the first pair found");
     command.flag("--count", &request.count, "Count the pairs without storing them");
     const auto take_repeats = [&request](const std::string& text) {
@@ -208,8 +207,8 @@ void add_collide(const command_parser& program) {
     command.flag("--geometry", &request.geometry,
                  "Add to each pair the triangles' intersection, in world coordinates: kind, vertices, error bound");
     command.flag("--exit-code", &request.exit_code,
-                 "Exit with status 1 (as diff) if triangles intersect, with a value of --self only those without a "
-                 "common corner");
+                 "Exit with status 1 (as diff) if triangles intersect; with --self=all, only those without a shared "
+                 "corner count");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

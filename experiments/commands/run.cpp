@@ -28,7 +28,8 @@ int run(const run_request& request) {
         run_experiment(e, folder, request.resume ? existing_results::resume : existing_results::reject,
                        "the same command with --resume", request.counts ? printed::tables_and_counts : printed::tables);
     print("Every repeat is a row of " + visible((folder / "results.csv").string()) +
-          ",\nevery composition of a scene a row of " + visible((folder / "summary.csv").string()) + "\n");
+          ",\nevery composition of a scene a row of " + visible((folder / "summary.csv").string()) +
+          "\naabblab list scenes explains the parameters of scenes, with their units\n");
     return failures.empty() ? 0 : 1;
 }
 

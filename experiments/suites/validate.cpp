@@ -146,7 +146,8 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     if (shown) {
         print(
             "exact: the same pairs as the ground truth; rejected: invalid input, rejected as\n"
-            "it must be; a number counts compositions or tests; -: not run, or nothing wrong\n\n");
+            "it must be; 91 exact: all of 91 compositions or tests; -: not run, or no error;\n"
+            "flushed_, upward_: in a thread that flushes denormals to zero or rounds upward\n\n");
         for (const named_table& t : report.tables)
             print(t.caption + "\n\n" + to_text(t.content, output_width()) + "\n");
         for (const std::string& sentence : report.paragraphs) print(sentence + "\n");

@@ -92,8 +92,8 @@ std::vector<extreme_scene> invalid_mesh_scenes() {
                   "seen from one mesh, the other lies beyond the range of float");
     beyond_float.accepted_in_double = true;
     return {
-        with_pose("skewed_within", "a rotation skewed by a little less than 1e-6", skewed(0.999e-6)),
-        with_pose("stretched_within", "stretched by a little less than 1e-6", stretched(0.999e-6)),
+        with_pose("skewed_within", "a rotation skewed by a little less than the tolerance, 1e-6", skewed(0.999e-6)),
+        with_pose("stretched_within", "stretched by a little less than the tolerance, 1e-6", stretched(0.999e-6)),
         with_pose("skewed_beyond", "a rotation skewed by a little more than 1e-6", skewed(1.001e-6), not_orthonormal),
         with_pose("stretched_beyond", "stretched by a little more than 1e-6", stretched(1.001e-6), not_orthonormal),
         with_pose("reflection", "a pose with a reflection", with_entry(8, -1), not_rigid + "is a reflection"),

@@ -62,7 +62,7 @@ std::vector<shared_column> shared_columns(const scene_summary& scene,
                                           std::span<const candidate_summary* const> ranking) {
     shared_column result{{"result"}, "{}", {}};
     shared_column pairs{{"pairs"}, "{} pairs of boxes", {}};
-    shared_column contacts{{.name = "contacts", .spare = 1}, "{} contacts", {}};
+    shared_column contacts{{.name = "contacts", .spare = 1}, "{} pairs of triangles", {}};
     shared_column bytes{{.name = "KiB", .spare = 2}, "{} KiB", {}};
     for (const candidate_summary* candidate : ranking) {
         result.cells.push_back(result_of(*candidate));
@@ -141,8 +141,7 @@ std::string heading_of(const scene_summary& scene) {
     if (scene.seeds.size() == 1) parameters += fmt::format("{}seed={}", parameters.empty() ? "" : " ", scene.seeds[0]);
     text += parameters + "\n";
     if (scene.seeds.size() > 1)
-        text += fmt::format("pooled over {} seeds: pairs and contacts are sums, ratios geometric means\n",
-                            scene.seeds.size());
+        text += fmt::format("pooled over {} seeds: pairs are sums, ratios geometric means\n", scene.seeds.size());
     const auto is_automatic = [](const candidate_summary& candidate) { return candidate.name.is_automatic(); };
     if (!scene.common.empty())
         text += (scene.differing.empty()                               ? "this composition: "

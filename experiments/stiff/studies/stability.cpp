@@ -40,8 +40,7 @@ private:
     simulation ball_;
 };
 
-/// The relative change of the greatest energy from the first to the last tenth of the periods, which ignores bounded
-/// oscillations of the energy.
+/// The energy drift as the study describes it, which ignores bounded oscillations of the energy.
 double drift_of(const candidate& tested, const integrator_info& stepping, double scaled_step, std::size_t periods,
                 double tolerance) {
     oscillating_ball ball(tested, stepping, /*amplitude=*/at_rest / 100, tolerance);
@@ -141,7 +140,8 @@ stiff_study stability_study() {
     return {
         "stability",
         "A ball of 1 kg oscillates on a floor about its equilibrium depth, always in contact, without a dashpot. The "
-        "study measures the drift of its energy and the greatest stable step",
+        "study measures the greatest stable step and the energy drift: the relative change of the greatest energy from "
+        "the first to the last tenth of 1000 periods (100 with --quick)",
         "central differences are stable up to dt·ω = 2, with ω = √(k/m); the stability polynomial of Dormand and "
         "Prince (1980) exceeds 1 in modulus beyond 0.9972 on the imaginary axis; the usual advice for the discrete "
         "element method is a step of 5 to 10 % of the contact time, dt·ω 0.157 to 0.314",

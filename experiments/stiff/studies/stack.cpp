@@ -77,8 +77,8 @@ stiff_result run_stack(const stiff_setting& setting) {
 
 stiff_study stack_study() {
     return {"stack",
-            "Ten stacked bodies, heavy ones above light ones, on springs of 1e6 N/m and dashpots that are critical for "
-            "the slowest motion. The study measures how deep each is in the one below after 2 s",
+            "Ten stacked bodies, heavy ones above light ones, on springs of 1e6 N/m and dashpots that damp the slowest "
+            "mode critically. The study measures how deep each is in the one below after 2 s",
             "mg/k, where m is the total mass above; the scenes resemble HighMassRatio1 of Box2D and HeavyOnLightTest "
             "of Jolt",
             &run_stack};
