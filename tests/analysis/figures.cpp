@@ -184,8 +184,7 @@ figure small_multiples(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("A figure is written as CSV, SVG and PDF, in a folder that is created") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A figure is written as CSV, SVG and PDF, in a folder that is created") {
     figure other = every_style();
     other.name = "other";
     const std::array figures{every_style(), other};
@@ -415,8 +414,7 @@ TEST_CASE("Points of several series at one category are drawn side by side") {
     CHECK(std::abs(distance() - half_square - 0.15 * (right - left) / 2) < 0.1);
 }
 
-TEST_CASE("A folder that cannot be created is named in the error") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A folder that cannot be created is named in the error") {
     folder.write("file", "");
     const figure f = every_style();
     REQUIRE_THROWS_AS(aabblab::draw(folder / "file", {&f, 1}), aabb::input_error);

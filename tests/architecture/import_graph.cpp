@@ -214,16 +214,14 @@ TEST_CASE("No room imports a room that follows it") {
     CHECK(backward_dependencies(dependencies) == "");
 }
 
-TEST_CASE("No implementation unit repeats an import of its interface") {
-    for (const char* folder : folders) CHECK(repeated_imports(std::filesystem::path(AABBLAB_SOURCE) / folder) == "");
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "No implementation unit repeats an import of its interface") {
+    for (const char* part : folders) CHECK(repeated_imports(std::filesystem::path(AABBLAB_SOURCE) / part) == "");
     std::ofstream(folder / "a.cppm") << "export module a;\nimport b;\nexport import :c;\n";
     std::ofstream(folder / "a.cpp") << "module a;\nimport :c;\nimport b;\nimport d;\n";
     CHECK(repeated_imports(folder.path()) == "a.cpp imports :c\na.cpp imports b\n");
 }
 
-TEST_CASE("Imports against the order of the rooms are detected") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Imports against the order of the rooms are detected") {
     const auto write = [&](const std::string& file, const std::string& text) {
         const std::filesystem::path path = folder.path() / file;
         std::filesystem::create_directories(path.parent_path());

@@ -60,8 +60,7 @@ std::string noise(std::size_t bytes) {
 
 }  // namespace
 
-TEST_CASE("Packing and unpacking round-trips, and packing is deterministic") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Packing and unpacking round-trips, and packing is deterministic") {
     (void)folder.write("a/one.csv", "1,2\r\n");
     (void)folder.write("a/sub/two.json", noise(200'000));
     (void)folder.write("a/left.log", "not asked for");
@@ -82,8 +81,7 @@ TEST_CASE("Packing and unpacking round-trips, and packing is deterministic") {
     CHECK(!std::filesystem::exists(extracted));
 }
 
-TEST_CASE("Archives with paths outside their folder, links or pipes are rejected") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Archives with paths outside their folder, links or pipes are rejected") {
     for (const char* name :
          {"/etc/passwd", "results/../../out", "../results/x", "other/x", "x", "results/./x", "results/../results/x"}) {
         CAPTURE(name);
@@ -104,8 +102,7 @@ TEST_CASE("Archives with paths outside their folder, links or pipes are rejected
     CHECK(bytes_of_file(valid.folder() / "a/b") == "content");
 }
 
-TEST_CASE("Archives beyond the limits on bytes, files or folders are rejected") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Archives beyond the limits on bytes, files or folders are rejected") {
     const aabblab::archive_limits limits{.files = 3, .bytes = std::uint64_t{1} << 20U};
     const auto bomb = packed(folder, {{"results/a", std::string(std::size_t{64} << 20U, '0')}});
     REQUIRE(std::filesystem::file_size(bomb) < 100'000);
@@ -118,8 +115,7 @@ TEST_CASE("Archives beyond the limits on bytes, files or folders are rejected") 
                 "has more than 3 folders, the limit for results", limits);
 }
 
-TEST_CASE("Truncated, damaged and foreign archives are rejected") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Truncated, damaged and foreign archives are rejected") {
     const std::string whole = bytes_of_file(packed(folder, {{"results/a", noise(300'000)}, {"results/b", "content"}}));
     for (const double share : {0.3, 0.9, 0.999}) {
         CAPTURE(share);

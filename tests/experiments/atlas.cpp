@@ -190,8 +190,7 @@ TEST_CASE("The config of the atlas runs every candidate that a statement names")
     }
 }
 
-TEST_CASE("atlas --judge draws maps from existing results and reports missing ones") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "atlas --judge draws maps from existing results and reports missing ones") {
     const program_result missing = run_program({"atlas", "--judge", "--out", folder / "none"});
     CHECK(missing.status == 2);
     CHECK(holds(missing.err, "there are no results of an atlas in"));

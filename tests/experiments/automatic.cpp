@@ -65,8 +65,7 @@ TEST_CASE("Errors in the use of auto in a config are reported with their line") 
     CHECK(rejection_of("[[compose]]\nautos = true").starts_with("a.toml:3: unknown key of [compose] 'autos'"));
 }
 
-TEST_CASE("auto finds the exact pairs in a run and is a row of every table") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "auto finds the exact pairs in a run and is a row of every table") {
     const std::filesystem::path config = folder.write(
         "a.toml",
         "name = \"a\"\n[[compose]]\nauto = true\n[[compose]]\nsort = \"std\"\n[[scene]]\nkind = [\"pile\", "
@@ -142,8 +141,7 @@ TEST_CASE("measure_motion gives displacement, relative displacement, rest and in
     CHECK(is_near(passing.inversions, 0.5));
 }
 
-TEST_CASE("explain reports what it measured and selected for a recording, and what that saves") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "explain reports what it measured and selected for a recording, and what that saves") {
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "200", "--frames", "80", "--out", file});
     const program_result reported = run_well({"explain", file});
@@ -163,8 +161,7 @@ TEST_CASE("explain reports what it measured and selected for a recording, and wh
     CHECK(holds(run_program({"explain", file, file}).err, "a recording is a scene of its own"));
 }
 
-TEST_CASE("explain reports what each omitted part saves and which strategy has it, if any") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "explain reports what each omitted part saves and which strategy has it, if any") {
     const std::string file = folder / "p.aabbs";
     const auto table_of = [&](const char* scene, const char* objects) {
         run_well({"scene", scene, "--n", objects, "--frames", "6", "--out", file});
@@ -195,8 +192,7 @@ TEST_CASE("explain reports what each omitted part saves and which strategy has i
     CHECK(holds(line_of(table_of("one_huge", "100"), "division of large objects"), "split_large "));
 }
 
-TEST_CASE("explain accepts meshes, and a motion file with its meshes") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "explain accepts meshes, and a motion file with its meshes") {
     const std::string motion = folder / "m.txt";
     run_well({"scene", "mesh_swarm", "--n", "4", "--frames", "4", "--normalise", "no", "--mesh",
               "icosphere:triangles=80", "--motion", motion});
@@ -214,8 +210,7 @@ TEST_CASE("explain accepts meshes, and a motion file with its meshes") {
                 "more than two meshes need a motion file"));
 }
 
-TEST_CASE("explain reports what it could not measure in the given time") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "explain reports what it could not measure in the given time") {
     // Every pair of boxes overlaps.
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "brownian", "--n", "4000", "--frames", "4", "--density", "1e6", "--out", file});
@@ -226,8 +221,7 @@ TEST_CASE("explain reports what it could not measure in the given time") {
     CHECK(holds(run_program({"explain", file, "--seconds", "0"}).err, "is how long to run: a number above 0"));
 }
 
-TEST_CASE("explain rejects a wrong name before it measures anything") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "explain rejects a wrong name before it measures anything") {
     const std::string text = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
     const std::string cut = folder.write("cut.aabbs", "no recording");
     check_refused({"explain"}, {{{"nope.off"}, "unknown mesh 'nope.off'"},
@@ -236,8 +230,7 @@ TEST_CASE("explain rejects a wrong name before it measures anything") {
                                 {{cut}, cut}});
 }
 
-TEST_CASE("explain prints no empty section") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "explain prints no empty section") {
     const std::string config = folder.write("a.toml",
                                             "name = \"a\"\nengines = [\"cgal\"]\n[[scene]]\nkind = \"mesh_pair\"\n"
                                             "meshes = [\"icosphere:triangles=80\"]\nframes = 2\n");
@@ -247,8 +240,7 @@ TEST_CASE("explain prints no empty section") {
     CHECK_FALSE(holds(reported.out, "left out\n\n"));
 }
 
-TEST_CASE("pairs and collide report what auto selected") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "pairs and collide report what auto selected") {
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "50", "--frames", "6", "--out", file});
     CHECK(holds(run_program({"pairs", file}).out, "neighbour_list + bucket + columns + simd: "));

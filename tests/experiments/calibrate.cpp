@@ -233,8 +233,7 @@ TEST_CASE("calibrate saves its measurements and prints them as a table") {
     CHECK(holds(user.run({"explain", "icosphere", "icosphere"}).out, saved.date));
 }
 
-TEST_CASE("calibrate overwrites only costs files") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "calibrate overwrites only costs files") {
     const std::string text = folder.write("notes.md", "# Notes\n");
     run_refused({"calibrate", "--quick", "--out", text});
     CHECK(bytes_of_file(text) == "# Notes\n");

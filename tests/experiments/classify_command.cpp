@@ -9,8 +9,7 @@ const std::string crossing = "0,0,0, 1,0,0, 0,1,0,\t.25 0x1p-2 -1 .25 .25 1e0 +2
 
 }  // namespace
 
-TEST_CASE("classify prints 0 or 1 per line") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "classify prints 0 or 1 per line") {
     const std::string lines = "# two pairs\n\n" + disjoint + "  \t\n" + crossing;
     const program_result from_file = run_well({"classify", folder.write("pairs.txt", lines)});
     REQUIRE(from_file.out == "0\n1\n");

@@ -2,8 +2,7 @@
 
 #include "program.hpp"
 
-TEST_CASE("Commands that time reject a clock of 15 ms resolution and write nothing") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Commands that time reject a clock of 15 ms resolution and write nothing") {
     const std::string config = folder.write("a.toml",
                                             "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 5\nframes = 1\n"
                                             "[[compose]]\nauto = true\n[measure]\nrepeats = 2\n");

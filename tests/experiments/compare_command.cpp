@@ -218,8 +218,7 @@ TEST_CASE("The baseline is the first composition even after an engine") {
     CHECK(result.scenes[0].baseline == "std");
 }
 
-TEST_CASE("compare lists changes beyond noise, or all ratios, and exits with status 0") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "compare lists changes beyond noise, or all ratios, and exits with status 0") {
     const std::string a = write_results(folder / "a", rows_of({}));
     std::vector<row> slower = rows_of({.sorts = {{"insertion", 1}, {"std", 2.4}, {"shell", 0.5}}, .hour = 2});
     for (row& r : slower) r.bytes[0] = 8192;
@@ -248,8 +247,7 @@ TEST_CASE("compare lists changes beyond noise, or all ratios, and exits with sta
     CHECK_FALSE(holds(unchanged.out, "not compared"));
 }
 
-TEST_CASE("compare reports differing results first and exits with status 1") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "compare reports differing results first and exits with status 1") {
     const std::string a = write_results(folder / "a", rows_of({}));
     std::vector<row> wrong = rows_of({.hour = 2});
     for (row& r : wrong)
@@ -263,8 +261,7 @@ TEST_CASE("compare reports differing results first and exits with status 1") {
     CHECK(result.out.find("the results differ") < result.out.find("ratios compared"));
 }
 
-TEST_CASE("compare --times warns of noise between runs and rejects another machine") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "compare --times warns of noise between runs and rejects another machine") {
     const std::string a = write_results(folder / "a", rows_of({.drift = 0}));
     const std::string b = write_results(folder / "b", rows_of({.machine = 2, .drift = 0, .hour = 2}));
     const program_result same_machine = run_well({"compare", a, b, "--times"});
@@ -282,8 +279,7 @@ TEST_CASE("compare --times warns of noise between runs and rejects another machi
     CHECK(holds(ratios.out, "Abacus 9)\n"));
 }
 
-TEST_CASE("compare skips experiments that only one of two folders has") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "compare skips experiments that only one of two folders has") {
     write_results(folder / "a/first", rows_of({.experiment = "first"}));
     write_results(folder / "a/second", rows_of({.experiment = "second"}));
     folder.write("a/c6/process-0.json", "{}");
@@ -296,8 +292,7 @@ TEST_CASE("compare skips experiments that only one of two folders has") {
         holds(result.out, "not compared, because the other run lacks them: 9 compositions in a scene of A, 0 of B\n"));
 }
 
-TEST_CASE("compare rejects folders without valid results in one sentence") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "compare rejects folders without valid results in one sentence") {
     const std::string good = write_results(folder / "good", rows_of({}));
     const std::string other = write_results(folder / "other", rows_of({.experiment = "other"}));
     const std::string none = write_results(folder / "none", {});

@@ -194,8 +194,7 @@ TEST_CASE("The keys ask and caches are checked and part of the hash") {
             rejection_of(measure + line + "\n").ends_with(line + " is for scenes of meshes, and brownian has none"));
 }
 
-TEST_CASE("A changed mesh file changes the hash") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A changed mesh file changes the hash") {
     const auto hash_with = [&](const std::string& vertex) {
         const std::string file = folder.write("one.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n" + vertex + "\n3 0 1 3\n");
         return aabblab::hash_of(parsed("name = \"test\"\n[[scene]]\nkind = \"mesh_pair\"\nmeshes = [\"" + file +
@@ -276,8 +275,7 @@ TEST_CASE("Errors in a config are reported in one sentence with their line") {
     REQUIRE(sentence.find('\n') == std::string::npos);
 }
 
-TEST_CASE("A config that does not exist is rejected by name") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A config that does not exist is rejected by name") {
     REQUIRE_THROWS_WITH(
         aabblab::read_experiment(folder / "first.toml", experiment_size::full),
         Catch::Matchers::EndsWith("first.toml does not exist; did you mean " AABBLAB_CONFIGS "/first.toml?"));

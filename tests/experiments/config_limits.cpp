@@ -69,12 +69,11 @@ TEST_CASE("Dots outside keys do not count as key parts") {
     CHECK(holds(rejection_of(head + "engines = \"\"\"\n" + dotted + "\"\"\"\n" + scene), "unknown engine"));
 }
 
-TEST_CASE("A config longer than the limit is rejected") {
+TEST_CASE_METHOD(in_folder, "A config longer than the limit is rejected") {
     const std::string text = head + scene;
     const std::string longest = text + std::string(262'144 - text.size(), '#');
     CHECK(rejection_of(longest) == "accepted");
     CHECK(rejection_of(longest + "#") == "test.toml is longer than 262144 bytes, the limit for a config");
-    const temporary_folder folder;
     REQUIRE_NOTHROW(aabblab::read_experiment(folder.write("a.toml", longest), experiment_size::full));
     REQUIRE_THROWS_AS(aabblab::read_experiment("/dev/zero", experiment_size::full), aabb::input_error);
 }

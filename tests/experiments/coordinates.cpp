@@ -16,8 +16,7 @@ bool same_bits(float a, float b) {
 
 }  // namespace
 
-TEST_CASE("text coordinates are correctly rounded") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "text coordinates are correctly rounded") {
     std::istringstream texts(
         "0.1 -0 0.3 1e23 8388608.5 8388609.5 16777217 16777217.0000000000000000000000000001 "
         "16777216.999999999999999999999999999 1.00000005960464477539062499999 1.000000059604644775390625 "
@@ -34,8 +33,7 @@ TEST_CASE("text coordinates are correctly rounded") {
     }
 }
 
-TEST_CASE("decimals near the midpoint of two floats are correctly rounded") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "decimals near the midpoint of two floats are correctly rounded") {
     REQUIRE(rc::check("agrees with strtof", [&](std::uint32_t bits, std::uint64_t digits, bool below) {
         const float low = std::fabs(std::bit_cast<float>(bits));
         const float high = std::nextafterf(low, std::numeric_limits<float>::infinity());
@@ -50,8 +48,7 @@ TEST_CASE("decimals near the midpoint of two floats are correctly rounded") {
     }));
 }
 
-TEST_CASE("a mesh round-trips through OFF bit for bit") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a mesh round-trips through OFF bit for bit") {
     REQUIRE(rc::check("round trip", [&](const std::vector<std::array<std::uint32_t, 3>>& points) {
         aabb::mesh m;
         for (const auto& bits : points) {

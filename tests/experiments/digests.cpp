@@ -44,8 +44,7 @@ std::string digest_of_run(const temporary_folder& folder, const std::string& sce
 
 }  // namespace
 
-TEST_CASE("pairs and run on boxes hash the rows frame,a,b") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "pairs and run on boxes hash the rows frame,a,b") {
     const std::string scene = folder / "scene.aabbs";
     run_well({"scene", "brownian", "--n", "80", "--frames", "3", "--seed", "7", "--density", "1", "--out", scene});
     const outcome pairs(folder, {"pairs", scene});
@@ -53,8 +52,7 @@ TEST_CASE("pairs and run on boxes hash the rows frame,a,b") {
     CHECK(digest_of_run(folder, "kind = \"brownian\"\nobjects = 80\nframes = 3\ndensity = 1\n") == pairs.digest);
 }
 
-TEST_CASE("collide hashes 0,a,b for each row, with --self=all too") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "collide hashes 0,a,b for each row, with --self=all too") {
     const std::string knot = "torus_knot:triangles=600";
     const outcome both(folder, {"collide", knot, "icosphere:triangles=320"});
     CHECK(both.digest == digest_of(in_frame_0(both.written)));
@@ -63,8 +61,7 @@ TEST_CASE("collide hashes 0,a,b for each row, with --self=all too") {
     CHECK(self.digest == digest_of(in_frame_0(self.written)));
 }
 
-TEST_CASE("contacts and run on meshes hash the rows frame,object_a,object_b,triangle_a,triangle_b") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "contacts and run on meshes hash the rows frame,object_a,object_b,triangle_a,triangle_b") {
     const std::string motion = folder / "swarm.txt";
     run_well({"scene", "mesh_swarm", "--n", "8", "--frames", "3", "--density", "3", "--seed", "7", "--mesh",
               "icosphere:triangles=80", "--normalise", "no", "--motion", motion});

@@ -77,8 +77,7 @@ TEST_CASE("every class of pairs has its property and, where possible, hits and m
     CHECK(text_digest(pinned) == "4840156e752060f3");
 }
 
-TEST_CASE("errors counts the wrong results of each method reproducibly and plots them") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "errors counts the wrong results of each method reproducibly and plots them") {
     const std::string config = folder.write(
         "e.toml",
         "name = \"e\"\n[[pairs]]\nclass = [\"random\", \"lattice\", \"small\"]\nprecision = [\"float\", \"double\"]\n"
@@ -109,8 +108,7 @@ TEST_CASE("errors counts the wrong results of each method reproducibly and plots
         }
 }
 
-TEST_CASE("errors compares the geometry of hits with CGAL's exact construction") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "errors compares the geometry of hits with CGAL's exact construction") {
     const std::string config =
         folder.write("h.toml",
                      "name = \"h\"\n[[hits]]\nclass = [\"random\", \"coplanar\", \"zero_area\"]\n"
@@ -198,8 +196,7 @@ TEST_CASE("errors rejects a wrong config with its line and the nearest name") {
     run_refused({"errors", "nowhere.toml"});
 }
 
-TEST_CASE("errors runs whole compositions and plots the metrics of the config") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "errors runs whole compositions and plots the metrics of the config") {
     const std::string config = folder.write(
         "e.toml",
         "name = \"e\"\n[[scene]]\nkind = \"brownian\"\nobjects = 300\nframes = 9\n[measure]\nrepeats = 2\n"
@@ -257,8 +254,7 @@ TEST_CASE("a config of errors cannot mix triangle tests and compositions") {
               .starts_with("e.toml:9: this curve has no method; expected triangle = "));
 }
 
-TEST_CASE("errors in a minority of seeds show in the plot") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "errors in a minority of seeds show in the plot") {
     const std::string config =
         folder.write("e.toml",
                      "name = \"e\"\nseed = [1, 2, 3, 4, 5]\n[[scene]]\nkind = \"brownian\"\nobjects = 12\nframes = "
@@ -283,8 +279,7 @@ TEST_CASE("errors in a minority of seeds show in the plot") {
     CHECK(figures[0].y.logarithmic);
 }
 
-TEST_CASE("errors.csv round-trips, and a malformed one is rejected with its line") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "errors.csv round-trips, and a malformed one is rejected with its line") {
     const auto study = aabblab::parse_error_study(
         "name = \"e\"\n[[pairs]]\nclass = [\"random\", \"far\"]\ncount = 100\nprecision = [\"float\", \"double\"]\n"
         "[[curve]]\ntriangle = { name = \"devillers_guigue\", precision = [\"double\", \"float\"] }\n",

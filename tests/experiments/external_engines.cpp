@@ -48,10 +48,9 @@ bool has_ended(pid_t process) {
 
 }  // namespace
 
-TEST_CASE("An external engine is compared with the ground truth and has its reported times") {
+TEST_CASE_METHOD(in_folder, "An external engine is compared with the ground truth and has its reported times") {
     const std::string kind = GENERATE("brownian", "population", "lattice", "mixed_sizes");
     CAPTURE(kind);
-    const temporary_folder folder;
     const program_result result = run_with(folder, good, kind);
     INFO(result.err << result.out);
     REQUIRE(result.status == 0);
@@ -78,13 +77,12 @@ TEST_CASE("An external engine is compared with the ground truth and has its repo
     CHECK(holds(run_program({"explain", folder / "joined.toml"}).out, "  mine\n"));
 }
 
-TEST_CASE("A wrong result of an external engine is a failure, or counted if declared inexact") {
+TEST_CASE_METHOD(in_folder, "A wrong result of an external engine is a failure, or counted if declared inexact") {
     const auto [fault, message] = GENERATE(table<std::string, std::string>({
         {"sed -i 2d \"$2\"\n", " is a false negative\n"},
         {"sed -i '2s/.*/0,0,1/' \"$2\"\n", "the pair 0 1 is a false positive\n"},
         {"sed -i 1q \"$2\"\n", " is a false negative\n"},
     }));
-    const temporary_folder folder;
     const program_result result = run_with(folder, good + fault);
     INFO(result.err << result.out);
     REQUIRE(result.status == 1);
@@ -100,7 +98,7 @@ TEST_CASE("A wrong result of an external engine is a failure, or counted if decl
     }
 }
 
-TEST_CASE("Malformed output of an external engine gets one sentence and status 2") {
+TEST_CASE_METHOD(in_folder, "Malformed output of an external engine gets one sentence and status 2") {
     const auto [fault, message] = GENERATE(table<std::string, std::string>({
         {"exit 3\n", "the external engine 'mine' ended with status 3"},
         {"kill -9 $$\n", "the external engine 'mine' was terminated by signal 9"},
@@ -134,7 +132,6 @@ TEST_CASE("Malformed output of an external engine gets one sentence and status 2
         {"echo 4,1,1 >>\"$3\"\n", timing + ", line 6, '4,1,1': expected a frame below 4"},
     }));
     CAPTURE(fault);
-    const temporary_folder folder;
     const program_result result = as_refused(run_with(folder, good + fault));
     CAPTURE(result.err);
     REQUIRE(result.err.starts_with("aabblab: " + (folder / "joined.toml").string() +
@@ -142,14 +139,13 @@ TEST_CASE("Malformed output of an external engine gets one sentence and status 2
     REQUIRE(holds(result.err, message + "\n"));
 }
 
-TEST_CASE("An external engine may report its time in either column") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "An external engine may report its time in either column") {
     const std::string columns = GENERATE("0,1.25", "0.5,0");
     CAPTURE(columns);
     REQUIRE(run_with(folder, good + "sed -i '2,$s/0.5,1.25/" + columns + "/' \"$3\"\n").status == 0);
 }
 
-TEST_CASE("An interrupted run leaves no external engine and no exchanged files") {
+TEST_CASE_METHOD(in_folder, "An interrupted run leaves no external engine and no exchanged files") {
     const auto [ended_by, processes] = GENERATE(table<int, std::string>({
         {SIGTERM, "1"},
         {SIGINT, "1"},
@@ -157,7 +153,6 @@ TEST_CASE("An interrupted run leaves no external engine and no exchanged files")
         {SIGTERM, "2"},
     }));
     CAPTURE(ended_by, processes);
-    const temporary_folder folder;
     const auto exchange_folder = folder / "tmp";
     std::filesystem::create_directory(exchange_folder);
     // Processes that it started must end too, even in another session.
@@ -182,8 +177,7 @@ TEST_CASE("An interrupted run leaves no external engine and no exchanged files")
     CHECK(comes_true([&] { return std::filesystem::is_empty(exchange_folder); }));
 }
 
-TEST_CASE("Processes left by an external engine are killed when it ends, in any session") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Processes left by an external engine are killed when it ends, in any session") {
     const std::string ending = GENERATE("", "exit 3\n", "kill -9 $$\n");
     CAPTURE(ending);
     const program_result result = run_with(folder, good + "cd \"${0%/*}\"\n" + stray + ending);
@@ -231,8 +225,7 @@ TEST_CASE("An external engine that hangs is killed with its children, and other 
     CHECK(comes_true([&] { return has_ended(child); }));
 }
 
-TEST_CASE("An external engine that cannot be started gets one sentence and status 2") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "An external engine that cannot be started gets one sentence and status 2") {
     folder.write("mine", good);  // not executable
     const auto config = folder.write("joined.toml", config_of("brownian", ""));
     const program_result rejected = run_refused({"run", config, "--out", folder / "out"});
@@ -246,8 +239,7 @@ TEST_CASE("An external engine that cannot be started gets one sentence and statu
                   "./no_such_program for one in the folder of the config\n"));
 }
 
-TEST_CASE("An external engine skips scenes of meshes") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "An external engine skips scenes of meshes") {
     std::filesystem::permissions(folder.write("mine", good), std::filesystem::perms::owner_all);
     const auto config =
         folder.write("meshes.toml",

@@ -14,7 +14,7 @@ const std::string lie =
 
 }  // namespace
 
-TEST_CASE("Wrong results are marked in the tables and listed by candidate") {
+TEST_CASE_METHOD(in_folder, "Wrong results are marked in the tables and listed by candidate") {
     std::vector<aabb::extreme_scene> scenes = aabb::extreme_scenes(aabb::extreme_size::small);
     std::erase_if(scenes, [](const aabb::extreme_scene& scene) {
         return scene.name != "two_objects" && scene.name != "many_against_one" && scene.name != "beyond_float";
@@ -56,7 +56,6 @@ TEST_CASE("Wrong results are marked in the tables and listed by candidate") {
     CHECK(memory[0].ends_with(" bytes; the limit is 1,000"));
 
     // Stored rows give the same.
-    const temporary_folder folder;
     const std::string text = csv_of(rows);
     const auto stored = aabblab::read_extreme_rows(folder.write("extreme.csv", text));
     CHECK(csv_of(stored) == text);
@@ -95,8 +94,7 @@ TEST_CASE("A case with a wrong expectation fails every exact test, and the progr
     CHECK(rejected > 100);
 }
 
-TEST_CASE("validate extreme rejects arguments that do not apply to it") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "validate extreme rejects arguments that do not apply to it") {
     const std::string file = folder.write("c.toml", "[[case]]\nname = 1\n");
     const auto error_of = [](const std::vector<std::string>& arguments) { return run_refused(arguments).err; };
     CHECK(error_of({"validate", "--quick", "extreme", "--cases", file}) ==

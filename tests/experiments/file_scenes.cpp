@@ -38,8 +38,7 @@ std::string recording_at(const std::filesystem::path& file) {
 
 }  // namespace
 
-TEST_CASE("Every command finds the same pairs in a user's recordings and motion files") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Every command finds the same pairs in a user's recordings and motion files") {
     std::map<std::string, std::string> digests;  // by parameters
     std::string files;
     for (const std::string seed : {"3", "4"}) {
@@ -88,8 +87,7 @@ TEST_CASE("Every command finds the same pairs in a user's recordings and motion 
     }
 }
 
-TEST_CASE("Results are resumed unless a recording or motion file has changed") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Results are resumed unless a recording or motion file has changed") {
     const std::string recording = folder / "a.aabbs";
     const std::string motion = folder / "m.txt";
     record(recording, "1");
@@ -114,8 +112,7 @@ TEST_CASE("Results are resumed unless a recording or motion file has changed") {
     CHECK(bytes_of_file(folder / "out/results.csv") == before);
 }
 
-TEST_CASE("Scenes from files ignore the seeds of a config and reject their own") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Scenes from files ignore the seeds of a config and reject their own") {
     const std::string file = folder / "a.aabbs";
     record(file, "1");
     const auto e = aabblab::parse_experiment(recording_at(file) + "[[scene]]\nkind = \"still\"\nobjects = 5\n",
@@ -132,8 +129,7 @@ TEST_CASE("Scenes from files ignore the seeds of a config and reject their own")
     CHECK_THROWS_AS(aabblab::make_box_scene({"still", {}, {}, std::nullopt}), aabb::input_error);
 }
 
-TEST_CASE("A missing or malformed scene file is rejected with the line of the config") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A missing or malformed scene file is rejected with the line of the config") {
     const std::string file = folder / "a.aabbs";
     record(file, "1");
     CHECK(rejection_of(recording_config("")) == "test.toml:3: recording: file must be given, the path of a file");
@@ -163,8 +159,7 @@ TEST_CASE("A missing or malformed scene file is rejected with the line of the co
     CHECK(motion(still, "meshes = [\"icosphere\"]\n") == "accepted");
 }
 
-TEST_CASE("A relative path is resolved as given, or else from the folder of the config") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A relative path is resolved as given, or else from the folder of the config") {
     std::filesystem::create_directory(folder / "sub");
     record(folder / "sub/a.aabbs", "1");
     const auto e = aabblab::parse_experiment(recording_config("file = \"a.aabbs\"\n"), folder / "sub/c.toml",
@@ -178,8 +173,7 @@ TEST_CASE("A relative path is resolved as given, or else from the folder of the 
     CHECK(aabblab::make_box_scene(e.scenes[0])->objects() == 60);
 }
 
-TEST_CASE("A mesh beside the config precedes the data folder, and results store only its name") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A mesh beside the config precedes the data folder, and results store only its name") {
     // The data folder may contain a mesh of this name.
     folder.write("sub/elephant.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     const std::string config =
@@ -199,8 +193,7 @@ TEST_CASE("A mesh beside the config precedes the data folder, and results store 
         "(a mesh is a file, here, in some or in "));
 }
 
-TEST_CASE("scene draws a recording and converts a motion file to one") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "scene draws a recording and converts a motion file to one") {
     const std::string file = folder / (odd + ".aabbs");
     record(file, "1");
     const std::string bytes = bytes_of_file(file);
@@ -227,8 +220,7 @@ TEST_CASE("scene draws a recording and converts a motion file to one") {
     CHECK(bytes_of_file(file) == bytes);
 }
 
-TEST_CASE("A recording in place of a config is rejected with the commands that accept it") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A recording in place of a config is rejected with the commands that accept it") {
     const std::string file = folder / "s.aabbs";
     run_well({"scene", "brownian", "--n", "20", "--frames", "1", "--out", file});
     for (const char* command : {"run", "validate"})

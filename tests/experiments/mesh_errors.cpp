@@ -33,8 +33,7 @@ std::string ply_points(float last = 0) {
 
 }  // namespace
 
-TEST_CASE("malformed text meshes are rejected with the line number") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "malformed text meshes are rejected with the line number") {
     for (const auto& [file, bytes, error] : {
              malformed{"a.off", "", ": is empty"},
              {"a.off", "\n# nothing\n", ": ends before the keyword OFF"},
@@ -146,8 +145,7 @@ TEST_CASE("malformed text meshes are rejected with the line number") {
     }
 }
 
-TEST_CASE("malformed binary meshes are rejected") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "malformed binary meshes are rejected") {
     const std::string face = raw(std::uint8_t{3}) + raw(0) + raw(1);
     const std::string triangle = stl_triangle({0, 0, 0, 1, 0, 0, 0, 1, 0});
     const std::string not_stl =
@@ -182,14 +180,12 @@ TEST_CASE("malformed binary meshes are rejected") {
     }
 }
 
-TEST_CASE("an error message quotes at most 40 bytes of a word, in whole characters") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "an error message quotes at most 40 bytes of a word, in whole characters") {
     const std::string word = "x" + repeated("\xc3\xa9", 30);
     CHECK_THAT(error_of(folder.write("a.off", word)), EndsWith("found '" + word.substr(0, 39) + "…'"));
 }
 
-TEST_CASE("files that are not meshes are rejected") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "files that are not meshes are rejected") {
     CHECK_THAT(error_of(folder / "absent.off"), EndsWith("/absent.off: no such file"));
     CHECK_THAT(error_of(folder.path()), EndsWith(": is a folder, not a file"));
     CHECK_THAT(error_of("/dev/null"), EndsWith("/dev/null: is not a regular file"));

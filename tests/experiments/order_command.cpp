@@ -2,8 +2,7 @@
 
 #include "mesh_bytes.hpp"
 
-TEST_CASE("order writes a mesh whose tree needs no triangle indices") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "order writes a mesh whose tree needs no triangle indices") {
     const std::string mesh = "torus_knot:triangles=2000";
     const std::string written = folder / "ordered.off";
     REQUIRE(run_well({"order", mesh, "--out", written}).out == "wrote " + written + ": 2,000 triangles\n");

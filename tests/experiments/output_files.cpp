@@ -16,8 +16,7 @@ void write_output(const std::filesystem::path& file, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("an output file appears only when it is committed") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "an output file appears only when it is committed") {
     {
         aabblab::output_file out(folder / "a");
         out.write("lost");
@@ -36,8 +35,7 @@ TEST_CASE("an output file appears only when it is committed") {
     REQUIRE(folder.files() == 1);
 }
 
-TEST_CASE("an uncommitted output file is unnamed, so that an interrupted process leaves no file") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "an uncommitted output file is unnamed, so that an interrupted process leaves no file") {
     const int descriptor = open(folder.path().c_str(), O_TMPFILE | O_RDWR, 0600);
     if (descriptor >= 0) close(descriptor);
     const bool has_unnamed_files = descriptor >= 0 && std::filesystem::exists("/proc/self/fd");
@@ -52,8 +50,7 @@ TEST_CASE("an uncommitted output file is unnamed, so that an interrupted process
     }
 }
 
-TEST_CASE("an output file may have a name or path of the maximum length") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "an output file may have a name or path of the maximum length") {
     const std::string name(255, 'n');
     write_output(folder / name, "");
     REQUIRE(std::filesystem::exists(folder / name));
@@ -68,16 +65,14 @@ TEST_CASE("an output file may have a name or path of the maximum length") {
     REQUIRE(std::filesystem::exists(deep / "a"));
 }
 
-TEST_CASE("an output file has the permissions that umask allows") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "an output file has the permissions that umask allows") {
     const mode_t before = umask(027);
     write_output(folder / "a", "");
     umask(before);
     REQUIRE(std::filesystem::status(folder / "a").permissions() == std::filesystem::perms{0640});
 }
 
-TEST_CASE("an output file without a folder is written to the working directory") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "an output file without a folder is written to the working directory") {
     const auto before = std::filesystem::current_path();
     std::filesystem::current_path(folder.path());
     write_output("a", "");
@@ -86,8 +81,7 @@ TEST_CASE("an output file without a folder is written to the working directory")
     REQUIRE(folder.files() == 1);
 }
 
-TEST_CASE("an existing file is replaced only on commit, and concurrent writers do not interfere") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "an existing file is replaced only on commit, and concurrent writers do not interfere") {
     folder.write("a", "older");
     aabblab::output_file first(folder / "a");
     aabblab::output_file second(folder / "a");
@@ -100,8 +94,7 @@ TEST_CASE("an existing file is replaced only on commit, and concurrent writers d
     REQUIRE(bytes_of_file(folder / "a") == "one");
 }
 
-TEST_CASE("writing to a symbolic link replaces its target") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "writing to a symbolic link replaces its target") {
     folder.write("a", "older");
     std::filesystem::create_symlink("a", folder / "link");
     write_output(folder / "link", "new");
@@ -109,8 +102,7 @@ TEST_CASE("writing to a symbolic link replaces its target") {
     REQUIRE(bytes_of_file(folder / "a") == "new");
 }
 
-TEST_CASE("a file that is not regular is written to, not replaced") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a file that is not regular is written to, not replaced") {
     REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
     std::string read;
     std::thread reader([&] { read = bytes_of_file(folder / "pipe"); });
@@ -121,9 +113,8 @@ TEST_CASE("a file that is not regular is written to, not replaced") {
     REQUIRE(folder.files() == 1);
 }
 
-TEST_CASE("targets that cannot be written are rejected") {
+TEST_CASE_METHOD(in_folder, "targets that cannot be written are rejected") {
     using Catch::Matchers::EndsWith;
-    const temporary_folder folder;
     REQUIRE_THROWS_WITH(aabblab::output_file(""), "the file to write has no name");
     REQUIRE_THROWS_WITH(aabblab::output_file(folder.path()), EndsWith(": cannot be written: it is a folder"));
     REQUIRE_THROWS_WITH(aabblab::output_file(folder / "absent" / "a"),

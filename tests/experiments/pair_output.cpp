@@ -18,8 +18,7 @@ TEST_CASE("A pair or contact that a stage reports twice is a defect") {
     REQUIRE_NOTHROW(aabblab::require_each_once(contacts, "a stage"));
 }
 
-TEST_CASE("A number table is written only when it is committed") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A number table is written only when it is committed") {
     {
         aabblab::number_table uncommitted(folder / "left.csv", "a,b");
         uncommitted.add({0, 1});

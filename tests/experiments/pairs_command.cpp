@@ -17,8 +17,7 @@ std::string recording_in(const temporary_folder& folder, const std::string& obje
 
 }  // namespace
 
-TEST_CASE("pairs reports the pairs of brute force with every composition") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "pairs reports the pairs of brute force with every composition") {
     const std::string scene = recording_in(folder);
     const std::string out = folder / "pairs.csv";
     const auto reference = json_of({"pairs", scene, "--json", "--engine", "brute_force"});
@@ -41,16 +40,14 @@ TEST_CASE("pairs reports the pairs of brute force with every composition") {
     REQUIRE(std::ranges::is_sorted(records));
 }
 
-TEST_CASE("pairs prints the scene and the composition") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "pairs prints the scene and the composition") {
     const program_result result = run_well({"pairs", recording_in(folder, "2"), "--sort", "insertion"});
     REQUIRE(holds(result.out, "2 objects, 4 frames"));
     REQUIRE(holds(result.out, "insertion + none + simd"));
     run_well({"pairs", recording_in(folder, "0")});
 }
 
-TEST_CASE("too many copies of objects are rejected before they are allocated") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "too many copies of objects are rejected before they are allocated") {
     const std::string scene = folder / "dense.aabbs";
     run_well({"scene", "brownian", "--n", "300", "--density", "3", "--frames", "0", "--out", scene});
     const std::string config = folder.write(
@@ -64,8 +61,7 @@ TEST_CASE("too many copies of objects are rejected before they are allocated") {
         CHECK(holds(run_refused(arguments).err, "copies of 300 objects, but at most 16796416"));
 }
 
-TEST_CASE("pairs never overwrites the recording that it reads") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "pairs never overwrites the recording that it reads") {
     const std::string scene = recording_in(folder);
     const std::string bytes = bytes_of_file(scene);
     std::filesystem::create_symlink(scene, folder / "link.csv");
@@ -75,8 +71,7 @@ TEST_CASE("pairs never overwrites the recording that it reads") {
     }
 }
 
-TEST_CASE("pairs leaves no output file if a later frame has an invalid box") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "pairs leaves no output file if a later frame has an invalid box") {
     std::string bytes = bytes_of_file(recording_in(folder));
     bytes.replace(bytes.size() - 32, 4, std::string("\x00\x00\xc0\x7f", 4));  // NaN
     run_refused({"pairs", folder.write("bad.aabbs", bytes), "--out", folder / "pairs.csv"});

@@ -87,8 +87,7 @@ TEST_CASE("a picture of a box far from the origin has few ticks") {
     REQUIRE(count_of("class=\"tick\"", aabblab::picture_of(data, {"far", "", ""})) < 100);
 }
 
-TEST_CASE("scene draws every kind without writing a recording") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "scene draws every kind without writing a recording") {
     const std::string kind =
         GENERATE("brownian", "clustered", "far", "flat", "free_fall", "hollow_sphere", "lattice", "line", "mixed_sizes",
                  "needles", "one_huge", "pile", "population", "still", "teleport", "mesh_swarm");
@@ -108,15 +107,13 @@ TEST_CASE("scene draws every kind without writing a recording") {
     REQUIRE(holds(svg, "first frame (0): boxes " + (kind == "population" && objects == "30" ? "15" : objects) + ","));
 }
 
-TEST_CASE("a frame without objects is drawn") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a frame without objects is drawn") {
     run_well(
         {"scene", "population", "--n", "1", "--frames", "1", "--turnover", "1", "--picture", folder / "empty.svg"});
     REQUIRE(folder.files() == 1);
 }
 
-TEST_CASE("scene writes the same recording with and without a picture") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "scene writes the same recording with and without a picture") {
     const std::string alone = folder / "alone.aabbs";
     const std::string both = folder / "both.aabbs";
     run_well({"scene", "flat", "--n", "40", "--out", alone});
@@ -127,8 +124,7 @@ TEST_CASE("scene writes the same recording with and without a picture") {
     REQUIRE(holds(bytes_of_file(folder / "both.svg"), "</svg>"));
 }
 
-TEST_CASE("scene reports the requested displacement") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "scene reports the requested displacement") {
     const std::string out = folder / "scene.aabbs";
     const auto output_in = [&](const std::string& unit) {
         return run_program({"scene", "line", "--displacement", "0.25", "--unit", unit, "--out", out}).out;
@@ -139,8 +135,7 @@ TEST_CASE("scene reports the requested displacement") {
                   "mean displacement per frame: - of the mean extent, - of the mean spacing\n"));
 }
 
-TEST_CASE("scene rejects pictures that it cannot write and leaves no file behind") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "scene rejects pictures that it cannot write and leaves no file behind") {
     std::filesystem::create_directory(folder / "sub");
     const std::string file = folder / "scene.aabbs";
     const std::string same = folder / "sub" / ".." / "scene.aabbs";

@@ -132,8 +132,7 @@ TEST_CASE("Output that cannot be written is an error, but a closed pipe is not")
     REQUIRE(quiet.err.empty());
 }
 
-TEST_CASE("An experiment whose output pipe is closed runs to its end") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "An experiment whose output pipe is closed runs to its end") {
     const std::string config =
         folder.write("c.toml", "name = \"c\"\n[[scene]]\nkind = [\"brownian\", \"still\"]\nobjects = 20\nframes = 1\n" +
                                    std::string("[measure]\nrepeats = 2\n"));
@@ -152,8 +151,7 @@ TEST_CASE("An experiment whose output pipe is closed runs to its end") {
     CHECK(run_unread({"run", failing, "--out", folder / "f"}).status == 2);
 }
 
-TEST_CASE("A closed standard output is rejected before any file is opened") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A closed standard output is rejected before any file is opened") {
     const std::string out = folder / "s.aabbs";
     const program_result rejected =
         as_refused(run_program({"scene", "brownian", "--n", "20", "--frames", "1", "--out", out}, {}, closed_output));

@@ -146,8 +146,7 @@ TEST_CASE("A race finds the fastest candidate and drops those that are far behin
     CHECK(race.dropped.front().name == "slow");
 }
 
-TEST_CASE("A candidate that was disturbed once is not dropped") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A candidate that was disturbed once is not dropped") {
     const std::string marker = folder / "played";
     std::vector<racer> racers{delayed("fast", sleeping(tick)), delayed("disturbed", sleeping(tick))};
     // It takes three times as long in the first run, which finds no file.
@@ -193,8 +192,7 @@ TEST_CASE("A race has as many finalists as time permits, but at least two") {
     CHECK(race_of(short_scene, racers, 4).finalists.size() == 2);
 }
 
-TEST_CASE("Each repeat of a race begins with another candidate") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Each repeat of a race begins with another candidate") {
     const std::string file = folder / "order";
     std::vector<racer> racers;
     for (const char* name : {"a", "b"}) {
@@ -209,7 +207,7 @@ TEST_CASE("Each repeat of a race begins with another candidate") {
     for (std::size_t i = 2; i + 2 < order.size(); i += 2) CHECK(order[i] != order[i + 2]);
 }
 
-TEST_CASE("A child process reports its output so far and how it ended") {
+TEST_CASE_METHOD(in_folder, "A child process reports its output so far and how it ended") {
     using aabblab::ending;
     const auto ends = [](const std::function<void()>& work, double seconds) {
         const aabblab::child_result done = aabblab::run_in_child(
@@ -236,7 +234,6 @@ TEST_CASE("A child process reports its output so far and how it ended") {
     const aabblab::child_result rejected =
         aabblab::run_in_child([](const aabblab::output_sender&) { throw aabb::input_error("it is wrong"); }, 60);
     CHECK(rejected.reason == "it is wrong");
-    const temporary_folder folder;
     const std::string file = folder / "begun";
     const auto idle = aabblab::run_in_child([&](const aabblab::output_sender&) { std::ofstream(file) << "yes"; }, 0);
     CHECK(idle.end == ending::stopped);
@@ -319,8 +316,7 @@ TEST_CASE("A race reports the reason why a frame is invalid") {
     CHECK_THROWS_WITH(race_of(scene, {delayed("one", reject), delayed("other", reject)}, 1), why);
 }
 
-TEST_CASE("recommend and explain report an invalid frame at any position") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "recommend and explain report an invalid frame at any position") {
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "60", "--frames", "30", "--out", file});
     std::string bytes = bytes_of_file(file);
@@ -490,8 +486,7 @@ TEST_CASE("The stopping rule limits the time of a candidate by grace, ratio, sha
     CHECK(rule.longest(8) == 17);
 }
 
-TEST_CASE("Interleaved candidates begin in turn, and a hopeless one runs once") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Interleaved candidates begin in turn, and a hopeless one runs once") {
     const std::string file = folder / "order";
     std::vector<aabblab::candidate> candidates;
     for (const char* name : {"a", "b", "c"})
@@ -572,8 +567,7 @@ TEST_CASE("Every exact candidate starts in a race, engines included") {
                   engine.exact);
 }
 
-TEST_CASE("recommend ranks candidates, says which to use and writes a page") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "recommend ranks candidates, says which to use and writes a page") {
     const std::string file = folder / "p.aabbs";
     const std::string page = folder / "p.html";
     run_well({"scene", "pile", "--n", "300", "--frames", "8", "--out", file});
@@ -601,8 +595,7 @@ TEST_CASE("recommend ranks candidates, says which to use and writes a page") {
                 "still.toml is a config, which explain and run take as their only argument"));
 }
 
-TEST_CASE("recommend never overwrites its input and rejects an unwritable page before it runs") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "recommend never overwrites its input and rejects an unwritable page before it runs") {
     const std::string mesh = folder.write("t.off", tetrahedron);
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "30", "--frames", "2", "--out", file});

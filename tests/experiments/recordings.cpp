@@ -64,8 +64,7 @@ const aabb::box large = {{-3.4e38F, -1, 5}, {3.4e38F, -1, 5}};
 
 }  // namespace
 
-TEST_CASE("a recording has the frames that were recorded") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a recording has the frames that were recorded") {
     for (const std::vector<frame>& frames :
          {std::vector<frame>{{}}, {{small}}, {{small, large}, {large, small}, {small, small}}, {{}, {}}}) {
         given_scene scene(frames);
@@ -81,8 +80,7 @@ TEST_CASE("a recording has the frames that were recorded") {
     }
 }
 
-TEST_CASE("a recording has Broadmark's binary format") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a recording has Broadmark's binary format") {
     given_scene scene({{{{0, 0, 0}, {1, 1, 1}}}, {{{2, 0, 0}, {3, 1, 1}}}});
     aabblab::write_recording(scene, "name", "name", folder / "a.aabbs", {});
     REQUIRE(bytes_of_file(folder / "a.aabbs") ==
@@ -94,8 +92,7 @@ TEST_CASE("a recording has Broadmark's binary format") {
     REQUIRE(bytes.substr(128, 6) == std::string("boxes\0", 6));
 }
 
-TEST_CASE("a scene that fails leaves no recording behind and an existing one untouched") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a scene that fails leaves no recording behind and an existing one untouched") {
     folder.write("a.aabbs", "older");
     given_scene scene({{small}, {small, small}});
     REQUIRE_THROWS_AS(aabblab::write_recording(scene, "n", "t", folder / "a.aabbs", {}), aabb::input_error);
@@ -105,8 +102,7 @@ TEST_CASE("a scene that fails leaves no recording behind and an existing one unt
     REQUIRE_THROWS_AS(aabblab::write_recording(empty, "n", "t", folder / "b.aabbs", {}), aabb::input_error);
 }
 
-TEST_CASE("a recording that exceeds the free disk space is rejected before it is written") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a recording that exceeds the free disk space is rejected before it is written") {
     endless_scene scene;
     REQUIRE_THROWS_WITH(
         aabblab::write_recording(scene, "n", "t", folder / "a.aabbs", {}),
@@ -116,8 +112,7 @@ TEST_CASE("a recording that exceeds the free disk space is rejected before it is
     REQUIRE_THROWS_WITH(aabblab::write_recording(scene, "n", "t", "/dev/null", {}), "the scene was run");
 }
 
-TEST_CASE("a recording without objects has at most a million frames") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a recording without objects has at most a million frames") {
     const auto frames = aabblab::open_recording(folder.write("a.aabbs", header(0, 999'999)))->frames();
     REQUIRE(frames == 1'000'000);
     given_scene scene(std::vector<frame>(1'000'001));
@@ -125,8 +120,7 @@ TEST_CASE("a recording without objects has at most a million frames") {
                         EndsWith("b.aabbs: a recording of 0 objects holds at most 1000000 frames, not 1000001"));
 }
 
-TEST_CASE("invalid recordings are rejected") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "invalid recordings are rejected") {
     using malformed = std::pair<std::string, std::string>;
     for (const auto& [bytes, error] : {
              malformed{"", "is empty"},
@@ -159,8 +153,7 @@ TEST_CASE("invalid recordings are rejected") {
     CHECK_THAT(error_of(folder.path()), EndsWith(": is a folder, not a file"));
 }
 
-TEST_CASE("a recording that shrinks while it is read is rejected") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a recording that shrinks while it is read is rejected") {
     std::string bytes = header(40000, 1);
     for (int i = 0; i < 80000; ++i) bytes += unit;
     const auto file = folder.write("a.aabbs", bytes);

@@ -258,8 +258,7 @@ TEST_CASE("A table fits the given width: it drops spare columns, replaces long n
           "std               3         4\n");
 }
 
-TEST_CASE("run prints narrow tables, prints counts on request, and writes all lines to summary.csv") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "run prints narrow tables, prints counts on request, and writes all lines to summary.csv") {
     const std::string config = folder.write("a.toml",
                                             "name = \"a\"\nseed = [1, 2]\nengines = [\"cgal\"]\n[[scene]]\n"
                                             "kind = [\"brownian\", \"still\"]\nobjects = 50\nframes = 2\n[compose]\n"

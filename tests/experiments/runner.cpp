@@ -78,8 +78,7 @@ std::set<std::string> results_of(std::span<const row> rows) {
 
 }  // namespace
 
-TEST_CASE("A scene of boxes is run by every global search and every engine that searches boxes") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A scene of boxes is run by every global search and every engine that searches boxes") {
     const experiment e = boxes();
     REQUIRE(aabblab::candidates_for(e, e.scenes[0]).size() == 3);
     rows_of_run(e, folder / "r");
@@ -97,8 +96,7 @@ TEST_CASE("A scene of boxes is run by every global search and every engine that 
     }
 }
 
-TEST_CASE("A scene of meshes is run by both stages together, engines included") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A scene of meshes is run by both stages together, engines included") {
     const std::vector<row> rows = rows_of_run(meshes(), folder / "r");
     REQUIRE(rows.size() == 4 + 3);
     for (const row& r : rows) {
@@ -149,8 +147,7 @@ TEST_CASE("Differences of an inexact triangle test are counted by class and are 
     }
 }
 
-TEST_CASE("A candidate that is stopped early runs once, and not again when the run is resumed") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A candidate that is stopped early runs once, and not again when the run is resumed") {
     experiment e = boxes(4);
     e.patience = 10;
     std::vector<candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
@@ -198,8 +195,7 @@ TEST_CASE("Each scene runs its candidates after the baseline in a reproducible r
     CHECK(order_in(3) != order_in(2));
 }
 
-TEST_CASE("Results of another config are not resumed") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Results of another config are not resumed") {
     rows_of_run(boxes(), folder / "r");
     REQUIRE_THROWS_AS(results_folder(folder / "r", record_of(boxes(5)), existing_results::resume), aabb::input_error);
     // The table has a row of a scene that is not in the manifest.
@@ -213,10 +209,9 @@ TEST_CASE("Results of another config are not resumed") {
     REQUIRE_THROWS_AS(results_folder(folder / "r", record_of(boxes()), existing_results::resume), aabb::input_error);
 }
 
-TEST_CASE("Metrics that were not requested are not measured") {
+TEST_CASE_METHOD(in_folder, "Metrics that were not requested are not measured") {
     experiment e = boxes(5);
     e.recorded.clear();
-    const temporary_folder folder;
     const std::vector<row> rows = rows_of_run(e, folder / "r");
     REQUIRE(rows.size() == 3);
     for (const row& r : rows) {
@@ -232,8 +227,7 @@ TEST_CASE("A lost pair of boxes is a failure even with an inexact triangle test"
     REQUIRE(result.candidates[0].failure.ends_with("is a false negative"));
 }
 
-TEST_CASE("A candidate with a wrong result when timed loses the rows of its earlier repeats") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A candidate with a wrong result when timed loses the rows of its earlier repeats") {
     const experiment e = boxes(3);
     std::vector<candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
     candidate late = wrong_candidate(fault::loses);
@@ -252,8 +246,7 @@ TEST_CASE("A candidate with a wrong result when timed loses the rows of its earl
     for (const row& r : rows) REQUIRE(r.name[aabb::strategy_kind::sort] != "wrong");
 }
 
-TEST_CASE("Results of another config or build are set aside on request, and others resumed") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Results of another config or build are set aside on request, and others resumed") {
     const auto run = [&](const experiment& e) {
         results_folder results(folder / "r", record_of(e), existing_results::replace);
         const std::size_t before = results.rows().size();

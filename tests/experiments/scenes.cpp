@@ -241,8 +241,7 @@ TEST_CASE("huge objects of a swarm come first, with the first mesh and the given
         REQUIRE(poses_of({"mesh_swarm", {{"objects", "5"}, {"huge", huge}}, single, 1})[0].size() == 5);
 }
 
-TEST_CASE("meshes that are not normalised keep their coordinates and still overlap") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "meshes that are not normalised keep their coordinates and still overlap") {
     const auto file = folder.write("a.off", "OFF\n4 2 0\n1000 0 0\n1010 0 0\n1000 10 0\n1000 0 10\n3 0 1 2\n3 0 2 3\n");
     for (const std::string kind : {"mesh_swarm", "mesh_pair"}) {
         const auto scene = aabblab::make_mesh_scene({kind, {{"normalise", "no"}}, {file.string()}, 1});

@@ -119,8 +119,7 @@ TEST_CASE("a mesh in the order of a build keeps its triangles") {
     }
 }
 
-TEST_CASE("a mesh is named by a file, a file in the data folder or a shape") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "a mesh is named by a file, a file in the data folder or a shape") {
     const data_folder_at here(folder.path());
     REQUIRE(aabblab::data_folder() == folder.path());
     folder.write("elephant.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2 0\n");

@@ -1,7 +1,6 @@
 #include "program.hpp"
 
-TEST_CASE("validate stiff runs the studies that are named and writes a file for each") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "validate stiff runs the studies that are named and writes a file for each") {
     const std::string out = folder / "out";
     const program_result result = run_well({"validate", "stiff", "plate", "--quick", "--out", out});
     REQUIRE(holds(result.out, "a step of 2 extents, plain"));

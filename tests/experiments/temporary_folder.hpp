@@ -39,6 +39,11 @@ private:
     std::filesystem::path folder_;
 };
 
+/// Test cases that use files have a folder each: `TEST_CASE_METHOD(in_folder, "…")`.
+struct in_folder {
+    const temporary_folder folder;
+};
+
 [[nodiscard]] inline std::string bytes_of_file(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};

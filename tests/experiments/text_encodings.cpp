@@ -200,8 +200,7 @@ TEST_CASE("Every text format rejects binary and ambiguous input with the reason"
         EndsWith("a.off:2: some lines end in carriage returns alone, others in line feeds; expected one of the two"));
 }
 
-TEST_CASE("UTF-16 becomes UTF-8, with unpaired surrogates replaced") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "UTF-16 becomes UTF-8, with unpaired surrogates replaced") {
     // "# é€𝄞\n", then an unpaired high surrogate.
     const std::string comment("#\0 \0\xe9\0\xac\x20\x34\xd8\x1e\xdd\n\0#\0\x34\xd8\n\0", 20);
     CHECK(aabblab::text_of_file(folder.write("a.txt", "\xff\xfe" + comment)) ==
@@ -209,8 +208,7 @@ TEST_CASE("UTF-16 becomes UTF-8, with unpaired surrogates replaced") {
     CHECK_NOTHROW(aabblab::read_mesh(folder.write("a.off", "\xff\xfe" + comment + widened(tetrahedron, 0, 1))));
 }
 
-TEST_CASE("Binary PLY is read with any line endings of its header and with a byte order mark") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Binary PLY is read with any line endings of its header and with a byte order mark") {
     const std::string header =
         "ply\nformat binary_little_endian 1.0\ncomment end_header\nelement vertex 3\nproperty uchar tag\nproperty "
         "float x\n"
@@ -234,8 +232,7 @@ TEST_CASE("An endless line is rejected") {
           "aabblab: /dev/zero:1: the line is longer than 16777216 bytes; expected text of short lines\n");
 }
 
-TEST_CASE("Randomly corrupted files are read or rejected in a sentence") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Randomly corrupted files are read or rejected in a sentence") {
     std::mt19937 draw(1);
     const auto below = [&](std::size_t end) { return draw() % end; };
     for (const text_format& format : formats()) {

@@ -74,10 +74,9 @@ TEST_CASE("An invalid file of cases is rejected in one sentence with file and li
           "c.toml:9: two cases have the name 'one'");
 }
 
-TEST_CASE("Every triangle test that must be exact solves the project's own cases") {
+TEST_CASE_METHOD(in_folder, "Every triangle test that must be exact solves the project's own cases") {
     const std::vector<aabb::triangle_case> cases = aabblab::read_triangle_cases(AABBLAB_CASES);
     REQUIRE(cases.size() >= 100);
-    const temporary_folder folder;
     const std::string text = csv_of(aabblab::run_triangle_cases(cases));
     const std::vector<aabblab::extreme_row> rows = aabblab::read_extreme_rows(folder.write("extreme.csv", text));
     for (const std::string& failure : aabblab::failures_in(rows)) FAIL_CHECK(failure);

@@ -90,8 +90,7 @@ TEST_CASE("An archive, and results with other line endings and another row order
     CHECK(bytes_of_file(folder / "c/report.html") == page);
 }
 
-TEST_CASE("Altered results are rejected in a sentence that names the file") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Altered results are rejected in a sentence that names the file") {
     const std::filesystem::path original = folder / "whole";
     write_finished_run(original);
     const auto rejected = [&](const std::string& text, const std::function<void(const std::filesystem::path&)>& alter) {
@@ -136,8 +135,7 @@ TEST_CASE("Altered results are rejected in a sentence that names the file") {
     run_well({"compare", original, original});
 }
 
-TEST_CASE("Unfinished results are judged, and the report says so") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Unfinished results are judged, and the report says so") {
     const std::filesystem::path results = folder / "results";
     write_finished_run(results);
     aabblab::unseal_record(results);
@@ -147,8 +145,7 @@ TEST_CASE("Unfinished results are judged, and the report says so") {
     CHECK(holds(bytes_of_file(folder / "out/report.html"), "Note: the results are not sealed"));
 }
 
-TEST_CASE("Invalid archives of a run are rejected in one sentence") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Invalid archives of a run are rejected in one sentence") {
     const std::string results = folder / "results";
     worlds::write_tests(results, 1, 1);
     aabblab::seal_record(results);

@@ -19,10 +19,9 @@ void judge_published(const std::string& archive, const temporary_folder& folder)
 
 }  // namespace
 
-TEST_CASE("Unpacked files of an archive are removed when the program ends, even by a signal") {
+TEST_CASE_METHOD(in_folder, "Unpacked files of an archive are removed when the program ends, even by a signal") {
     const int signal = GENERATE(SIGINT, SIGTERM, SIGHUP, SIGKILL);
     CAPTURE(signal);
-    const temporary_folder folder;
     const std::filesystem::path unpacked = folder / "tmp";
     std::filesystem::create_directory(unpacked);
     const pid_t program = started({"env", "TMPDIR=" + unpacked.string(), AABBLAB_UNDER_TEST, "reproduce", "--judge",

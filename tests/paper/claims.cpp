@@ -131,8 +131,7 @@ TEST_CASE("Timed claims are undecided under strong noise") {
     check_verdicts(judged_worlds({0.97}, 1), [](const auto& row) { return row.is_timed ? "undecided" : ""; });
 }
 
-TEST_CASE("Without measurements every claim is undecided") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Without measurements every claim is undecided") {
     check_verdicts(judged(aabblab::measurements(folder.path())), on_all("undecided"));
 }
 
@@ -375,8 +374,7 @@ TEST_CASE("An alternative counts only after the correction for multiple tests") 
     CHECK(same->corrected == support::undecided);
 }
 
-TEST_CASE("Every later judgement reports what was wrong in a run") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Every later judgement reports what was wrong in a run") {
     worlds::write_world(folder.path(), 0.6, 0.05);
     run_well({"reproduce", "--judge", "--out", folder.path()});
     std::ofstream(folder / "failures.txt") << "shell is wrong on brownian, frame 3: the pair 1 2 is missing\n";

@@ -49,8 +49,7 @@ TEST_CASE("dropped balls fall, collide and stay above the floor with every tree"
     }
 }
 
-TEST_CASE("an inexact composition is timed on its own motion") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "an inexact composition is timed on its own motion") {
     const auto config = folder.write("lost.toml", R"(name = "lost"
 seed = 3
 [[scene]]

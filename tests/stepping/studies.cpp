@@ -83,7 +83,7 @@ TEST_CASE("an engine that misses all contacts lets bodies tunnel") {
     REQUIRE(holds(wrong_in(run_study("plate", blind)), "swept: share tunnelled"));
 }
 
-TEST_CASE("results of a study round-trip through files and give the same figures") {
+TEST_CASE_METHOD(in_folder, "results of a study round-trip through files and give the same figures") {
     const aabblab::stiff_study& study = study_named("stability");
     aabblab::stiff_result result;
     result.add({"velocity_verlet", "greatest stable dt·ω", 2.25, "2 ± 0.5 %", aabblab::stiff_verdict::fails});
@@ -92,7 +92,6 @@ TEST_CASE("results of a study round-trip through files and give the same figures
     result.plot("energy_drift", "bdf", 0.5, 1e-9);
     result.plot("energy_drift", "bdf", 1, std::numeric_limits<double>::infinity());
     result.plot("energy_drift", "velocity_verlet", 0.25, 1e-6);
-    const temporary_folder folder;
     write_result(folder.path(), study, result);
     const std::optional<aabblab::stiff_result> read = aabblab::read_result(folder.path(), study);
     REQUIRE(read.has_value());
