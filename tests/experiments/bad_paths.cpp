@@ -8,12 +8,9 @@ using arguments = std::vector<std::string>;
 using command_with = std::function<arguments(const std::string& path)>;
 
 /// Valid arguments of every command, but for the path under test.
-class command_fixture {
+class command_fixture : public in_folder {
 public:
     command_fixture() { run_well(joined(scene_, {"--out", recording_})); }
-
-    [[nodiscard]] const temporary_folder& folder() const { return folder_; }
-    [[nodiscard]] const std::string& recording() const { return recording_; }
 
     /// Commands that read a user's file.
     [[nodiscard]] std::vector<command_with> readers() const {
@@ -25,19 +22,19 @@ public:
             [&](const std::string& path) { return arguments{"contacts", motion_, path}; },
             [&](const std::string& path) { return arguments{"classify", path}; },
             [&](const std::string& path) { return arguments{"collide", mesh_, mesh_, "--poses", path}; },
-            [&](const std::string& path) { return arguments{"compare", path, folder_.path()}; },
+            [&](const std::string& path) { return arguments{"compare", path, folder.path()}; },
             [&](const std::string& path) { return arguments{"explain", path}; },
             [&](const std::string& path) { return arguments{"validate", path}; },
             [&](const std::string& path) {
-                return arguments{"validate", "extreme", "--cases", path, "--out", folder_ / "x"};
+                return arguments{"validate", "extreme", "--cases", path, "--out", folder / "x"};
             },
             [&](const std::string& path) { return arguments{"run", path}; },
             [&](const std::string& path) { return arguments{"reproduce", "--judge", "--out", path}; },
             [&](const std::string& path) {
-                return arguments{"scene", "mesh_pair", "--mesh", path, "--out", folder_ / "x.aabbs"};
+                return arguments{"scene", "mesh_pair", "--mesh", path, "--out", folder / "x.aabbs"};
             },
             [&](const std::string& path) {
-                return arguments{"explain", folder_.write("p.toml", config_of("mesh_pair", path))};
+                return arguments{"explain", folder.write("p.toml", config_of("mesh_pair", path))};
             },
         };
     }
@@ -72,11 +69,10 @@ public:
     }
 
 private:
-    temporary_folder folder_;
-    std::string mesh_ = folder_.write("a.off", tetrahedron);
-    std::string motion_ = folder_.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
-    std::string config_ = folder_.write("c.toml", config_of("brownian", ""));
-    std::string recording_ = folder_ / "s.aabbs";
+    std::string mesh_ = folder.write("a.off", tetrahedron);
+    std::string motion_ = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
+    std::string config_ = folder.write("c.toml", config_of("brownian", ""));
+    std::string recording_ = folder / "s.aabbs";
     const arguments scene_ = {"scene", "brownian", "--n", "20", "--frames", "1"};
 };
 
@@ -86,9 +82,7 @@ void require_rejected(const arguments& command, const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("Every command rejects an unusable path in one sentence that names it") {
-    const command_fixture fixture;
-    const temporary_folder& folder = fixture.folder();
+TEST_CASE_METHOD(command_fixture, "Every command rejects an unusable path in one sentence that names it") {
     std::filesystem::create_directory(folder / "folder.off");
     std::filesystem::create_symlink("absent", folder / "dangling");
     std::filesystem::create_symlink("loop", folder / "loop");
@@ -98,70 +92,67 @@ TEST_CASE("Every command rejects an unusable path in one sentence that names it"
     for (const std::string& name : {too_long, std::string("a.off/b"), std::string("loop"), std::string("loop/b")})
         for (auto* paths : {&unreadable, &unwritable}) paths->push_back(folder / name);
     for (const char* name : {"absent", "dangling"}) unreadable.push_back(folder / name);
-    for (const command_with& command : fixture.readers())
+    for (const command_with& command : readers())
         for (const std::string& path : unreadable) require_rejected(command(path), path);
     for (const std::string& path : unwritable) {
-        for (const command_with& command : fixture.writers()) require_rejected(command(path), path);
-        for (const command_with& command : fixture.folder_writers()) require_rejected(command(path), path);
+        for (const command_with& command : writers()) require_rejected(command(path), path);
+        for (const command_with& command : folder_writers()) require_rejected(command(path), path);
     }
-    for (const command_with& command : fixture.writers()) {
+    for (const command_with& command : writers()) {
         for (const std::filesystem::path& path : {folder / "folder.off", folder / "absent" / "b", folder / "dangling"})
             require_rejected(command(path), path);
         require_rejected(command(""), "");
     }
-    for (const command_with& command : fixture.folder_writers()) {
+    for (const command_with& command : folder_writers()) {
         require_rejected(command(folder / "a.off"), "a.off");
         require_rejected(command(""), "");
     }
-    for (const command_with& command : fixture.readers()) {
+    for (const command_with& command : readers()) {
         require_rejected(command(folder / "folder.off"), "folder.off");
         require_rejected(command(""), "");
     }
 }
 
-TEST_CASE("A pipe or device in place of a file is rejected without blocking") {
-    const command_fixture fixture;
-    const std::string pipe = fixture.folder() / "pipe.off";
+TEST_CASE_METHOD(command_fixture, "A pipe or device in place of a file is rejected without blocking") {
+    const std::string pipe = folder / "pipe.off";
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
     for (const std::string& path : {pipe, std::string("/dev/null")})
         for (const arguments& command : {arguments{"pairs", path},
                                          {"collide", path, "icosphere"},
                                          {"contacts", path, "icosphere"},
                                          {"compare", path, path},
-                                         {"scene", "mesh_pair", "--mesh", path, "--out", fixture.folder() / "x"}})
+                                         {"scene", "mesh_pair", "--mesh", path, "--out", folder / "x"}})
             require_rejected(command, path);
 }
 
-TEST_CASE("A named pipe without a writer is rejected") {
-    const command_fixture fixture;
-    const std::string pipe = fixture.folder() / "pipe.toml";
+TEST_CASE_METHOD(command_fixture, "A named pipe without a writer is rejected") {
+    const std::string pipe = folder / "pipe.toml";
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-    const std::string mesh = fixture.folder() / "a.off";
+    const std::string mesh = folder / "a.off";
     for (const arguments& command :
          {arguments{"classify", pipe}, {"run", pipe}, {"collide", mesh, mesh, "--poses", pipe}}) {
         require_rejected(command, pipe);
         CHECK(run_program(command).err.ends_with("pipe.toml: is a named pipe with no writer\n"));
     }
     for (const char* command : {"reproduce", "atlas"}) {
-        const program_result rejected = run_program({command, "--judge", pipe, "--out", fixture.folder() / "judged"});
+        const program_result rejected = run_program({command, "--judge", pipe, "--out", folder / "judged"});
         CHECK(rejected.status == 2);
         CHECK(rejected.err.ends_with("pipe.toml is not a regular file\n"));
     }
     // Every command reads the costs at its start, and must not block on a pipe.
-    const std::filesystem::path costs = fixture.folder() / "aabblab/costs.toml";
-    std::filesystem::create_directory(fixture.folder() / "aabblab");
+    const std::filesystem::path costs = folder / "aabblab/costs.toml";
+    std::filesystem::create_directory(folder / "aabblab");
     REQUIRE(mkfifo(costs.c_str(), 0600) == 0);
-    const program_result listed = as_refused(
-        run_command({"env", "XDG_CONFIG_HOME=" + fixture.folder().path().string(), AABBLAB_UNDER_TEST, "list"}));
+    const program_result listed =
+        as_refused(run_command({"env", "XDG_CONFIG_HOME=" + folder.path().string(), AABBLAB_UNDER_TEST, "list"}));
     CHECK(holds(listed.err, "costs.toml: is not a regular file; aabblab calibrate --reset removes it"));
 }
 
-TEST_CASE("A pipe is read like a file, however late its writer starts") {
-    const command_fixture fixture;
-    const std::string pipe = fixture.folder() / "pipe.txt";
+TEST_CASE_METHOD(command_fixture, "A pipe is read like a file, however late its writer starts") {
+    const std::string pipe = folder / "pipe.txt";
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
     const auto shell = [&](const std::string& line) {
-        return run_command({"bash", "-c", line, AABBLAB_UNDER_TEST, pipe, fixture.folder() / "a.off"});
+        return run_command({"bash", "-c", line, AABBLAB_UNDER_TEST, pipe, folder / "a.off"});
     };
     const std::string pair = "echo 0 0 0 1 0 0 0 1 0 .2 .2 -1 .2 .2 1 .3 .3 1";
     CHECK(shell("(sleep 0.5; " + pair + " > \"$1\") & \"$0\" classify \"$1\"").out == "1\n");
@@ -174,9 +165,7 @@ TEST_CASE("A pipe is read like a file, however late its writer starts") {
     CHECK(shell("\"$0\" collide \"$2\" \"$2\" --poses <(echo 1 0 0 0 0 1 0 0 0 0 1 0)").status == 0);
 }
 
-TEST_CASE("An unreadable file is rejected in one sentence") {
-    const command_fixture fixture;
-    const temporary_folder& folder = fixture.folder();
+TEST_CASE_METHOD(command_fixture, "An unreadable file is rejected in one sentence") {
     const std::string unreadable = folder / "unreadable.toml";
     std::filesystem::create_symlink("/proc/self/mem", unreadable);
     const std::string mesh = folder / "a.off";
@@ -187,9 +176,7 @@ TEST_CASE("An unreadable file is rejected in one sentence") {
         require_rejected(command, "unreadable.toml");
 }
 
-TEST_CASE("A folder in place of a results file is rejected in one sentence") {
-    const command_fixture fixture;
-    const temporary_folder& folder = fixture.folder();
+TEST_CASE_METHOD(command_fixture, "A folder in place of a results file is rejected in one sentence") {
     const std::string config = folder / "c.toml";
     const std::string out = folder / "out";
     run_well({"run", config, "--out", out});
@@ -207,11 +194,9 @@ TEST_CASE("A folder in place of a results file is rejected in one sentence") {
     }
 }
 
-TEST_CASE("File names that are not UTF-8 work, and their bytes are shown escaped") {
-    const command_fixture fixture;
-    const temporary_folder& folder = fixture.folder();
+TEST_CASE_METHOD(command_fixture, "File names that are not UTF-8 work, and their bytes are shown escaped") {
     const std::string out = folder / "x\xff";
-    for (const command_with& command : fixture.writers()) {
+    for (const command_with& command : writers()) {
         run_well(command(out));
         CHECK(std::filesystem::is_regular_file(out));
         std::filesystem::remove(out);
@@ -223,7 +208,7 @@ TEST_CASE("File names that are not UTF-8 work, and their bytes are shown escaped
     run_well({"scene", "mesh_pair", "--frames", "1", "--mesh", mesh, "--picture", picture});
     CHECK(holds(bytes_of_file(picture), "m\\xff.off"));
 
-    const std::string config = folder.write("c\xff.toml", command_fixture::config_of("brownian", ""));
+    const std::string config = folder.write("c\xff.toml", config_of("brownian", ""));
     run_well({"run", config, "--out", folder / "r\xff"});
     CHECK(holds(bytes_of_file(folder / "r\xff/manifest.json"), "/c\xef\xbf\xbd.toml"));
     run_well({"run", config, "--resume", "--out", folder / "r\xff"});
@@ -231,16 +216,14 @@ TEST_CASE("File names that are not UTF-8 work, and their bytes are shown escaped
     require_rejected({"pairs", folder / "absent\xff"}, "/absent\\xff: no such file");
 }
 
-TEST_CASE("Control characters in names and files are shown escaped") {
-    const command_fixture fixture;
-    const temporary_folder& folder = fixture.folder();
+TEST_CASE_METHOD(command_fixture, "Control characters in names and files are shown escaped") {
     const std::string name = "a\x1b[31m\nb\x7f\xc2\x9bz\xc3\xa9.off";  // the last letter is é
     const std::string shown = "a\\x1b[31m\\x0ab\\x7f\\xc2\\x9bz\xc3\xa9.off";
-    std::vector<command_with> readers = fixture.readers();
-    readers.pop_back();  // TOML cannot contain such names unescaped
-    for (const command_with& command : readers) require_rejected(command(folder / name), shown);
+    std::vector<command_with> reading = readers();
+    reading.pop_back();  // TOML cannot contain such names unescaped
+    for (const command_with& command : reading) require_rejected(command(folder / name), shown);
     require_rejected({"collide", folder.write("b.off", "OFF\n\x1b[2J 1 0\n"), "icosphere"}, "found '\\x1b[2J'");
-    require_rejected({"explain", folder.write("c.toml", command_fixture::config_of("mesh_pair", "x\\u001b\\n.off"))},
+    require_rejected({"explain", folder.write("c.toml", config_of("mesh_pair", "x\\u001b\\n.off"))},
                      "'x\\x1b\\x0a.off'");
 
     const std::string mesh = folder.write(name, tetrahedron);

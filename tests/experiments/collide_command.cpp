@@ -8,8 +8,7 @@
 namespace {
 
 /// A tetrahedron, and a pyramid on a square.
-struct two_files {
-    temporary_folder folder;
+struct two_files : in_folder {
     std::string a = folder.write("a.off", tetrahedron);
     std::string b = folder.write(
         "b.off", "OFF\n5 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n4 0 1 2 3\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n");
@@ -17,9 +16,7 @@ struct two_files {
 
 }  // namespace
 
-TEST_CASE("collide finds the same triangle pairs with every tree and build") {
-    const two_files files;
-    const auto& [folder, a, b] = files;
+TEST_CASE_METHOD(two_files, "collide finds the same triangle pairs with every tree and build") {
     const std::vector<std::string> base = {"collide", a, b, "--json", "--pose-b", "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
     const auto reference = json_of(joined(base, {"--engine", "cgal"}));
     REQUIRE(reference["pairs"] > 0);
@@ -56,8 +53,7 @@ TEST_CASE("collide finds the same triangle pairs with every tree and build") {
     REQUIRE(holds(rows, "\n" + bytes_of_file(folder / "first.csv").substr(4)));
 }
 
-TEST_CASE("collide --self=all finds all neighbours around a vertex of many triangles") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "collide --self=all finds all neighbours around a vertex of many triangles") {
     constexpr int triangles = 200;
     // Every third triangle has its own vertex at the apex, and one triangle intersects some of the others.
     std::string vertices = "0 0 0\n";
@@ -93,8 +89,7 @@ TEST_CASE("collide --self=all finds all neighbours around a vertex of many trian
     CHECK(summary({"--count"})["neighbours"] == exact["neighbours"]);
 }
 
-TEST_CASE("collide --self=all reports neighbours separately") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "collide --self=all reports neighbours separately") {
     // Two intersecting tetrahedra, and a triangle that shares a corner with the first by position only.
     const std::string mesh =
         folder.write("two.off",
@@ -143,8 +138,7 @@ TEST_CASE("collide --self=all reports neighbours separately") {
     REQUIRE(json_of({"collide", mesh, "--self", "--first", "--json", "--tree", tree})["pairs"] == 1);
 }
 
-TEST_CASE("collide --self finds triangles that share more than corners and edges") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "collide --self finds triangles that share more than corners and edges") {
     // A bow-tie through a common corner, a fold and a double face intersect; a tent and two halves of a square do not.
     const std::string square = "OFF\n4 2 0\n0 0 0\n4 0 0\n2 3 0\n";
     const std::vector<std::pair<std::string, std::string>> files{
@@ -174,9 +168,7 @@ TEST_CASE("collide --self finds triangles that share more than corners and edges
     CHECK(holds(text, "\n1 triangle without area\n"));
 }
 
-TEST_CASE("collide --geometry writes each intersection in world coordinates") {
-    const two_files files;
-    const auto& [folder, a, b] = files;
+TEST_CASE_METHOD(two_files, "collide --geometry writes each intersection in world coordinates") {
     const auto rows_of = [&](const std::vector<std::string>& options) {
         run_well(joined({"collide", a, b, "--geometry", "--out", folder / "pairs.csv"}, options));
         return fields_of(bytes_of_file(folder / "pairs.csv"));
@@ -233,9 +225,7 @@ TEST_CASE("collide --geometry writes each intersection in world coordinates") {
     CHECK(holds(run_program({"collide", a, b, "--first", "--geometry", "--pose-a", away}).out, "0 intersecting"));
 }
 
-TEST_CASE("neighbours in a mesh intersect in their shared edge or vertex") {
-    const two_files files;
-    const auto& [folder, a, b] = files;
+TEST_CASE_METHOD(two_files, "neighbours in a mesh intersect in their shared edge or vertex") {
     for (const auto& [mesh, edges, points] : {std::tuple(a, 6, 0), std::tuple(b, 9, 6)}) {
         run_well({"collide", mesh, "--self=all", "--geometry", "--out", folder / "self.csv"});
         int segment = 0, point = 0;
@@ -248,8 +238,7 @@ TEST_CASE("neighbours in a mesh intersect in their shared edge or vertex") {
     }
 }
 
-TEST_CASE("collide and contacts use the singular for a count of one") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "collide and contacts use the singular for a count of one") {
     const std::string mesh = folder.write("one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0 0 1 0 0 0 0 1 0\n");
     const std::string collided = run_program({"collide", mesh, mesh}).out;
@@ -259,9 +248,7 @@ TEST_CASE("collide and contacts use the singular for a count of one") {
                 "\n1 contact of triangles in 1 contact of objects (1 pair of boxes), "));
 }
 
-TEST_CASE("collide gives the same results for many poses in one call as in separate calls") {
-    const two_files files;
-    const auto& [folder, a, b] = files;
+TEST_CASE_METHOD(two_files, "collide gives the same results for many poses in one call as in separate calls") {
     const std::vector<std::string> poses{"1,0,0,0.4,0,1,0,0.2,0,0,1,-0.1", "1 0 0 9 0 1 0 0 0 0 1 0",
                                          "0,-1,0,0.4, 1,0,0,0.2, 0,0,1,-0.1"};
     const std::string file =
@@ -309,37 +296,33 @@ TEST_CASE("collide gives the same results for many poses in one call as in separ
     }
 }
 
-TEST_CASE("collide --repeat repeats the search and reports each time") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "collide --repeat repeats the search and reports each time") {
     const auto check_repeats = [&](const std::vector<std::string>& options) {
-        const auto once = json_of(joined({"collide", a, "--json"}, options));
-        const auto five_times = json_of(joined({"collide", a, "--json", "--repeat", "5"}, options));
+        const auto once = json_of(joined({"collide", mesh, "--json"}, options));
+        const auto five_times = json_of(joined({"collide", mesh, "--json", "--repeat", "5"}, options));
         CHECK(once["query_ms"].is_number());
         CHECK(five_times["query_ms"].size() == 5);
         CHECK(five_times["pairs"] == once["pairs"]);
         CHECK(five_times["digest"] == once["digest"]);
     };
-    check_repeats({a});
+    check_repeats({mesh});
     check_repeats({"--self"});
     CHECK_FALSE(holds(run_program({"collide", "--help"}).out, "{together}"));
-    CHECK(holds(run_program({"collide", a, a, "--repeat", "5"}).out, " ms (median of 5)"));
+    CHECK(holds(run_program({"collide", mesh, mesh, "--repeat", "5"}).out, " ms (median of 5)"));
 }
 
-TEST_CASE("collide --exit-code exits with status 1 if anything intersects") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "collide --exit-code exits with status 1 if anything intersects") {
     const std::string elsewhere = "1,0,0,100,0,1,0,0,0,0,1,0";
     const auto status_of = [&](const std::vector<std::string>& options) {
-        return run_program(joined({"collide", a}, options)).status;
+        return run_program(joined({"collide", mesh}, options)).status;
     };
-    CHECK(status_of({a}) == 0);
-    CHECK(status_of({a, "--exit-code"}) == 1);
-    CHECK(status_of({a, "--exit-code", "--count"}) == 1);
-    CHECK(status_of({a, "--exit-code", "--first", "--json"}) == 1);
-    CHECK(status_of({a, "--exit-code", "--pose-b", elsewhere}) == 0);
-    CHECK(status_of({a, "--exit-code", "--poses", folder.write("apart.txt", elsewhere + "\n")}) == 0);
-    CHECK(status_of({a, "--exit-code", "--poses",
+    CHECK(status_of({mesh}) == 0);
+    CHECK(status_of({mesh, "--exit-code"}) == 1);
+    CHECK(status_of({mesh, "--exit-code", "--count"}) == 1);
+    CHECK(status_of({mesh, "--exit-code", "--first", "--json"}) == 1);
+    CHECK(status_of({mesh, "--exit-code", "--pose-b", elsewhere}) == 0);
+    CHECK(status_of({mesh, "--exit-code", "--poses", folder.write("apart.txt", elsewhere + "\n")}) == 0);
+    CHECK(status_of({mesh, "--exit-code", "--poses",
                      folder.write("both.txt", elsewhere + "\n1 0 0 0 0 1 0 0 0 0 1 0\n" + elsewhere + "\n")}) == 1);
     // Neighbours do not count.
     CHECK(status_of({"--self", "--exit-code"}) == 0);

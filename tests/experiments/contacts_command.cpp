@@ -19,9 +19,7 @@ constexpr const char* approach =
 
 }  // namespace
 
-TEST_CASE("contacts finds the same contacts in each frame with every composition") {
-    const temporary_folder folder;
-    const std::string mesh = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "contacts finds the same contacts in each frame with every composition") {
     const std::string motion = folder.write("m.txt", approach);
     const std::vector<std::string> base = {"contacts", motion, mesh, "--json", "--out", folder / "c.csv"};
     const auto reference = json_of(joined(base, {"--engine", "cgal"}));
@@ -50,9 +48,7 @@ TEST_CASE("contacts finds the same contacts in each frame with every composition
     CHECK(holds(run_program({"contacts", motion, mesh, "--engine", "fcl"}).out, "fcl (inexact)"));
 }
 
-TEST_CASE("contacts --geometry writes the same intersections as collide") {
-    const temporary_folder folder;
-    const std::string mesh = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "contacts --geometry writes the same intersections as collide") {
     const std::string motion = folder.write("m.txt", approach);
     run_well({"contacts", motion, mesh, "--geometry", "--out", folder / "c.csv"});
     run_well(
@@ -66,9 +62,7 @@ TEST_CASE("contacts --geometry writes the same intersections as collide") {
     CHECK(bytes_of_file(folder / "c.csv") == rows);
 }
 
-TEST_CASE("a frame omitted from a motion file repeats the previous frame") {
-    const temporary_folder folder;
-    const std::string mesh = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "a frame omitted from a motion file repeats the previous frame") {
     const std::string still = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n0 1 1 0 0 0.2 0 1 0 0.1 0 0 1 0\n";
     const auto contacts = [&](const std::string& text) {
         return json_of({"contacts", folder.write("m.txt", text), mesh, "--json"});
@@ -80,8 +74,7 @@ TEST_CASE("a frame omitted from a motion file repeats the previous frame") {
     CHECK(summary["contacts"] == 3 * once);
 }
 
-TEST_CASE("contacts finds the contacts of a scene in its motion file") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "contacts finds the contacts of a scene in its motion file") {
     const std::string motion = folder / "swarm.txt";
     const std::vector<std::string> shapes = {"icosphere:triangles=80", "torus_knot:triangles=300"};
     run_well({"scene", "mesh_swarm", "--n", "12", "--frames", "5", "--density", "3", "--mesh", shapes[0], "--mesh",

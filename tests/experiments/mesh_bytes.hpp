@@ -37,3 +37,8 @@ template <class Value>
 
 /// The text of an OFF file.
 inline constexpr char tetrahedron[] = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
+
+/// A folder with a file of it.
+struct with_mesh_file : in_folder {
+    const std::string mesh = folder.write("a.off", tetrahedron);
+};

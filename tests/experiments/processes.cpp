@@ -19,15 +19,14 @@ constexpr const char* config =
     "[compose]\nsort = [\"std\", \"insertion\"]\n[measure]\nrepeats = 6\nprocesses = 3\nquick = { repeats = 2 }\n";
 
 /// A config in a folder of its own, and its runs, which write to `out`.
-struct shared_run {
+struct shared_run : in_folder {
     explicit shared_run(const std::string& text = config) : file(folder.write("shared.toml", text)) {}
 
     program_result run(const std::vector<std::string>& more = {}) const {
         return run_well(joined({"run", file, "--out", out}, more));
     }
-    [[nodiscard]] std::vector<row> rows() const { return aabblab::read_rows(out / "results.csv"); }
+    [[nodiscard]] std::vector<row> read_rows() const { return aabblab::read_rows(out / "results.csv"); }
 
-    temporary_folder folder;
     std::string file;
     std::filesystem::path out = folder / "out";
 };
@@ -54,10 +53,9 @@ void truncate_table(const std::filesystem::path& results, std::size_t lines) {
 
 }  // namespace
 
-TEST_CASE("Repeats are divided among processes, of which only the first validates") {
-    const shared_run shared;
-    REQUIRE(holds(shared.run().out, "insertion"));
-    const std::vector<row> rows = shared.rows();
+TEST_CASE_METHOD(shared_run, "Repeats are divided among processes, of which only the first validates") {
+    REQUIRE(holds(run().out, "insertion"));
+    const std::vector<row> rows = read_rows();
     REQUIRE(rows.size() == 2 * 2 * 6);
     for (const row& r : rows) {
         CHECK(r.process == r.repeat / 2);
@@ -71,16 +69,15 @@ TEST_CASE("Repeats are divided among processes, of which only the first validate
     CHECK(std::ranges::is_sorted(rows, {}, &row::process));
 }
 
-TEST_CASE("A run that is killed and resumed has the rows of an uninterrupted one") {
-    const shared_run shared;
-    shared.run();
-    const std::set<std::string> uninterrupted = results_of(shared.out);
+TEST_CASE_METHOD(shared_run, "A run that is killed and resumed has the rows of an uninterrupted one") {
+    run();
+    const std::set<std::string> uninterrupted = results_of(out);
     // The cuts are in the first process, between two processes, and in the last.
     for (const std::size_t lines : {1, 4, 9, 13, 24}) {
         CAPTURE(lines);
-        truncate_table(shared.out, lines);
-        shared.run({"--resume"});
-        REQUIRE(results_of(shared.out) == uninterrupted);
+        truncate_table(out, lines);
+        run({"--resume"});
+        REQUIRE(results_of(out) == uninterrupted);
     }
 }
 
@@ -108,14 +105,13 @@ TEST_CASE("A run that is killed leaves no process behind and can be resumed") {
     REQUIRE(resumed.size() == 2 * 2 * 6);
 }
 
-TEST_CASE("An interrupted repeat is run again for all candidates") {
-    const shared_run shared;
-    shared.run();
-    const std::vector<row> before = shared.rows();
+TEST_CASE_METHOD(shared_run, "An interrupted repeat is run again for all candidates") {
+    run();
+    const std::vector<row> before = read_rows();
     // Only one row remains of the second repeat of the first scene.
-    truncate_table(shared.out, 4);
-    shared.run({"--resume"});
-    const std::vector<row> after = shared.rows();
+    truncate_table(out, 4);
+    run({"--resume"});
+    const std::vector<row> after = read_rows();
     REQUIRE(after.size() == before.size());
     for (std::size_t i = 0; i < 2; ++i) CHECK(after[i].search_ms == before[i].search_ms);
     CHECK(after[2].repeat == 1);
@@ -123,10 +119,9 @@ TEST_CASE("An interrupted repeat is run again for all candidates") {
     CHECK((after[2].search_ms != before[2].search_ms || after[2].build_ms != before[2].build_ms));
 }
 
-TEST_CASE("A quick run takes the seeds of quick and at most as many processes as repeats") {
-    const shared_run shared;
-    shared.run({"--quick"});
-    const std::vector<row> rows = shared.rows();
+TEST_CASE_METHOD(shared_run, "A quick run takes the seeds of quick and at most as many processes as repeats") {
+    run({"--quick"});
+    const std::vector<row> rows = read_rows();
     REQUIRE(rows.size() == 2 * 2);
     for (const row& r : rows) {
         CHECK(r.scene.seed == 3);
@@ -134,8 +129,7 @@ TEST_CASE("A quick run takes the seeds of quick and at most as many processes as
     }
 }
 
-TEST_CASE("A candidate that the first process rejects is not timed by later ones") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A candidate that the first process rejects is not timed by later ones") {
     const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
     results_folder results(folder / "r", record_of(e), existing_results::reject);
     std::vector<aabblab::candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);
@@ -145,8 +139,7 @@ TEST_CASE("A candidate that the first process rejects is not timed by later ones
     for (const row& r : results.rows()) CHECK(r.name == candidates[0].name);
 }
 
-TEST_CASE("A composition with a wrong result in a later process is reported and loses its rows") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "A composition with a wrong result in a later process is reported and loses its rows") {
     const auto e = aabblab::parse_experiment(config, "shared.toml", aabblab::experiment_size::full);
     results_folder results(folder / "r", record_of(e), existing_results::reject);
     std::vector<aabblab::candidate> candidates = aabblab::candidates_for(e, e.scenes[0]);

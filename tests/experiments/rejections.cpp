@@ -48,8 +48,7 @@ TEST_CASE("An invalid command line is rejected in one sentence with status 2") {
         });
 }
 
-TEST_CASE("pairs and scene reject invalid options and leave no file behind") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "pairs and scene reject invalid options and leave no file behind") {
     const std::string scene = folder / "scene.aabbs";
     run_well({"scene", "brownian", "--n", "60", "--frames", "3", "--out", scene});
     check_all(
@@ -82,29 +81,27 @@ TEST_CASE("pairs and scene reject invalid options and leave no file behind") {
               });
 }
 
-TEST_CASE("collide rejects invalid options and leaves no file behind") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "collide rejects invalid options and leaves no file behind") {
     check_all(
-        folder, {"collide", a},
+        folder, {"collide", mesh},
         {
             {{}, "collide: expected B, the other mesh, or --self"},
-            {{a, "--self"}, "--self takes one mesh, so give no second one"},
+            {{mesh, "--self"}, "--self takes one mesh, so give no second one"},
             {{"--self=no_adjacent"}, "did you mean 'no-adjacent'?"},
             {{"--self", "--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0"}, "which no pose changes"},
             {{"--self", "--poses", "poses.txt"}, "which no pose changes"},
             {{"--self=all", "--first"}, "--first works with plain --self only"},
-            {{a, "--first", "--count"}, "--first and --count exclude each other"},
-            {{a, "--count", "--out", folder / "x.csv"}, "--count stores no pairs"},
-            {{a, "--geometry"}, "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair"},
-            {{a, "--geometry", "--count"}, "--count stores no pairs, so --geometry cannot be combined with it"},
-            {{a, "--geometry", "--first", "--engine", "cgal"}, "so --engine cannot be combined with it"},
-            {{a, "--geometry", "--out", folder / "x.csv", "--triangle", "moller"},
+            {{mesh, "--first", "--count"}, "--first and --count exclude each other"},
+            {{mesh, "--count", "--out", folder / "x.csv"}, "--count stores no pairs"},
+            {{mesh, "--geometry"}, "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair"},
+            {{mesh, "--geometry", "--count"}, "--count stores no pairs, so --geometry cannot be combined with it"},
+            {{mesh, "--geometry", "--first", "--engine", "cgal"}, "so --engine cannot be combined with it"},
+            {{mesh, "--geometry", "--out", folder / "x.csv", "--triangle", "moller"},
              "--geometry: moller decides whether triangles intersect, but does not construct their intersection; give "
              "--triangle exact\n"},
         });
     check_all(
-        folder, {"collide", a, a, "--out", folder / "pairs.csv"},
+        folder, {"collide", mesh, mesh, "--out", folder / "pairs.csv"},
         {
             {{"--pose-a", "1,0,0"}, "--pose-a: a pose is 12 numbers"},
             {{"--pose-a", "1,0,0,0,0,1,0,0,0,0,1,0,"}, "--pose-a: a number is missing after the last comma"},
@@ -128,9 +125,7 @@ TEST_CASE("collide rejects invalid options and leaves no file behind") {
         });
 }
 
-TEST_CASE("an invalid line of a file of poses is reported") {
-    const temporary_folder folder;
-    const std::string a = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "an invalid line of a file of poses is reported") {
     const std::string poses = folder.write("poses.txt", "");
     const std::vector<std::pair<std::string, std::string>> texts = {
         {"# nothing\n\n", "poses.txt: has no poses"},
@@ -142,13 +137,11 @@ TEST_CASE("an invalid line of a file of poses is reported") {
     };
     for (const auto& [text, message] : texts) {
         folder.write("poses.txt", text);
-        check_all(folder, {"collide", a, a, "--poses", poses, "--out", folder / "pairs.csv"}, {{{}, message}});
+        check_all(folder, {"collide", mesh, mesh, "--poses", poses, "--out", folder / "pairs.csv"}, {{{}, message}});
     }
 }
 
-TEST_CASE("contacts rejects an invalid motion with file and line and leaves no file behind") {
-    const temporary_folder folder;
-    const std::string mesh = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "contacts rejects an invalid motion with file and line and leaves no file behind") {
     const std::string motion = folder.write("m.txt", "");
     const std::string pose = "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
     const std::vector<std::pair<std::string, std::string>> texts = {
@@ -177,9 +170,7 @@ TEST_CASE("contacts rejects an invalid motion with file and line and leaves no f
     }
 }
 
-TEST_CASE("contacts and scene reject meshes and options that do not match") {
-    const temporary_folder folder;
-    const std::string mesh = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "contacts and scene reject meshes and options that do not match") {
     const std::string motion = folder.write("m.txt", "0 0 1 0 0 0 0 1 0 0 0 0 1 0\n");
     check_all(folder, {"contacts", motion},
               {
@@ -208,9 +199,7 @@ TEST_CASE("contacts and scene reject meshes and options that do not match") {
               });
 }
 
-TEST_CASE("order rejects invalid options and does not overwrite the mesh that it reads") {
-    const temporary_folder folder;
-    const std::string mesh = folder.write("a.off", tetrahedron);
+TEST_CASE_METHOD(with_mesh_file, "order rejects invalid options and does not overwrite the mesh that it reads") {
     const std::string sorted = mesh + ":order=median";
     check_all(folder, {"order"},
               {

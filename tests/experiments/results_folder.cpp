@@ -19,17 +19,14 @@ std::string config_of(const std::string& mesh) {
 }
 
 /// A small experiment and a folder for its results.
-struct small_run {
-    temporary_folder folder;
+struct small_run : in_folder {
     std::string config = folder.write("a.toml", "name = \"a\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes=1\n");
     std::string out = folder / "out";
 };
 
 }  // namespace
 
-TEST_CASE("Two runs cannot write to one folder at the same time") {
-    const small_run experiment;
-    const auto& [folder, config, out] = experiment;
+TEST_CASE_METHOD(small_run, "Two runs cannot write to one folder at the same time") {
     auto held = std::make_unique<aabblab::folder_lock>(folder / "out");
     CHECK_THROWS_WITH(aabblab::folder_lock(folder / "out"),
                       StartsWith("another aabblab is writing to ") && EndsWith("with --out"));
@@ -42,9 +39,7 @@ TEST_CASE("Two runs cannot write to one folder at the same time") {
     run_well({"run", config, "--out", out, "--resume"});
 }
 
-TEST_CASE("Duplicate rows of a results.csv are rejected with file and lines") {
-    const small_run experiment;
-    const auto& [folder, config, out] = experiment;
+TEST_CASE_METHOD(small_run, "Duplicate rows of a results.csv are rejected with file and lines") {
     run_well({"run", config, "--out", out});
     const std::string text = bytes_of_file(folder / "out/results.csv");
     const std::size_t second_line = text.find('\n') + 1;
@@ -55,9 +50,7 @@ TEST_CASE("Duplicate rows of a results.csv are rejected with file and lines") {
         CHECK(holds(run_refused(arguments).err, "/results.csv:11: the measurement of line 2 is repeated here"));
 }
 
-TEST_CASE("Results from before a count existed are read without it, and other columns are rejected") {
-    const small_run experiment;
-    const auto& [folder, config, out] = experiment;
+TEST_CASE_METHOD(small_run, "Results from before a count existed are read without it, and other columns are rejected") {
     run_well({"run", config, "--out", out});
     const std::string text = bytes_of_file(folder / "out/results.csv");
     // Fields are counted from the end of each line, since those after the counts contain no commas.
@@ -82,8 +75,7 @@ TEST_CASE("Results from before a count existed are read without it, and other co
                           EndsWith(" is 'box_texts'; expected 'box_tests'"));
 }
 
-TEST_CASE("Results of a mesh with special characters in its name are read, resumed and compared") {
-    const temporary_folder folder;
+TEST_CASE_METHOD(in_folder, "Results of a mesh with special characters in its name are read, resumed and compared") {
     const std::string mesh =
         folder.write(mesh_name, "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
     const std::string config = folder.write("odd.toml", config_of(mesh));

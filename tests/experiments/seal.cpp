@@ -18,36 +18,31 @@ const char* const config =
     "[compose]\nsort = [\"std\", \"insertion\"]\n[measure]\nrepeats = 3\nprocesses = 3\n";
 
 /// A finished run.
-class finished_run {
-public:
-    finished_run() { run_well({"run", folder_.write("sealed.toml", config), "--out", out()}); }
+struct finished_run : in_folder {
+    finished_run() { run_well({"run", folder.write("sealed.toml", config), "--out", out()}); }
 
     /// The command that resumes it.
     [[nodiscard]] std::vector<std::string> resume_command() const {
-        return {"run", folder_ / "sealed.toml", "--out", out(), "--resume"};
+        return {"run", folder / "sealed.toml", "--out", out(), "--resume"};
     }
-    [[nodiscard]] std::filesystem::path out() const { return folder_ / "out"; }
-    [[nodiscard]] std::string table() const { return bytes_of_file(out() / "results.csv"); }
+    [[nodiscard]] std::filesystem::path out() const { return folder / "out"; }
+    [[nodiscard]] std::string read_table() const { return bytes_of_file(out() / "results.csv"); }
     void write_table(const std::string& text) const { std::ofstream(out() / "results.csv", std::ios::binary) << text; }
-    [[nodiscard]] nlohmann::ordered_json manifest() const {
+    [[nodiscard]] nlohmann::ordered_json read_manifest() const {
         return nlohmann::ordered_json::parse(bytes_of_file(out() / "manifest.json"));
     }
     void write_manifest(const nlohmann::ordered_json& manifest) const {
         std::ofstream(out() / "manifest.json") << manifest.dump(2);
     }
-
-private:
-    temporary_folder folder_;
+    void check_rejected_rows(const std::string& text) const {
+        CHECK_THROWS_MATCHES(aabblab::verified_rows(out()), aabb::input_error, MessageMatches(ContainsSubstring(text)));
+    }
 };
 
 std::vector<std::string> keys_of(const std::vector<row>& rows) {
     std::vector<std::string> keys;
     for (const row& r : rows) keys.push_back(r.key());
     return keys;
-}
-
-void check_rejected_rows(const finished_run& run, const std::string& text) {
-    CHECK_THROWS_MATCHES(aabblab::verified_rows(run.out()), aabb::input_error, MessageMatches(ContainsSubstring(text)));
 }
 
 std::string joined_lines(const std::vector<std::string>& lines, const char* end) {
@@ -80,38 +75,37 @@ TEST_CASE("SHA-256 gives the digests of the FIPS 180-4 examples") {
     CHECK(aabblab::sha256_of("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
-TEST_CASE("Rows of a finished run are read in run order, for any order and line endings in the file") {
-    const finished_run run;
-    const std::vector<row> rows = aabblab::verified_rows(run.out());
+TEST_CASE_METHOD(finished_run,
+                 "Rows of a finished run are read in run order, for any order and line endings in the file") {
+    const std::vector<row> rows = aabblab::verified_rows(out());
     REQUIRE(rows.size() == 12);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         CHECK(rows[i].scene.seed == i / 6 + 1);
         CHECK(rows[i].repeat == i / 2 % 3);
         CHECK(rows[i].name[aabb::strategy_kind::sort] == (i % 2 == 0 ? "std" : "insertion"));
     }
-    const std::string table = run.table();
+    const std::string table = read_table();
     const std::string mixed = shuffled(table);
     REQUIRE(mixed != table);
-    run.write_table(mixed);
-    CHECK(keys_of(aabblab::verified_rows(run.out())) == keys_of(rows));
-    run.write_table(joined_lines(lines_of(mixed), "\r\n"));
-    CHECK(keys_of(aabblab::verified_rows(run.out())) == keys_of(rows));
+    write_table(mixed);
+    CHECK(keys_of(aabblab::verified_rows(out())) == keys_of(rows));
+    write_table(joined_lines(lines_of(mixed), "\r\n"));
+    CHECK(keys_of(aabblab::verified_rows(out())) == keys_of(rows));
     // The checksum is that of the sorted lines, as sort and sha256sum compute it.
-    const auto sealed = run.manifest()["seal"]["results.csv"];
+    const auto sealed = read_manifest()["seal"]["results.csv"];
     std::vector<std::string> lines = lines_of(table);
     std::ranges::sort(lines);
     CHECK(sealed["rows"] == 12);
     CHECK(sealed["sha256"] == aabblab::sha256_of(joined_lines(lines, "\n")));
 }
 
-TEST_CASE("Altered, removed or added rows are rejected, with their line if it is known") {
-    const finished_run run;
-    const std::string table = run.table();
-    const row first = aabblab::read_rows(run.out() / "results.csv").front();
+TEST_CASE_METHOD(finished_run, "Altered, removed or added rows are rejected, with their line if it is known") {
+    const std::string table = read_table();
+    const row first = aabblab::read_rows(out() / "results.csv").front();
     const auto rejected = [&](const std::string& text, const std::string& sentence) {
-        run.write_table(text);
-        check_rejected_rows(run, sentence);
-        run.write_table(table);
+        write_table(text);
+        check_rejected_rows(sentence);
+        write_table(table);
     };
     const std::string altered = "out/results.csv was altered after the run: its rows do not have the checksum";
     rejected(with_field(table, 3, ",exact", ",inexact"), altered);
@@ -124,17 +118,16 @@ TEST_CASE("Altered, removed or added rows are rejected, with their line if it is
              "out/results.csv:3: the row is of the experiment 'other', and manifest.json of 'sealed'");
     rejected(without_line(table, 4), "out/results.csv has 11 rows; when the run was finished it had 12");
     rejected(table.substr(0, table.size() - 1), "out/results.csv has 11 rows; when the run was finished it had 12");
-    CHECK(aabblab::verified_rows(run.out()).size() == 12);
+    CHECK(aabblab::verified_rows(out()).size() == 12);
 }
 
-TEST_CASE("An altered manifest is rejected") {
-    const finished_run run;
-    const nlohmann::ordered_json manifest = run.manifest();
+TEST_CASE_METHOD(finished_run, "An altered manifest is rejected") {
+    const nlohmann::ordered_json manifest = read_manifest();
     const auto rejected = [&](const std::function<void(nlohmann::ordered_json&)>& alter, const std::string& sentence) {
         nlohmann::ordered_json altered = manifest;
         alter(altered);
-        run.write_manifest(altered);
-        check_rejected_rows(run, sentence);
+        write_manifest(altered);
+        check_rejected_rows(sentence);
     };
     const std::string sentence =
         "manifest.json was altered after the run: it does not have the checksum that it states";
@@ -150,12 +143,11 @@ TEST_CASE("An altered manifest is rejected") {
              "manifest.json: scenes[0] must have parameters, an object of settings");
 }
 
-TEST_CASE("A manifest with a mistyped or missing member is read or rejected, sealed or not") {
-    const finished_run run;
+TEST_CASE_METHOD(finished_run, "A manifest with a mistyped or missing member is read or rejected, sealed or not") {
     std::size_t rejections = 0;
     for (const bool is_sealed : {true, false}) {
-        if (!is_sealed) unseal(run.out());
-        const nlohmann::ordered_json complete = run.manifest();
+        if (!is_sealed) unseal(out());
+        const nlohmann::ordered_json complete = read_manifest();
         std::set<std::string> places;
         const nlohmann::ordered_json leaves = complete.flatten();
         for (const auto& [leaf, value] : leaves.items())
@@ -172,11 +164,11 @@ TEST_CASE("A manifest with a mistyped or missing member is read or rejected, sea
                 } else {
                     altered[at] = nlohmann::ordered_json::parse(other);
                 }
-                run.write_manifest(altered);
+                write_manifest(altered);
                 CAPTURE(is_sealed, place, other);
                 try {
-                    (void)aabblab::read_manifest(run.out());
-                    (void)aabblab::verified_rows(run.out());
+                    (void)aabblab::read_manifest(out());
+                    (void)aabblab::verified_rows(out());
                 } catch (const aabb::input_error& rejected) {
                     ++rejections;
                     CHECK_THAT(rejected.what(), ContainsSubstring("/out/"));
@@ -188,12 +180,11 @@ TEST_CASE("A manifest with a mistyped or missing member is read or rejected, sea
     CHECK(rejections > 100);
 }
 
-TEST_CASE("A row with an implausible number is rejected or compared with finite changes") {
-    const finished_run run;
-    const std::filesystem::path second = run.out().parent_path() / "second";
-    std::filesystem::copy(run.out(), second);
-    unseal(run.out());
-    const std::vector<std::string> lines = lines_of(run.table());
+TEST_CASE_METHOD(finished_run, "A row with an implausible number is rejected or compared with finite changes") {
+    const std::filesystem::path second = out().parent_path() / "second";
+    std::filesystem::copy(out(), second);
+    unseal(out());
+    const std::vector<std::string> lines = lines_of(read_table());
     const auto columns = static_cast<std::size_t>(std::ranges::count(lines[0], ',')) + 1;
     std::size_t rejections = 0;
     for (const std::string number : {"", "-1", "nan", "inf", "1e300", "18446744073709551615", "1e999", "0", "x"})
@@ -207,10 +198,10 @@ TEST_CASE("A row with an implausible number is rejected or compared with finite 
             std::size_t at = 0;
             for (std::size_t i = 0; i < column; ++i) at = end_of(at) + 1;
             line.replace(at, end_of(at) - at, number);
-            run.write_table(joined_lines(altered, "\n"));
+            write_table(joined_lines(altered, "\n"));
             CAPTURE(number, column);
             try {
-                const auto comparison = compare(aabblab::read_results(run.out()), aabblab::read_results(second),
+                const auto comparison = compare(aabblab::read_results(out()), aabblab::read_results(second),
                                                 aabblab::compared::ratios_and_times);
                 for (const aabblab::compared_scene& scene : comparison.scenes)
                     for (const auto* list : {&scene.ratios, &scene.times})
@@ -222,44 +213,41 @@ TEST_CASE("A row with an implausible number is rejected or compared with finite 
     CHECK(rejections > 100);
 }
 
-TEST_CASE("An unfinished run has no seal and is read as it is") {
-    const finished_run run;
-    unseal(run.out());
-    run.write_table(without_line(run.table(), 13));
-    CHECK(aabblab::verified_rows(run.out()).size() == 11);
+TEST_CASE_METHOD(finished_run, "An unfinished run has no seal and is read as it is") {
+    unseal(out());
+    write_table(without_line(read_table(), 13));
+    CHECK(aabblab::verified_rows(out()).size() == 11);
     // Its digests are checked nevertheless.
-    const row first = aabblab::read_rows(run.out() / "results.csv").front();
-    run.write_table(with_field(run.table(), 3, first.digest, "0000000000000000"));
-    CHECK_THROWS_AS(aabblab::verified_rows(run.out()), aabb::input_error);
+    const row first = aabblab::read_rows(out() / "results.csv").front();
+    write_table(with_field(read_table(), 3, first.digest, "0000000000000000"));
+    CHECK_THROWS_AS(aabblab::verified_rows(out()), aabb::input_error);
 }
 
-TEST_CASE("An altered run is neither resumed nor sealed again") {
-    const finished_run run;
-    run_well(run.resume_command());
-    REQUIRE(run.manifest().contains("seal"));
-    run.write_table(without_line(run.table(), 4));
-    const std::string before = bytes_of_file(run.out() / "manifest.json");
-    CHECK(holds(run_refused(run.resume_command()).err, "has 11 rows; when the run was finished it had 12"));
-    CHECK(bytes_of_file(run.out() / "manifest.json") == before);
+TEST_CASE_METHOD(finished_run, "An altered run is neither resumed nor sealed again") {
+    run_well(resume_command());
+    REQUIRE(read_manifest().contains("seal"));
+    write_table(without_line(read_table(), 4));
+    const std::string before = bytes_of_file(out() / "manifest.json");
+    CHECK(holds(run_refused(resume_command()).err, "has 11 rows; when the run was finished it had 12"));
+    CHECK(bytes_of_file(out() / "manifest.json") == before);
 }
 
-TEST_CASE("A manifest describes the machine, and a run does not resume with other caches") {
-    const finished_run run;
-    const nlohmann::ordered_json manifest = run.manifest();
+TEST_CASE_METHOD(finished_run, "A manifest describes the machine, and a run does not resume with other caches") {
+    const nlohmann::ordered_json manifest = read_manifest();
     CHECK(manifest["build"]["cpu"].is_string());
     CHECK(manifest["build"]["caches"].is_object());
     CHECK(manifest["machine"]["processors"] > 0);
     CHECK(manifest["machine"]["kernel"].get<std::string>().starts_with("Linux "));
     CHECK(manifest["machine"]["libc"].is_string());
     // A run resumes with another kernel, but not with another cache.
-    unseal(run.out());
-    nlohmann::ordered_json changed = run.manifest();
+    unseal(out());
+    nlohmann::ordered_json changed = read_manifest();
     changed["machine"]["kernel"] = "Linux 1.0 i386";
-    run.write_manifest(changed);
-    run_well(run.resume_command());
-    unseal(run.out());
-    changed = run.manifest();
+    write_manifest(changed);
+    run_well(resume_command());
+    unseal(out());
+    changed = read_manifest();
     changed["build"]["caches"]["L2"] = 1;
-    run.write_manifest(changed);
-    CHECK(holds(run_program(run.resume_command()).err, "another build or machine"));
+    write_manifest(changed);
+    CHECK(holds(run_program(resume_command()).err, "another build or machine"));
 }
