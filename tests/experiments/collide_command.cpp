@@ -27,10 +27,8 @@ TEST_CASE_METHOD(two_files, "collide finds the same triangle pairs with every tr
     REQUIRE(holds(result.err, "b.off: "));  // a polygon was triangulated
     const auto summary = nlohmann::json::parse(result.out);
     REQUIRE(summary["triangles"] == std::vector{4, 6});
-    REQUIRE(summary["pairs"] == reference["pairs"]);
-    REQUIRE(summary["digest"] == reference["digest"]);
-    REQUIRE(summary["build_ms"] >= 0);
-    REQUIRE(summary["query_ms"] >= 0);
+    for (const char* member : {"pairs", "digest"}) REQUIRE(summary[member] == reference[member]);
+    for (const char* time : {"build_ms", "query_ms"}) REQUIRE(summary[time] >= 0);
     REQUIRE(summary["bytes_per_triangle"] > 10);
     const std::string rows = bytes_of_file(folder / "pairs.csv");
     REQUIRE(rows.starts_with("a,b\n"));
@@ -108,19 +106,15 @@ TEST_CASE_METHOD(in_folder, "collide --self=all reports neighbours separately") 
     const auto tree = GENERATE("canonical", "leafless:leaf_test=triangle_aabb", "compressed", "compressed_literal",
                                "quantized", "implicit");
     const auto summary = json_of(joined(base, {"--tree", tree}));
-    REQUIRE(summary["pairs"] == reference["pairs"]);
-    REQUIRE(summary["neighbours"] == reference["neighbours"]);
-    REQUIRE(summary["digest"] == reference["digest"]);
+    for (const char* member : {"pairs", "neighbours", "digest"}) REQUIRE(summary[member] == reference[member]);
     REQUIRE(bytes_of_file(folder / "self.csv") == rows);
     const auto counted = json_of({"collide", mesh, "--self=all", "--count", "--json"});
-    REQUIRE(counted["pairs"] == summary["pairs"]);
-    REQUIRE(counted["neighbours"] == summary["neighbours"]);
+    for (const char* member : {"pairs", "neighbours"}) REQUIRE(counted[member] == summary[member]);
     REQUIRE(counted["digest"].is_null());
     // Without neighbours only the other pairs are written, and neighbours are still counted.
     const auto excluded =
         json_of({"collide", mesh, "--self=no-adjacent", "--json", "--tree", tree, "--out", folder / "rest.csv"});
-    REQUIRE(excluded["pairs"] == summary["pairs"]);
-    REQUIRE(excluded["neighbours"] == summary["neighbours"]);
+    for (const char* member : {"pairs", "neighbours"}) REQUIRE(excluded[member] == summary[member]);
     REQUIRE(excluded["digest"] != summary["digest"]);
     std::string expected = "a,b\n";
     for (const std::string& row : lines_of(rows))
@@ -302,8 +296,7 @@ TEST_CASE_METHOD(with_mesh_file, "collide --repeat repeats the search and report
         const auto five_times = json_of(joined({"collide", mesh, "--json", "--repeat", "5"}, options));
         CHECK(once["query_ms"].is_number());
         CHECK(five_times["query_ms"].size() == 5);
-        CHECK(five_times["pairs"] == once["pairs"]);
-        CHECK(five_times["digest"] == once["digest"]);
+        for (const char* member : {"pairs", "digest"}) CHECK(five_times[member] == once[member]);
     };
     check_repeats({mesh});
     check_repeats({"--self"});
