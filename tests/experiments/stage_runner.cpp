@@ -82,10 +82,6 @@ std::vector<candidate> exact_candidates(bool meshes) {
     return candidates;
 }
 
-aabblab::stages local_only() {
-    return {nullptr, aabb::compose_local_detection({}, aabb::instrumentation::none)};
-}
-
 }  // namespace
 
 TEST_CASE("Every candidate answers count and first-contact queries, and a wrong result is reported") {
@@ -170,7 +166,8 @@ TEST_CASE("A scene is run frame by frame, to its end or for its first frames") {
 
 TEST_CASE("A runner without global search tests all pairs of objects, and can count contacts or find the first") {
     scene_frames scene(std::make_unique<stopping_meshes>(3));
-    aabblab::stage_runner tested(local_only(), scene);
+    aabblab::stages local_only{nullptr, aabb::compose_local_detection({}, aabb::instrumentation::none)};
+    aabblab::stage_runner tested(std::move(local_only), scene);
     REQUIRE(scene.next());
     tested.update();
     tested.search();
