@@ -153,10 +153,6 @@ std::vector<std::string> names(const std::vector<part_bytes>& parts) {
     return part_names;
 }
 
-std::size_t bytes_of_part(const std::vector<part_bytes>& parts, const std::string& name) {
-    return std::ranges::find(parts, name, &part_bytes::part)->bytes;
-}
-
 }  // namespace
 
 TEST_CASE("a detector of boxes finds the overlapping pairs of present objects, also after a rejected frame") {

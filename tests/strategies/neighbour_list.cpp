@@ -559,10 +559,7 @@ TEST_CASE("if no list is worth its cost, only a sample of boxes is watched") {
         }
         return kept;
     };
-    const auto prepare_bytes = [&] {
-        const std::vector<part_bytes> parts = stage->bytes();
-        return std::ranges::find(parts, std::string("prepare"), &part_bytes::part)->bytes;
-    };
+    const auto prepare_bytes = [&] { return bytes_of_part(stage->bytes(), "prepare"); };
     CHECK(kept_frames(3, 10) > 0);
     CHECK(prepare_bytes() > n * sizeof(box));
     CHECK(kept_frames(3, 40) == 0);

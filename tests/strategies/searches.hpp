@@ -22,6 +22,10 @@ bool leaves_out(const Search& search, aabb::absence what) {
     return std::ranges::find(omissions, what, &aabb::omission::feature) != omissions.end();
 }
 
+inline std::size_t bytes_of_part(const std::vector<aabb::part_bytes>& parts, const std::string& name) {
+    return std::ranges::find(parts, name, &aabb::part_bytes::part)->bytes;
+}
+
 inline aabb::box cube(float at, float edge) {
     return {{at, at, at}, {at + edge, at + edge, at + edge}};
 }
