@@ -35,13 +35,13 @@ draft c10_claim(const measurements& m) {
                     std::string(is_mixed ? "boxes of mixed sizes" : "huge boxes") +
                         (segments == "auto" ? ", automatic number of segments" : ", 32 segments requested"));
         }
-    figure& f = c10.claim.figures.emplace_back(log_log(
+    c10.claim.figures.push_back(log_log(
         "c10",
         "Time of the broad phase with at most one cut per box and axis, over that without the limit (the level 1), "
         "with the automatic number of segments, against the number of huge objects, by their edge over the side "
         "of the world; 95 % intervals.",
-        "huge objects", "time with the limit over that without"));
-    f.lines = lines_by_span(c10.endpoints, {{"segments", "auto"}}, "any number of cuts");
+        "huge objects", "time with the limit over that without",
+        lines_by_span(c10.endpoints, {{"segments", "auto"}}, "any number of cuts")));
     return c10;
 }
 

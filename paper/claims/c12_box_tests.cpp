@@ -15,12 +15,12 @@ draft c12_claim(const measurements& m) {
         c12.add(endpoint_of(c, improved.with(kind::sweep, "all_axes"), uncut.with(kind::sweep, "all_axes"), "box_tests",
                             {{"sweep", "all_axes"}}),
                 "with three sorted lists (sweep all_axes)", /*along=*/"", quantity::box_tests);
-    figure& f = c12.claim.figures.emplace_back(
-        log_log("c12", "Box tests per frame against the number of objects, with the axial cut and without.", "objects",
-                "box tests per frame"));
     const method methods[] = {{"no cut", uncut}, {"axial cut", improved}};
-    f.lines = series_of(methods, matching(m.conditions_of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}}),
-                        "objects", measured("box_tests"));
+    c12.claim.figures.push_back(log_log(
+        "c12", "Box tests per frame against the number of objects, with the axial cut and without.", "objects",
+        "box tests per frame",
+        series_of(methods, matching(m.conditions_of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}}),
+                  "objects", measured("box_tests"))));
     return c12;
 }
 

@@ -31,15 +31,11 @@ std::string word_of(const endpoint& e) {
 }
 
 /// The ratios behind a verdict: all primary ones, and the number of others by outcome.
-std::string evidence_text(std::span<const endpoint> endpoints) {
+std::string evidence_text(std::span<const endpoint> primaries, std::span<const endpoint> others) {
+    if (primaries.empty()) return "There are no measurements that decide it.";
     std::string text;
-    std::vector<endpoint> others;
-    for (const endpoint& e : endpoints)
-        if (e.is_primary)
-            text += fmt::format("{}{}: {}, {}", text.empty() ? "" : "; ", text_of(e.where), ratio_text(e), word_of(e));
-        else
-            others.push_back(e);
-    if (text.empty()) return "There are no measurements that decide it.";
+    for (const endpoint& e : primaries)
+        text += fmt::format("{}{}: {}, {}", text.empty() ? "" : "; ", text_of(e.where), ratio_text(e), word_of(e));
     text = "Primary ratios, each with its 95 % interval: " + text + ".";
     if (others.empty()) return text;
     return text + counts_text(" Of " + counted(others.size(), "other ratio"),
@@ -66,14 +62,13 @@ claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoi
         if (e.is_known()) unjudged.push_back(decided_alone(e));
     if (!unjudged.empty()) claim.sentence += " " + sentence_of(unjudged);
     if (!claim.remark.empty()) claim.sentence += " " + claim.remark;
-    claim.evidence = evidence_text(endpoints);
-    std::vector<endpoint> ordered = endpoints;
-    std::ranges::stable_partition(ordered, &endpoint::is_primary);
-    claim.has_primary = !ordered.empty() && ordered.front().is_primary;
-    if (claim.has_primary) claim.primary = ordered.front();
-    claim.others.assign(ordered.begin() + (claim.has_primary ? 1 : 0), ordered.end());
+    std::ranges::copy_if(endpoints, std::back_inserter(claim.primaries), &endpoint::is_primary);
+    std::ranges::remove_copy_if(endpoints, std::back_inserter(claim.secondaries), &endpoint::is_primary);
+    claim.evidence = evidence_text(claim.primaries, claim.secondaries);
     std::string name = claim.id;
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::vector<endpoint> ordered = claim.primaries;
+    ordered.insert(ordered.end(), claim.secondaries.begin(), claim.secondaries.end());
     table ratios = endpoint_table(
         ordered, [](const endpoint& e) { return text_of(e.corrected) + (e.is_primary ? " (primary)" : ""); });
     const bool has_unit = std::ranges::find(ratios.columns, "unit", &column::name) != ratios.columns.end();
@@ -159,19 +154,6 @@ factors factors_of(const endpoint& e) {
     factors place = e.where;
     place.insert(place.end(), e.observed.begin(), e.observed.end());
     return place;
-}
-
-std::vector<endpoint> primaries_of(const claim_result& claim) {
-    std::vector<endpoint> primaries;
-    if (claim.has_primary) primaries.push_back(claim.primary);
-    std::ranges::copy_if(claim.others, std::back_inserter(primaries), &endpoint::is_primary);
-    return primaries;
-}
-
-std::vector<endpoint> secondaries_of(const claim_result& claim) {
-    std::vector<endpoint> secondaries;
-    std::ranges::remove_copy_if(claim.others, std::back_inserter(secondaries), &endpoint::is_primary);
-    return secondaries;
 }
 
 std::vector<listed_claim> listed_claims() {

@@ -48,12 +48,11 @@ struct claim_result {
     std::string lead{};      ///< precedes the first label of the sentence, if that needs context
     expectation expected = expectation::less;
     verdict_kind verdict = verdict_kind::undecided;
-    std::string sentence{};  ///< the verdict in words: direction, size and conditions
-    std::string brief{};     ///< the same for clauses with primary endpoints
-    std::string evidence{};  ///< the numbers that decide
-    bool has_primary = false;
-    endpoint primary{};                      ///< the first primary endpoint
-    std::vector<endpoint> others{};          ///< all but `primary`: further primary ones first, then the secondary ones
+    std::string sentence{};                  ///< the verdict in words: direction, size and conditions
+    std::string brief{};                     ///< the same for clauses with primary endpoints
+    std::string evidence{};                  ///< the numbers that decide
+    std::vector<endpoint> primaries{};       ///< the primary endpoints; the first stands for the claim in short reports
+    std::vector<endpoint> secondaries{};     ///< the other endpoints
     std::vector<std::string> experiments{};  ///< the experiments that measured it
     std::vector<factors> scenes{};           ///< of these experiments
     std::vector<named_table> tables{};       ///< in a draft, the claim's own; `judged` inserts that of all ratios first
@@ -82,8 +81,6 @@ struct open_choice {
     };
     std::vector<alternative> alternatives;  ///< ours first
 };
-[[nodiscard]] std::vector<endpoint> primaries_of(const claim_result& claim);
-[[nodiscard]] std::vector<endpoint> secondaries_of(const claim_result& claim);
 /// Whether the outcome depends on the choice: "no", "yes", or "undecided" if an alternative is undecided.
 [[nodiscard]] std::string dependence_of(const open_choice& choice);
 
@@ -209,8 +206,8 @@ void add_ratios(table& t, const std::vector<condition>& conditions, std::span<co
 
 /// A figure with two logarithmic axes.
 [[nodiscard]] inline figure log_log(const std::string& name, const std::string& caption, const std::string& x,
-                                    const std::string& y) {
-    return {name, caption, {x, true}, {y, true}};
+                                    const std::string& y, std::vector<series> lines = {}) {
+    return {name, caption, {x, true}, {y, true}, std::move(lines)};
 }
 /// A ratio with its 95 % interval as a point of a figure.
 [[nodiscard]] figure_point point_of(double x, const endpoint& e);

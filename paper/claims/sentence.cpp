@@ -159,7 +159,7 @@ const claim_result* claim_named(std::span<const claim_result> claims, const std:
 std::string classic_sweep_text(std::span<const claim_result> claims) {
     const claim_result* claim = claim_named(claims, "C1");
     if (!claim) return "";
-    for (const endpoint& e : primaries_of(*claim))
+    for (const endpoint& e : claim->primaries)
         if (value_of(e.where, "over") == "incremental")
             return "; " + clause_text("with little motion", clause_of({&e, 1}, e));
     return "";
@@ -168,10 +168,10 @@ std::string classic_sweep_text(std::span<const claim_result> claims) {
 /// The clause that reports a claim's first primary endpoint, for the headline.
 clause first_clause(std::span<const claim_result> claims, const std::string& id) {
     const claim_result* claim = claim_named(claims, id);
-    if (!claim || !claim->has_primary || !claim->primary.subject) return {"", "not measured"};
-    std::vector<endpoint> endpoints{claim->primary};
-    endpoints.insert(endpoints.end(), claim->others.begin(), claim->others.end());
-    return clause_of(endpoints, claim->primary);
+    if (!claim || claim->primaries.empty() || !claim->primaries.front().subject) return {"", "not measured"};
+    std::vector<endpoint> endpoints = claim->primaries;
+    endpoints.insert(endpoints.end(), claim->secondaries.begin(), claim->secondaries.end());
+    return clause_of(endpoints, endpoints.front());
 }
 
 }  // namespace

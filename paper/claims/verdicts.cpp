@@ -12,6 +12,10 @@ constexpr double most_waiting = 2;
 /// The median difference between successive repeats, in percent.
 constexpr double most_difference = 5;
 
+std::string range_text(const endpoint& e) {
+    return ratio_digits_of(e.range.low) + " to " + ratio_digits_of(e.range.high);
+}
+
 }  // namespace
 
 /// One row per endpoint (a ratio of a claim), with the factors in which their conditions differ as columns.
@@ -22,9 +26,7 @@ table endpoint_table(std::span<const endpoint> endpoints, const std::function<st
     t.columns.insert(t.columns.end(), {{"ratio"}, {"95 %"}, {"outcome", false}});
     for (std::size_t i = 0; i < endpoints.size(); ++i)
         t.rows[i].insert(t.rows[i].end(),
-                         {ratio_digits_of(endpoints[i].ratio),
-                          ratio_digits_of(endpoints[i].range.low) + " to " + ratio_digits_of(endpoints[i].range.high),
-                          outcome(endpoints[i])});
+                         {ratio_digits_of(endpoints[i].ratio), range_text(endpoints[i]), outcome(endpoints[i])});
     return t;
 }
 
@@ -69,8 +71,7 @@ std::string ratio_digits_of(double ratio) {
 }
 
 std::string ratio_text(const endpoint& e) {
-    return fmt::format("{} ({} to {})", ratio_digits_of(e.ratio), ratio_digits_of(e.range.low),
-                       ratio_digits_of(e.range.high));
+    return ratio_digits_of(e.ratio) + " (" + range_text(e) + ")";
 }
 
 std::string text_of(const factors& where) {
@@ -88,13 +89,10 @@ table verdict_table(const reproduction& results) {
     for (const claim_result& c : results.claims) {
         std::vector<std::string>& cells =
             t.rows.emplace_back(std::vector{c.id, c.claim, text_of(c.verdict), c.sentence});
-        cells.push_back(c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
-        cells.push_back(c.has_primary
-                            ? ratio_digits_of(c.primary.range.low) + " to " + ratio_digits_of(c.primary.range.high)
-                            : "-");
-        const std::vector<endpoint> others = secondaries_of(c);
+        cells.push_back(c.primaries.empty() ? "-" : ratio_digits_of(c.primaries.front().ratio));
+        cells.push_back(c.primaries.empty() ? "-" : range_text(c.primaries.front()));
         for (const support what : {support::favours, support::contradicts, support::no_difference, support::undecided})
-            cells.push_back(std::to_string(count_of(others, what)));
+            cells.push_back(std::to_string(count_of(c.secondaries, what)));
     }
     return t;
 }

@@ -159,8 +159,9 @@ void add_claim_rows(page& out, const reproduction& reproduced) {
     std::string rows = "\n";
     for (const claim_result& c : reproduced.claims) {
         const std::string text = paragraph("said", markup_text(c.claim)) + paragraph("", verdict_markup(c, c.brief));
-        const std::string measured = paragraph("ratio", c.has_primary ? ratio_text(c.primary) : "not measured") +
-                                     (c.has_primary ? interval_picture(primaries_of(c)) : "");
+        const std::string measured =
+            c.primaries.empty() ? paragraph("ratio", "not measured")
+                                : paragraph("ratio", ratio_text(c.primaries.front())) + interval_picture(c.primaries);
         rows += element("a", {{"class", "claim " + std::string(word_of(c.verdict).kind)}, {"href", "#" + c.id}},
                         element("b", {}, c.id) + element("div", {}, text) + element("div", {}, measured)) +
                 "\n";

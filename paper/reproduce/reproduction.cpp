@@ -61,17 +61,18 @@ void add_claim(macros& tex, const claim_result& c) {
     tex.set_tex(c.id + ".tables", list_of(c.tables, 1));
     set("setup", setup_of(c));
     set("favourable", c.expected == expectation::less ? "below 1" : "below 1.05");
-    set("condition", c.has_primary ? text_of(c.primary.where) : "-");
-    set("ratio", c.has_primary ? ratio_digits_of(c.primary.ratio) : "-");
-    set("low", c.has_primary ? ratio_digits_of(c.primary.range.low) : "-");
-    set("high", c.has_primary ? ratio_digits_of(c.primary.range.high) : "-");
-    const std::vector<endpoint> others = secondaries_of(c);
-    tex.set(c.id + ".endpoints", others.size());
+    const endpoint* const primary = c.primaries.empty() ? nullptr : &c.primaries.front();
+    set("condition", primary ? text_of(primary->where) : "-");
+    set("ratio", primary ? ratio_digits_of(primary->ratio) : "-");
+    set("low", primary ? ratio_digits_of(primary->range.low) : "-");
+    set("high", primary ? ratio_digits_of(primary->range.high) : "-");
+    tex.set(c.id + ".endpoints", c.secondaries.size());
     for (const auto& [key, what] : {std::pair{"for", support::favours},
                                     {"against", support::contradicts},
                                     {"same", support::no_difference},
                                     {"undecided", support::undecided}})
-        tex.set(c.id + "." + key, static_cast<std::size_t>(std::ranges::count(others, what, &endpoint::corrected)));
+        tex.set(c.id + "." + key,
+                static_cast<std::size_t>(std::ranges::count(c.secondaries, what, &endpoint::corrected)));
 }
 
 /// Every endpoint (ratio) of every claim with its outcome, for programs that check or continue the analysis.
@@ -88,10 +89,9 @@ table endpoints_of(const reproduction& reproduced) {
                           digits(e.range.high), directions[static_cast<std::size_t>(e.direction)],
                           text_of(e.corrected)});
     };
-    for (const claim_result& c : reproduced.claims) {
-        if (c.has_primary) add(c, c.primary);
-        for (const endpoint& e : c.others) add(c, e);
-    }
+    for (const claim_result& c : reproduced.claims)
+        for (const std::vector<endpoint>* const endpoints : {&c.primaries, &c.secondaries})
+            for (const endpoint& e : *endpoints) add(c, e);
     return t;
 }
 
@@ -106,9 +106,10 @@ figure verdict_figure(const reproduction& reproduced) {
     series ratios{"primary ratio, 95 % interval", series_style::points};
     for (std::size_t i = 0; i < reproduced.claims.size(); ++i) {
         f.x.names.emplace_back(static_cast<double>(i), reproduced.claims[i].id);
-        if (!reproduced.claims[i].has_primary || reproduced.claims[i].primary.ratio < 0.2) continue;
-        const endpoint& e = reproduced.claims[i].primary;
-        ratios.points.push_back({static_cast<double>(i), e.ratio, e.range.low, e.range.high});
+        const std::vector<endpoint>& primaries = reproduced.claims[i].primaries;
+        if (primaries.empty() || primaries.front().ratio < 0.2) continue;
+        const auto& [low, high] = primaries.front().range;
+        ratios.points.push_back({static_cast<double>(i), primaries.front().ratio, low, high});
     }
     f.lines = {ratios,
                {"no difference", series_style::level, {{0, 1, 1 / (1 + equivalence_band), 1 + equivalence_band}}}};

@@ -26,7 +26,7 @@ const claim_result& named(const aabblab::reproduction& results, const std::strin
 /// The conditions of the primary endpoints of a claim, in words.
 std::set<std::string> places_of(const claim_result& claim) {
     std::set<std::string> places;
-    for (const endpoint& e : primaries_of(claim)) places.insert(aabblab::text_of(e.where));
+    for (const endpoint& e : claim.primaries) places.insert(aabblab::text_of(e.where));
     return places;
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("Machines that agree give their common verdict, and those that disagre
     const aabblab::reproduction agreed = judged_worlds({0.6, 0.5}, 0.01);
     check_verdicts(agreed, on_all("holds"));
     // The ratio is the geometric mean of both.
-    CHECK(std::abs(named(agreed, "C1").primary.ratio - std::sqrt(0.6 * 0.5)) < 0.02);
+    CHECK(std::abs(named(agreed, "C1").primaries.front().ratio - std::sqrt(0.6 * 0.5)) < 0.02);
     check_verdicts(judged_worlds({0.6, 1.7}, 0.01), on_all("undecided"));
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("Waiting for a processor changes no ratio") {
         worlds::write_world(folder.path(), 0.8, 0.05, aabblab::experiment_size::quick, disturb);
         std::vector<std::string> texts;
         for (const claim_result& c : judged(aabblab::measurements(folder.path())).claims)
-            for (const auto& endpoints : {primaries_of(c), secondaries_of(c)})
+            for (const auto& endpoints : {c.primaries, c.secondaries})
                 for (const endpoint& e : endpoints) texts.push_back(c.id + " " + ratio_text(e));
         return texts;
     };
@@ -264,7 +264,7 @@ TEST_CASE("A claim that compares a wrong composition is undecided") {
         const auto results = reproduction_where(experiment, [part](const worlds::played& p, aabblab::row& r) {
             if (p.has(part)) r.status = "inexact";
         });
-        CHECK_FALSE(named(results, id).has_primary);
+        CHECK(named(results, id).primaries.empty());
         CHECK(text_of(named(results, id).verdict) == "undecided");
     }
 }
@@ -293,7 +293,7 @@ TEST_CASE("A grid of one cell does not count as a grid") {
         if (is_one_cell) worlds::count_in(r, "subsets") = 1;
         r.search_ms = r.update_ms = is_one_cell ? 0.01 : 1;
     });
-    CHECK(std::abs(named(results, "C5").primary.ratio - 1) < 0.01);
+    CHECK(std::abs(named(results, "C5").primaries.front().ratio - 1) < 0.01);
     for (const aabblab::figure_panel& panel : named(results, "C5").figures.front().panels)
         for (const aabblab::series& s : panel.lines)
             CHECK(std::ranges::none_of(s.points, [](const aabblab::figure_point& p) { return p.x == 64; }));
@@ -303,10 +303,10 @@ TEST_CASE("Splitting is not judged in scenes where nothing is split") {
     const auto results = reproduction_where("c9", [](const worlds::played& p, aabblab::row& r) {
         if (p.value_of("span") == "0.1") worlds::count_in(r, "pieces") = 0;
     });
-    CHECK(named(results, "C9").has_primary);
-    CHECK(std::ranges::none_of(named(results, "C9").others,
+    CHECK_FALSE(named(results, "C9").primaries.empty());
+    CHECK(std::ranges::none_of(named(results, "C9").secondaries,
                                [](const endpoint& e) { return aabblab::value_of(e.where, "span") == "0.1"; }));
-    CHECK(std::ranges::any_of(named(results, "C9").others,
+    CHECK(std::ranges::any_of(named(results, "C9").secondaries,
                               [](const endpoint& e) { return aabblab::value_of(e.where, "span") == "0.5"; }));
 }
 
@@ -338,7 +338,7 @@ TEST_CASE("A cell size that gives one cell in a scene is excluded only there") {
         r.detect_ms = 0;
     });
     CHECK(text_of(named(results, "C5").verdict) == "holds");
-    CHECK(std::abs(named(results, "C5").primary.ratio - 0.5) < 1e-9);
+    CHECK(std::abs(named(results, "C5").primaries.front().ratio - 0.5) < 1e-9);
     CHECK(holds(named(results, "C5").sentence, "takes up to 2.0 times as long as a scene's fastest"));
 }
 
@@ -349,8 +349,8 @@ TEST_CASE("A size with more ordered input is excluded from the growth") {
         worlds::count_in(r, "inversions") = 0;
     });
     CHECK(text_of(named(results, "C2").verdict) == "holds");
-    CHECK(named(results, "C2").primary.ratio == 1);
-    CHECK(aabblab::value_of(named(results, "C2").primary.where, "elements") == "10000 to 100000");
+    CHECK(named(results, "C2").primaries.front().ratio == 1);
+    CHECK(aabblab::value_of(named(results, "C2").primaries.front().where, "elements") == "10000 to 100000");
 }
 
 TEST_CASE("An alternative counts only after the correction for multiple tests") {
@@ -363,9 +363,10 @@ TEST_CASE("An alternative counts only after the correction for multiple tests") 
     });
     const auto c11 = std::ranges::find(results.choices, "C11", &aabblab::open_choice::claim);
     REQUIRE(c11 != results.choices.end());
-    const auto same = std::ranges::find_if(
-        named(results, "C11").others, [](const endpoint& e) { return aabblab::value_of(e.where, "objects") == "100"; });
-    REQUIRE(same != named(results, "C11").others.end());
+    const auto same = std::ranges::find_if(named(results, "C11").secondaries, [](const endpoint& e) {
+        return aabblab::value_of(e.where, "objects") == "100";
+    });
+    REQUIRE(same != named(results, "C11").secondaries.end());
     const auto choice = std::ranges::find_if(
         c11->alternatives, [](const aabblab::open_choice::alternative& a) { return a.label.starts_with("100 "); });
     REQUIRE(choice != c11->alternatives.end());

@@ -22,8 +22,7 @@ claim_result claim(const std::string& id, verdict_kind verdict, double ratio, aa
             .sentence = "The verdict on " + id + " in words.",
             .brief = "The verdict on " + id + " in brief.",
             .evidence = "The figures of " + id + ".",
-            .has_primary = true,
-            .primary = {.ratio = ratio, .range = range}};
+            .primaries = {{.ratio = ratio, .range = range}}};
 }
 
 aabblab::reproduction fictitious() {
@@ -34,7 +33,7 @@ aabblab::reproduction fictitious() {
                            claim("C7b", verdict_kind::undecided, 2, {0.1, 19}),
                            claim("C8", verdict_kind::no_difference, 1.01, {0.99, 1.03})};
     claim_result unmeasured = claim("C9", verdict_kind::undecided, 0, {});
-    unmeasured.has_primary = false;
+    unmeasured.primaries.clear();
     reproduction.claims.push_back(unmeasured);
     reproduction.bands = {"bands", "Verdicts by band.", {{{"", false}, {"0 %", false}}, {{"C1", "holds"}}}};
     reproduction.null_control = {"null_control", "Nothing to be found.", {{{"ratio"}}, {{"1"}}}};
@@ -105,8 +104,8 @@ TEST_CASE("The row of every measured claim shows its interval and its verdict") 
         CHECK(holds(row, c.claim));
         CHECK(holds(row, c.brief));
         CHECK(holds(page, c.sentence));
-        CHECK(count_of("<svg class=\"interval\"", row) == (c.has_primary ? 1 : 0));
-        if (c.has_primary) CHECK(count_of(ratio_text(c.primary), row) == 2);
+        CHECK(count_of("<svg class=\"interval\"", row) == c.primaries.size());
+        if (!c.primaries.empty()) CHECK(count_of(ratio_text(c.primaries.front()), row) == 2);
         CHECK(holds(page, "<h2 id=\"" + c.id + "\">"));
     }
 }
