@@ -21,17 +21,16 @@ const atlas_candidate* atlas_scene::find(std::string_view label) const {
     return candidate != candidates.end() ? &*candidate : nullptr;
 }
 
-const atlas_candidate* atlas_scene::fastest_if(atlas_time time,
-                                               const std::function<bool(const atlas_candidate&)>& matches) const {
+const atlas_candidate* atlas_scene::fastest_if(const std::function<bool(const atlas_candidate&)>& matches) const {
     const atlas_candidate* fastest = nullptr;
     for (const atlas_candidate& candidate : candidates)
-        if (!candidate.is_automatic && matches(candidate) && (!fastest || candidate.ms(time) < fastest->ms(time)))
+        if (!candidate.is_automatic && matches(candidate) && (!fastest || candidate.ms() < fastest->ms()))
             fastest = &candidate;
     return fastest;
 }
 
 double atlas_scene::least_ms(atlas_time time) const {
-    double least = fastest(time).ms(time);
+    double least = std::numeric_limits<double>::infinity();
     for (const atlas_candidate& candidate : candidates) least = std::min(least, candidate.ms(time));
     return least;
 }
@@ -55,12 +54,10 @@ std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas) {
 }
 
 /// Repeats are paired: candidates take turns within each, so that both met the same speed of the machine.
-estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& baseline, atlas_time time) {
+estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& baseline) {
     cells ratios(/*processes=*/1, /*seeds=*/1);
-    const std::vector<double>& candidate_ms = candidate.times(time);
-    const std::vector<double>& baseline_ms = baseline.times(time);
-    for (std::size_t repeat = 0; repeat < std::min(candidate_ms.size(), baseline_ms.size()); ++repeat)
-        ratios.add(0, 0, std::log(candidate_ms[repeat] / baseline_ms[repeat]));
+    for (std::size_t repeat = 0; repeat < std::min(candidate.frame_ms.size(), baseline.frame_ms.size()); ++repeat)
+        ratios.add(0, 0, std::log(candidate.frame_ms[repeat] / baseline.frame_ms[repeat]));
     return bootstrap(ratios);
 }
 

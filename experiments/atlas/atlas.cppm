@@ -29,7 +29,7 @@ struct atlas_candidate {
         return time == atlas_time::per_frame ? frame_ms : whole_ms;
     }
     /// The median over repeats.
-    [[nodiscard]] double ms(atlas_time time) const { return quartiles_of(times(time)).median; }
+    [[nodiscard]] double ms(atlas_time time = atlas_time::per_frame) const { return quartiles_of(times(time)).median; }
 };
 
 struct atlas_scene {
@@ -40,13 +40,13 @@ struct atlas_scene {
 
     /// Null if the scene has no such candidate.
     [[nodiscard]] const atlas_candidate* find(std::string_view label) const;
-    /// The fastest of those that match, except `auto`, which is no fixed composition; null if none matches.
-    [[nodiscard]] const atlas_candidate* fastest_if(atlas_time time,
-                                                    const std::function<bool(const atlas_candidate&)>& matches) const;
-    [[nodiscard]] const atlas_candidate& fastest(atlas_time time) const {
-        return *fastest_if(time, [](const atlas_candidate&) { return true; });
+    /// The one with the least time per frame of those that match, except `auto`, which is no fixed composition; null if
+    /// none matches.
+    [[nodiscard]] const atlas_candidate* fastest_if(const std::function<bool(const atlas_candidate&)>& matches) const;
+    [[nodiscard]] const atlas_candidate& fastest() const {
+        return *fastest_if([](const atlas_candidate&) { return true; });
     }
-    /// The time of the fastest candidate, including `auto`.
+    /// The least time of any candidate, including `auto`.
     [[nodiscard]] double least_ms(atlas_time time) const;
     /// A parameter of the scene as a number, by default its default value; NaN if the scene has no such parameter.
     [[nodiscard]] double number(std::string_view parameter) const;
@@ -55,8 +55,8 @@ struct atlas_scene {
 /// The scenes without `columns`, which wins nearly everywhere, and without `auto`, which selects it.
 [[nodiscard]] std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas);
 
-/// The logarithm of the ratio of two candidates' times, over the repeats that both have.
-[[nodiscard]] estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& baseline, atlas_time time);
+/// The logarithm of the ratio of two candidates' times per frame, over the repeats that both have.
+[[nodiscard]] estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& baseline);
 
 /// Reads the scenes of an experiment from its results folder. Each scene is generated again to compute its measures.
 [[nodiscard]] std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is_held_out);

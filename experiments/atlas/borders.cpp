@@ -46,15 +46,14 @@ std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
 
 /// The fastest candidate with these strategies, whatever their parameters; null if the scene has none.
 const atlas_candidate* fastest_of(const atlas_scene& scene, const std::string& family) {
-    return scene.fastest_if(per_frame,
-                            [&](const atlas_candidate& candidate) { return family_of(candidate.label) == family; });
+    return scene.fastest_if([&](const atlas_candidate& candidate) { return family_of(candidate.label) == family; });
 }
 
 /// The value of the parameter in which two scenes differ at which the winner of the first and that of the second take
 /// the same time; empty if both are won by the same strategies, or if a winner was not timed in both.
 std::optional<border> border_between(const atlas_scene& from, const atlas_scene& to, std::string_view parameter) {
-    const atlas_candidate& first_best = from.fastest(per_frame);
-    const atlas_candidate& last_best = to.fastest(per_frame);
+    const atlas_candidate& first_best = from.fastest();
+    const atlas_candidate& last_best = to.fastest();
     const std::string before = family_of(first_best.label), after = family_of(last_best.label);
     if (before == after) return std::nullopt;
     const atlas_candidate* after_at_first = fastest_of(from, after);
@@ -63,8 +62,8 @@ std::optional<border> border_between(const atlas_scene& from, const atlas_scene&
     const double log_from = std::log(from.number(parameter));
     const double log_length = std::log(to.number(parameter)) - log_from;
     if (!std::isfinite(log_from)) return std::nullopt;
-    const estimate at_first = log_ratio_in(from, first_best, *after_at_first, per_frame);
-    const estimate at_last = log_ratio_in(to, *before_at_last, last_best, per_frame);
+    const estimate at_first = log_ratio_in(from, first_best, *after_at_first);
+    const estimate at_last = log_ratio_in(to, *before_at_last, last_best);
     if (!at_first.is_known() || !at_last.is_known()) return std::nullopt;
     const auto [share, range] = crossing(at_first, at_last);
     return border{before,

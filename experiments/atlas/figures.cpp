@@ -14,7 +14,7 @@ constexpr const char* kind_of_map = "cloud";
 std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most_series = 7;
     std::map<std::string, std::size_t> wins;
-    for (const atlas_scene& scene : atlas) ++wins[family_of(scene.fastest(per_frame).label)];
+    for (const atlas_scene& scene : atlas) ++wins[family_of(scene.fastest().label)];
     std::vector<std::string> labels;
     for (const auto& [label, count] : wins) labels.push_back(label);
     std::ranges::stable_sort(labels, [&](const auto& a, const auto& b) { return wins[a] > wins[b]; });
@@ -56,7 +56,7 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
         if (is_new)
             panel->second = {fmt::format("density {:g}, sizes 1 to {:g}", key.first, key.second),
                              empty_series(winners)};
-        add_point(panel->second.lines, family_of(scene.fastest(per_frame).label), scene.number("objects"),
+        add_point(panel->second.lines, family_of(scene.fastest().label), scene.number("objects"),
                   scene.number("displacement"));
     }
     for (auto& [key, panel] : panels) f.panels.push_back(std::move(panel));
@@ -75,7 +75,7 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
              .lines = empty_series(winners)};
     for (const atlas_scene& scene : atlas)
         if (scene.measures.motion && scene.measures.motion->inversions > 0)
-            add_point(f.lines, family_of(scene.fastest(per_frame).label), static_cast<double>(scene.measures.objects),
+            add_point(f.lines, family_of(scene.fastest().label), static_cast<double>(scene.measures.objects),
                       scene.measures.motion->inversions);
     return f;
 }
@@ -91,7 +91,7 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
              .x = {"share of the scenes", false},
              .y = {"regret", true}};
     for (const std::string& label : labels_of(atlas)) {
-        const std::vector<double> regrets = regrets_of(atlas, label, per_frame);
+        const std::vector<double> regrets = regrets_of(atlas, label, atlas_time::per_frame);
         if (regrets.size() < std::max(least_scenes, atlas.size() / 2)) continue;
         series curve{label};
         for (std::size_t i = 0; i < regrets.size(); ++i)

@@ -7,8 +7,6 @@ import aabblab.statistics;
 
 namespace aabblab {
 
-inline constexpr atlas_time per_frame = atlas_time::per_frame;
-
 /// All labels, in the order of their first appearance.
 [[nodiscard]] inline std::vector<std::string> labels_of(const std::vector<atlas_scene>& atlas) {
     std::vector<std::string> labels;
@@ -39,20 +37,19 @@ inline constexpr atlas_time per_frame = atlas_time::per_frame;
     return regrets;
 }
 
-/// The logarithm of the ratio of two candidates' times in a scene. If their repeats give no error, since early stopping
-/// left only one, the error is that of two times with the variance pooled over the repeats of all candidates of the
-/// scene; the result is unknown (NaN) if none was repeated.
+/// The logarithm of the ratio of two candidates' times per frame in a scene. If their repeats give no error, since
+/// early stopping left only one, the error is that of two times with the variance pooled over the repeats of all
+/// candidates of the scene; the result is unknown (NaN) if none was repeated.
 [[nodiscard]] inline estimate log_ratio_in(const atlas_scene& scene, const atlas_candidate& candidate,
-                                           const atlas_candidate& baseline, atlas_time time) {
-    const estimate of_repeats = log_ratio(candidate, baseline, time);
+                                           const atlas_candidate& baseline) {
+    const estimate of_repeats = log_ratio(candidate, baseline);
     if (of_repeats.error > 0) return of_repeats;
     double squares = 0, degrees = 0;
     for (const atlas_candidate& any : scene.candidates) {
-        const std::vector<double>& times = any.times(time);
-        const auto count = static_cast<double>(times.size());
+        const auto count = static_cast<double>(any.frame_ms.size());
         double mean = 0;
-        for (const double ms : times) mean += std::log(ms) / count;
-        for (const double ms : times) squares += (std::log(ms) - mean) * (std::log(ms) - mean);
+        for (const double ms : any.frame_ms) mean += std::log(ms) / count;
+        for (const double ms : any.frame_ms) squares += (std::log(ms) - mean) * (std::log(ms) - mean);
         degrees += count - 1;
     }
     if (degrees == 0) return {std::nan(""), 0, 1};

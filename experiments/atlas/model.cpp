@@ -52,9 +52,8 @@ std::vector<timed_work> observations_of(const std::vector<atlas_scene>& atlas, s
         const atlas_candidate* candidate = scene.find(label);
         if (!candidate || scene.is_held_out != held_out) continue;
         // One observation per scene gives each the same weight, whatever its repeats.
-        observations.push_back({scene.scene.kind + " " + settings_text(scene.scene),
-                                work_of(scene.measures),
-                                {1e6 * candidate->ms(per_frame)}});
+        observations.push_back(
+            {scene.scene.kind + " " + settings_text(scene.scene), work_of(scene.measures), {1e6 * candidate->ms()}});
     }
     return observations;
 }
@@ -126,7 +125,7 @@ std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas,
             chosen = candidate;
             least_ns = ns;
         }
-        if (chosen) regrets.push_back(chosen->ms(per_frame) / scene.fastest(per_frame).ms(per_frame));
+        if (chosen) regrets.push_back(chosen->ms() / scene.fastest().ms());
     }
     return regrets;
 }

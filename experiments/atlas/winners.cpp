@@ -10,13 +10,13 @@ namespace {
 
 /// The second fastest candidate; null if there is none.
 const atlas_candidate* second_of(const atlas_scene& scene) {
-    const atlas_candidate& best = scene.fastest(per_frame);
-    return scene.fastest_if(per_frame, [&](const atlas_candidate& candidate) { return &candidate != &best; });
+    const atlas_candidate& best = scene.fastest();
+    return scene.fastest_if([&](const atlas_candidate& candidate) { return &candidate != &best; });
 }
 
 /// True if the 95 % interval of the ratio to the fastest lies above 1.
 bool is_slower(const atlas_candidate& candidate, const atlas_candidate& best) {
-    return log_ratio(candidate, best, per_frame).range().low > 0;
+    return log_ratio(candidate, best).range().low > 0;
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ table winners_table(const std::vector<atlas_scene>& atlas) {
             const atlas_candidate* candidate = scene.find(label);
             if (!candidate) continue;
             ++entry.scenes;
-            const atlas_candidate& best = scene.fastest(per_frame);
+            const atlas_candidate& best = scene.fastest();
             if (candidate == &best) {
                 ++entry.fastest;
                 const atlas_candidate* second = second_of(scene);
@@ -63,7 +63,7 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
         t.columns.end(),
         {{"frame_ms"}, {"second", false}, {"second_ratio"}, {"second_low"}, {"second_high"}, {"auto_ratio"}});
     for (const atlas_scene& scene : atlas) {
-        const atlas_candidate& best = scene.fastest(per_frame);
+        const atlas_candidate& best = scene.fastest();
         const atlas_candidate* second = second_of(scene);
         const auto automatic = std::ranges::find_if(scene.candidates, &atlas_candidate::is_automatic);
         const scene_measures& m = scene.measures;
@@ -73,15 +73,15 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
         cells.push_back(m.motion ? text(m.motion->at_rest) : "");
         cells.push_back(text(m.clustering));
         cells.push_back(m.boxes.size_ratio ? text(*m.boxes.size_ratio) : "");
-        cells.insert(cells.end(), {best.label, text(best.ms(per_frame)), second ? second->label : ""});
+        cells.insert(cells.end(), {best.label, text(best.ms()), second ? second->label : ""});
         if (second) {
-            const estimate ratio = log_ratio(*second, best, per_frame);
+            const estimate ratio = log_ratio(*second, best);
             for (const double log : {ratio.value, ratio.range().low, ratio.range().high})
                 cells.push_back(text(std::exp(log)));
         } else {
             cells.resize(cells.size() + 3);  // no ratio and no interval
         }
-        cells.push_back(automatic != scene.candidates.end() ? text(automatic->ms(per_frame) / best.ms(per_frame)) : "");
+        cells.push_back(automatic != scene.candidates.end() ? text(automatic->ms() / best.ms()) : "");
         t.rows.push_back(std::move(cells));
     }
     return t;
