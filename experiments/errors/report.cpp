@@ -141,50 +141,44 @@ struct plotted_composition {
 /// A plot of two metrics of the compositions that ran in one scene.
 class plotted_scene {
 public:
-    plotted_scene(const scene_summary& scene, const metric_plot& plot)
-        : scene_(scene), x_(metric_named(plot.x)), y_(metric_named(plot.y)) {}
-
-    /// A sentence about the compositions at both ends of the Pareto front; empty if there is no trade-off.
-    [[nodiscard]] std::string statement_of(std::span<const error_curve> curves) const {
-        std::vector<plotted_composition> plotted;
-        for (const error_curve& curve : curves)
+    plotted_scene(const scene_summary& scene, const metric_plot& plot, std::span<const error_curve> curves)
+        : scene_(scene), x_(metric_named(plot.x)), y_(metric_named(plot.y)) {
+        for (const error_curve& curve : curves) {
+            series& line = curves_.emplace_back(series{curve.label});
             for (const aabb::composition& c : curve.compositions)
                 if (std::optional<plotted_composition> values = values_of(c)) {
                     // A curve with a single composition keeps its label in the config.
                     if (curve.compositions.size() == 1) values->label = curve.label;
-                    plotted.push_back(*std::move(values));
+                    line.points.push_back(point_of(*values));
+                    plotted_.push_back(*std::move(values));
                 }
-        const std::vector<std::size_t> front = front_of(plotted);
+        }
+    }
+
+    /// A sentence about the compositions at both ends of the Pareto front; empty if there is no trade-off.
+    [[nodiscard]] std::string statement() const {
+        const std::vector<std::size_t> front = front_of_plotted();
         if (front.size() < 2 || !has_front()) return {};
-        const plotted_composition& first = plotted[front.front()];
-        const plotted_composition& last = plotted[front.back()];
+        const plotted_composition& first = plotted_[front.front()];
+        const plotted_composition& last = plotted_[front.back()];
         return fmt::format("In {}, {} has the best {}, {}, with a {} of {}; {} has the best {}, {}, with a {} of {}.",
                            title(), first.label, x_.name, value_text(x_, first.x), y_.name, value_text(y_, first.y),
                            last.label, y_.name, value_text(y_, last.y), x_.name, value_text(x_, last.x));
     }
 
     /// One curve per method over its parameter, with the Pareto front if both metrics have a better direction.
-    [[nodiscard]] figure figure_of(const std::string& name, std::span<const error_curve> curves) const {
+    [[nodiscard]] figure drawn(const std::string& name) const {
+        // A logarithmic axis cannot show zero.
+        const bool positive_x = std::ranges::all_of(plotted_, [](const plotted_composition& c) { return c.x > 0; });
+        const bool positive_y = std::ranges::all_of(plotted_, [](const plotted_composition& c) { return c.y > 0; });
         figure f{.name = name,
                  .caption = fmt::format("{} over {} in {}: each method over its parameter.", y_.name, x_.name, title()),
-                 .x = {label_of(x_), false},
-                 .y = {label_of(y_), false}};
-        std::vector<plotted_composition> plotted;
-        for (const error_curve& curve : curves) {
-            series& drawn = f.lines.emplace_back(series{curve.label});
-            for (const aabb::composition& c : curve.compositions)
-                if (const std::optional<plotted_composition> values = values_of(c)) {
-                    drawn.points.push_back(point_of(*values));
-                    plotted.push_back(*values);
-                }
-        }
-        // A logarithmic axis cannot show zero.
-        f.x.logarithmic = std::ranges::all_of(plotted, [](const plotted_composition& c) { return c.x > 0; });
-        f.y.logarithmic =
-            has_floor() || std::ranges::all_of(plotted, [](const plotted_composition& c) { return c.y > 0; });
+                 .x = {label_of(x_), positive_x},
+                 .y = {label_of(y_), positive_y || has_floor()},
+                 .lines = curves_};
         if (has_front()) {
             series front{"Pareto front"};
-            for (const std::size_t i : front_of(plotted)) front.points.push_back(point_of(plotted[i]));
+            for (const std::size_t i : front_of_plotted()) front.points.push_back(point_of(plotted_[i]));
             // Drawn first, below the curves.
             f.lines.insert(f.lines.begin(), std::move(front));
             f.caption += " A line joins the Pareto front.";
@@ -235,16 +229,18 @@ private:
         return {.x = c.x, .y = has_floor() ? std::max(c.y, least_share()) : c.y};
     }
 
-    [[nodiscard]] std::vector<std::size_t> front_of(const std::vector<plotted_composition>& plotted) const {
+    [[nodiscard]] std::vector<std::size_t> front_of_plotted() const {
         const auto signed_by = [](const metric& m, double value) {
             return m.direction == better::more ? -value : value;
         };
-        return aabblab::front_of(plotted, [&](const auto& c) { return cost{signed_by(x_, c.x), signed_by(y_, c.y)}; });
+        return front_of(plotted_, [&](const auto& c) { return cost{signed_by(x_, c.x), signed_by(y_, c.y)}; });
     }
 
     const scene_summary& scene_;
     const metric& x_;
     const metric& y_;
+    std::vector<series> curves_;
+    std::vector<plotted_composition> plotted_;  // of all curves
 };
 
 }  // namespace
@@ -340,9 +336,9 @@ std::vector<figure> metric_figures(const error_study& study, std::span<const sce
     std::vector<figure> figures;
     for (const scene_summary& scene : scenes)
         for (const metric_plot& plot : study.plots) {
-            const plotted_scene plotted(scene, plot);
+            const plotted_scene plotted(scene, plot, study.curves);
             const std::string name = plot.y + "_over_" + plot.x + "_" + file_name(plotted.title());
-            figures.push_back(plotted.figure_of(unused_name(name, figures), study.curves));
+            figures.push_back(plotted.drawn(unused_name(name, figures)));
         }
     return figures;
 }
@@ -352,7 +348,7 @@ std::vector<std::string> metric_statements(const error_study& study, std::span<c
     std::vector<std::string> statements;
     for (const scene_summary& scene : scenes)
         for (const metric_plot& plot : study.plots)
-            if (std::string text = plotted_scene(scene, plot).statement_of(study.curves); !text.empty())
+            if (std::string text = plotted_scene(scene, plot, study.curves).statement(); !text.empty())
                 statements.push_back(std::move(text));
     return statements;
 }
