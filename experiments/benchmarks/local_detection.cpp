@@ -311,44 +311,34 @@ void time_leaf_test(benchmark::State& state) {
             1 - static_cast<double>(false_negatives) / static_cast<double>(test.leaf.pairs().size());
 }
 
-template <class Test, class Leaf>
-void add_leaf_test() {
-    const std::string name = std::string(Test::name) + std::string(Leaf::suffix);
-    benchmark::RegisterBenchmark(name.c_str(), time_leaf_test<Test, Leaf>);
-}
-
 template <class Leaf, class... Tests>
 void add_leaf_tests(aabb::type_list<Tests...>) {
-    (add_leaf_test<Tests, Leaf>(), ...);
+    (benchmark::RegisterBenchmark((std::string(Tests::name) + std::string(Leaf::suffix)).c_str(),
+                                  time_leaf_test<Tests, Leaf>),
+     ...);
 }
 
-/// Transforms the triangle of B into A's frame, as for the first triangle of A that it is tested with …
-template <class Triangle>
-struct transformed_test {
+/// Transforms the triangle of B into A's frame, as for the first triangle of A that it is tested with, or reuses its
+/// image, as for all others.
+template <class Triangle, bool ReusesImage>
+struct leaf_pair_test {
     Triangle triangle;
     const walked_pairs& walk;
 
     [[nodiscard, gnu::always_inline]] bool operator()(const leaf_pair& p) const {
-        return triangle.intersects(walk.a().triangles().triangle(p.a), walk.to_a()(walk.b().triangles().triangle(p.b)));
+        const aabb::triangle3f of_a = walk.a().triangles().triangle(p.a);
+        if constexpr (ReusesImage)
+            return triangle.intersects(of_a, p.b_image);
+        else
+            return triangle.intersects(of_a, walk.to_a()(walk.b().triangles().triangle(p.b)));
     }
 };
 
-/// … or reuses its image, as for all others.
-template <class Triangle>
-struct cached_test {
-    Triangle triangle;
-    const walked_pairs& walk;
-
-    [[nodiscard, gnu::always_inline]] bool operator()(const leaf_pair& p) const {
-        return triangle.intersects(walk.a().triangles().triangle(p.a), p.b_image);
-    }
-};
-
-template <class Test>
+template <class Triangle, bool ReusesImage>
 void add_triangle_test(const std::string& name, const aabb::strategy_choice& choice) {
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
         static const std::vector<leaf_pair> pairs = in_random_order(walked().triangles());
-        time_tests(state, pairs, Test{make_configured<decltype(Test::triangle)>(choice), walked()});
+        time_tests(state, pairs, leaf_pair_test<Triangle, ReusesImage>{make_configured<Triangle>(choice), walked()});
     });
 }
 
@@ -367,8 +357,8 @@ void add_triangle_test_benchmarks() {
     for_each_strategy(aabb::triangles{}, []<class Triangle>(aabb::type_list<Triangle>) {
         for (const aabb::strategy_choice& choice : choices_of<Triangle>()) {
             const std::string name = "test/triangle/" + to_text(choice);
-            add_triangle_test<transformed_test<Triangle>>(name, choice);
-            add_triangle_test<cached_test<Triangle>>(name + "/frame:a", choice);
+            add_triangle_test<Triangle, /*ReusesImage=*/false>(name, choice);
+            add_triangle_test<Triangle, /*ReusesImage=*/true>(name + "/frame:a", choice);
         }
     });
 }
