@@ -221,10 +221,9 @@ void read_compositions(const document& doc, const node* compose, experiment& e) 
 
 /// A curve that names only triangle tests runs on triangle pairs; any other curve runs on whole scenes.
 error_curve read_curve(const document& doc, const node& written) {
-    doc.require_table("curve", written);
     std::vector<std::string> known{"label"};
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) known.emplace_back(name_of(kind));
-    doc.require_keys(written, " of [[curve]]", known);
+    doc.require_table("curve", written, " of [[curve]]", known);
     node methods = written;
     std::erase_if(methods.items, [](const node& entry) { return entry.key == "label"; });
     if (methods.items.empty())

@@ -87,10 +87,9 @@ calibrated_costs parse_costs(const std::string& text, const std::string& file) {
     doc.require_keys(doc.root(), "", {"version", "date", "processor", "instructions", "costs"});
     parsed.date = header_field(doc, "date");
     const node& table = doc.required(doc.root(), "costs", "there is no [costs]; aabblab calibrate writes it");
-    doc.require_table("costs", table);
     std::vector<std::string> names;
     for (const aabb::cost_info& cost : aabb::cost_infos) names.emplace_back(cost.name);
-    doc.require_keys(table, " of [costs]", names);
+    doc.require_table("costs", table, " of [costs]", names);
     for (const aabb::cost_info& cost : aabb::cost_infos) parsed.costs.*cost.value = cost_of(doc, table, cost);
     return parsed;
 }

@@ -61,6 +61,11 @@ public:
     /// @param owner follows "key" in messages, as in " of [measure]"
     void require_keys(const node& table, const std::string& owner, const std::vector<std::string>& known) const;
     void require_table(const std::string& key, const node& value) const;
+    void require_table(const std::string& key, const node& value, const std::string& owner,
+                       const std::vector<std::string>& known) const {
+        require_table(key, value);
+        require_keys(value, owner, known);
+    }
     /// The value of a required key; without it, the table is rejected with the sentence.
     [[nodiscard]] const node& required(const node& table, std::string_view key, const std::string& sentence) const;
     /// The tables of [[key]]; empty if the key is absent.

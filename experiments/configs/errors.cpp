@@ -24,8 +24,7 @@ std::uint64_t count_of(const document& doc, const node& pairs, experiment_size s
     std::uint64_t full_count = count ? doc.integer_of("count", *count, 1) : 100'000;
     std::uint64_t quick_count = std::max<std::uint64_t>(1, full_count / quick_share);
     if (quick) {
-        doc.require_table("quick", *quick);
-        doc.require_keys(*quick, " of quick", {"count"});
+        doc.require_table("quick", *quick, " of quick", {"count"});
         if (const node* in_quick = quick->find("count")) quick_count = doc.integer_of("count", *in_quick, 1);
     }
     return size == experiment_size::quick ? quick_count : full_count;
@@ -35,8 +34,7 @@ std::uint64_t count_of(const document& doc, const node& pairs, experiment_size s
 /// @param key "pairs", or "hits", whose count includes only pairs that intersect
 void add_pairs(const document& doc, const std::string& key, const node& written, experiment_size size,
                std::uint64_t seed, unique_list<pair_set>& sets) {
-    doc.require_table(key, written);
-    doc.require_keys(written, " of [[" + key + "]]", {"class", "precision", "count", "quick"});
+    doc.require_table(key, written, " of [[" + key + "]]", {"class", "precision", "count", "quick"});
     std::vector<located_text> classes;
     if (const node* listed = written.find("class"))
         classes = doc.alternatives_of("class", *listed);
@@ -117,8 +115,7 @@ void reject_keys(const document& doc, std::initializer_list<std::string_view> ke
 std::vector<metric_plot> plots_of(const document& doc) {
     std::vector<metric_plot> plots;
     for (const node& table : doc.tables_of("plot")) {
-        doc.require_table("plot", table);
-        doc.require_keys(table, " of [[plot]]", {"x", "y"});
+        doc.require_table("plot", table, " of [[plot]]", {"x", "y"});
         const auto metric_of = [&](const char* key) {
             const node& value =
                 doc.required(table, key, std::string("this plot has no ") + key + "; expected the name of a metric");

@@ -14,12 +14,13 @@ void read_measure(const document& doc, experiment_size size, experiment& e);
 
 namespace {
 
-/// The name must be safe in file names, as those of the results begin with it.
-void require_plain_name(const document& doc, const node& name) {
+/// Reads a name, which must be safe in file names, as those of the results begin with it.
+const std::string& plain_name_of(const document& doc, const node& name) {
     const std::string& text = doc.text_of("name", name);
     const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
     if (text.empty() || !std::ranges::all_of(text, fits))
         doc.fail(name.line, "the name '" + text + "' must consist of letters, digits, - and _");
+    return text;
 }
 
 constexpr std::size_t quick_repeats = 3, most_repeats = 1'000'000;
@@ -48,12 +49,10 @@ std::string resolve_program(const document& doc, const std::string& name) {
 
 /// Reads [[external]], a program of the user that takes part as an engine.
 external_engine read_external(const document& doc, const node& table) {
-    doc.require_table("external", table);
-    doc.require_keys(table, " of [[external]]", {"name", "command", "exact", "timeout_s"});
+    doc.require_table("external", table, " of [[external]]", {"name", "command", "exact", "timeout_s"});
     external_engine engine;
     const node& name = doc.required(table, "name", "this [[external]] has no name; expected name = \"…\"");
-    engine.name = doc.text_of("name", name);
-    require_plain_name(doc, name);
+    engine.name = plain_name_of(doc, name);
     if (engine.name == "auto" || std::ranges::count(aabb::engines(), engine.name, &aabb::engine_info::name) > 0 ||
         std::ranges::count(aabb::left_out_engines(), engine.name, &aabb::left_out_engine::name) > 0)
         doc.fail(name.line, "there is an engine '" + engine.name + "' already; give this one another name");
@@ -170,9 +169,7 @@ void read_sized(const document& doc, experiment_size size, experiment& e) {
 
 /// The name of the experiment and of its results folder.
 std::string read_name(const document& doc) {
-    const node& name = doc.required(doc.root(), "name", "this config has no name; expected name = \"…\"");
-    require_plain_name(doc, name);
-    return doc.text_of("name", name);
+    return plain_name_of(doc, doc.required(doc.root(), "name", "this config has no name; expected name = \"…\""));
 }
 
 /// Reads [measure], except what `read_processes` and `read_query` read; `quick` applies in quick runs only.
@@ -181,9 +178,8 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     if (quick) e.repeats = quick_repeats;
     const node* measure = doc.root().find("measure");
     if (!measure) return;
-    doc.require_table("measure", *measure);
-    doc.require_keys(*measure, " of [measure]",
-                     {"repeats", "processes", "patience", "ask", "caches", "metrics", "quick"});
+    doc.require_table("measure", *measure, " of [measure]",
+                      {"repeats", "processes", "patience", "ask", "caches", "metrics", "quick"});
     const node* repeats = measure->find("repeats");
     if (repeats && !quick) e.repeats = doc.integer_of("repeats", *repeats, 1);
     if (e.repeats > most_repeats) doc.fail(repeats->line, "repeats must be at most " + std::to_string(most_repeats));
@@ -191,8 +187,7 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     if (const node* patience = measure->find("patience")) e.patience = doc.integer_of("patience", *patience, 2);
     const node* in_quick = measure->find("quick");
     if (!in_quick) return;
-    doc.require_table("quick", *in_quick);
-    doc.require_keys(*in_quick, " of quick", {"repeats", "processes"});
+    doc.require_table("quick", *in_quick, " of quick", {"repeats", "processes"});
     if (const node* value = in_quick->find("repeats"); value && quick) e.repeats = doc.integer_of("repeats", *value, 1);
 }
 

@@ -230,8 +230,7 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
 const node* seed_of(const document& doc, experiment_size size) {
     const node* quick = doc.root().find("quick");
     if (quick) {
-        doc.require_table("quick", *quick);
-        doc.require_keys(*quick, " of quick", {"seed"});
+        doc.require_table("quick", *quick, " of quick", {"seed"});
         if (const node* seed = quick->find("seed"); seed && size == experiment_size::quick) return seed;
     }
     return doc.root().find("seed");

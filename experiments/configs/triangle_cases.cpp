@@ -45,9 +45,8 @@ aabb::triangle3d triangle_of(const document& doc, const node& table, const std::
 
 /// Reads a [[case]]: two triangles, whether they intersect as floats, and if that differs, as doubles.
 aabb::triangle_case case_of(const document& doc, const node& table) {
-    doc.require_table("case", table);
-    doc.require_keys(table, " of [[case]]",
-                     {"name", "source", "about", "class", "first", "second", "intersect", "intersect_double"});
+    doc.require_table("case", table, " of [[case]]",
+                      {"name", "source", "about", "class", "first", "second", "intersect", "intersect_double"});
     const auto text = [&](const std::string& key) { return doc.text_of(key, entry_of(doc, table, key)); };
     aabb::triangle_case pair;
     pair.name = text("name");
