@@ -51,7 +51,7 @@ struct stiff_study {
     std::string_view name;
     std::string_view about;      ///< the simulated case and what it tests
     std::string_view reference;  ///< the source of the expectation
-    stiff_result (*run)(const stiff_setting& setting);
+    void (*run)(const stiff_setting& setting, stiff_result& result);
     std::vector<figure> figures{};  ///< the figures of its points, still empty
     /// Marks values of the rows in the figures.
     void (*mark)(std::span<figure> figures, std::span<const stiff_row> rows) = nullptr;

@@ -171,8 +171,9 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
         stiff_result result;
         {
             progress done("running " + std::string(study.name), 1000);
-            result = study.run({quick, default_candidate(),
-                                [&](double share) { done.update(static_cast<std::size_t>(1000 * share)); }});
+            study.run({quick, default_candidate(),
+                       [&](double share) { done.update(static_cast<std::size_t>(1000 * share)); }},
+                      result);
         }
         add_study(report, study, result);
         if (shown) {

@@ -19,7 +19,8 @@ const aabblab::stiff_study& study_named(std::string_view name) {
 
 aabblab::stiff_result run_study(std::string_view name, const aabblab::candidate& tested) {
     const aabblab::stiff_study& study = study_named(name);
-    aabblab::stiff_result result = study.run({.quick = true, .tested = tested});
+    aabblab::stiff_result result;
+    study.run({.quick = true, .tested = tested}, result);
     for (const aabblab::stiff_point& p : result.points)
         CHECK(std::ranges::count(study.figures, p.figure, &aabblab::figure::name) == 1);
     return result;

@@ -95,11 +95,9 @@ void measure_contacts(const stiff_setting& setting, stiff_result& result) {
 
 }  // namespace
 
-stiff_result run_ball_bounces(const stiff_setting& setting) {
-    stiff_result result;
+void run_ball_bounces(const stiff_setting& setting, stiff_result& result) {
     measure_convergence(setting, result);
     measure_contacts(setting, result);
-    return result;
 }
 
 stiff_study ball_bounces_study() {

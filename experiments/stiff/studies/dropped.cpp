@@ -251,8 +251,7 @@ std::vector<figure> figures() {
 }  // namespace
 
 /// Compares step sizes with balls of 1 m, and methods with balls of 1 m and of 10 mm.
-stiff_result run_dropped(const stiff_setting& setting) {
-    stiff_result result;
+void run_dropped(const stiff_setting& setting, stiff_result& result) {
     const std::size_t side = setting.quick ? 3 : 6;
     const dropped_balls balls(side, /*diameter=*/1);
     compare_steps(balls, setting, result);
@@ -262,7 +261,6 @@ stiff_result run_dropped(const stiff_setting& setting) {
         reported("published: Bullet without ERP, 0.001 s, over 10 s", "energy error, RMS", std::sqrt(41498.1) / 34454));
     compare_methods(balls, sizes[0], setting, result);
     compare_methods(dropped_balls(side, /*diameter=*/0.01), sizes[1], setting, result);
-    return result;
 }
 
 stiff_study dropped_study() {

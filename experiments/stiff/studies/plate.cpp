@@ -75,8 +75,7 @@ private:
 
 /// Shoots the body at start times spread evenly over a step, with several lengths of a step and both kinds of boxes,
 /// and compares the share of shots that pass the plate undetected with the closed form.
-stiff_result run_plate(const stiff_setting& setting) {
-    stiff_result result;
+void run_plate(const stiff_setting& setting, stiff_result& result) {
     const std::size_t shots = setting.quick ? 200 : 2000;
     for (const double ratio : {0.5, 1.0, 1.25, 2.0, 4.0, 8.0, 16.0}) {
         shot moving_body(setting.tested, ratio * extent);
@@ -96,7 +95,6 @@ stiff_result run_plate(const stiff_setting& setting) {
                                    (swept ? 0 : 1.01 / static_cast<double>(shots)))});
         }
     }
-    return result;
 }
 
 stiff_study plate_study() {

@@ -95,8 +95,7 @@ double greatest_jump(const std::vector<double>& forces) {
 
 /// Slides the meshes in each placement with each triangle method. With an exact one the force must be the load, or none
 /// above the flat mesh; that of others is reported, and drawn for nine of those that lose load at 10 mm.
-stiff_result run_sliding(const stiff_setting& setting) {
-    stiff_result result;
+void run_sliding(const stiff_setting& setting, stiff_result& result) {
     const std::vector<placement> placements = {{.name = "lattice", .frame = {}, .size = 1, .pressed = 0},
                                                {"oblique, 1 m", oblique(), 1, 1e-5},
                                                {"oblique, 10 mm", oblique(), 0.01, 1e-5},
@@ -124,7 +123,6 @@ stiff_result run_sliding(const stiff_setting& setting) {
                 for (int i = 0; i < positions; ++i)
                     result.plot("sliding_force", m.label, displacement * i, forces[static_cast<std::size_t>(i)]);
         }
-    return result;
 }
 
 stiff_study sliding_study() {

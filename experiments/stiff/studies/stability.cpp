@@ -100,8 +100,7 @@ void mark_limits(std::span<figure> figures, std::span<const stiff_row> rows) {
 
 /// Measures the energy drift of each integrator at several step sizes, and the greatest stable step of those with a
 /// fixed step. Symplectic ones must not drift; that of order 5 must lose energy as its stability polynomial says.
-stiff_result run_stability(const stiff_setting& setting) {
-    stiff_result result;
+void run_stability(const stiff_setting& setting, stiff_result& result) {
     const std::size_t periods = setting.quick ? 100 : 1000;
     for (const integrator_info& i : integrators()) {
         std::vector<double> steps = {0.05, 0.1, 0.157, 0.314, 0.8};
@@ -133,7 +132,6 @@ stiff_result run_stability(const stiff_setting& setting) {
             result.add(within(std::string(i.name), greatest_step, limit, i.stable_below, 0.005));
         });
     }
-    return result;
 }
 
 stiff_study stability_study() {
