@@ -69,10 +69,10 @@ public:
 struct integrator_info {
     std::string_view name;
     std::string_view summary;
-    bool adaptive;  ///< chooses its own steps, by a tolerance
+    bool adaptive = false;  ///< chooses its own steps, by a tolerance
     int order;
     /// The limit of step times angular frequency below which an undamped oscillation does not grow; may be infinite.
-    double stable_below;
+    double stable_below = std::numeric_limits<double>::infinity();
     std::unique_ptr<integrator> (*make)(double tolerance);  ///< only adaptive ones use the tolerance
     /// Whether the energy of an oscillation does not drift: here, of Euler and Verlet, unlike Runge-Kutta and BDF.
     [[nodiscard]] bool is_symplectic() const { return !adaptive && order <= 2; }

@@ -46,7 +46,6 @@ integrator_info adaptive_dormand_prince_integrator() {
             .summary = "the same with adaptive steps, controlled by a tolerance (Boost.odeint)",
             .adaptive = true,
             .order = 5,
-            .stable_below = std::numeric_limits<double>::infinity(),  // dt·ω
             .make = [](double tolerance) -> std::unique_ptr<integrator> {
                 return std::make_unique<adaptive_dormand_prince>(tolerance);
             }};

@@ -111,7 +111,6 @@ integrator_info bdf_integrator() {
         .summary = "backward differences of orders 1 to 5 with Newton's method, for stiff systems (SUNDIALS' CVODE)",
         .adaptive = true,
         .order = 5,
-        .stable_below = std::numeric_limits<double>::infinity(),  // dt·ω
         .make = [](double tolerance) -> std::unique_ptr<integrator> { return std::make_unique<bdf>(tolerance); }};
 }
 

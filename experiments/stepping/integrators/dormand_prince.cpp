@@ -30,7 +30,6 @@ integrator_info dormand_prince_integrator() {
     // where w = y² is the root of w³ - 25 w² + 225 w - 200.
     return {.name = "dormand_prince",
             .summary = "the Runge-Kutta pair of orders 5 and 4, with steps of one size (Boost.odeint)",
-            .adaptive = false,
             .order = 5,
             .stable_below = 0.99720,  // dt·ω
             .make = [](double) -> std::unique_ptr<integrator> { return std::make_unique<dormand_prince>(); }};

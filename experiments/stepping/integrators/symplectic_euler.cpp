@@ -28,7 +28,6 @@ private:
 integrator_info symplectic_euler_integrator() {
     return {.name = "symplectic_euler",
             .summary = "semi-implicit Euler: a step with the old velocity, then the force there (Boost.odeint)",
-            .adaptive = false,
             .order = 1,
             .stable_below = 2,  // dt·ω
             .make = [](double) -> std::unique_ptr<integrator> { return std::make_unique<symplectic_euler>(); }};

@@ -28,7 +28,6 @@ integrator_info velocity_verlet_integrator() {
         .name = "velocity_verlet",
         .summary =
             "central differences; of first order if forces depend on velocity, which lags a step behind (Boost.odeint)",
-        .adaptive = false,
         .order = 2,
         .stable_below = 2,  // dt·ω
         .make = [](double) -> std::unique_ptr<integrator> { return std::make_unique<velocity_verlet>(); }};
