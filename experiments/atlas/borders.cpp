@@ -4,7 +4,6 @@ module;
 
 module aabblab.atlas;
 
-import :labels;
 import aabb.policy;
 import aabblab.fmt;
 import aabblab.numbers;

@@ -1,7 +1,6 @@
 module aabblab.atlas;
 
 import aabblab.fmt;
-import :labels;
 
 namespace aabblab {
 

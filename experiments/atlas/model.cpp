@@ -1,6 +1,5 @@
 module aabblab.atlas;
 
-import :labels;
 import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.progress;
