@@ -68,7 +68,7 @@ draft c11_claim(const measurements& m) {
         "Time of both phases against the number of objects, for simple models far apart: traditional, improved, "
         "and each phase improved alone; medians and quartiles.",
         "objects", "time per frame (ms)",
-        series_of(methods, matching(conditions, {{"meshes", mesh_of(conditions.back())}}), "objects",
+        series_of(methods, matching(conditions, {{"meshes", mesh_of(conditions.back())}}), objects_of,
                   measured("frame_cpu_ms"))));
     return c11;
 }

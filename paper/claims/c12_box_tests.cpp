@@ -20,7 +20,7 @@ draft c12_claim(const measurements& m) {
         "c12", "Box tests per frame against the number of objects, with the axial cut and without.", "objects",
         "box tests per frame",
         series_of(methods, matching(m.conditions_of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}}),
-                  "objects", measured("box_tests"))));
+                  objects_of, measured("box_tests"))));
     return c12;
 }
 

@@ -57,7 +57,7 @@ draft c13_claim(const measurements& m) {
                 "objects", "time per frame and box (ms)"));
     const method methods[] = {{"every axis cut", smb}, {"no cut", uncut}};
     if (const std::vector<condition>& conditions = m.conditions_of("smb_objects"); !conditions.empty())
-        f.lines = series_of(methods, matching(conditions, {}), "objects", per_object(measured("frame_cpu_ms")));
+        f.lines = series_of(methods, matching(conditions, {}), objects_of, per_object(measured("frame_cpu_ms")));
     return c13;
 }
 

@@ -70,7 +70,7 @@ draft c1_claim(const measurements& m) {
         "figure1",
         "Time of the broad phase against the number of objects: the traditional method, the improved one, and each "
         "change alone. Cubes drift by up to a tenth of their edge per frame; medians and quartiles.",
-        "objects", "time per frame (ms)", series_of(methods, of_all_sizes, "objects", measured("frame_cpu_ms"))));
+        "objects", "time per frame (ms)", series_of(methods, of_all_sizes, objects_of, measured("frame_cpu_ms"))));
     return c1;
 }
 

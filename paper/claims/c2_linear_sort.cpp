@@ -59,7 +59,7 @@ std::optional<double> inversions_of(const std::vector<const condition*>& conditi
 std::vector<const condition*> equally_ordered_sizes(std::vector<const condition*> conditions) {
     constexpr double fewest_elements = 10'000;
     constexpr double most_deviation = 0.1;
-    std::erase_if(conditions, [](const condition* c) { return number_of(c->scene(), "objects") < fewest_elements; });
+    std::erase_if(conditions, [](const condition* c) { return objects_of(*c) < fewest_elements; });
     const std::optional<double> usual = inversions_of(conditions);
     std::erase_if(conditions, [&](const condition* c) {
         const std::optional<double> inversions = inversions_of(*c);
@@ -91,7 +91,7 @@ draft c2_claim(const measurements& m) {
             const std::vector<const condition*> conditions = equally_ordered_sizes(of_all_sizes);
             if (conditions.size() < 2) continue;
             for (const condition* c : conditions) {
-                measured_work.log_n.push_back(std::log10(number_of(c->scene(), "objects")));
+                measured_work.log_n.push_back(std::log10(objects_of(*c)));
                 measured_work.log_per_element.push_back(c->logs({{kind::sort, sort}}, per_object(work())));
             }
             endpoint growth;
@@ -117,8 +117,8 @@ draft c2_claim(const measurements& m) {
                 "elements", "comparisons and moves per element"));
     std::vector<method> methods;
     for (const auto& [sort, subject] : sorts) methods.push_back({sort, {{kind::sort, sort}}});
-    f.lines = series_of(methods, by_displacement["0.1"], "objects", per_object(work()));
-    f.lines.push_back(series_of("inversions", by_displacement["0.1"], "objects", {{kind::sort, "insertion"}},
+    f.lines = series_of(methods, by_displacement["0.1"], objects_of, per_object(work()));
+    f.lines.push_back(series_of("inversions", by_displacement["0.1"], objects_of, {{kind::sort, "insertion"}},
                                 per_object(measured("inversions"))));
     return c2;
 }

@@ -155,22 +155,14 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
 /// A figure of the time or memory of two grids and of the axial cut against the side of the world.
 figure world_figure(const std::string& name, const std::string& quantity_name, const std::string& y_label,
                     const std::vector<condition>& worlds, const row_value& value) {
-    figure f = log_log(name,
-                       quantity_name +
-                           " of the broad phase against the side of the world, for the same 2,000 cubes: a grid with "
-                           "a fixed cell size, one with an automatic cell size, and the axial cut; medians and "
-                           "quartiles.",
-                       "side of the world (edges)", y_label);
     const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
-    for (const auto& [label, tested] : methods) {
-        series s{label};
-        for (const condition& c : worlds) {
-            const double side = std::cbrt(number_of(c.scene(), "objects") / number_of(c.scene(), "density"));
-            if (const auto point = c.point(side, tested, value)) s.points.push_back(*point);
-        }
-        f.lines.push_back(s);
-    }
-    return f;
+    const auto side_of = [](const condition& c) { return std::cbrt(objects_of(c) / number_of(c.scene(), "density")); };
+    return log_log(name,
+                   quantity_name +
+                       " of the broad phase against the side of the world, for the same 2,000 cubes: a grid with "
+                       "a fixed cell size, one with an automatic cell size, and the axial cut; medians and "
+                       "quartiles.",
+                   "side of the world (edges)", y_label, series_of(methods, matching(worlds, {}), side_of, value));
 }
 
 }  // namespace
@@ -189,7 +181,7 @@ draft c5_claim(const measurements& m) {
         .primary = {{{"objects", "1000"}, {"comparison", over_best_single}},
                     {{"objects", "10000"}, {"comparison", over_best_single}}}};
     std::map<double, std::vector<const condition*>> by_objects;
-    for (const condition& c : m.conditions_of("c5")) by_objects[number_of(c.scene(), "objects")].push_back(&c);
+    for (const condition& c : m.conditions_of("c5")) by_objects[objects_of(c)].push_back(&c);
     for (const auto& [number, conditions] : by_objects) {
         const std::string objects = value_of(conditions.front()->scene(), "objects");
         const scenes_and_cells scenes(conditions);

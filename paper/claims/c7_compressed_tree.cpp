@@ -25,7 +25,7 @@ figure size_figure(const measurements& m, const std::string& name, const std::st
                               {"compressed", tree(compressed)}};
     std::vector<const condition*> generated = conditions_by_size(m);
     std::erase_if(generated, [](const condition* c) { return !mesh_of(*c).starts_with("noise_sphere"); });
-    return log_log(name, caption, "triangles", y, series_of(layouts, generated, "triangles", value));
+    return log_log(name, caption, "triangles", y, series_of(layouts, generated, &condition::triangles, value));
 }
 
 endpoint compressed_over_canonical(const condition& c, const std::string& metric, const std::string& leaf_test) {

@@ -215,10 +215,15 @@ void add_ratios(table& t, const std::vector<condition>& conditions, std::span<co
 [[nodiscard]] inline series level_of(const std::string& label, double x = 1) {
     return {label, series_style::level, {{x, 1}}};
 }
+/// The position of a condition on the x axis of a figure.
+using condition_number = std::function<double(const condition&)>;
+[[nodiscard]] inline double objects_of(const condition& c) {
+    return number_of(c.scene(), "objects");
+}
 [[nodiscard]] series series_of(const std::string& label, std::span<const condition* const> conditions,
-                               const std::string& x, const selection& tested, const row_value& value);
+                               const condition_number& x, const selection& tested, const row_value& value);
 [[nodiscard]] std::vector<series> series_of(std::span<const method> methods,
-                                            std::span<const condition* const> conditions, const std::string& x,
+                                            std::span<const condition* const> conditions, const condition_number& x,
                                             const row_value& value);
 [[nodiscard]] std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted,
                                                 const std::string& level);

@@ -74,20 +74,18 @@ figure_point point_of(double x, const endpoint& e) {
     return {x, std::exp(ratio.value), std::exp(range.low), std::exp(range.high)};
 }
 
-/// A line of a figure: a composition's median in each condition against the factor `x`, in the order of x.
-series series_of(const std::string& label, std::span<const condition* const> conditions, const std::string& x,
+/// A line of a figure: a composition's median in each condition against a number of the condition, in its order.
+series series_of(const std::string& label, std::span<const condition* const> conditions, const condition_number& x,
                  const selection& tested, const row_value& value) {
     series s{label};
-    for (const condition* c : conditions) {
-        const double x_value = x == "triangles" ? c->triangles() : number_of(c->scene(), x);
-        if (const auto point = c->point(x_value, tested, value)) s.points.push_back(*point);
-    }
+    for (const condition* c : conditions)
+        if (const auto point = c->point(x(*c), tested, value)) s.points.push_back(*point);
     std::ranges::sort(s.points, {}, &figure_point::x);
     return s;
 }
 
 std::vector<series> series_of(std::span<const method> methods, std::span<const condition* const> conditions,
-                              const std::string& x, const row_value& value) {
+                              const condition_number& x, const row_value& value) {
     std::vector<series> lines;
     for (const method& m : methods) lines.push_back(series_of(m.label, conditions, x, m.tested, value));
     return lines;

@@ -64,11 +64,11 @@ measured_choices scene_choices(const measurements& m) {
     std::vector<const condition*> scenes =
         matching(m.conditions_of("figure1"), {{"displacement", "0.1"}, {"unit", "extent"}});
     if (scenes.empty()) return measured;
-    const double objects = number_of(scenes.front()->scene(), "objects");
+    const double objects = objects_of(*scenes.front());
     const std::vector<const condition*> drifts =
         matching(m.conditions_of("figure1"), {{"scene", "brownian"}, {"displacement", "0.1"}});
     const auto nearest = std::ranges::min_element(
-        drifts, {}, [&](const condition* c) { return std::abs(std::log(number_of(c->scene(), "objects") / objects)); });
+        drifts, {}, [&](const condition* c) { return std::abs(std::log(objects_of(*c) / objects)); });
     const auto label_of = [](const condition& c) {
         return value_of(c.scene(), "scene") + " of " + number_text(value_of(c.scene(), "objects"));
     };
