@@ -136,30 +136,26 @@ trial frames_trial(const generated_scene& scene, cost_group group, const aabb::c
     return {scene.name, scene.held_out, measure};
 }
 
-/// A Verlet list that is rebuilt in every even frame and reused in every odd one.
-trial verlet_list_trial(const generated_scene& scene) {
-    aabb::composition c;
-    c[aabb::strategy_kind::prepare] = {"neighbour_list", {{"every", "2"}}};
-    return {scene.name, scene.held_out,
-            [n = scene.n, run = box_run{scene.frames, c, {}}](aabb::instrumentation counted) {
-                const std::vector<frame_sample> samples = sample_frames(run, counted);
-                const frame_sample built = mean_of(samples, warm_up_frames, /*step=*/2);
-                const frame_sample reused = mean_of(samples, warm_up_frames + 1, /*step=*/2);
-                // Reuse of a list tests each of its pairs and does not search.
-                assert(counted == aabb::instrumentation::none ||
-                       (built.work[aabb::work::subsets] > 0 && reused.work[aabb::work::subsets] == 0));
-                const double listed = reused.count(aabb::work::box_tests);
-                return std::vector{measured_part{cost_group::lists, {n, listed, n, n, listed}, built.ns},
-                                   measured_part{cost_group::lists, {0, 0, 0, n, listed}, reused.ns}};
-            }};
-}
-
-/// Adds a search by columns and a Verlet list. Work: boxes and pairs searched, boxes kept and watched, pairs tested.
+/// Adds a search by columns, and a Verlet list that is rebuilt in every even frame and reused in every odd one. Work:
+/// boxes and pairs searched, boxes kept and watched, pairs tested.
 void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
     trials.push_back(frames_trial(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
         return std::vector<double>{n, mean.pairs, 0, 0, 0};
     }));
-    trials.push_back(verlet_list_trial(scene));
+    aabb::composition c;
+    c[aabb::strategy_kind::prepare] = {"neighbour_list", {{"every", "2"}}};
+    const auto measure = [n = scene.n, run = box_run{scene.frames, c, {}}](aabb::instrumentation counted) {
+        const std::vector<frame_sample> samples = sample_frames(run, counted);
+        const frame_sample built = mean_of(samples, warm_up_frames, /*step=*/2);
+        const frame_sample reused = mean_of(samples, warm_up_frames + 1, /*step=*/2);
+        // Reuse of a list tests each of its pairs and does not search.
+        assert(counted == aabb::instrumentation::none ||
+               (built.work[aabb::work::subsets] > 0 && reused.work[aabb::work::subsets] == 0));
+        const double listed = reused.count(aabb::work::box_tests);
+        return std::vector{measured_part{cost_group::lists, {n, listed, n, n, listed}, built.ns},
+                           measured_part{cost_group::lists, {0, 0, 0, n, listed}, reused.ns}};
+    };
+    trials.push_back({scene.name, scene.held_out, measure});
 }
 
 /// Adds a search with an axial cut, or none, which sorts `lists` lists: one per cut axis, and one for the sweep.
