@@ -19,6 +19,33 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
     return names;
 }
 
+/// The files of a reproduction's folder from which its report is made: they are sealed and archived. Relative to the
+/// folder, sorted.
+std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    const auto add = [&](const std::filesystem::path& subfolder, std::initializer_list<const char*> names) {
+        for (const char* name : names)
+            if (std::filesystem::is_regular_file(folder / subfolder / name)) files.push_back(subfolder / name);
+    };
+    for (const std::string& name : recorded_experiments(folder))
+        add(name, {"manifest.json", "results.csv", "differences.csv"});
+    for (const std::string& name : names_in(folder / "errors"))
+        add("errors/" + name, {"config.toml", "errors.csv", "manifest.json", "results.csv", "differences.csv"});
+    for (const std::string& name : names_in(folder / "c6"))
+        if (name.ends_with(".json") || name == "made_by.txt") add("c6", {name.c_str()});
+    for (const std::string& name : names_in(folder / "atlas"))
+        add("atlas/" + name, {"manifest.json", "results.csv", "differences.csv"});
+    for (const std::string suite : {"extreme", "stiff"}) {
+        // Earlier versions sealed their report instead of rows.
+        const bool has_report = std::filesystem::exists(folder / suite / "report.json");
+        for (const std::string& name : names_in(folder / suite))
+            if (has_report ? name == "report.json" : name.ends_with(".csv")) add(suite, {name.c_str()});
+    }
+    add("", {"failures.txt"});
+    std::ranges::sort(files);
+    return files;
+}
+
 using checksums_by_file = std::map<std::string, std::string>;
 
 /// The checksum of a file with normalised line endings, which copying may have changed.
@@ -64,32 +91,6 @@ std::vector<std::string> recorded_experiments(const std::filesystem::path& folde
             std::filesystem::is_regular_file(folder / name / "results.csv"))
             experiments.push_back(name);
     return experiments;
-}
-
-/// The files of a reproduction's folder from which its report is made: they are sealed and archived.
-std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> files;
-    const auto add = [&](const std::filesystem::path& subfolder, std::initializer_list<const char*> names) {
-        for (const char* name : names)
-            if (std::filesystem::is_regular_file(folder / subfolder / name)) files.push_back(subfolder / name);
-    };
-    for (const std::string& name : recorded_experiments(folder))
-        add(name, {"manifest.json", "results.csv", "differences.csv"});
-    for (const std::string& name : names_in(folder / "errors"))
-        add("errors/" + name, {"config.toml", "errors.csv", "manifest.json", "results.csv", "differences.csv"});
-    for (const std::string& name : names_in(folder / "c6"))
-        if (name.ends_with(".json") || name == "made_by.txt") add("c6", {name.c_str()});
-    for (const std::string& name : names_in(folder / "atlas"))
-        add("atlas/" + name, {"manifest.json", "results.csv", "differences.csv"});
-    for (const std::string suite : {"extreme", "stiff"}) {
-        // Earlier versions sealed their report instead of rows.
-        const bool has_report = std::filesystem::exists(folder / suite / "report.json");
-        for (const std::string& name : names_in(folder / suite))
-            if (has_report ? name == "report.json" : name.ends_with(".csv")) add(suite, {name.c_str()});
-    }
-    add("", {"failures.txt"});
-    std::ranges::sort(files);
-    return files;
 }
 
 std::vector<std::filesystem::path> archived_files(const std::filesystem::path& folder) {

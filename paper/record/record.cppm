@@ -17,10 +17,7 @@ inline constexpr const char* sums_name = "SHA256SUMS";
 /// The names of the experiments in a folder.
 [[nodiscard]] std::vector<std::string> recorded_experiments(const std::filesystem::path& folder);
 
-/// The files that a judgement reads, relative to the folder, sorted.
-[[nodiscard]] std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder);
-
-/// The files of an archive: the same, and SHA256SUMS if it exists.
+/// The files of an archive, relative to the folder: those that a judgement reads, and SHA256SUMS if it exists.
 [[nodiscard]] std::vector<std::filesystem::path> archived_files(const std::filesystem::path& folder);
 
 /// Seals a finished run: writes SHA256SUMS, with every file that a judgement reads except the tables of results, whose
