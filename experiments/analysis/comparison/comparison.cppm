@@ -19,12 +19,6 @@ struct run_results {
 /// @throws aabb::input_error if results are missing, unreadable or altered, or if an experiment occurs twice.
 [[nodiscard]] run_results read_results(const std::filesystem::path& folder);
 
-/// The build and processor of the results: "commit d27dba3, Clang 19.1.7, Intel Xeon"; a list if experiments differ.
-[[nodiscard]] std::string makers_of(const run_results& run);
-
-/// @throws aabb::input_error if the manifests name different processors, as their times are not comparable.
-void require_one_machine(const run_results& a, const run_results& b);
-
 /// The time per frame of a composition or an engine in a scene, over all seeds: relative to the baseline, or in ms.
 struct compared_time {
     std::string label;  ///< the parts of the name that differ within the scene
