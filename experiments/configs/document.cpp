@@ -248,14 +248,12 @@ std::vector<located_text> document::alternatives_of(const std::string& key, cons
     if (value.is_scalar()) return {{value.text, value.line}};
     if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");
     if (value.items.empty()) fail(value.line, key + " is an empty list; expected at least one value");
-    std::vector<located_text> values;
-    std::set<std::string_view> distinct;
+    unique_list<located_text> values;
     for (const node& item : value.items) {
         if (!item.is_scalar()) fail_type("an entry of " + key, item, "a value");
-        if (!distinct.insert(item.text).second) fail(item.line, key + " lists '" + item.text + "' twice");
-        values.push_back({item.text, item.line});
+        if (!values.add({item.text, item.line}, item.text)) fail(item.line, key + " lists '" + item.text + "' twice");
     }
-    return values;
+    return values.items();
 }
 
 void document::require_small_product(int line, std::string_view noun, std::span<const std::size_t> factors,

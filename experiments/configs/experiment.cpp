@@ -26,17 +26,15 @@ const std::string& plain_name_of(const document& doc, const node& name) {
 constexpr std::size_t quick_repeats = 3, most_repeats = 1'000'000;
 
 std::vector<std::string> engines_of(const document& doc) {
-    std::vector<std::string> names;
     const node* engines = doc.root().find("engines");
-    if (!engines) return names;
+    if (!engines) return {};
+    unique_list<std::string> names;
     for (const located_text& engine : doc.texts_of("engines", *engines)) {
         if (const std::string rejection = aabb::rejection_of_engine(engine.text); !rejection.empty())
             doc.fail(engine.line, rejection);
-        if (std::ranges::find(names, engine.text) != names.end())
-            doc.fail(engine.line, "engines lists '" + engine.text + "' twice");
-        names.push_back(engine.text);
+        if (!names.add(engine.text, engine.text)) doc.fail(engine.line, "engines lists '" + engine.text + "' twice");
     }
-    return names;
+    return names.items();
 }
 
 /// Resolves a program like any file of the config; a name without a slash is left for PATH.
@@ -73,14 +71,13 @@ external_engine read_external(const document& doc, const node& table) {
 }
 
 std::vector<external_engine> externals_of(const document& doc) {
-    std::vector<external_engine> externals;
+    unique_list<external_engine> externals;
     for (const node& table : doc.tables_of("external")) {
-        external_engine engine = read_external(doc, table);
-        if (std::ranges::find(externals, engine.name, &external_engine::name) != externals.end())
+        const external_engine engine = read_external(doc, table);
+        if (!externals.add(engine, engine.name))
             doc.fail(table.line, "two [[external]] have the name '" + engine.name + "'");
-        externals.push_back(std::move(engine));
     }
-    return externals;
+    return externals.items();
 }
 
 /// Reads names of groups and metrics. A listed group is only recorded; a listed metric is also shown in the tables.

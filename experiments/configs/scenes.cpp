@@ -110,14 +110,11 @@ std::vector<std::optional<std::uint64_t>> seeds_of(const document& doc, const no
     if (!seed) return {1U};
     if (seed->kind != node_kind::list) return {doc.integer_of("seed", *seed, 0)};
     if (seed->items.empty()) doc.fail(seed->line, "seed is an empty list; expected at least one number");
-    std::vector<std::optional<std::uint64_t>> seeds;
-    std::set<std::uint64_t> seen;
-    for (const node& item : seed->items) {
-        const std::uint64_t number = doc.integer_of("seed", item, 0);
-        seeds.emplace_back(number);
-        if (!seen.insert(number).second) doc.fail(item.line, "seed lists '" + item.text + "' twice");
-    }
-    return seeds;
+    unique_list<std::optional<std::uint64_t>> seeds;
+    for (const node& item : seed->items)
+        if (!seeds.add(doc.integer_of("seed", item, 0), item.text))
+            doc.fail(item.line, "seed lists '" + item.text + "' twice");
+    return seeds.items();
 }
 
 /// Digests every frame of a file. Reading to the end also rejects a malformed file before the experiment starts.
