@@ -119,7 +119,7 @@ struct candidate_model {
 
 [[nodiscard]] std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas);
 
-/// Writes atlas.md, atlas.html, the tables as CSV and the figures to the folder.
+/// Writes the figures, atlas.md and atlas.html to the folder, and as CSV every table, also those that the page omits.
 void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_scene>& atlas);
 
 }  // namespace aabblab

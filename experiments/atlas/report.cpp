@@ -80,7 +80,6 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
 
 }  // namespace
 
-/// Writes the atlas: figures, a page in Markdown and HTML, and as CSV every table, also those that the page omits.
 void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_scene>& atlas) {
     const std::vector<section> sections = sections_of(atlas);
     const std::vector<figure> figures = atlas_figures(atlas);

@@ -246,7 +246,6 @@ error_curve read_curve(const document& doc, const node& written) {
     return curve;
 }
 
-/// Makes the triangle test of a strategy or of an engine's library.
 std::unique_ptr<aabb::triangle_test> triangle_test_named(const aabb::strategy_choice& choice) {
     std::vector<std::string> names = aabb::strategy_names(aabb::strategy_kind::triangle);
     if (std::ranges::find(names, choice.name) != names.end()) return aabb::make_triangle_test(choice);

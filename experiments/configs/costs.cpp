@@ -78,7 +78,6 @@ std::string text_of(const calibrated_costs& costs) {
     return text;
 }
 
-/// Reads the costs; of another version only the header, because its costs may differ in name and meaning.
 calibrated_costs parse_costs(const std::string& text, const std::string& file) {
     const document doc(text, file, longest_file, "a file of costs");
     calibrated_costs parsed{
@@ -105,7 +104,6 @@ std::filesystem::path calibrated_costs_file() {
     return home.empty() ? home : home / ".config" / file;
 }
 
-/// Makes strategies plan by the costs that `calibrate` stored, if it ran with this version on this machine.
 void use_calibrated_costs() {
     const std::filesystem::path file = calibrated_costs_file();
     std::error_code ignored;  // an inaccessible file counts as absent

@@ -233,7 +233,6 @@ std::vector<aabb::composition> every_composition(const experiment& e) {
     return compositions;
 }
 
-/// Digests what determines the results, from parsed values: the layout of a config and its comments may change.
 std::string hash_of(const experiment& e) {
     std::string text = e.name + " repeats=" + std::to_string(e.repeats) + " processes=" + std::to_string(e.processes);
     if (e.patience) text += " patience=" + std::to_string(*e.patience);

@@ -56,7 +56,7 @@ enum class pair_group : std::uint8_t { of_floats, of_doubles, of_meshes };
 /// joins the Pareto front; methods without errors are drawn on the level 1/N.
 [[nodiscard]] figure group_figure(std::span<const error_point> points, pair_group group);
 
-/// A sentence about the fastest and the most accurate method of a group.
+/// A sentence about both ends of the Pareto front of a group: the fastest method, and the one with the fewest errors.
 [[nodiscard]] std::string group_statement(std::span<const error_point> points, pair_group group);
 
 /// One figure per group, and one per set.

@@ -319,7 +319,6 @@ table error_summary(std::span<const error_point> points, pair_group group) {
     return t;
 }
 
-/// The shares of false negatives + false positives of each method, one column per set of pairs.
 table errors_by_set(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> subset = of_group(points, group);
     table t{{{"triangle", false}}, {}};
@@ -348,7 +347,6 @@ figure group_figure(std::span<const error_point> points, pair_group group) {
                      subset);
 }
 
-/// A sentence about both ends of the Pareto front: the fastest method, and the one with the fewest errors.
 std::string group_statement(std::span<const error_point> points, pair_group group) {
     const std::vector<pooled> methods = pooled_over(of_group(points, group));
     const std::vector<std::size_t> front = front_of(methods, &pooled::costs);

@@ -65,7 +65,7 @@ struct extreme_list {
 [[nodiscard]] std::vector<std::string> rejections_in(std::span<const extreme_row> rows);
 /// A sentence for each row that is not as expected.
 [[nodiscard]] std::vector<std::string> failures_in(std::span<const extreme_row> rows);
-/// A sentence per scene with a memory bound: the maximum that compositions allocated.
+/// A sentence per scene that limits memory: the most that any composition holds in it, and the limit.
 [[nodiscard]] std::vector<std::string> memory_in(std::span<const extreme_row> rows);
 
 }  // namespace aabblab

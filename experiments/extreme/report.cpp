@@ -140,7 +140,6 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
 
 }  // namespace
 
-/// One row per class of cases, with the results of exact tests and compositions summed up, then one column per engine.
 table case_table(std::span<const extreme_row> rows) {
     const auto shown = filtered(rows, [](const extreme_row& row) { return row.group == row_group::cases; });
     const auto sums_of = [](const row_list& group) {
@@ -154,7 +153,6 @@ table case_table(std::span<const extreme_row> rows) {
                            &extreme_row::kind, candidates_in(shown, candidate_role::engine), sums_of);
 }
 
-/// The errors of inexact triangle tests, by class of cases.
 table inexact_case_table(std::span<const extreme_row> rows) {
     // Tests with non-default parameters are in the CSV file only.
     const auto shown = filtered(rows, [](const extreme_row& row) {
@@ -164,7 +162,6 @@ table inexact_case_table(std::span<const extreme_row> rows) {
     return wrong_table("class", shown, &extreme_row::kind);
 }
 
-/// One row per scene of boxes or of meshes, with the results of compositions summed up, then one column per engine.
 table scene_table(std::span<const extreme_row> rows, row_group group) {
     const auto shown = filtered(
         rows, [&](const extreme_row& row) { return row.group == group && row.role != candidate_role::triangle_test; });
@@ -180,7 +177,6 @@ table inexact_scene_table(std::span<const extreme_row> rows) {
                        &extreme_row::scene);
 }
 
-/// The errors of candidates that may be inexact, by class of difference, summed over the scenes of meshes.
 table class_table(std::span<const extreme_row> rows) {
     table t{{{"candidate", /*is_number=*/false}}, {}};
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
@@ -197,7 +193,6 @@ table class_table(std::span<const extreme_row> rows) {
     return t;
 }
 
-/// A sentence per scene that limits memory: the most that any composition holds in it, and the limit.
 std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto limited = filtered(
@@ -220,7 +215,6 @@ std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file) {
                                      std::array<std::string_view, 2>{"precision", "stated_bytes"});
 }
 
-/// A sentence per distinct reason of rejections, with the scenes in which it occurs.
 std::vector<std::string> rejections_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto rejected =

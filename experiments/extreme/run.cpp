@@ -183,7 +183,6 @@ void run_candidates(const aabb::extreme_judge& judge, std::span<const named_cand
 
 }  // namespace
 
-/// Runs triangle tests themselves, in float and in double, then compositions and engines on meshes of one triangle.
 std::vector<extreme_row> run_triangle_cases(std::span<const aabb::triangle_case> cases) {
     std::vector<extreme_row> rows;
     for (const named_test& test : named_triangle_tests())

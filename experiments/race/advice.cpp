@@ -123,7 +123,6 @@ std::vector<std::string> caveats_of(const race_result& race) {
 
 }  // namespace
 
-/// The recommendation, one sentence each: the winner and its lead, `auto`, options to use it, wrong results, caveats.
 std::vector<std::string> advice_of(const race_result& race) {
     const racer& winner = race.finalists.front();
     std::string use = fmt::format("Use {}: {:.4g} ms for {}", winner.name, winner.last->whole_ms(), frames_text(race));

@@ -326,8 +326,6 @@ void rank(std::vector<racer>& finalists) {
                      [](const racer& a, const racer& b) { return a.log_ratio->value < b.log_ratio->value; });
 }
 
-/// `auto`, exact engines, and exact compositions of one stage: of meshes the narrow phase. The order is random, as
-/// there may be no time for all, with a constant seed, so that a race can be repeated.
 std::vector<racer> race_candidates(const scene_frames& scene) {
     const bool meshes = scene.meshes() != nullptr;
     std::vector<racer> candidates;

@@ -46,8 +46,8 @@ struct race_result {
     [[nodiscard]] bool is_validated() const { return validated > 0 && validated == final_frames; }
 };
 
-/// The candidates for a scene: first `auto`, then the exact engines and every other composition of the relevant stage,
-/// in a reproducible random order, since there may be no time for all.
+/// The candidates for a scene: first `auto`, then the exact engines and every other exact composition of one stage, of
+/// meshes the narrow phase, in a reproducible random order, since there may be no time for all.
 [[nodiscard]] std::vector<racer> race_candidates(const scene_frames& scene);
 
 /// @throws aabb::input_error if the scene cannot be run, or no candidate finishes its first frame in time.
@@ -57,8 +57,8 @@ struct race_result {
 /// is faster than the winner in more than half of the repeats.
 void rank(std::vector<racer>& finalists);
 
-/// Recommends a configuration: which to use, how far the second and `auto` are behind, for which numbers of frames the
-/// recommendation would change, and which candidates are wrong.
+/// The recommendation, one sentence each: the winner, its lead and for which numbers of frames it would be another,
+/// `auto`, options to use it, wrong results, caveats.
 [[nodiscard]] std::vector<std::string> advice_of(const race_result& race);
 
 struct recommend_request {

@@ -37,7 +37,6 @@ candidate candidate_of(const aabb::composition& c, bool meshes) {
     return result;
 }
 
-/// A candidate `auto`: every run keeps the named strategies and selects the others anew for the scene.
 candidate candidate_of(const aabb::named_strategies& named, const scene_frames& scene) {
     aabb::composition initial = aabb::complete_composition(named);
     const auto selected = [named, traits = traits_of(scene)](aabb::composition& c) -> const aabb::composition& {
@@ -68,7 +67,6 @@ aabb::scene_traits traits_of(const scene_frames& scene) {
     return aabb::traits_of(scene.meshes()->meshes, scene.objects(), scene.frames());
 }
 
-/// A reference engine, with the default composition for a stage that it lacks; empty if it cannot run the scene.
 std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes) {
     if (!engine.searches_boxes && !(meshes && engine.collides_meshes)) return std::nullopt;
     candidate result;
@@ -338,7 +336,6 @@ candidate candidate_of(const external_engine& engine, const std::shared_ptr<exch
 
 }  // namespace
 
-/// The candidates in the order of all tables: compositions, each `auto`, engines, and external engines for boxes.
 std::vector<candidate> candidates_for(const experiment& e, const scene_choice& scene) {
     const bool meshes = has_meshes(scene);
     std::vector<candidate> candidates;

@@ -135,7 +135,6 @@ std::size_t stage_runner::held_bytes() const {
     return sum;
 }
 
-/// How much larger the boxes of the trees are than tight ones, in area: the mean over all trees; empty without trees.
 std::optional<double> stage_runner::box_inflation() const {
     if (!stages_.local) return std::nullopt;
     double sum = 0;

@@ -146,7 +146,6 @@ void send_run(scene_frames& scene, const candidate& tested, std::size_t frames, 
 
 }  // namespace
 
-/// Does the work in a forked child, which may run out of time or memory without harm to this process.
 child_result run_in_child(const std::function<void(const output_sender&)>& work, double seconds) {
     child_result result;
     if (!(seconds > 0)) return result;

@@ -133,7 +133,8 @@ public:
     [[nodiscard]] std::vector<aabb::omission> left_out() const {
         return left_out_by(stages_.global.get(), stages_.local.get());
     }
-    /// The mean over the models of the inflation of their trees; empty for stages without trees.
+    /// How much larger the boxes of the trees are than tight ones, in area: the mean over the models; empty without
+    /// trees.
     [[nodiscard]] std::optional<double> box_inflation() const;
 
 private:
@@ -333,14 +334,15 @@ struct interleaved_runs {
 [[nodiscard]] std::string text_of(const candidate_name& name);
 
 [[nodiscard]] candidate candidate_of(const aabb::composition& c, bool meshes);
-/// Keeps the named strategies and selects the others for the scene.
+/// A candidate `auto`: every run keeps the named strategies and selects the others anew for the scene.
 [[nodiscard]] candidate candidate_of(const aabb::named_strategies& named, const scene_frames& scene);
 /// What `auto` may know of a scene before its first frame.
 [[nodiscard]] aabb::scene_traits traits_of(const scene_frames& scene);
 /// Combines an engine of one stage with the default composition of the other; empty if it cannot run the scene.
 [[nodiscard]] std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes);
 
-/// The candidates of a scene: the experiment's compositions, then its engines, then, for boxes, external engines.
+/// The candidates of a scene in the order of all tables: compositions, each `auto`, engines, and external ones of
+/// boxes.
 [[nodiscard]] std::vector<candidate> candidates_for(const experiment& e, const scene_choice& scene);
 
 /// The untimed result of a candidate compared with the ground truth: a row with everything that a run may record.

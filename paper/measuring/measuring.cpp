@@ -313,7 +313,6 @@ void archive_reproduction(const std::filesystem::path& folder, const std::filesy
 
 }  // namespace
 
-/// Measures the paper's experiments, or with `judge` takes existing results, judges the claims and writes the report.
 int reproduce(const reproduce_request& request) {
     outlive_reader();
     require_consistent(request);

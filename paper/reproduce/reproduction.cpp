@@ -214,7 +214,6 @@ provenance provenance_of(const measurements& results, const reproduction& reprod
 
 }  // namespace
 
-/// Writes all files of the report; with several runs, its figures and provenance are those of the first.
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
                         const std::vector<std::string>& failures, const std::string& verdict_agreement) {

@@ -188,7 +188,6 @@ const row_value& measured(std::string_view name) {
     return metric_named(name).value;
 }
 
-/// The sum of the bytes of these parts; empty if a row has none of them.
 row_value bytes_of(std::vector<std::string> parts) {
     return [parts = std::move(parts)](const row& r) -> std::optional<double> {
         std::optional<double> sum;
@@ -199,7 +198,6 @@ row_value bytes_of(std::vector<std::string> parts) {
     };
 }
 
-/// The sum of some metrics; empty if a row lacks the first, while the others then count as 0.
 row_value sum_of(const std::vector<std::string>& names) {
     std::vector<row_value> parts;
     for (const std::string& name : names) parts.push_back(measured(name));

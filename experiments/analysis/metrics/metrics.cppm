@@ -46,7 +46,7 @@ struct metric {
 
 // Functions for values that no single metric provides.
 
-/// The total bytes of these parts.
+/// The sum of the bytes of these parts; empty if a row has none of them.
 [[nodiscard]] row_value bytes_of(std::vector<std::string> parts);
 /// The sum of the named metrics: empty if the first is missing from a row; other missing ones count as 0.
 [[nodiscard]] row_value sum_of(const std::vector<std::string>& names);

@@ -174,7 +174,6 @@ quartiles quartiles_of(std::vector<double> values) {
     return {quantile_at(0.25), quantile_at(0.5), quantile_at(0.75)};
 }
 
-/// The line of least squares through the points.
 fitted_line line_through(std::span<const double> x, std::span<const double> y) {
     const auto count = static_cast<double>(x.size());
     double mean_x = 0, mean_y = 0;

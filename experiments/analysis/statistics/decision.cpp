@@ -67,7 +67,6 @@ outcome direction_of(const tails& p, double level) {
     return outcome::undecided;
 }
 
-/// Whether a measured ratio supports a claim, judged at this level of significance.
 support support_of(expectation expected, const tails& p, double level) {
     if (expected == expectation::not_more && p.not_more <= level) return support::favours;
     const outcome direction = direction_of(p, level);
@@ -86,7 +85,6 @@ std::vector<double> levels_together(std::span<const tested> family) {
     return holm_levels(family, least_p_value);
 }
 
-/// The verdict on a claim, from the support by each of its primary endpoints.
 verdict_kind verdict_of(std::span<const support> primary) {
     const auto any_is = [&](support s) { return std::ranges::find(primary, s) != primary.end(); };
     const bool any_otherwise = any_is(support::contradicts) || any_is(support::no_difference);

@@ -181,7 +181,6 @@ std::string heading_of(const scene_summary& scene) {
     return text;
 }
 
-/// One row per composition with its work and its bytes; engines count neither.
 table counts_table_of(const scene_summary& scene) {
     constexpr auto copies = static_cast<std::size_t>(aabb::work::subset_copies);
     table t{name_columns_of(scene.differing), {}};

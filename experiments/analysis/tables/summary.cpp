@@ -165,7 +165,6 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
     return scenes;
 }
 
-/// Exact candidates before inexact ones, then those without times; each in ascending order of ratio, or else of time.
 std::vector<const candidate_summary*> ranking_of(const scene_summary& scene) {
     std::vector<const candidate_summary*> candidates;
     for (const candidate_summary& summary : scene.candidates) candidates.push_back(&summary);
@@ -177,7 +176,6 @@ std::vector<const candidate_summary*> ranking_of(const scene_summary& scene) {
     return candidates;
 }
 
-/// The kinds of strategies in which these compositions differ: tables name only these in each row. Engines have none.
 std::vector<aabb::strategy_kind> differing_kinds(std::span<const candidate_name> names) {
     std::vector<aabb::strategy_kind> kinds;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {

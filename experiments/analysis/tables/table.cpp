@@ -160,8 +160,6 @@ std::string to_markdown(const table& t) {
     return text;
 }
 
-/// Fits a table into lines of this width: leaves out spare columns; if that is not enough, moves long names to a legend
-/// and splits the other columns into blocks, each with the names.
 std::string to_text(table t, std::size_t width) {
     if (name_count(t) == t.columns.size()) return to_text(t);
     table fewer = t;

@@ -89,7 +89,7 @@ struct scene_summary {
 /// Groups the rows by scene, in their order.
 [[nodiscard]] std::vector<scene_summary> summarise(std::span<const row> rows);
 
-/// The candidates in ascending order of ratio: exact ones first, then inexact ones, then those without times.
+/// Exact candidates before inexact ones, then those without times; each in ascending order of ratio, or else of time.
 [[nodiscard]] std::vector<const candidate_summary*> ranking_of(const scene_summary& scene);
 
 /// The candidates of a scene by rank. Columns that are constant move to the heading.
@@ -113,7 +113,7 @@ struct scene_summary {
 // Shared by the units of the module.
 namespace aabblab {
 
-/// The kinds in which these compositions differ.
+/// The kinds in which these compositions differ: tables name only these in each row. Engines have none.
 [[nodiscard]] std::vector<aabb::strategy_kind> differing_kinds(std::span<const candidate_name> names);
 /// The rank and the columns that name the rows, and the cells of a row in them. An engine occupies the first.
 [[nodiscard]] std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differing);

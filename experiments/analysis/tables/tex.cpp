@@ -61,7 +61,6 @@ std::string head_of(const column& c) {
 
 }  // namespace
 
-/// Escapes the characters that LaTeX treats as commands.
 std::string tex_text(std::string_view text) {
     std::string safe;
     for (const char c : text) switch (c) {
