@@ -22,7 +22,7 @@ public:
     /// the axis with fewer, and `plan.axis` changes.
     [[nodiscard]] static column_plan group_grid(column_plan plan) {
         const double groups = plan.groups;
-        const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;
+        const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;  // the axis with fewer columns
         const auto rounded = [](double number, std::uint32_t most) {
             return static_cast<std::uint32_t>(std::clamp(std::round(number), 1.0, static_cast<double>(most)));
         };
@@ -32,11 +32,11 @@ public:
         across[1 - fewer] = rounded(groups / across[fewer], plan.across[1 - fewer]);
         if (2 * across[0] * across[1] < groups && plan.most_along > across[fewer]) {
             const int axis_of_columns = plan.axis;
-            const std::uint32_t kept = across[1 - fewer];
+            const std::uint32_t across_other = across[1 - fewer];
             plan.axis = plan.axis_across(fewer);
             const std::size_t along = plan.axis_across(0) == axis_of_columns ? 0 : 1;
-            across[along] = rounded(groups / kept, std::min(plan.most_along, most_groups / kept));
-            across[1 - along] = kept;
+            across[along] = rounded(groups / across_other, std::min(plan.most_along, most_groups / across_other));
+            across[1 - along] = across_other;
         }
         plan.across = across;
         return plan;
@@ -53,7 +53,7 @@ public:
                                          const column_plan& plan, std::size_t most_in_group, worker_threads& threads) {
         clear();
         plan_ = plan;
-        first_group_of_box_.resize(boxes.size() + simd::width);
+        first_group_of_box_.resize(boxes.size() + simd::width);  // the last vector is stored whole
         // There are more parts than threads to balance the load.
         constexpr std::size_t least_boxes_per_part = 4096;
         const std::size_t most_parts = threads.count() > 1 ? std::size_t{4} * threads.count() : 1;
@@ -100,7 +100,8 @@ public:
         const std::uint32_t cell[2] = {g % plan_.across[0], g / plan_.across[0]};
         for (std::size_t i = 0; i < 2; ++i) {
             const int k = plan_.axis_across(i);
-            if (plan_.scale[k] <= 0) continue;
+            if (plan_.scale[k] <= 0) continue;  // an axis without extent
+            // The grid divides the 2^16 quantized coordinates.
             const float cell_width = 65'536.0F / static_cast<float>(plan_.across[i]) / plan_.scale[k];
             const auto border = [&](std::uint32_t c) {
                 return std::clamp(plan_.origin[k] + static_cast<float>(c) * cell_width, within.min[k], within.max[k]);
@@ -148,6 +149,7 @@ private:
         p.spanning_begin = p.spanning_end = p.begin + part_index * simd::width;
         p.copies = 0;
         const int u = plan_.axis_across(0), v = plan_.axis_across(1);
+        // In each word u is low and v high. A quantized coordinate times the number of groups, >> 16, is its group.
         const simd::words across = simd::broadcast(plan_.across[0] | plan_.across[1] << 16);
         simd::flags invalid{};
         for_each_vector(boxes.subspan(p.begin, p.end - p.begin), [&](std::size_t i, const simd::floats(&c)[6],
@@ -226,14 +228,16 @@ private:
             to[at] = boxes[i];
             to_ids[at] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | begins_earlier;
         };
+        const auto write_to_first_group = [&](std::size_t i) { write(next[keys[i]]++, i, /*begins_earlier=*/0); };
         std::size_t i = p.begin;
         for (std::size_t s = p.spanning_begin; s < p.spanning_end; ++s) {
-            for (; i <= spanning_boxes_[s]; ++i) write(next[keys[i]]++, i, 0);
+            const std::size_t spanning = spanning_boxes_[s];
+            for (; i <= spanning; ++i) write_to_first_group(i);
             for_each_later_group(s, [&](std::uint32_t group, std::uint32_t begins_earlier) {
-                write(next_copy[group]++, i - 1, begins_earlier);
+                write(next_copy[group]++, spanning, begins_earlier);
             });
         }
-        for (; i < p.end; ++i) write(next[keys[i]]++, i, 0);
+        for (; i < p.end; ++i) write_to_first_group(i);
     }
 
     /// Visits the groups of box `s` of `spanning_boxes_` except its first, as `visit(group, bits)`: the bits mark the

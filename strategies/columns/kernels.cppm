@@ -18,6 +18,7 @@ using pairs = double __attribute__((vector_size(4 * width)));  // each lane hold
 template <std::size_t K>
 [[nodiscard, gnu::always_inline]] inline pairs every_third(pairs a, pairs b, pairs c) noexcept {
     constexpr std::size_t half = width / 2;
+    // A shuffle has two operands: the first takes what is in `a` and `b`, the second adds what is in `c`.
     constexpr auto of_first_two = [](std::size_t i) { return 3 * i + K < width ? 3 * i + K : 0; };
     constexpr auto of_all = [](std::size_t i) { return 3 * i + K < width ? i : half + (3 * i + K - width); };
     const pairs from_first_two = shuffled<pairs, of_first_two>(a, b, std::make_index_sequence<half>{});

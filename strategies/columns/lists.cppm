@@ -20,10 +20,10 @@ public:
     [[nodiscard]] fill_result fill(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                    const column_plan& plan, bool by_keys, std::size_t most_copies, Sort& sort,
                                    Counters& counters) {
-        block_ = {boxes, ids, {}, {}, plan.axis};
+        block_ = {.boxes = boxes, .ids = ids, .entries = {}, .ends = {}, .axis = plan.axis};
         plan_ = plan;
         const bool in_buckets = BucketSort<Sort> && !by_keys;
-        bucket_bits_ = in_buckets ? plan.bucket_bits(boxes.size()) : 0;
+        bucket_bits_ = in_buckets ? plan.bucket_bits(boxes.size()) : 0;  // 0: a column is one bucket
         if (const fill_result result = count_boxes(most_copies); result != fill_result::complete) return result;
         const std::uint32_t entries = allocate_columns();
         write_entries();
@@ -86,6 +86,7 @@ private:
         constexpr int v = (Axis + 2) % 3;
         const column_plan plan = plan_;
         const std::uint32_t bits = bucket_bits_;
+        // In each word u is low and v high. A quantized coordinate times the number of columns, >> 16, is its column.
         const simd::words across = simd::broadcast(plan.across[0] | plan.across[1] << 16);
         simd::flags invalid{};
         std::size_t spanning = 0;
@@ -95,10 +96,10 @@ private:
             const simd::words upper = plan.quantized(c[3 + u], u) | plan.quantized(c[3 + v], v) << 16;
             const simd::words first = simd::high_products(lower, across);
             const simd::words last = simd::high_products(upper, across);
-            const simd::words bucket = ((first & 0xffffU) + (first >> 16) * plan.across[0]) << bits;
-            simd::store_rows_of_four(&quantized_[begin + i].lower,
-                                     {lower, upper, bucket + (plan.quantized(c[3 + Axis], Axis) >> (16 - bits)),
-                                      bucket + (plan.quantized(c[Axis], Axis) >> (16 - bits))});
+            const simd::words first_bucket = ((first & 0xffffU) + (first >> 16) * plan.across[0]) << bits;
+            const simd::words begin_bucket = first_bucket + (plan.quantized(c[Axis], Axis) >> (16 - bits));
+            const simd::words end_bucket = first_bucket + (plan.quantized(c[3 + Axis], Axis) >> (16 - bits));
+            simd::store_rows_of_four(&quantized_[begin + i].lower, {lower, upper, end_bucket, begin_bucket});
             spanning +=
                 simd::compress_store(&spanning_boxes_[spanning], simd::places() + static_cast<std::uint32_t>(begin + i),
                                      simd::bits(first != last) & present);
@@ -120,6 +121,7 @@ private:
             };
             return column_of(b.upper) - column_of(b.lower);
         };
+        constexpr std::size_t most_at_once = 3;  // copies between two checks whether the buffer is full
         std::array<copy, 64> buffer;
         std::size_t n = 0;
         const auto flush = [&] { copies_.insert(copies_.end(), buffer.begin(), buffer.begin() + std::exchange(n, 0)); };
@@ -137,13 +139,13 @@ private:
                 add(1, 0, nu);
                 add(0, 1, nv);
                 add(1, 1, nu & nv);
-                if (n + 3 > buffer.size()) flush();
+                if (n + most_at_once > buffer.size()) flush();
                 continue;
             }
             for (std::uint32_t v = 0; v <= nv; ++v)
-                for (std::uint32_t u = v == 0; u <= nu; ++u) {
-                    add(u, v, 1);
-                    if (n + 3 > buffer.size()) flush();
+                for (std::uint32_t u = v == 0 ? 1 : 0; u <= nu; ++u) {  // (0, 0) is the first column
+                    add(u, v, /*times=*/1);
+                    if (n + most_at_once > buffer.size()) flush();
                 }
             if (copies_.size() > most_copies) return false;
         }
@@ -163,7 +165,8 @@ private:
         }
         entries_.resize(most);
         const std::uint32_t buckets = std::uint32_t{1} << bucket_bits_;
-        const column_entry padding{~std::uint32_t{0}, 0, columns << bucket_bits_, 0};
+        const column_entry padding{
+            .lower = ~std::uint32_t{0}, .upper = 0, .end_bucket = columns << bucket_bits_, .index = 0};
         std::uint32_t next = 0;
         for (std::uint32_t c = 0; c < columns; ++c) {
             std::uint32_t* const counts = &ends_[c << bucket_bits_];  // of one bucket, or of at least a vector
@@ -190,7 +193,7 @@ private:
         if (block_.ids.empty())
             write_entries([](std::uint32_t) { return std::uint32_t{0}; });
         else
-            write_entries([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_bits; });
+            write_entries([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_mask; });
     }
     /// @param group_bits returns the bits of `begins_earlier` that box i has in its group
     template <class GroupBits>
@@ -201,7 +204,7 @@ private:
             entries_[ends_[b.bucket]++] = {b.lower, b.upper, b.end_bucket, i | group_bits(i)};
         }
         for (const copy& c : copies_) {
-            const std::uint32_t i = c.index & column_entry::index_bits;
+            const std::uint32_t i = c.index & column_entry::index_mask;
             const quantized_box b = quantized_[i];
             entries_[ends_[b.bucket + c.buckets]++] = {b.lower, b.upper, b.end_bucket + c.buckets,
                                                        c.index | group_bits(i)};
@@ -231,11 +234,11 @@ private:
             for (std::uint32_t i = end; i < begin; ++i)
                 entries_[i].end_bucket = static_cast<std::uint32_t>(entries_.size());
         }
-        ends_[entries_.size()] = 0;
+        ends_[entries_.size()] = 0;  // of padding
     }
 
     [[nodiscard]] const box& box_of(const column_entry& e) const noexcept {
-        return block_.boxes[e.index & column_entry::index_bits];
+        return block_.boxes[e.index & column_entry::index_mask];
     }
 
     column_block block_{};

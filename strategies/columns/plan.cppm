@@ -62,9 +62,12 @@ struct column_entry {
     std::uint32_t end_bucket;  ///< index into `column_block::ends` of the bucket in which the box ends along the column
     std::uint32_t index;       ///< index of the box in the block; for the three highest bits, see `begins_earlier`
 
-    static constexpr std::uint32_t index_bits = (std::uint32_t{1} << 29) - 1;
+    static constexpr int index_bits = 29;
+    static constexpr std::uint32_t index_mask = (std::uint32_t{1} << index_bits) - 1;
     /// Set if the box begins in an earlier column on axis k. If both copies have it set, another column owns the pair.
-    [[nodiscard]] static constexpr std::uint32_t begins_earlier(int k) noexcept { return std::uint32_t{1} << (29 + k); }
+    [[nodiscard]] static constexpr std::uint32_t begins_earlier(int k) noexcept {
+        return std::uint32_t{1} << (index_bits + k);
+    }
 };
 static_assert(sizeof(column_entry) == 16);
 
@@ -78,7 +81,7 @@ struct column_block {
     int axis;                             ///< the axis along which columns run
 
     [[nodiscard]] inline std::uint32_t id_of(std::uint32_t index) const noexcept {
-        return ids.empty() ? index : ids[index] & column_entry::index_bits;
+        return ids.empty() ? index : ids[index] & column_entry::index_mask;
     }
 };
 

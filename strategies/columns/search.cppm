@@ -22,7 +22,7 @@ public:
             }
             boxes_.clear();
             pairs_.clear();
-            backoff_ = std::min(2 * backoff_ + 1, 63U);
+            backoff_ = std::min(2 * backoff_ + 1, longest_backoff);
             skipped_frames_ = 0;
         }
         size_ = boxes.size();
@@ -44,6 +44,7 @@ public:
 
 private:
     static constexpr std::size_t sample_size = 64;
+    static constexpr unsigned longest_backoff = 63;
 
     [[nodiscard]] static bool are_same(std::span<const box> a, std::span<const box> b) noexcept {
         return std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
@@ -81,7 +82,8 @@ public:
         return simd::bits(invalid) == 0;
     }
 
-    /// Appends the overlapping pairs: tests each vector of boxes against itself and all boxes before it.
+    /// Appends the overlapping pairs: tests each vector against all boxes before it, and each of its own boxes against
+    /// those that follow in it, so that each pair is tested once.
     template <CounterPolicy Counters>
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         const std::size_t n = group_.boxes.size();
@@ -158,10 +160,10 @@ class column_search {
 public:
     column_search(Sort sort, Partition partition, Sweep sweep)
         : partition_(std::move(partition)), threads_(partition_.threads()) {
-        workers_.push_back({{std::move(sort), std::move(sweep)}, {}});
-        workers_.resize(threads_.count(), workers_.front());
+        workers_.push_back({.own = {std::move(sort), std::move(sweep)}, .pairs = {}});
+        workers_.resize(threads_.count(), workers_.front());  // one per thread, all alike
     }
-    // Not copyable, since the members refer to each other.
+    // Not copyable: spans would refer to the original's vectors. A move takes the memory of the vectors along.
     column_search(column_search&&) = default;
     column_search& operator=(column_search&&) = default;
 
@@ -171,20 +173,21 @@ public:
         boxes_ = boxes;
         is_static_ = static_frame_.is_still_valid(boxes, objects);
         if (is_static_) return;
-        if (boxes.size() > column_entry::index_bits) throw input_error("columns take at most 536,870,911 objects");
+        if (boxes.size() > most_objects) throw input_error("columns take at most 536,870,911 objects");
         select_present(boxes, objects);
         const std::size_t n = present_.boxes.size();
         uses_brute_force_ = n <= partition_.brute_force_threshold();
+        // 0 until the boxes are cut: brute force or an exception leaves no plan for the next frame.
         const std::size_t planned_boxes = std::exchange(planned_boxes_, 0);
         if (uses_brute_force_) {
-            if (!batch_.fill(present_)) require_valid(boxes);
+            if (!batch_.fill(present_)) require_valid(boxes);  // throws
             return;
         }
         const box bounds = bounds_of_sample();
         const bool needs_plan = is_stale(n, planned_boxes) || bounds_have_changed(bounds, planned_bounds_);
         if (needs_plan) planned_bounds_ = bounds;
         plan_age_ = needs_plan ? 0 : plan_age_ + 1;
-        if (!cut_boxes(needs_plan, counters)) require_valid(boxes);
+        if (!cut_boxes(needs_plan, counters)) require_valid(boxes);  // throws
         planned_boxes_ = n;
         collect_counters(counters);
     }
@@ -249,6 +252,7 @@ public:
 private:
     /// A plan is replaced after this many frames.
     static constexpr unsigned frames_per_plan = 32;
+    static constexpr std::size_t most_objects = column_entry::index_mask;
 
     using own_counters = std::conditional_t<Counters::enabled, work_counters, no_counters>;
 
@@ -257,7 +261,7 @@ private:
         column_worker<Sort, Partition, Sweep, own_counters> own;
         std::vector<index_pair> pairs;
     };
-    /// The location of a group's pairs if a worker other than the first one searched it.
+    /// The location of a group's pairs if a worker other than the first one searched it; else empty.
     struct pairs_of_group {
         std::size_t worker = 0;
         std::size_t begin = 0;
@@ -333,6 +337,7 @@ private:
         groups_.clear();
         auto& own = workers_.front().own;
         if (!own.fill(partition_, present_, everywhere, cut_.columns)) return false;
+        // A scene that is not cut has no copies, as without a partition.
         if (cut_.columns.plan.columns() > 1) counters.add(work::subset_copies, own.copies());
         return true;
     }

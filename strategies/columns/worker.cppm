@@ -11,6 +11,8 @@ struct kept_plan {
     column_plan plan;
     bool by_keys = false;          ///< columns are sorted by exact keys, since buckets have too many boxes
     std::uint64_t most_tests = 0;  ///< limit on vector tests for early stopping; 0 before the first sweep
+
+    [[nodiscard]] bool was_swept() const noexcept { return most_tests > 0; }
 };
 
 /// The plan of a scene or group: either columns, or a grid of groups and recursively the plan of each group.
@@ -21,7 +23,7 @@ struct cut_plan {
     std::size_t fullest = 0;  ///< number of boxes in the fullest group when the grid was planned
     std::vector<cut_plan> groups;
 
-    [[nodiscard]] bool is_planned() const noexcept { return in_groups || columns.most_tests > 0; }
+    [[nodiscard]] bool is_planned() const noexcept { return in_groups || columns.was_swept(); }
     /// Discards the plans of earlier groups.
     void begin_groups(std::size_t in_fullest) {
         if (groups.size() < grid.columns()) groups.resize(grid.columns());
@@ -49,21 +51,22 @@ template <class MakePlan>
         return groups.distribute(boxes.boxes, boxes.ids, kept.grid, most_in_group, threads);
     };
     if (kept.in_groups) {
-        const fill_result result = distribute(2 * kept.fullest + 4096);
+        constexpr std::size_t tolerance = 4096;  // so that small groups may more than double
+        const fill_result result = distribute(2 * kept.fullest + tolerance);
         if (result != fill_result::not_worthwhile) return result;
         kept.in_groups = false;
         kept.columns = make_plan();
     }
     if (kept.columns.plan.groups <= 1) return fill_result::not_worthwhile;
     kept.grid = column_groups::group_grid(kept.columns.plan);
-    fill_result result = distribute(std::numeric_limits<std::size_t>::max());
+    fill_result result = distribute(/*most_in_group=*/std::numeric_limits<std::size_t>::max());
     if (result == fill_result::invalid) return result;
     const auto n = static_cast<double>(boxes.boxes.size());
     if (result == fill_result::complete && 8 * groups.pairs() > 7 * n * n) result = fill_result::not_worthwhile;
     if (result == fill_result::complete)
         kept.begin_groups(groups.fullest());
     else
-        kept.columns.plan.groups = 1;
+        kept.columns.plan.groups = 1;  // later frames do not try again
     return result;
 }
 
@@ -149,7 +152,8 @@ public:
                                                      most_copies(group.boxes.size()), sort_, counters_);
             if (result == fill_result::invalid) return false;
             if (result == fill_result::complete) break;
-            if (kept.most_tests > 0)
+            // A plan that was swept suited an earlier frame, so a new one may do; one column has no copies.
+            if (kept.was_swept())
                 kept = make_plan(partition, group, within);
             else
                 kept.plan.across = {1, 1};
@@ -165,14 +169,15 @@ public:
                std::vector<index_pair>& pairs) {
         const std::size_t before = pairs.size();
         const std::size_t n = group.boxes.size();
+        const std::uint64_t most_in_buckets = 64 * n + 4096;  // more: too many boxes share buckets
         for (;;) {
             // The boxes were validated when the columns were first filled.
             if (!is_filled_) static_cast<void>(fill(partition, group, within, kept));
-            const bool is_new = kept.most_tests == 0;
-            const std::uint64_t most_tests = !is_new ? kept.most_tests : kept.by_keys ? unlimited : 64 * n + 4096;
+            const bool is_new = !kept.was_swept();
+            const std::uint64_t most_tests = !is_new ? kept.most_tests : kept.by_keys ? unlimited : most_in_buckets;
             const std::uint64_t tests = sweep_.sweep(columns_.block(), pairs, most_tests, counters_);
             if (tests <= most_tests) {
-                if (is_new) kept.most_tests = 2 * tests + n + 1;
+                if (is_new) kept.most_tests = 2 * tests + n + 1;  // later sweeps may take about twice as many
                 return;
             }
             pairs.resize(before);
@@ -187,7 +192,6 @@ public:
         counters_.add(work::subset_copies, copies);
     }
 
-    /// The work since the last call.
     [[nodiscard]] auto take_counters() { return std::exchange(counters_, {}); }
     [[nodiscard]] std::size_t sort_bytes() const noexcept { return bytes_of(sort_); }
     [[nodiscard]] std::size_t column_bytes() const noexcept {

@@ -17,19 +17,19 @@ public:
 
     /// @throws input_error if there are more objects than the index bits of an entry can represent.
     axis_set axes(std::span<const box> boxes, const membership& objects) {
-        if (boxes.size() > column_entry::index_bits)
-            throw input_error("simd takes at most " + std::to_string(column_entry::index_bits) + " objects");
+        if (boxes.size() > column_entry::index_mask)
+            throw input_error("simd takes at most " + std::to_string(column_entry::index_mask) + " objects");
         return axis_set{1} << longest_.choose(boxes, objects);
     }
 
-    /// Sweeps a sorted list.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         const auto& list = subset.lists[static_cast<std::size_t>(longest_.axis())];
         if (list.size() < 2) return;
         convert_to_entries(subset, list);
-        sweep(column_block{subset.boxes, /*ids=*/{}, entries_, list_ends_, longest_.axis()}, pairs,
-              std::numeric_limits<std::uint64_t>::max(), counters);
+        const column_block block{
+            .boxes = subset.boxes, .ids = {}, .entries = entries_, .ends = list_ends_, .axis = longest_.axis()};
+        sweep(block, pairs, /*most_tests=*/std::numeric_limits<std::uint64_t>::max(), counters);
     }
 
     /// Sweeps columns, a vector of entries at a time.
@@ -44,17 +44,17 @@ public:
         std::uint64_t tests = 0;
         std::size_t active = 0;
         candidate_count_ = 0;
-        std::size_t window = 0;  // the entry from which vectors are numbered
+        std::size_t window = 0;  // the entry from which candidates number vectors, in the bits beside the lanes
         for (std::size_t first = 0; first < n && tests <= most_tests; first += width) {
             if (candidate_count_ > enough || first - window >= most_vectors * width) {
                 append_overlapping(block, window, pairs);
                 window = first;
             }
-            // Reserve space for all candidates that this vector may add.
+            // This vector may add every active entry and each of its own, and both are stored by whole vectors.
             make_room(candidate_count_ + active + 3 * width);
             const vector_of_entries vector(&block.entries[first], block.ends);
             const auto number = static_cast<std::uint32_t>((first - window) / width);
-            tests += active + width - 1;
+            tests += active + width - 1;  // all but the last entry of the vector are tested within it
             active = test_active(block, vector, number, first, active);
             test_within(block, vector, number, first);
         }
@@ -86,7 +86,7 @@ private:
             lower = fields[0];
             upper = fields[1];
             ends = simd::gather(bucket_ends.data(), fields[2]);
-            begins_earlier = fields[3] & ~column_entry::index_bits;
+            begins_earlier = fields[3] & ~column_entry::index_mask;
         }
 
         /// Bit l is set if entry l may overlap `e` across the columns, and this column owns the pair.
@@ -163,12 +163,12 @@ private:
         pairs.resize(most);
         for (std::size_t c = 0; c < candidate_count_; ++c) {
             const std::uint32_t met = met_[c];
-            const std::uint32_t i = block.entries[candidates_[c]].index & column_entry::index_bits;
+            const std::uint32_t i = block.entries[candidates_[c]].index & column_entry::index_mask;
             const box a = block.boxes[i];
             const std::uint32_t id = block.id_of(i);
             const column_entry* const vector = &block.entries[window + (met >> width) * width];
             for (std::uint32_t lanes = met & simd::every_lane; lanes != 0; lanes &= lanes - 1) {
-                const std::uint32_t j = vector[std::countr_zero(lanes)].index & column_entry::index_bits;
+                const std::uint32_t j = vector[std::countr_zero(lanes)].index & column_entry::index_mask;
                 pairs[next] = ordered_pair(id, block.id_of(j));
                 next += overlaps(a, block.boxes[j]);
             }
@@ -186,7 +186,9 @@ private:
         for (const auto& e : list) bounds = merged(bounds, subset.boxes[e.id]);
         plan.fit(bounds);
         const std::size_t n = (list.size() + width - 1) / width * width;
-        const column_entry padding{~std::uint32_t{0}, 0, static_cast<std::uint32_t>(list.size()), 0};  // overlaps none
+        // Padding overlaps nothing.
+        const column_entry padding{
+            .lower = ~std::uint32_t{0}, .upper = 0, .end_bucket = static_cast<std::uint32_t>(list.size()), .index = 0};
         entries_.assign(n, padding);
         list_ends_.assign(list.size() + 1, 0);
         const int u = plan.axis_across(0), v = plan.axis_across(1);
@@ -195,7 +197,7 @@ private:
             const axis_set begins_earlier = every_axis & ~Subset::owned(list[i]);
             entries_[i] = {plan.quantized(b.min[u], u) | plan.quantized(b.min[v], v) << 16,
                            plan.quantized(b.max[u], u) | plan.quantized(b.max[v], v) << 16,
-                           static_cast<std::uint32_t>(i), list[i].id | begins_earlier << 29};
+                           static_cast<std::uint32_t>(i), list[i].id | begins_earlier << column_entry::index_bits};
             const auto past = std::ranges::upper_bound(list.subspan(i), b.max[plan.axis], {}, [&](const auto& e) {
                 return subset.boxes[e.id].min[plan.axis];
             });
