@@ -55,6 +55,7 @@ struct triangle_intersection {
             }
             moved.corners[i][k] = sum + by.translation[k];
             magnitude += std::abs(by.translation[k]);
+            // 5 u exceeds γ₄, and 4 denormals the underflow of three products.
             const double bound =
                 (inherited + 5 * unit * magnitude + 4 * std::numeric_limits<double>::denorm_min()) * (1 + 16 * unit);
             if (bound > moved.error[k]) moved.error[k] = bound;

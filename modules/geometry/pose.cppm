@@ -62,6 +62,7 @@ struct box_motion {
 /// @param bounds box of the vertices
 [[nodiscard]] inline double displacement_bound(const box_motion& p, const box_motion& q, const box& bounds) noexcept {
     const auto length = [](const vec3d& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
+    // A point is the centre of the box, plus on each axis at most half of its extent.
     vec3d between{};
     double distance = rounding_bound(p) + rounding_bound(q);
     for (int k = 0; k < 3; ++k) between[k] = p.shift[k] - q.shift[k];
@@ -98,24 +99,23 @@ public:
         turns_a_ = turns(a);
         turns_b_ = turns(b);
         moves_ = turns_a_ || turns_b_ || from != to;
-        lanes world = magnitudes(between_);
+        // The magnitudes of the terms of an image add up to these sums, before and after the rotation into A's frame.
+        lanes world_sum = magnitudes(between_);
         for (int j = 0; j < 3; ++j)
-            world +=
+            world_sum +=
                 magnitudes(columns_b_[j]) * std::max(std::abs(double{bounds.min[j]}), std::abs(double{bounds.max[j]}));
-        lanes magnitude{};
+        lanes image_sum{};
         for (int k = 0; k < 3; ++k) {
-            magnitude += magnitudes(rows_a_[k]) * world[k];
+            image_sum += magnitudes(rows_a_[k]) * world_sum[k];
             shift_ += rows_a_[k] * between_[k];
             for (int j = 0; j < 3; ++j) turn_[j] += rows_a_[k] * columns_b_[j][k];
         }
         for (int j = 0; j < 3; ++j) absolute_turn_[j] = magnitudes(turn_[j]);
-        for (int i = 0; i < 3; ++i) {
-            // The vertex formula rounds any term at most 7 times, the box formula at most 10 times (3 in the product
-            // matrix or shift, 5 to the centre or 6 to the radius including the margin, and their sum): the errors are
-            // within γ_k = k u / (1 - k u) times the sum of magnitudes; 32 u covers both and the growing.
-            margin_[i] = 32 * (std::numeric_limits<double>::epsilon() / 2) * magnitude[i] +
-                         std::numeric_limits<double>::denorm_min();
-        }
+        // k roundings of each term change a sum by at most γ_k = k u / (1 - k u) times its magnitudes. A vertex's image
+        // takes 7; the bounds of a box take 10: 3 in the matrix product or the shift, 5 in the centre or 6 in the
+        // radius, to which the margin is added, and 1 in their sum. 32 u exceeds γ₇ + γ₁₀ and the margin's own error.
+        constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
+        for (int i = 0; i < 3; ++i) margin_[i] = 32 * unit * image_sum[i] + std::numeric_limits<double>::denorm_min();
         if (!is_valid((*this)(bounds)))
             throw input_error("seen from one mesh, the other lies beyond the range of float");
     }
@@ -178,7 +178,8 @@ public:
     ///
     /// The inverse is the adjugate over the determinant. Each entry is within 16 u of the true inverse, and the
     /// inverted matrix within 3 u; sums of six terms round five times, so 64 u of all magnitudes covers these errors.
-    /// Rounding the image to float adds 2^-24 of the magnitudes whose 2^-48 is the margin, and half a denormal.
+    /// Rounding the image to float adds 2^-24 of the magnitudes whose 2^-48 is the margin, and half a denormal, 2^-150;
+    /// the bounds are twice and 16 times as large.
     /// @param bounds box of A
     [[nodiscard]] inline box_motion back_to_boxes(const box& bounds) const noexcept {
         const auto cross = [](const lanes& p, const lanes& q) {

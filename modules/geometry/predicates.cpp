@@ -106,7 +106,7 @@ public:
         wide leading = 0;
         for (int k = 1; k <= 4; ++k)
             leading = leading << 32 | (count - k >= 0 ? digits[static_cast<std::size_t>(count - k)] : 0);
-        int exponent = 0;
+        int exponent = 0;  // each of the three factors is a mantissa times 2^-1074 or more (`parts`)
         const double mantissa = std::frexp(static_cast<double>(leading), &exponent);
         return {is_negative ? -mantissa : mantissa, exponent + 32 * (count - 4) - 3 * 1074};
     }
@@ -147,7 +147,7 @@ public:
             double largest = 0;
             for (const vec3d* p : points) largest = std::max(largest, std::abs((*p)[k]));
             const int exponent = std::max(static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52), 1) - 1023;
-            // Two factors, since their product may exceed the range of double.
+            // Scales the largest to 2^59 at least, by two factors, as their product may exceed the range of double.
             const int up = 59 - exponent;
             factor_[k] = power_of_two(up / 2);
             second_factor_[k] = power_of_two(up - up / 2);

@@ -84,6 +84,7 @@ public:
         // Beyond that range the bounds become infinite, so that everything is computed exactly.
         const lanes<double> extent = in_range ? width : lanes<double>{} + std::numeric_limits<double>::infinity();
         extent_ = {extent[0], extent[1], extent[2]};
+        // In units of u E E E: 48.1 for the terms, 0.9 for rounding E and this product, and 1 for underflow.
         side_error_ = 50 * unit * extent[0] * extent[1] * extent[2];
     }
 

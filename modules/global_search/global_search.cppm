@@ -202,7 +202,6 @@ public:
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] static axis_set sorted_axes() noexcept { return 0; }
-    /// The partition's search.
     [[nodiscard]] const own_search& own() const noexcept { return search_; }
     [[nodiscard]] std::size_t projection_bytes() const noexcept { return objects_.bytes(); }
     [[nodiscard]] std::size_t sort_bytes() const noexcept { return search_.sort_bytes(); }

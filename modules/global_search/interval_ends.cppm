@@ -96,12 +96,13 @@ public:
         active_index_.resize(boxes.size());
         for (const interval_end& e : list) {
             std::vector<std::uint32_t>& active = active_[is_new(e.id)];
-            if (e.is_upper) {
+            if (e.is_upper) {  // the last active object takes the place of the one that ends
                 active_index_[active.back()] = active_index_[e.id];
                 active[active_index_[e.id]] = active.back();
                 active.pop_back();
                 continue;
             }
+            // A known object is tested against new ones only.
             for (std::size_t of_new = is_new(e.id) ? 0 : 1; of_new < 2; ++of_new) {
                 tests += active_[of_new].size();
                 for (const std::uint32_t other : active_[of_new])

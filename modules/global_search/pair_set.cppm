@@ -75,6 +75,7 @@ private:
         for (std::size_t at = next(gap); table_[at] != none; at = next(at)) {
             const std::size_t home = home_of(pairs_[table_[at]]);
             const std::size_t mask = table_.size() - 1;
+            // An entry whose home lies behind the gap stays: probing for it does not cross the gap.
             if (((at - home) & mask) < ((at - gap) & mask)) continue;
             table_[gap] = table_[at];
             gap = at;

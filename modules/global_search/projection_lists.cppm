@@ -66,9 +66,9 @@ public:
             if (objects.any_departures())
                 std::erase_if(lists_[k], [&](const projection& p) { return objects.is_leaving(p.id); });
             make_room(lists_[k], lists_[k].size() + objects.arrivals());
-            objects.for_each_arrival([&](std::uint32_t id) { lists_[k].push_back({0, id}); });
+            objects.for_each_arrival([&](std::uint32_t id) { lists_[k].push_back({.key = 0, .id = id}); });
         }
-        arrivals_ += objects.arrivals();
+        arrivals_ += objects.arrivals();  // whose keys `sort` sets
     }
 
     /// Sorts the lists of these axes for the boxes of a frame, and drops the other lists.

@@ -71,7 +71,6 @@ public:
     [[nodiscard]] std::uint64_t number() const noexcept { return number_; }
     /// Models of equal state have the same boxes of the same mesh; each refit changes the state.
     [[nodiscard]] std::uint64_t state() const noexcept { return state_; }
-    /// The box of the root.
     [[nodiscard]] const box& bounds() const {
         require_fit();
         return bounds_;

@@ -22,7 +22,7 @@ public:
 
     /// Visits all nodes depth first, up to the first fault.
     [[nodiscard]] tree_validation validate_tree() {
-        open_.push_back({tree_.root(mesh_), empty_box(), 0});
+        open_.push_back({.cursor = tree_.root(mesh_), .below = empty_box(), .opened = 0});
         // An explicit stack, since trees may be too deep for recursion.
         while (!open_.empty() && result_.fault.empty()) {
             node& current = open_.back();
@@ -30,7 +30,7 @@ public:
                 visit_leaf(current);
             else if (current.opened < 2) {
                 const auto child = tree_.children(current.cursor, mesh_)[current.opened++];
-                open_.push_back({child, empty_box(), 0});
+                open_.push_back({.cursor = child, .below = empty_box(), .opened = 0});
                 if (open_.size() > seen_.size()) result_.fault = "the tree has more levels than triangles";
                 continue;
             }

@@ -67,12 +67,12 @@ struct scene_traits {
     /// @param longer additional build time per triangle in nanoseconds
     /// @param share relative saving per query
     [[nodiscard]] inline std::size_t queries_that_repay(double longer, double share) const {
-        constexpr double visits_a_root = 21;
-        constexpr double many = 1e18;
-        if (triangles == 0) return static_cast<std::size_t>(many);
+        constexpr double visits_per_root = 21;
+        constexpr double never = 1e18;  // queries
+        if (triangles == 0) return static_cast<std::size_t>(never);
         const double least = longer * static_cast<double>(triangles) /
-                             (machine_costs().node_visit * visits_a_root * share * std::sqrt(triangles_per_query()));
-        return static_cast<std::size_t>(std::clamp(std::ceil(least), 0.0, many));
+                             (machine_costs().node_visit * visits_per_root * share * std::sqrt(triangles_per_query()));
+        return static_cast<std::size_t>(std::clamp(std::ceil(least), 0.0, never));
     }
     [[nodiscard]] inline double triangles_per_query() const {
         return 2 * static_cast<double>(triangles) / static_cast<double>(meshes);
