@@ -156,6 +156,7 @@ private:
         std::size_t begun = 0;
         for (std::uint64_t i = 1; i < wanted_ && !list.empty(); ++i) {
             std::size_t at = i * list.size() / wanted_;
+            // Cuts ascend from the first lower end: equal ends drop this one, or an earlier cut that moved beyond it.
             if (!(list[at].key > (cuts.empty() ? list[0].key : cuts.back()))) continue;
             if (config_.limit == limit_choice::on && !cuts.empty()) {
                 for (; list[begun].key < cuts.back(); ++begun)
@@ -208,7 +209,8 @@ private:
     static constexpr double never = std::numeric_limits<double>::infinity();
     static constexpr double cost_bonus = 0.9, variance_bonus = 1.5;  // factors for what is cut already
 
-    /// The extent of a mean box relative to that of the scene; a uniform distribution is sqrt(12) deviations wide.
+    /// The extent of a mean box relative to that of the scene: a uniform distribution is sqrt(12) deviations wide, here
+    /// twice that, as the variance is that of doubled centres (times their number).
     [[nodiscard]] static vec3d shares_of(const spread& along) {
         vec3d share{};
         for (int k = 0; k < 3; ++k) {
@@ -224,7 +226,7 @@ private:
         return machine_costs().list_entry * static_cast<double>(along.objects) * std::popcount(needed);
     }
 
-    /// The cost of the whole scene as one subset.
+    /// The cost of the whole scene as one subset. Two mean boxes overlap on an axis for about twice the share of one.
     [[nodiscard]] static double cost_without_cuts(const spread& along, axis_set swept) {
         const vec3d share = shares_of(along);
         const auto objects = static_cast<double>(along.objects);
@@ -242,9 +244,9 @@ private:
     [[nodiscard]] candidate_cut cheapest_cut(const spread& along, axis_set cut, axis_set swept) const {
         const auto objects = static_cast<double>(along.objects);
         const vec3d share = shares_of(along);
-        candidate_cut best{cut, 1, never};
+        candidate_cut best{.cut = cut, .segments = 1, .cost = never};
         const cost_model& ns = machine_costs();
-        const double most = config_.segments.value_or(65'535);
+        const double most = config_.segments.value_or(65'535);  // as many as a `range` can name
         for (double s = config_.segments.value_or(1); s <= most; s = std::ceil(s * 1.1)) {
             double subsets = 1, copies = objects, swept_share = 1;
             for (int k = 0; k < 3; ++k) {
@@ -258,7 +260,7 @@ private:
             if (!config_.segments && s > 1 && subsets > objects) break;
             const double tests = copies / subsets * copies / 2 * std::min(1.0, swept_share);
             const double cost = ns.cut_entry * copies + ns.cut_subset * subsets + ns.cut_test * tests;
-            if (cost <= best.cost) best = {cut, static_cast<std::uint32_t>(s), cost};
+            if (cost <= best.cost) best = {.cut = cut, .segments = static_cast<std::uint32_t>(s), .cost = cost};
         }
         best.cost += cost_of_lists(along, cut | swept);
         return best;

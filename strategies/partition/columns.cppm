@@ -65,13 +65,14 @@ public:
             column_plan candidate;
             candidate.axis = axis;
             const int u = candidate.axis_across(0), v = candidate.axis_across(1);
-            if (!seen.varies(axis) && (seen.varies(u) || seen.varies(v))) continue;
+            if (!seen.varies(axis) && (seen.varies(u) || seen.varies(v))) continue;  // sorting along it is useless
             const double most_u = most_columns_on(seen, u, config_.axes > 0);
             const double most_v = most_columns_on(seen, v, config_.axes > 1);
             for (const std::uint32_t nu : column_counts) {
                 if (nu > most_u) break;
                 for (const std::uint32_t nv : column_counts) {
                     if (nv > most_v || nu * nv > most_columns) break;
+                    // Columns of less than one vector would be padding mostly.
                     if (nu * nv > 1 && std::size_t{nu} * nv * simd::width > boxes.size()) break;
                     candidate.across = {nu, nv};
                     const double cost = cost_of(seen, candidate, boxes.size());
@@ -84,7 +85,7 @@ public:
         best.fit(seen.bounds);
         best.most_along = static_cast<std::uint32_t>(
             std::min(most_columns_on(seen, best.axis, /*is_cut=*/true) / columns_per_extent, double{most_columns}));
-        // A group of fewer boxes than a plan samples is not worth its own plan.
+        // A group of fewer boxes than a plan samples is not worth its own plan; there are at least two by two groups.
         if (!config_.group && are_clustered(seen, best, boxes.size(), least))
             best.groups = std::clamp(static_cast<double>(boxes.size()) / samples, 4.0, double{most_groups});
         return best;
@@ -211,6 +212,7 @@ private:
                                                                                             Before before) {
         std::array<float, outlier_divisors.size()> bounds{};
         const std::size_t count = values.size();
+        // The most are excluded first: the fewer outermost ones are among them, which leaves less to partition.
         for (std::size_t i = outlier_divisors.size(); i-- > 0;) {
             const std::size_t excluded = outlier_divisors[i] == 0 ? 0 : count / outlier_divisors[i];
             const auto outermost = values.begin() + static_cast<std::ptrdiff_t>(excluded);
@@ -252,6 +254,7 @@ private:
         const auto columns = static_cast<double>(p.columns());
         const auto n = static_cast<double>(boxes);
         const double per_length = seen.per_width[p.axis];
+        // An entry meets those of its column that overlap it along the column, if there is any extent.
         const double tests = n * (per_length > 0 ? length * per_length : entries) / columns;
         return entries * (ns.column_entry + ns.column_test * (1 + tests / simd::width)) + ns.column * columns / n;
     }
@@ -304,7 +307,7 @@ private:
         const double most = planned + ns.column_entry;
         const auto cost = [&](double met, double rejected) { return ns.column_test * (met / simd::width + rejected); };
         const auto n = static_cast<double>(boxes);
-        if (cost(n / 2, n / 2) <= most) return false;
+        if (cost(n / 2, n / 2) <= most) return false;  // not even if every box met every other
         std::array<sampled_entries, kept_samples / simd::width> entries;
         for (std::size_t i = 0; i < seen.kept; i += simd::width)
             entries[i / simd::width].fill(seen, i, plan, plan.bucket_bits(boxes));

@@ -35,6 +35,7 @@ public:
     /// Sets the cells: of the configured size, or of twice the mean longest extent, enlarged until they are few enough.
     /// @throws input_error if there would be more than 2^26 cells.
     void fit(const whole_subset& scene) {
+        // Every list that is kept has all present objects; the others are empty.
         const std::span<const projection> present =
             *std::ranges::max_element(scene.lists, {}, [](const auto& list) { return list.size(); });
         box world = empty_box();
@@ -57,7 +58,8 @@ public:
         }
         const int longest = longest_axis(world);
         const double span = double{world.max[longest]} - double{world.min[longest]};
-        double size = std::max(2 * extents / objects, span * 0x1p-20);
+        constexpr double most_per_axis = 0x1p20;
+        double size = std::max(2 * extents / objects, span / most_per_axis);
         if (size == 0) return;  // all objects lie at one point
         while (set_cells(world, size) > std::min(4 * objects, most_cells)) size *= 1.25;
         assert(static_cast<double>(subset_count()) <= most_cells);

@@ -18,6 +18,7 @@ public:
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {
         if (list.size() < 2) return;
+        // Compares each entry up to the first that is out of order with the one before it.
         const auto ordered = std::ranges::is_sorted_until(list, {}, &projection::key);
         const bool is_ordered = ordered == list.end();
         counters.add(work::comparisons, static_cast<std::size_t>(ordered - list.begin()) - is_ordered);
@@ -32,12 +33,8 @@ public:
         for (std::size_t pass = 0; pass < passes; ++pass) {
             std::array<std::uint32_t, digits>& next = counts[pass];
             if (next[digit(from[0], pass)] == list.size()) continue;  // all keys share this digit
-            std::uint32_t before = 0;
-            for (std::uint32_t& n : next) {
-                const std::uint32_t count = n;
-                n = before;
-                before += count;
-            }
+            std::uint32_t before = 0;  // number of entries with lower digits, where those with a digit begin
+            for (std::uint32_t& count : next) before += std::exchange(count, before);
             for (const projection& p : from) to[next[digit(p, pass)]++] = p;
             counters.add(work::moves, list.size());
             std::swap(from, to);

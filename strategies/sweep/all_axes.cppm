@@ -56,9 +56,10 @@ public:
         }
         const auto overlap_on_first = [&](std::size_t i, std::size_t j) { return j < end_[i]; };
         if (n_lists == 2) {
-            for_each_overlap(subset.boxes, lists[1], axis[1], 0, n, counters, [&](std::size_t i, std::size_t j) {
-                if (overlap_on_first(i, j)) report(i, j);
-            });
+            for_each_overlap(subset.boxes, lists[1], axis[1], /*first=*/0, /*last=*/n, counters,
+                             [&](std::size_t i, std::size_t j) {
+                                 if (overlap_on_first(i, j)) report(i, j);
+                             });
             return;
         }
         const std::size_t words = (n + 63) / 64;

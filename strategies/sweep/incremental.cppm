@@ -44,7 +44,7 @@ public:
             if (has_axis(axes_ & before, k)) merge_arrivals(boxes, objects, k);
             if (!has_axis(axes_, k)) release(ends_[k]);
         }
-        if (steps_left_ == 0) {
+        if (steps_left_ == 0) {  // following more swaps would take longer than a restart
             counters.add(work::restarts);
             pairs_.clear();
             restart_tests_ = 0;

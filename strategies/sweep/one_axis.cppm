@@ -24,7 +24,6 @@ public:
     one_axis_sweep() = default;
     explicit one_axis_sweep(const config& c) : config_(c) {}
 
-    /// Chooses the axis to sweep.
     axis_set axes(std::span<const box> boxes, const membership& objects) {
         const bool is_automatic = config_.axis == axis_choice::automatic;
         axis_ = is_automatic ? longest_.choose(boxes, objects) : static_cast<int>(config_.axis) - 1;

@@ -212,8 +212,8 @@ private:
                 sort_ends(list);
                 restart_steps_ += list.size() * std::bit_width(list.size());
             }
-            const auto along = static_cast<std::size_t>(3 - cut_[0] - cut_[1]);
-            tests += sweep_.find(r.ends[along], boxes, pairs_, /*is_new=*/[](std::uint32_t) { return true; });
+            const auto uncut = static_cast<std::size_t>(3 - cut_[0] - cut_[1]);  // the axis along which regions run
+            tests += sweep_.find(r.ends[uncut], boxes, pairs_, /*is_new=*/[](std::uint32_t) { return true; });
         }
         counters.add(work::box_tests, tests);
         restart_steps_ += tests;
@@ -226,16 +226,16 @@ private:
         int least = 2;
         for (int k = 1; k >= 0; --k)
             if (along.variance[k] < along.variance[least]) least = k;
-        cut_ = {least == 0 ? 1 : 0, least == 2 ? 1 : 2};
+        cut_ = {least == 0 ? 1 : 0, least == 2 ? 1 : 2};  // the other two
         box world = empty_box();
         for (std::uint32_t id = 0; id < boxes.size(); ++id)
             if (objects.contains(id)) world = merged(world, boxes[id]);
-        const double wanted = std::sqrt(static_cast<double>(planned_) / objects_per_region);
+        const double by_objects = std::sqrt(static_cast<double>(planned_) / objects_per_region);
         for (std::size_t k = 0; k < 2; ++k) {
             const double side = double{world.max[cut_[k]]} - double{world.min[cut_[k]]};
-            const double wide = side / (extents_per_region * along.extent[cut_[k]]);
-            const double count =
-                config_.regions ? static_cast<double>(*config_.regions) : std::min({wanted, wide, most_regions});
+            const double by_extent = side / (extents_per_region * along.extent[cut_[k]]);
+            const double count = config_.regions ? static_cast<double>(*config_.regions)
+                                                 : std::min({by_objects, by_extent, most_regions});
             count_[k] = side > 0 && count > 1 ? static_cast<std::uint32_t>(count) : 1;
             origin_[k] = world.min[cut_[k]];
             per_unit_[k] = count_[k] > 1 ? count_[k] / side : 0;

@@ -29,7 +29,7 @@ public:
         swept_axis_ = swept_.choose(along, every_axis);
         const axis_set swept = axis_set{1} << swept_axis_;
         kept_axis_ = kept_.choose(along, every_axis & ~swept);
-        // Longer boxes are kept apart: they would widen the range of candidates of all boxes.
+        // Boxes above four mean extents have a list of their own: they would widen the range of candidates of all.
         longest_short_ =
             static_cast<float>(std::min(4 * along.extent[kept_axis_], double{std::numeric_limits<float>::max()}));
         return swept | axis_set{1} << kept_axis_;
