@@ -43,7 +43,7 @@ public:
         box root = empty_box();
         for (const box& b : bounds) root = merged(root, b);
         split_recursively(
-            workers, part{0, n, root, false},
+            workers, part{.begin = 0, .end = n, .bounds = root, .in_second = false},
             // The threads share a part while there are fewer parts than threads.
             [&](const part& p) { return split(p, p.size() > n / workers.count() ? workers : single_thread_); },
             [&](const part& p) { split_to_leaves(p); });

@@ -102,6 +102,7 @@ public:
     [[nodiscard]] std::array<double, 3> costs(std::size_t left_count) const noexcept {
         std::array<std::size_t, 3> end{};
         std::array<std::size_t, 3> in_left{};
+        // A bin goes to the left if that comes nearer to the desired number.
         for (std::size_t k = 0; k < 3; ++k)
             while (end[k] < bins && in_left[k] + count_in_bin_[k][end[k]] / 2U < left_count)
                 in_left[k] += count_in_bin_[k][end[k]++];
@@ -223,7 +224,7 @@ private:
         std::array<simd::sixteen_i16, Vectors> before{};
         std::memcpy(centre.data(), centre_[axis].data(), sizeof centre);
         for (std::size_t i = 0; i < count_; ++i)
-            for (std::size_t v = 0; v < Vectors; ++v) before[v] -= centre_[axis][i] < centre[v];
+            for (std::size_t v = 0; v < Vectors; ++v) before[v] -= centre_[axis][i] < centre[v];  // true is -1
         std::uint64_t mask = 0;
         for (std::size_t v = 0; v < Vectors; ++v)
             mask |= std::uint64_t{simd::bits_of_sixteen(before[v] < number)} << v * lanes;

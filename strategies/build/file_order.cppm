@@ -26,8 +26,9 @@ struct file_order_build : threaded_build {
     [[nodiscard]] balanced_order order(const mesh& m) const {
         constexpr std::size_t in_leaf = balanced_order::leaf_triangles;
         const std::size_t n = m.triangles.size();
-        balanced_order order_of_file{large_vector<std::uint32_t>(n),
-                                     large_vector<box>((n + in_leaf - 1) / in_leaf, empty_box()), threads};
+        balanced_order order_of_file{.triangles = large_vector<std::uint32_t>(n),
+                                     .bounds = large_vector<box>((n + in_leaf - 1) / in_leaf, empty_box()),
+                                     .threads = threads};
         std::iota(order_of_file.triangles.begin(), order_of_file.triangles.end(), 0U);  // the identity
         worker_threads(threads).for_each_range(n, share_size, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {

@@ -9,7 +9,7 @@ namespace {
 /// The triangle with its box and its centroid, rounded to float: what a split rule sees.
 build_element element_of_triangle(const mesh& m, std::uint32_t triangle) {
     const triangle3f t = m.triangle(triangle);
-    build_element e{bounds_of(t), {}, triangle};
+    build_element e{.bounds = bounds_of(t), .centroid = {}, .triangle = triangle};
     // In double, so that the sum cannot overflow.
     for (int k = 0; k < 3; ++k)
         e.centroid[k] = static_cast<float>((double{t[0][k]} + double{t[1][k]} + double{t[2][k]}) / 3);
@@ -54,7 +54,7 @@ public:
         });
         nodes_.resize(2 * n - 1);
         split_recursively(
-            workers, task{0, n, 0}, [&](const task& t) { return split_task(t); },
+            workers, task{.begin = 0, .end = n, .node = 0}, [&](const task& t) { return split_task(t); },
             [&](const task& t) { build_subtree(t); });
         return std::move(nodes_);
     }
@@ -72,7 +72,7 @@ private:
             std::ranges::nth_element(range, range.begin() + static_cast<std::ptrdiff_t>(left),
                                      centroid_order{chosen.axis});
         const auto right = static_cast<std::uint32_t>(t.node + 2 * left);
-        nodes_[t.node] = {bounds, right, /*triangle=*/0};
+        nodes_[t.node] = {.bounds = bounds, .right = right, .triangle = 0};
         return {task{t.begin, t.begin + left, t.node + 1}, task{t.begin + left, t.end, right}};
     }
 
@@ -83,7 +83,8 @@ private:
             const task current = tasks.back();
             tasks.pop_back();
             if (current.size() == 1) {
-                nodes_[current.node] = {elements_[current.begin].bounds, 0, elements_[current.begin].triangle};
+                const build_element& only = elements_[current.begin];
+                nodes_[current.node] = {.bounds = only.bounds, .right = 0, .triangle = only.triangle};
             } else {
                 const auto [left, right] = split_task(current);
                 tasks.push_back(right);

@@ -31,7 +31,7 @@ public:
     bool advance_frame(std::span<const box> boxes, const membership& objects, list_estimate& estimate,
                        std::uint32_t& ids_drawn) {
         --left_;
-        const unsigned age = motion_sample::longest - std::min(left_, motion_sample::longest);
+        const unsigned age = motion_sample::longest - std::min(left_, motion_sample::longest);  // of the sample, or 0
         if (std::has_single_bit(age) && !move_too_far_) {
             estimate.law.observe(age, sample_.least_motion(boxes, objects));
             const list_plan plan = plan_list(estimate);
@@ -43,7 +43,7 @@ public:
         }
         const bool has_failed = left_ == 0;
         if (has_failed) left_ = motion_sample::longest + frames_between_samples(objects.size());
-        if (left_ == motion_sample::longest) {
+        if (left_ == motion_sample::longest) {  // from now on a new sample is watched
             estimate.resample(boxes, objects, ids_drawn);
             estimate.law.forget();
             sample_.keep(boxes, ids_drawn);

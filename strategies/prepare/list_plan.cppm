@@ -41,7 +41,7 @@ public:
             std::array<double, 4> product{1, 0, 0, 0};
             // The coefficients of (e0 + x) (e1 + x) (e2 + x) for the summed extents of the pair on the axes.
             for (int k = 0; k < 3; ++k) {
-                if (spacing(k) <= lengths[k] / static_cast<double>(sample.size())) continue;
+                if (spacing(k) <= lengths[k] / static_cast<double>(sample.size())) continue;  // they overlap anyway
                 double extents = 0;
                 for (const box& b : {sample[i - 1], sample[i]}) extents += double{b.max[k]} - double{b.min[k]};
                 for (std::size_t power = 3; power > 0; --power)
@@ -173,7 +173,7 @@ inline constexpr double worth_a_list = 0.9;
 [[nodiscard]] inline list_plan plan_list(const list_estimate& estimate, double worth = worth_a_list,
                                          const cost_model& cost = machine_costs()) {
     constexpr double as_little = 1.01;
-    constexpr std::size_t longest = 1024;
+    constexpr std::size_t longest = 1024;  // frames
     const auto n = static_cast<double>(estimate.boxes);
     list_plan best;
     const std::size_t frames_left = estimate.horizon.frames_left;
@@ -188,7 +188,7 @@ inline constexpr double worth_a_list = 0.9;
         if (!(margin <= estimate.growth.longest_margin())) break;
         const double listed = estimate.listed_pairs(margin);
         const double served = cost_of_service(n, listed, cost) / search;
-        if (served >= std::min(best.cost, worth)) break;
+        if (served >= std::min(best.cost, worth)) break;  // and longer lists, of greater margins, cost even more
         const double making = cost_of_making(n, listed, cost) / static_cast<double>(after + 1) +
                               cost_of_new_memory(n, listed, estimate.horizon, cost);
         const double per_frame = served + making / search;

@@ -73,7 +73,7 @@ public:
         const bool any_leave = objects_.any_departures();
         frame_.change([&] { objects_.settle(); });
         // Departures are reported only once, so they are applied now, even if this frame is rejected later.
-        if (any_leave && state_ >= state::resting)
+        if (any_leave && keeps_pairs())
             list_.erase_if([&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
         record_arrivals(any_arrivals);
         if (is_below_list_threshold()) {
@@ -100,7 +100,7 @@ public:
         frame_.require_taken();
         require_ieee_arithmetic();
         const std::size_t before = pairs.size();
-        const bool searches = is_list_pending_ || state_ <= state::watching;
+        const bool searches = is_list_pending_ || !keeps_pairs();
         if (is_list_pending_) search_->search(list_.begin_search());
         is_list_pending_ = false;
         switch (state_) {
@@ -146,7 +146,7 @@ public:
     /// For `explain`: what the search leaves out, and why no list is kept, if none is.
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
-        if (state_ <= state::watching)
+        if (!keeps_pairs())
             absent.push_back({absence::neighbour_list, is_below_list_threshold()
                                                            ? "none built, not worth its cost for so few boxes"
                                                        : expected_ < fewest_frames_of_first_list
@@ -162,6 +162,7 @@ private:
         bool around_kept_boxes = false;  ///< the list is built from the kept boxes instead of those of this frame
     };
 
+    [[nodiscard]] bool keeps_pairs() const noexcept { return state_ == state::resting || state_ == state::listing; }
     [[nodiscard]] bool is_adaptive() const noexcept { return !config_.margin && config_.every == 0; }
     [[nodiscard]] bool is_below_list_threshold() const noexcept {
         return is_adaptive() && objects_.size() < fewest_boxes;

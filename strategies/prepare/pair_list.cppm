@@ -40,7 +40,7 @@ inline std::size_t store_overlapping(std::span<const box> boxes, std::span<const
     std::size_t end = 0;
     std::size_t i = 0;
     for (; i + at_a_time <= list.size(); i += at_a_time) {
-        std::uint32_t both_words = 0;
+        std::uint32_t both_words = 0;  // two bits per pair, one for each of its indices
 #pragma clang loop unroll(full)
         for (std::size_t k = 0; k < at_a_time; ++k)
             both_words |= (overlap_at_once(boxes[list[i + k].a], boxes[list[i + k].b]) ? 3U : 0U) << 2 * k;
@@ -96,7 +96,7 @@ public:
         std::size_t uncertain = 0;
         std::size_t i = 0;
         for (; i + at_a_time <= count; i += at_a_time) {
-            std::uint32_t both_words = 0;
+            std::uint32_t both_words = 0;  // two bits per pair, one for each of its indices
 #pragma clang loop unroll(full)
             for (std::size_t k = 0; k < at_a_time; ++k)
                 both_words |=

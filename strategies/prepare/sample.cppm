@@ -38,16 +38,17 @@ struct pair_estimate {
     double within_margin = 0;  ///< pairs that overlap when both boxes are grown by the margin
     std::size_t counted = 0;   ///< number of such pairs in the sample
 };
-/// Estimates the length of a Verlet list before it is made.
+/// Estimates the length of a Verlet list before it is made: tests a few boxes against a sample of all.
 /// @param ids_drawn as in `draw_id`
 [[nodiscard]] inline pair_estimate estimate_pairs(std::span<const box> boxes, const membership& objects,
                                                   std::uint32_t& ids_drawn, double margin) {
-    std::array<box, 8> buffer;
+    constexpr std::size_t tested = 8, one_in = 32;
+    std::array<box, tested> buffer;
     const std::span<const box> sample = draw_boxes(boxes, objects, ids_drawn, buffer);
-    std::array<box, 8> grown;
+    std::array<box, tested> grown;
     // Growing one box of a pair by twice the margin is equivalent to growing both by the margin.
     grow(sample, 2 * margin, grown);
-    const std::size_t others = std::max<std::size_t>(8, boxes.size() / 32);
+    const std::size_t others = std::max(tested, boxes.size() / one_in);
     std::size_t overlapping = 0;
     pair_estimate estimate;
     for (std::size_t k = 0; k < others && !boxes.empty(); ++k) {
@@ -59,6 +60,7 @@ struct pair_estimate {
         }
     }
     const auto n = static_cast<double>(objects.size());
+    // From the tested pairs to all n² / 2.
     const double scale =
         sample.empty() ? 0 : n / static_cast<double>(sample.size()) * n / static_cast<double>(others) / 2;
     estimate.overlapping = static_cast<double>(overlapping) * scale;

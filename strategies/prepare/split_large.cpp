@@ -108,7 +108,8 @@ private:
         for (std::size_t i = 1; i < interval.pieces; ++i) {
             interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);
             // The interval is not divided if it contains too few floats.
-            if (!(interval.at[i] > interval.at[i - 1] && interval.at[i] < upper)) return {1, {lower, upper}};
+            if (!(interval.at[i] > interval.at[i - 1] && interval.at[i] < upper))
+                return {.pieces = 1, .at = {lower, upper}};
         }
         interval.at[interval.pieces] = upper;
         return interval;
@@ -120,7 +121,7 @@ private:
         std::size_t total = 0;
         for (std::uint32_t id = 0; id < boxes.size(); ++id) {
             if (!objects_.contains(id) || !is_longer(boxes[id], longest)) continue;
-            split division{id, {}};
+            split division{.object = id, .pieces = {}};
             for (int k = 0; k < 3; ++k)
                 division.pieces[static_cast<std::size_t>(k)] =
                     static_cast<std::uint8_t>(cut(boxes[id].min[k], boxes[id].max[k], longest).pieces);

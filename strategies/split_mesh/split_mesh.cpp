@@ -53,13 +53,13 @@ public:
             triangle_counts_.push_back(scene.meshes[m].triangles.size());
             first_model.push_back(models());
             if (division[m].size() < 2) {
-                models_.push_back({m, no_part, bounds_of(scene.meshes[m])});
+                models_.push_back({.source = m, .part = no_part, .bounds = bounds_of(scene.meshes[m])});
                 continue;
             }
             for (std::vector<std::uint32_t>& triangles : division[m]) {
                 parts_.push_back(part_of(scene.meshes[m], std::move(triangles)));
-                models_.push_back(
-                    {m, static_cast<std::uint32_t>(parts_.size() - 1), bounds_of(parts_.back().own_mesh)});
+                const auto part_index = static_cast<std::uint32_t>(parts_.size() - 1);
+                models_.push_back({.source = m, .part = part_index, .bounds = bounds_of(parts_.back().own_mesh)});
             }
         }
         first_model.push_back(models());
