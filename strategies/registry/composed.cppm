@@ -21,16 +21,17 @@ template <Strategy S>
             contrasts.push_back(parse_strategy(std::string(S::name) + ":" + std::string(settings)));
     scene_fit (*fit)(const scene_traits&) = nullptr;
     if constexpr (requires(const scene_traits& scene) { S::fit(scene); }) fit = &S::fit;
-    return {std::string(S::name),
-            std::string(S::summary),
-            strategy_is_exact<S>,
-            parameters_of<S>(),
-            leaves_out,
-            needs_meshes,
-            contrasts,
-            fit,
-            [](const strategy_choice& choice) { (void)configured<S>(choice.settings); },
-            [](const strategy_choice& choice) { return is_exact_as<S>(configured<S>(choice.settings)); }};
+    return {
+        .name = std::string(S::name),
+        .summary = std::string(S::summary),
+        .exact = strategy_is_exact<S>,
+        .parameters = parameters_of<S>(),
+        .leaves_out = leaves_out,
+        .needs_meshes = needs_meshes,
+        .contrasts = contrasts,
+        .fit = fit,
+        .check = [](const strategy_choice& choice) { (void)configured<S>(choice.settings); },
+        .is_exact_with = [](const strategy_choice& choice) { return is_exact_as<S>(configured<S>(choice.settings)); }};
 }
 
 /// A combination of strategies that are compiled together. `make` takes a choice of each and the other parts of the
@@ -101,7 +102,7 @@ template <class Rows, template <class... Parts> class Stage, class... Lists>
     Rows rows;
     const auto add = [&]<class... Parts>() {
         constexpr std::string_view reason = rejection<Parts...>();
-        rows.push_back({{Parts::name...}, reason, nullptr});
+        rows.push_back({.names = {Parts::name...}, .rejection = reason, .make = nullptr});
         if constexpr (reason.empty()) rows.back().make = &Stage<Parts...>::make;
     };
     for_each_combination(add, lists...);

@@ -16,7 +16,7 @@ public:
     /// The index of an internal node, or with the top bit set that of a leaf.
     using cursor = std::uint32_t;
 
-    /// Lays out internal nodes and leaves in two arrays, in preorder, and then links the children.
+    /// Lays out internal nodes and leaves in two arrays, in preorder, and then links the children: left ones follow.
     void pack(std::span<const build_node> nodes) {
         internals_.clear();
         leaves_.clear();

@@ -21,6 +21,7 @@ public:
 
     /// Lays out the nodes with planes, then those above two leaves, which need none, and encodes the planes.
     void pack(std::span<const build_node> nodes) {
+        // In preorder, the left child of node i is i + 1.
         const auto holds_leaves_only = [&](std::size_t i) {
             return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();
         };

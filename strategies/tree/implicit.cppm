@@ -50,9 +50,10 @@ public:
         constexpr double most_fetched_of_two = 200'000;
         constexpr std::size_t least_of_front = least_leaves_of_front * balanced_order::leaf_triangles;
         scene_fit fit;
-        const std::size_t repaid =
-            scene.queries_that_repay((machine_costs().sah_triangle - machine_costs().median_triangle) / 2,
-                                     std::clamp(scene.triangles_per_query() / 1'500'000, 1.0 / 200, 1.0 / 10));
+        // The share of a query that lists save: a tenth from 150,000 triangles on, fewer triangles less in proportion.
+        const double saved = std::clamp(scene.triangles_per_query() / 1'500'000, 1.0 / 200, 1.0 / 10);
+        const double writing = (machine_costs().sah_triangle - machine_costs().median_triangle) / 2;
+        const std::size_t repaid = scene.queries_that_repay(writing, saved);
         if (scene.triangles > 0 && scene.triangles_per_query() <= most_fetched_of_two && scene.queries < repaid) {
             fit.settings.push_back({"vertices", "fetched"});
             fit.because.push_back(
@@ -104,14 +105,15 @@ public:
 
     /// Encodes all nodes anew, and rewrites the vertex lists if triangles have other vertices now.
     void refit(const mesh& m, std::vector<box>& boxes) {
+        constexpr std::uint32_t in_leaf = balanced_order::leaf_triangles;
         boxes.resize(triangles_);
         bool same = true;
-        for (std::uint32_t leaf = 0; 8 * leaf < triangles_; ++leaf) {
-            std::array<std::uint32_t, 8> numbers;
-            const std::uint32_t count = std::min(8U, triangles_ - 8 * leaf);
+        for (std::uint32_t leaf = 0; in_leaf * leaf < triangles_; ++leaf) {
+            std::array<std::uint32_t, in_leaf> numbers;
+            const std::uint32_t count = std::min(in_leaf, triangles_ - in_leaf * leaf);
             for (std::uint32_t i = 0; i < count; ++i) {
-                numbers[i] = triangle_at(8 * leaf + i);
-                boxes[8 * leaf + i] = bounds_of(m.triangle(numbers[i]));
+                numbers[i] = triangle_at(in_leaf * leaf + i);
+                boxes[in_leaf * leaf + i] = bounds_of(m.triangle(numbers[i]));
             }
             same &= vertices_.empty() || vertices_.matches(m, leaf, std::span(numbers).first(count));
         }
@@ -166,7 +168,6 @@ public:
     }
 
     [[nodiscard]] inline bool keeps_fronts() const noexcept { return config_.front == front_choice::kept; }
-    /// Prefetches the list of the leaf's vertices.
     inline void prefetch_vertices(std::uint32_t leaf) const noexcept {
         if (!vertices_.empty()) vertices_.prefetch(leaf);
     }

@@ -16,7 +16,8 @@ public:
 
     using leafless_layout::leafless_layout;
 
-    /// Lays out the internal nodes in preorder, and links children: nodes, or triangles in place of leaves.
+    /// Lays out the internal nodes in preorder, in which a left child follows its parent, and links the children:
+    /// nodes, or triangles in place of leaves.
     void pack(std::span<const build_node> nodes) {
         nodes_.clear();
         nodes_.reserve(nodes.size() / 2);

@@ -35,6 +35,7 @@ public:
     /// relative.
     /// @throws input_error if the nodes take more than 2 GiB
     void pack(std::span<const build_node> nodes) {
+        // In preorder, the left child of node i is i + 1.
         const auto holds_leaves_only = [&](std::size_t i) {
             return nodes[i + 1].is_leaf() && nodes[nodes[i].right].is_leaf();
         };

@@ -26,7 +26,6 @@ public:
     explicit quantized_planes(unsigned bits) noexcept
         : bits_(bits), bytes_((6 * bits + 7) / 8), scale_(1 / static_cast<float>(1U << bits)) {}
 
-    /// The size of six codes.
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
     /// Packs the codes of the six planes, each the greatest number of steps inward that does not cut a child.

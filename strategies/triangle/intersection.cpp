@@ -23,7 +23,7 @@ public:
         const int largest = std::max(p.exponent, q.exponent);
         double to_a = std::abs(std::ldexp(p.mantissa, p.exponent - largest));
         double to_b = std::abs(std::ldexp(q.mantissa, q.exponent - largest));
-        if (to_a > to_b) {
+        if (to_a > to_b) {  // begins at the nearer end, which halves the rounding error
             std::swap(a, b);
             std::swap(to_a, to_b);
         }
@@ -33,8 +33,10 @@ public:
             const double difference = b[k] - a[k];
             // The difference overflows only if both are large, so that their halves are exact.
             at[k] = std::isfinite(difference) ? a[k] + difference * t : 2 * (a[k] / 2 + (b[k] / 2 - a[k] / 2) * t);
-            const double length = std::abs(b[k] / 2 - a[k] / 2);
-            const double bound = 8 * unit * length + unit * std::abs(at[k]) + std::numeric_limits<double>::denorm_min();
+            const double half_length = std::abs(b[k] / 2 - a[k] / 2);
+            // 4 u of the length and u of the result, as derived at `intersection_of`.
+            const double bound =
+                8 * unit * half_length + unit * std::abs(at[k]) + std::numeric_limits<double>::denorm_min();
             if (a[k] != b[k]) common_.error[k] = std::max(common_.error[k], bound);
         }
         add_corner(at);
@@ -120,7 +122,8 @@ struct view {
 };
 
 /// Intersects two coplanar hulls. The corners are those of one hull that lie in the other, and the proper crossings of
-/// edges. They are distinct, and none lies between two others. `lines` are masks of the edges on whose lines they lie.
+/// edges. They are distinct, and none lies between two others. `lines` are masks of the edges on whose lines they lie:
+/// bit i for edge i of g, bit 3 + i for edge i of h.
 triangle_intersection flat_intersection(const hull& g, const hull& h, const view& seen) {
     result common;
     std::array<unsigned, 6> lines{};

@@ -129,7 +129,7 @@ private:
     /// `s` has zero area and crosses the plane of `t` in a point. Is it in `t`: does it pass all edges on one side?
     [[nodiscard]] static inline bool line_meets(Signs& signs, const triangle3d& s, const sides& s_to_t,
                                                 const triangle3d& t) noexcept {
-        const int other = s_to_t[0] != s_to_t[1] ? 1 : 2;
+        const int other = s_to_t[0] != s_to_t[1] ? 1 : 2;  // a corner on another side than corner 0
         bool left = false, right = false;
         for (int i = 0; i < 3; ++i) {
             const int passing = signs.side(s[0], s[other], t[i], t[(i + 1) % 3]);
@@ -154,7 +154,8 @@ private:
         const vec3d& t_end = t[1] == t[0] ? t[2] : t[1];
         if (signs.side(s[0], s_end, t[0], t_end) != 0) return false;
         for (int axis = 0; axis < 3; ++axis)
-            if (signs.beyond(s[0], s_end, 0, t, axis) || signs.beyond(t[0], t_end, 0, s, axis)) return false;
+            if (signs.beyond(s[0], s_end, /*own=*/0, t, axis) || signs.beyond(t[0], t_end, /*own=*/0, s, axis))
+                return false;
         return true;
     }
 

@@ -78,7 +78,7 @@ private:
         const auto from_origin = [&](const vec3f& p) {
             return vec3d{double{p[0]} - origin[0], double{p[1]} - origin[1], double{p[2]} - origin[2]};
         };
-        // At an edge, `p` is its other end, `q` the corner of s and `r` that of t.
+        // At an edge, `p` is its other end, `q` the corner of s (indices add up to 3) and `r` that of t.
         const vec3d p = from_origin(is_edge ? s[second / 3] : s[(first / 3 + 1) % 3]);
         const vec3d q = from_origin(is_edge ? s[3 - first / 3 - second / 3] : s[(first / 3 + 2) % 3]);
         const vec3d r = from_origin(is_edge ? t[3 - first % 3 - second % 3] : t[(first % 3 + 1) % 3]);

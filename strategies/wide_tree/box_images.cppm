@@ -26,7 +26,7 @@ public:
     /// additional errors stay within the rest of the margin, or within `least`.
     void store(const wide_node& n, eight_boxes& to) const noexcept {
 #pragma clang fp contract(fast)
-        // Centres and half extents are exact: integer or half codes times powers of two.
+        // Centres and half extents are exact: (half) codes times powers of two. Upper planes are stored as 255 - code.
         std::array<simd::eight_doubles, 3> centre;
         std::array<simd::eight_doubles, 3> half;
         for (std::size_t j = 0; j < 3; ++j) {

@@ -41,7 +41,7 @@ private:
     void find_pairs_with_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
                                const relative_pose& to_a, walk_goal goal, const Emit& emit) {
         batched_walk<Tree, Triangle, Counters>::require_ready(a, b);
-        const model_pair models{{a.number(), b.number()}, {a.state(), b.state()}};
+        const model_pair models{.numbers = {a.number(), b.number()}, .states = {a.state(), b.state()}};
         const box_motion motion = to_a.to_boxes();
         const double leaf_size = std::sqrt(std::min(area_of_leaf(a), area_of_leaf(b)));
         const double near = bvtt_front::most_step * leaf_size;

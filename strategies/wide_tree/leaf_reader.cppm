@@ -43,7 +43,6 @@ public:
         return true;
     }
 
-    /// The leaves that the group claimed and that are not cached.
     [[nodiscard]] inline std::span<const std::uint32_t> missing() const noexcept {
         return std::span(missing_).first(missing_count_);
     }

@@ -71,7 +71,7 @@ public:
         const std::size_t leaves = steps_.size() - 1;
         std::size_t missed = 0;  // pairs of leaves without an intersection
         std::size_t step = 0;
-        node_pair nodes{0, 0};
+        node_pair nodes{.a = 0, .b = 0};  // the roots
         for (;;) {
             counters.add(work::node_visits, 1);
             if (step < leaves) {

@@ -78,7 +78,7 @@ private:
         if constexpr (requires { requires Triangle::filtered; })
             return triangle_filter::decide(&a_[0][first], &b_[0][first], a_[0].size());
         else
-            return {0, simd::every_lane};
+            return {.hits = 0, .undecided = simd::every_lane};
     }
 
     [[nodiscard]] static inline triangle3f triangle(const corners& of, std::size_t at) noexcept {

@@ -32,6 +32,7 @@ public:
         const simd::floats x = extent_of(s, t, 0);
         const simd::floats y = extent_of(s, t, 1);
         const simd::floats z = extent_of(s, t, 2);
+        // 2^-18 XYZ is 64 u XYZ, which exceeds 46 u XYZ; the other term exceeds what underflow adds.
         const error_bound error(0x1p-18F * (x * y * z) + 0x1p-140F * (x + y + z + 1));
 
         const point s_normal = cross(s[1] - s[0], s[2] - s[0]);
@@ -55,9 +56,9 @@ public:
         const simd::flags crossing = error.below(first) & error.below(second);
         const std::uint32_t hits = simd::bits(~separated & certain & crossing);
         const std::uint32_t undecided = simd::bits(~separated & ~(certain & (beyond | crossing)));
-        if (undecided == 0) return {hits, 0};
+        if (undecided == 0) return {.hits = hits, .undecided = 0};
         const std::uint32_t touching = undecided & simd::bits(share_corner(s, t));
-        return {hits | touching, undecided & ~touching};
+        return {.hits = hits | touching, .undecided = undecided & ~touching};
     }
 
 private:

@@ -74,12 +74,13 @@ private:
             low = std::min(low, least[i]);
             high = std::max(high, most[i]);
         }
+        // No finer grid has codes for all planes and is exact in float; the loop finds the finest that has.
         int power = std::max({power_of(high - low) - 8,
                               power_of(std::max(std::abs(low), std::abs(high))) - origin_digits, least_exponent});
         while (std::ceil(high * power_of_two(-power)) - std::floor(low * power_of_two(-power)) + 1 > last_code - 1)
             ++power;
         const double steps = power_of_two(-power);
-        const double first = std::floor(low * steps) - 1;
+        const double first = std::floor(low * steps) - 1;  // codes begin at 1
         const auto axis = static_cast<std::size_t>(k);
         origin[axis] = static_cast<std::int32_t>(first);
         exponent[axis] = static_cast<std::int8_t>(power);
