@@ -1,6 +1,5 @@
 /// AABB Lab's core: the building blocks of strategies and the stages that run them. Each strategy is a module of its
-/// own
-/// (`aabb.sort.std`, …).
+/// own (`aabb.sort.std`, …).
 export module aabb;
 
 export import aabb.base;

@@ -44,7 +44,6 @@ struct work_counters {
     }
 };
 
-/// The counts of any counter policy.
 [[nodiscard]] constexpr work_counters work_of(const work_counters& counters) noexcept {
     return counters;
 }
@@ -52,7 +51,6 @@ struct work_counters {
     return {};
 }
 
-/// A policy that counts work or ignores it.
 template <class C>
 concept CounterPolicy = requires(C counters, work kind) {
     { C::enabled } -> std::convertible_to<bool>;

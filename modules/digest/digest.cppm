@@ -16,7 +16,6 @@ public:
 
     /// @param sorted the pairs of one frame, ascending and unique; frames must be added in order
     void add(std::uint32_t frame, std::span<const index_pair> sorted);
-    /// Adds a record of any length.
     void add(std::span<const std::uint32_t> record);
 
     [[nodiscard]] std::uint64_t value() const;

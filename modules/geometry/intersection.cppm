@@ -22,7 +22,6 @@ inline constexpr std::array<std::string_view, 5> intersection_kind_names = {"non
     return intersection_kind_names[static_cast<std::uint8_t>(kind)];
 }
 
-/// The intersection of two triangles.
 struct triangle_intersection {
     intersection_kind kind = intersection_kind::none;
     std::uint32_t size = 0;             ///< number of corners: 1 of a point, 2 of a segment, 3 to 6 of a polygon

@@ -119,8 +119,7 @@ public:
         return on_lattice() ? certain_sign(computed, 0) : exact_side(a, b, c, d);
     }
 
-    /// Whether side(s0, s1, t0, t1) <= 0 and side(s0, s2, t0, t2) >= 0. Both are computed, since a branch is hard to
-    /// predict.
+    /// Whether side(s0, s1, t0, t1) <= 0 and side(s0, s2, t0, t2) >= 0. Computes both: a branch is hard to predict.
     [[nodiscard]] inline bool in_order(const vec3d& s0, const vec3d& s1, const vec3d& s2, const vec3d& t0,
                                        const vec3d& t1, const vec3d& t2) noexcept {
         const int first = certain_sign(volume(s0, s1, t0, t1), side_error_);

@@ -51,8 +51,7 @@ export namespace aabb {
 /// The total stays below g = h + s with s = 16 u (V + h), including its own roundings, and at least one denormal if
 /// that underflows. Products that underflow add at most 2^-148, times the extent for the normal. Coordinates above 2^40
 /// might overflow and are never culled.
-/// @param growth,least of the box: 16 u of the coordinates, and at least a denormal. Tests pass less, which is not
-/// enough.
+/// @param growth,least of the box: 16 u of the coordinates, and at least a denormal. Tests pass too little.
 [[nodiscard]] inline bool triangle_meets_box(const triangle3f& t, const box& b, float growth = 0x1p-20F,
                                              float least = 0x1p-149F) noexcept {
     if (!overlaps(bounds_of(t), b)) return false;

@@ -10,8 +10,7 @@ import :policies;
 // Shared by the sweeps that keep the overlapping pairs between frames and follow the swaps of a sort.
 export namespace aabb {
 
-/// One end of an object's interval on an axis. A lower end precedes an upper end of the same value, so that touching
-/// counts as overlapping.
+/// One end of an object's interval on an axis. Of equal ends a lower one comes first: touching counts as overlap.
 struct interval_end {
     float key;
     std::uint32_t id : 31;

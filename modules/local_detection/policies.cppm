@@ -140,7 +140,6 @@ concept TreePolicy =
         { built.leaf_test() } -> std::same_as<leaf_test_choice>;
     });
 
-/// The arrangement of leaves that a tree requires.
 template <TreePolicy T>
 inline constexpr leaf_arrangement leaf_arrangement_of = [] {
     if constexpr (requires { T::arrangement; })

@@ -31,8 +31,7 @@ public:
     std::vector<std::uint32_t> mesh_of;  ///< index of each object's mesh
 
     [[nodiscard]] virtual std::size_t frames() const = 0;
-    /// Generates the poses of the next frame, one per object, and moves the vertices of deforming meshes; returns false
-    /// after the last frame.
+    /// Generates the next frame's poses, one per object, and deforms meshes; returns false after the last frame.
     virtual bool next(std::vector<pose>& poses) = 0;
     /// Whether vertices of this mesh move between frames, so that its trees and boxes must be refitted.
     [[nodiscard]] virtual bool deforms(std::uint32_t /*mesh*/) const { return false; }

@@ -109,8 +109,7 @@ struct integer_parameter {
     }
 };
 
-/// A real parameter in (above, at_most], or with `or_equal` in [above, at_most]; with `or_auto` also "auto", which
-/// leaves the optional empty.
+/// A real parameter in (above, at_most], or with `or_equal` [above, at_most]; "auto" leaves the optional empty.
 template <class Config, class Value>
 struct number_parameter {
     std::string_view name;

@@ -1,5 +1,4 @@
-/// Vectors of eight elements, independent of the register width, for data that come in eights, such as the children of
-/// a wide node.
+/// Vectors of eight elements, whatever the register width, for data in eights such as the children of a wide node.
 export module aabb.simd:eights;
 
 import aabb.std;

@@ -21,8 +21,7 @@ struct threaded_build {
     std::uint32_t threads = 1;
 };
 
-/// The triangles per share of multithreaded work: fewer would not be worth another thread. The last share may be
-/// smaller.
+/// The triangles per share of multithreaded work, except the last: fewer would not be worth another thread.
 inline constexpr std::size_t share_size = 2048;
 
 /// Balanced splits need no more than 14 levels for 2^31 triangles and 256 threads.

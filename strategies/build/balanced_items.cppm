@@ -214,8 +214,7 @@ private:
         }
     }
 
-    /// Counts the items before each, which moves none. `Vectors`, enough for all, is a constant so that they stay in
-    /// registers.
+    /// Counts the items before each and moves none. `Vectors`, enough for all, is constant to keep them in registers.
     template <std::size_t Vectors>
     [[nodiscard]] inline std::uint64_t mask_by_vectors(std::int16_t number, std::size_t axis) const noexcept {
         if constexpr (Vectors * lanes < most)

@@ -90,7 +90,6 @@ public:
         }
         return sum;
     }
-    /// Number of boxes in the fullest group.
     [[nodiscard]] std::size_t fullest() const noexcept { return fullest_; }
 
     /// The region of a group, a cell of the grid, within the bounds of all groups. Groups at the edge of the grid reach

@@ -108,7 +108,6 @@ using narrow_halves = std::uint16_t __attribute__((vector_size(2 * width)));
     return __builtin_convertvector(v, words);
 }
 
-/// Stores the low u16 of each u32.
 [[gnu::always_inline]] inline void store_low_halves(std::uint16_t* to, words v) noexcept {
     const auto lower = __builtin_convertvector(v, narrow_halves);
     std::memcpy(to, &lower, sizeof lower);

@@ -63,11 +63,9 @@ struct column_entry {
     std::uint32_t index;       ///< index of the box in the block; for the three highest bits, see `begins_earlier`
 
     static constexpr int index_bits = 29;
-    static constexpr std::uint32_t index_mask = (std::uint32_t{1} << index_bits) - 1;
+    static constexpr std::uint32_t index_mask = (1U << index_bits) - 1;
     /// Set if the box begins in an earlier column on axis k. If both copies have it set, another column owns the pair.
-    [[nodiscard]] static constexpr std::uint32_t begins_earlier(int k) noexcept {
-        return std::uint32_t{1} << (index_bits + k);
-    }
+    [[nodiscard]] static constexpr std::uint32_t begins_earlier(int k) noexcept { return 1U << (index_bits + k); }
 };
 static_assert(sizeof(column_entry) == 16);
 

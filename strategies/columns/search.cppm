@@ -173,7 +173,7 @@ public:
         boxes_ = boxes;
         is_static_ = static_frame_.is_still_valid(boxes, objects);
         if (is_static_) return;
-        if (boxes.size() > most_objects) throw input_error("columns take at most 536,870,911 objects");
+        if (boxes.size() > column_entry::index_mask) throw input_error("columns take at most 536,870,911 objects");
         select_present(boxes, objects);
         const std::size_t n = present_.boxes.size();
         uses_brute_force_ = n <= partition_.brute_force_threshold();
@@ -252,7 +252,6 @@ public:
 private:
     /// A plan is replaced after this many frames.
     static constexpr unsigned frames_per_plan = 32;
-    static constexpr std::size_t most_objects = column_entry::index_mask;
 
     using own_counters = std::conditional_t<Counters::enabled, work_counters, no_counters>;
 

@@ -92,7 +92,6 @@ public:
     }
 
     [[nodiscard]] std::size_t brute_force_threshold() const noexcept { return config_.few.value_or(4 * simd::width); }
-    /// The approximate size of a group in a scene of this many boxes.
     [[nodiscard]] std::size_t group_size(std::size_t boxes) const noexcept {
         if (config_.group) return std::min(boxes, std::size_t{*config_.group});
         return boxes <= 40'000 ? boxes : std::max(std::size_t{9'000}, boxes / std::size_t{most_groups});

@@ -246,10 +246,8 @@ kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxe
     constexpr double never = std::numeric_limits<double>::infinity();
     const sampled sample(boxes, std::span(ids_).subspan(first, count));
     const double scale = static_cast<double>(count) / static_cast<double>(sample.n);
-    // If the leaf size is configured, any split is cheaper than none.
-    split best{.axis = is_leaf,
-               .plane = 0,
-               .cost = config_.leaf ? never : sample.cost(static_cast<double>(count), sample.bounds, swept_)};
+    split best{.axis = is_leaf, .plane = 0, .cost = never};  // with a configured leaf size, any split is cheaper
+    if (!config_.leaf) best.cost = sample.cost(static_cast<double>(count), sample.bounds, swept_);
     if (config_.leaf && count <= *config_.leaf) return best;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<int>(axis);

@@ -162,8 +162,7 @@ public:
     }
 
 private:
-    /// The least overlap computed in floats that proves an overlap by two margins: the relative error of a difference
-    /// is at most 2^-24.
+    /// The least overlap in floats that proves one by two margins: a difference has a relative error of 2^-24 at most.
     [[nodiscard]] static float certain_depth(double margin) noexcept {
         constexpr float infinity = std::numeric_limits<float>::infinity();
         const double depth = 2 * margin * (1 + 0x1p-22);

@@ -11,8 +11,7 @@ export namespace aabb {
 /// A pseudorandom id below `count`: ids at regular strides may all belong to objects of one kind.
 /// @param ids_drawn number of ids drawn so far
 [[nodiscard]] inline std::uint32_t draw_id(std::uint32_t& ids_drawn, std::size_t count) noexcept {
-    // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4), applied twice: a single pass yields regular
-    // strides again.
+    // Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4), twice: a single pass yields regular strides.
     constexpr std::uint64_t golden_ratio = 0x9e3779b97f4a7c15U;
     std::uint64_t hash = ++ids_drawn * golden_ratio;
     hash = (hash ^ hash >> 32U) * golden_ratio;

@@ -8,7 +8,6 @@ namespace aabb {
 
 namespace {
 
-/// Whether the box is longer on any axis.
 bool is_longer(const box& b, double longest) {
     for (int k = 0; k < 3; ++k)
         if (double{b.max[k]} - double{b.min[k]} > longest) return true;

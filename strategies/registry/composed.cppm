@@ -53,7 +53,6 @@ void for_each_combination(Take& take, type_list<First...>, Rest... rest) {
     (for_each_combination<Chosen..., First>(take, rest...), ...);
 }
 
-/// Calls `make` with the requested type of counters.
 template <class Make>
 [[nodiscard]] auto with_counters(instrumentation wanted, Make make) {
     if (wanted == instrumentation::counters) return make(work_counters{});

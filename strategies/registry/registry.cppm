@@ -1,5 +1,4 @@
-/// All strategies by name, and stages composed of them. The interface depends on no strategy, so that importers are not
-/// rebuilt when one changes.
+/// All strategies by name, and stages composed of them. Depends on no strategy: a change of one rebuilds no importer.
 export module aabb.registry;
 
 import aabb.pipeline;
@@ -85,7 +84,6 @@ private:
 /// @throws input_error on an unknown name or parameter.
 [[nodiscard]] std::unique_ptr<triangle_test> make_triangle_test(const strategy_choice& choice);
 
-/// A reordered mesh.
 struct ordered_mesh {
     mesh ordered;
     std::vector<std::uint32_t> triangles;  ///< original index of each triangle

@@ -18,7 +18,6 @@ struct selected_strategy {
     std::string rule;
 };
 
-/// Whether the selection for a kind depends on the scene.
 [[nodiscard]] bool depends_on_scene(strategy_kind kind);
 
 /// Selects a strategy for each kind. Named strategies are kept. In kinds whose strategies state which scenes they serve

@@ -41,8 +41,7 @@ part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
 
 class divided_scene final : public scene_parts {
 public:
-    /// Makes a model of each part and each undivided mesh, and a piece, which the broad phase sees, per object and
-    /// model.
+    /// Makes a model of each part and undivided mesh, and for the broad phase a piece per object and model of it.
     divided_scene(const mesh_scene& scene, mesh_division division) : scene_(scene) {
         division.resize(scene.meshes.size());
         std::size_t parts = 0;

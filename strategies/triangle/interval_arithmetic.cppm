@@ -136,8 +136,7 @@ enum class fallback_choice : std::uint8_t {
 
 /// `orientation_test` with signs by interval arithmetic, which needs no error bound derived by hand. It is exact with
 /// `fallback=exact`; with `fallback=intersects` it has no false negatives, but false positives where rounding leaves a
-/// near miss undecided. When to use: to measure what a dynamic filter costs compared with the semi-static one, and as a
-/// conservative test.
+/// near miss undecided. When to use: to compare the cost of a dynamic and a semi-static filter; as a conservative test.
 class interval_arithmetic_triangle {
 public:
     static constexpr std::string_view name = "interval_arithmetic";

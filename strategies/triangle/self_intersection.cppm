@@ -9,8 +9,7 @@ export namespace aabb {
 
 /// Self-intersection of a mesh as meshing means it: two triangles intersect if they have more in common than the
 /// corners that they share and the edge between two of these. Corners are shared where their coordinates are equal,
-/// whatever their indices. Exact, also for triangles without area, which count as the segment or the point that they
-/// are.
+/// whatever their indices. Exact, also for triangles without area, which count as segments or points.
 class self_intersection {
 public:
     /// The distinct corners that two triangles share, and those that each has alone.

@@ -50,8 +50,7 @@ struct quantized_aabbs {
     std::array<row, 3> lower;
     std::array<row, 3> upper;  ///< 255 minus the plane's code, so that both need the same comparison
 
-    /// Tests 64 pairs at once: sets bit 8 j + i where box i may overlap box j of `others`, whose floats become codes
-    /// here.
+    /// Tests 64 pairs at once: sets bit 8 j + i where box i may overlap box j of `others`, after coding its floats.
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {
         const auto on_grid = [&](std::size_t k, const eight_boxes::row& x) {
             return simd::load_eight<simd::eight_floats>(x.data()) * grid.scale[k] - grid.offset[k];

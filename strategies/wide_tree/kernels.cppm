@@ -156,7 +156,6 @@ export namespace aabb::simd {
     return v;
 }
 
-/// Concatenates two vectors.
 [[nodiscard, gnu::always_inline]] inline sixteen_floats joined(eight_floats low, eight_floats high) noexcept {
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }

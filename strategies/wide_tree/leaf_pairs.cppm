@@ -173,8 +173,7 @@ private:
         return false;
     }
 
-    /// Finds the pairs of leaves, from `begin` to `end`, with overlapping triangle boxes: on the grid, or also in
-    /// float.
+    /// Finds the pairs of leaves, from `begin` to `end`, with overlapping triangle boxes: on the grid, or in float too.
     template <class Counters>
     [[nodiscard]] inline std::span<const overlap> find_overlaps(std::span<const std::uint32_t> leaves_a,
                                                                 std::span<const std::uint32_t> leaves_b,

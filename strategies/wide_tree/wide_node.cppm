@@ -20,7 +20,6 @@ struct wide_node {
     std::array<std::int8_t, 3> exponent;
     std::uint8_t children;
 
-    /// Encodes the boxes of 1 to 8 children.
     void encode(std::span<const box> boxes) noexcept {
         children = static_cast<std::uint8_t>(boxes.size());
         for (int k = 0; k < 3; ++k) encode_axis(boxes, k);

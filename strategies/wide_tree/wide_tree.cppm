@@ -1,5 +1,4 @@
-/// The interface of trees with eight children per node, for layouts of such trees and for the planning of their fronts.
-/// The rest is internal.
+/// The interface of trees with eight children per node, for layouts and for planning fronts. The rest is internal.
 export module aabb.wide_tree;
 
 export import aabb.wide_tree.front_walk;
