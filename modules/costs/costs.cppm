@@ -6,8 +6,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Nanoseconds per unit of counted work. Only costs of the same group are compared with each other. The defaults were
-/// measured on an AMD EPYC (Zen 5).
+/// Nanoseconds per unit of counted work, by default those of an AMD EPYC (Zen 5). Costs are compared within a group.
 struct cost_model {
     // Verlet lists compared with a search by columns in every frame (`list_plan`).
     double search_box = 8;     ///< searching a box

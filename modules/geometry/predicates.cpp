@@ -55,7 +55,7 @@ public:
             word += is_negative ? -std::int64_t{digits[k]} : std::int64_t{digits[k]};
         }
         first_ = std::min(first_, first);
-        last_ = std::max(last_, first + 6);
+        last_ = std::max(last_, first + static_cast<int>(digits.size()));
     }
     void subtract(double x, double y, double z) noexcept { add(-x, y, z); }
 

@@ -24,8 +24,8 @@ struct other_entry {
 }  // namespace detail
 
 /// A sort that only swaps neighbours and reports each swap: `on_swap(passed, moved)` is called once for any two entries
-/// whose order changes; when it returns false, the sort stops and leaves the list as it is. Entries may have any type
-/// ordered by `precedes`.
+/// whose order changes; when it returns false, the sort stops and leaves the list. `precedes` orders entries of any
+/// type.
 template <class S>
 concept SwapReportingSort =
     SortPolicy<S> && requires(S policy, std::span<detail::other_entry> list, no_counters off,
@@ -83,8 +83,7 @@ concept SegmentingPartition = CuttingPartition<P> && requires(const P fitted) {
     { fitted.segments() } -> std::same_as<segment_counts>;
 };
 
-/// Finds the overlapping pairs of a subset from sorted lists. `axes(boxes, objects)` returns the axes whose projection
-/// lists it needs in this frame.
+/// Finds the overlapping pairs of a subset from the sorted lists of the axes that `axes(boxes, objects)` returns.
 template <class S>
 concept ListSweep = Strategy<S> && requires(S policy, std::span<const box> boxes, const membership& objects,
                                             const whole_subset& scene, const partition_subset& part,

@@ -37,8 +37,7 @@ public:
     [[nodiscard]] virtual bool deforms(std::uint32_t /*mesh*/) const { return false; }
     /// Whether later frames depend on the contacts, so that a run without them has different frames.
     [[nodiscard]] virtual bool reacts() const { return false; }
-    /// Takes the sorted contacts of the current frame, before the next one is generated; a simulation steps here. Not
-    /// called in runs without a search.
+    /// Takes the frame's sorted contacts before the next one; a simulation steps here. Not called without a search.
     virtual void take_contacts(std::span<const contact> /*contacts*/) {}
 };
 

@@ -29,7 +29,7 @@ export namespace aabb {
     std::size_t least = std::string_view::npos;
     for (const std::string_view name : known) {
         const auto holds_other = [](std::string_view longer, std::string_view shorter) {
-            return shorter.size() > 2 && longer.find(shorter) != std::string_view::npos;
+            return shorter.size() > 2 && longer.find(shorter) != std::string_view::npos;  // two letters say little
         };
         const bool holds =
             holds_other(name, unknown) || (2 * name.size() >= unknown.size() && holds_other(unknown, name));

@@ -146,7 +146,7 @@ public:
                 lower_[k][i] = items[i].lower[k];
                 negated_upper_[k][i] = items[i].negated_upper[k];
             }
-        const std::size_t filled = std::max(std::bit_ceil(count_), lanes);
+        const std::size_t filled = std::max(std::bit_ceil(count_), lanes);  // vectors are read by 1, 2 or 4
         for (std::size_t i = count_; i < filled; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = lower_[k][count_ - 1];

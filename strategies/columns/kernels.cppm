@@ -3,8 +3,7 @@ module;
 #include <immintrin.h>
 #endif
 
-/// SIMD kernels of the column search beyond those of `aabb.simd`: transposes between rows and columns, and arithmetic
-/// on two u16 packed in a u32.
+/// SIMD kernels of the column search beyond `aabb.simd`: transposes, and arithmetic on two u16 packed in a u32.
 export module aabb.columns.kernels;
 
 export import aabb.simd;

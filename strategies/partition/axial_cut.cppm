@@ -239,8 +239,7 @@ private:
     /// The number of segments per axis, if not configured, that minimizes the total cost of lists, copies, subsets and
     /// box tests for n uniformly spread boxes of the mean size: S segments of an axis make 1 + x copies of a box, x = S
     /// · extent / width, and within a subset each box is tested against those that overlap it on the swept axis. The
-    /// limit bounds x by 1. There are never more subsets than boxes, so that no cost model can make a frame exceed the
-    /// limit on subsets and be rejected.
+    /// limit bounds x by 1. There are never more subsets than boxes, so that no cost model can get a frame rejected.
     [[nodiscard]] candidate_cut cheapest_cut(const spread& along, axis_set cut, axis_set swept) const {
         const auto objects = static_cast<double>(along.objects);
         const vec3d share = shares_of(along);

@@ -352,8 +352,7 @@ private:
     }
 
     /// Reduces the list to a smaller margin without a search if boxes move much less than the current one allows, so
-    /// that many listed pairs are tested in vain. The smaller list is planned for four times the current age. The check
-    /// runs at power-of-two ages only.
+    /// that many listed pairs are tested in vain. It is planned for four times the current age, a power of two.
     void shorten_if_worth_it() {
         constexpr std::size_t least_age = 8;
         constexpr std::size_t times_as_long = 4;

@@ -55,8 +55,7 @@ inline std::size_t store_overlapping(std::span<const box> boxes, std::span<const
     return end;
 }
 
-/// Appends the overlapping pairs of a list. Works in blocks, so that the buffer stays in the cache and the output never
-/// grows by more than it needs.
+/// Appends the overlapping pairs of a list, by blocks: the buffer stays in the cache, the output grows as needed.
 inline void append_overlapping(std::span<const box> boxes, std::span<const index_pair> list,
                                std::vector<index_pair>& pairs) {
     constexpr std::size_t at_a_time = 1024;

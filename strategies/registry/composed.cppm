@@ -1,5 +1,4 @@
-/// Turns strategies into list entries and their combinations into table rows, for the generated units of the registry.
-/// It does not depend on the kinds.
+/// Makes list entries of strategies and table rows of combinations, whatever the kinds, for the registry's units.
 export module aabb.composed;
 
 import aabb.pipeline;

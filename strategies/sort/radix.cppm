@@ -7,8 +7,7 @@ import aabb.std;
 export namespace aabb {
 
 /// LSD radix sort of the keys with digits of 11 bits. When to use: long lists that are not almost sorted; its time does
-/// not depend on the order. Sorted lists are left unchanged, passes over digits that all keys share are skipped, and
-/// short lists are sorted by insertion.
+/// not depend on the order. Sorted lists and digits that all keys share are skipped; short lists use insertion sort.
 class radix_sort {
 public:
     static constexpr std::string_view name = "radix";

@@ -46,7 +46,7 @@ public:
         candidate_count_ = 0;
         std::size_t window = 0;  // the entry from which candidates number vectors, in the bits beside the lanes
         for (std::size_t first = 0; first < n && tests <= most_tests; first += width) {
-            if (candidate_count_ > enough || first - window >= most_vectors * width) {
+            if (candidate_count_ > most_waiting || first - window >= most_vectors * width) {
                 append_overlapping(block, window, pairs);
                 window = first;
             }
@@ -69,7 +69,7 @@ public:
 
 private:
     static constexpr std::size_t width = simd::width;
-    static constexpr std::size_t enough = 2048;
+    static constexpr std::size_t most_waiting = 2048;  // candidates between two exact tests
     static constexpr std::size_t most_vectors = std::size_t{1} << (32 - width);
 
     /// A vector of entries as a structure of arrays.

@@ -18,8 +18,7 @@ export namespace aabb {
 /// as many steps as a restart would, it restarts with a new grid, as does a frame after the number of objects has
 /// doubled or halved.
 ///
-/// Memory is 48 bytes per object and region, 37 per object, 80 per region, and 16 to 32 bytes per pair, for the
-/// greatest number of each so far.
+/// Memory: 48 bytes per object and region, 37 per object, 80 per region, 16 to 32 per pair, for the most so far.
 class subdivided_sweep : public kept_pairs {
 public:
     static constexpr std::string_view name = "subdivided";

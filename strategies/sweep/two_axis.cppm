@@ -44,7 +44,7 @@ public:
         std::uint64_t tests = 0;
         for (const auto& e : list) {
             tests += test_and_activate<Subset>(rank_[e.id]);
-            if (pair_count_ > enough) append_pairs(pairs);
+            if (pair_count_ > pairs_per_append) append_pairs(pairs);
         }
         append_pairs(pairs);
         counters.add(work::box_tests, tests);
@@ -58,7 +58,7 @@ public:
 private:
     using quad = float __attribute__((vector_size(16)));
     static constexpr std::size_t bits = 64;  // per word of the bitmap
-    static constexpr std::size_t enough = 2048;
+    static constexpr std::size_t pairs_per_append = 2048;
 
     /// A box with permuted axes; aligned, so that none straddles two cache lines.
     struct alignas(32) ranked_box {
@@ -92,7 +92,7 @@ private:
         long_active_.clear();
         pair_count_ = 0;
         // A box adds at most one pair per other box, and a rejected pair is overwritten by the next.
-        if (pairs_.size() < n + enough) pairs_.resize(n + enough);
+        if (pairs_.size() < n + pairs_per_append) pairs_.resize(n + pairs_per_append);
         if (candidates_.size() < n + 1) candidates_.resize(n + 1);
         const int third = 3 - swept_axis_ - kept_axis_;
         float reached = -std::numeric_limits<float>::infinity();

@@ -8,8 +8,7 @@ import aabb.triangle.orientation_test;
 
 namespace aabb::detail {
 
-/// An interval that contains the exact value. The rounding mode stays to nearest: each end moves outward by at least
-/// the rounding error of the operation.
+/// An interval that contains the exact value. Rounding stays to nearest: ends move outward by at least the error.
 struct interval {
     double low;
     double high;

@@ -111,7 +111,7 @@ private:
     public:
         /// @param d the signed distances of the corners from the other plane, not all zero and not all of one sign
         cut_edges(const triangle3<Real>& s, const std::array<Real, 3>& d, int axis) noexcept {
-            // The corner that the plane separates from the other two.
+            // The corner that the plane separates from the others, as in the original also if corners lie on it.
             int alone = 0;
             if (d[0] * d[1] > 0)
                 alone = 2;

@@ -10,8 +10,7 @@ export namespace aabb {
 
 /// Traverses two trees simultaneously, level by level. Each step opens a batch of node pairs of the lowest level that
 /// has any, so that the pairs of a batch do not depend on each other and few pairs are pending. Leaves are read and
-/// transformed once for consecutive pairs, and their triangles are tested in batches. First-pair queries use
-/// `nearest_walk`.
+/// transformed once for consecutive pairs, their triangles tested in batches. First-pair queries use `nearest_walk`.
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
@@ -39,8 +38,8 @@ public:
     /// @returns false if there are more than `most_pairs`, where it stops
     [[nodiscard]] bool collect_front(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                      double margin, std::size_t most_pairs, std::vector<front_pair>& pairs) {
-        leaf_pairs_.begin(a, b, to_a, {},
-                          std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity()));
+        const float rounded_up = std::nextafter(static_cast<float>(margin), std::numeric_limits<float>::infinity());
+        leaf_pairs_.begin(a, b, to_a, /*options=*/{}, rounded_up);
         const auto collect = [&](std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b) {
             const auto append = [&](std::size_t p, std::uint64_t mask) {
                 pairs.push_back({leaves_a[p], leaves_b[p], mask});
