@@ -26,8 +26,7 @@ struct triangle_intersection {
     intersection_kind kind = intersection_kind::none;
     std::uint32_t size = 0;             ///< number of corners: 1 of a point, 2 of a segment, 3 to 6 of a polygon
     std::array<vec3d, 6> corners = {};  ///< the corners of a polygon in their order around it
-    /// Bounds the error of any corner's coordinate on each axis; 0 if all corners are corners of the triangles, which
-    /// are returned without rounding.
+    /// Bounds the error of a corner on each axis; 0 if all are corners of the triangles, which are not rounded.
     vec3d error = {};
 };
 

@@ -40,8 +40,7 @@ concept PartitionPolicy = Strategy<P>;
 
 /// A partition with several subsets. `axes(boxes, objects, swept)` returns the axes whose sorted lists it needs beside
 /// those of the sweep; `fit(scene)` chooses the subsets of a frame; `for_each_subset(id, b, visit)` calls
-/// `visit(subset, owned_axes)` for each subset that box b of object `id` overlaps, and `copies(id, b)` returns their
-/// number without visiting them.
+/// `visit(subset, owned_axes)` for each subset that box b of object `id` overlaps; `copies(id, b)` only counts these.
 template <class P>
 concept CuttingPartition =
     PartitionPolicy<P> &&

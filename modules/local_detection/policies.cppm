@@ -72,8 +72,7 @@ struct balanced_order {
 
 /// Builds what a layout packs: a binary tree with one triangle per leaf and n - 1 internal nodes for n triangles, in
 /// the preorder of `build_node`; or the order of triangles in a balanced tree. Boxes are tight. The result is
-/// deterministic across machines, and building terminates on any mesh that `require_valid` accepts, even with equal
-/// centroids.
+/// deterministic across machines, and building ends on any mesh that `require_valid` accepts, equal centroids included.
 template <class B>
 concept TreeBuilder = requires(const B builder, const mesh& m, leaf_arrangement arrangement) {
     { builder.build(m, arrangement) } -> std::same_as<std::vector<build_node>>;

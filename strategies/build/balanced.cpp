@@ -86,13 +86,14 @@ private:
         const std::size_t left_count = std::bit_ceil(p.size()) / 2;
         const std::size_t middle = p.begin + left_count;
         const std::span from = items_[p.in_second].subspan(p.begin, p.size());
-        const std::span to = items_[!p.in_second].subspan(p.begin, p.size());
+        const bool in_second = !p.in_second;
+        const std::span to = items_[in_second].subspan(p.begin, p.size());
         if (p.size() <= few_items::most)
             split_few(from, to, p.bounds, left_count);
         else
             split_many(from, to, p.bounds, left_count, &bin_of_item_[p.begin], workers);
-        return {part{p.begin, middle, bounds_of_items(to.first(left_count), workers), !p.in_second},
-                part{middle, p.end, bounds_of_items(to.subspan(left_count), workers), !p.in_second}};
+        return {part{p.begin, middle, bounds_of_items(to.first(left_count), workers), in_second},
+                part{middle, p.end, bounds_of_items(to.subspan(left_count), workers), in_second}};
     }
 
     /// Merges the boxes of items after they were moved, when most are cached: merging while they are moved is slower.
@@ -236,7 +237,7 @@ private:
         while (begin + count[split_bin] <= left_count) begin += count[split_bin++];
         const std::size_t end = begin + count[split_bin];
 
-        std::array<std::size_t, 3> next{0, begin, end};
+        std::array<std::size_t, 3> next{0, begin, end};  // where the next items below, in and above that bin go
         for (share& s : shares) {
             s.next = next;
             std::size_t below = 0;

@@ -34,8 +34,9 @@ inline constexpr std::size_t most_shared_levels = 64;
 /// @param finish completes a part
 template <class Part, class Split, class Finish>
 void split_recursively(worker_threads& workers, const Part& whole, const Split& split, const Finish& finish) {
+    constexpr std::size_t parts_per_thread = 16;
     const std::size_t size_to_finish =
-        workers.count() > 1 ? std::max(share_size, whole.size() / (std::size_t{16} * workers.count())) : whole.size();
+        workers.count() > 1 ? std::max(share_size, whole.size() / (parts_per_thread * workers.count())) : whole.size();
     const auto split_part = [&](const auto& self, const Part& p, std::size_t levels) -> void {
         if (p.size() <= size_to_finish || levels == 0) return finish(p);
         const auto halves = split(p);

@@ -6,8 +6,7 @@ import aabb.std;
 export namespace aabb {
 
 /// The paper's balanced build (section 3.1): splits a node at the median of its triangles' centroids along the longest
-/// axis of its box. The depth for n triangles is ⌈log₂ n⌉, with or without paired leaves. When to use: if depth and
-/// build time must be bounded.
+/// axis of its box. The depth for n triangles is ⌈log₂ n⌉, paired leaves or not. When to use: to bound depth and time.
 struct median_build : top_down_build<median_split, axis_rule::longest> {
     using top_down_build::top_down_build;
 

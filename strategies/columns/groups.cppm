@@ -13,8 +13,7 @@ struct column_group {
 
 /// Puts the boxes of a large scene into cache-sized groups of neighbours; each group is cut into columns separately.
 /// Groups are themselves wide columns: each group that a box overlaps gets a copy of it, and copies in groups other
-/// than the first are marked. The order within a group is that of the input, boxes that begin there first, and does not
-/// depend on the number of threads.
+/// than the first are marked. A group has boxes that begin there first, in the order of the input, on any threads.
 class column_groups {
 public:
     /// The grid of groups: as many as planned, in the proportion of the columns, and no more than those on each axis.

@@ -169,7 +169,7 @@ private:
             .lower = ~std::uint32_t{0}, .upper = 0, .end_bucket = columns << bucket_bits_, .index = 0};
         std::uint32_t next = 0;
         for (std::uint32_t c = 0; c < columns; ++c) {
-            std::uint32_t* const counts = &ends_[c << bucket_bits_];  // of one bucket, or of at least a vector
+            std::uint32_t* const counts = &ends_[c << bucket_bits_];  // one bucket, or at least a vector of them
             next = buckets >= width ? bucket_starts(counts, buckets, next) : std::exchange(*counts, next) + next;
             while (next % width != 0) entries_[next++] = padding;
         }

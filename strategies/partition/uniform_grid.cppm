@@ -19,8 +19,7 @@ public:
     static constexpr std::string_view summary = "cubic cells of one size over the whole world";
 
     struct config {
-        /// Edge of a cell in world units. auto: twice the mean longest extent of the boxes, enlarged until there are at
-        /// most four cells per object.
+        /// Edge of a cell in world units. auto: twice the mean longest extent, more if cells exceed four per object.
         std::optional<double> cell_size;
     };
     static constexpr std::tuple parameters{number_parameter{

@@ -102,7 +102,7 @@ private:
     /// Cuts an interval into equal pieces no longer than `longest`.
     [[nodiscard]] static cut_interval cut(float lower, float upper, double longest) {
         const double extent = double{upper} - double{lower};
-        cut_interval interval{piece_count(extent, longest), {lower}};
+        cut_interval interval{.pieces = piece_count(extent, longest), .at = {lower}};
         const auto wanted = static_cast<double>(interval.pieces);
         for (std::size_t i = 1; i < interval.pieces; ++i) {
             interval.at[i] = static_cast<float>(double{lower} + extent * static_cast<double>(i) / wanted);

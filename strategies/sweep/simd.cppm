@@ -120,9 +120,9 @@ private:
     /// @returns the number of entries that stay active beyond the vector
     [[nodiscard]] std::size_t test_active(const column_block& block, const vector_of_entries& vector,
                                           std::uint32_t number, std::size_t first, std::size_t active) noexcept {
-        const auto next = static_cast<std::uint32_t>(first + width);
+        const auto next = static_cast<std::uint32_t>(first + width);  // the first entry behind the vector
         std::size_t stay = 0;
-        const auto take = [&](simd::words entries, simd::words ends, std::uint32_t present) {
+        const auto keep_if_beyond = [&](simd::words entries, simd::words ends, std::uint32_t present) {
             const std::uint32_t beyond = simd::bits(ends > next) & present;
             simd::compress_store(&active_ends_[stay], ends, beyond);
             stay += simd::compress_store(&active_[stay], entries, beyond);
@@ -136,9 +136,9 @@ private:
                 met[l] = static_cast<std::uint16_t>(vector.overlap_mask(block.entries[active_[q + l]]));
             const std::uint32_t present = simd::lanes_below(count);
             keep_candidates(entries, present, met, simd::lanes_below(ends - static_cast<std::uint32_t>(first)), number);
-            take(entries, ends, present);
+            keep_if_beyond(entries, ends, present);
         }
-        take(simd::places() + static_cast<std::uint32_t>(first), vector.ends, simd::every_lane);
+        keep_if_beyond(simd::places() + static_cast<std::uint32_t>(first), vector.ends, simd::every_lane);
         return stay;
     }
 

@@ -50,10 +50,10 @@ public:
         constexpr double most_fetched_of_two = 200'000;
         constexpr std::size_t least_of_front = least_leaves_of_front * balanced_order::leaf_triangles;
         scene_fit fit;
-        // The share of a query that lists save: a tenth from 150,000 triangles on, fewer triangles less in proportion.
+        // A tenth of a query from 150,000 triangles on, in proportion below, and at least a little.
         const double saved = std::clamp(scene.triangles_per_query() / 1'500'000, 1.0 / 200, 1.0 / 10);
-        const double writing = (machine_costs().sah_triangle - machine_costs().median_triangle) / 2;
-        const std::size_t repaid = scene.queries_that_repay(writing, saved);
+        const double writing_lists = (machine_costs().sah_triangle - machine_costs().median_triangle) / 2;
+        const std::size_t repaid = scene.queries_that_repay(writing_lists, saved);
         if (scene.triangles > 0 && scene.triangles_per_query() <= most_fetched_of_two && scene.queries < repaid) {
             fit.settings.push_back({"vertices", "fetched"});
             fit.because.push_back(

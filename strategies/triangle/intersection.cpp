@@ -178,12 +178,12 @@ triangle_intersection coplanar_intersection(const hull& g, const hull& h) {
                     return flat_intersection(g, h, {axis});
         }
         result common;
-        const view along{0};
+        const view along{0};  // any axis, since `between` compares all coordinates
         for (const auto& [own, others] : {std::pair(&g, &h), std::pair(&h, &g)})
             for (std::size_t i = 0; i < static_cast<std::size_t>(own->size); ++i) {
                 const vec3d& p = own->corner[i];
                 const auto* const end = g.corner.data() + g.size;
-                if (own == &h && std::find(g.corner.data(), end, p) != end) continue;
+                if (own == &h && std::find(g.corner.data(), end, p) != end) continue;  // added for g already
                 if (along.between(p, others->corner[0], others->corner[1])) common.add_corner(p);
             }
         return common.by_size();

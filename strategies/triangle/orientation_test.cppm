@@ -9,8 +9,7 @@ export namespace aabb {
 /// (Devillers and Guigue, "Faster triangle-triangle intersection tests", INRIA RR-4488, 2002).
 /// @tparam Signs computes the signs: constructed from the triangles and the lowest and highest corner of their box,
 /// with `part`, `side`, `in_order`, `turn` and `beyond` as in `orientations`. The test is exact if the signs are. A
-/// type that may fail to decide a sign returns 0 and has `unsure()`, which is true from then on; undecided pairs then
-/// count as hits.
+/// type that may fail to decide a sign returns 0 and has `unsure()`, true from then on; such pairs count as hits.
 template <class Signs>
 class orientation_test {
 public:

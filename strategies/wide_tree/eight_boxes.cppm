@@ -51,6 +51,7 @@ struct quantized_aabbs {
     std::array<row, 3> upper;  ///< 255 minus the plane's code, so that both need the same comparison
 
     /// Tests 64 pairs at once: sets bit 8 j + i where box i may overlap box j of `others`, after coding its floats.
+    /// Both ends are compared alike, since upper codes are stored as 255 minus the code.
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {
         const auto on_grid = [&](std::size_t k, const eight_boxes::row& x) {
             return simd::load_eight<simd::eight_floats>(x.data()) * grid.scale[k] - grid.offset[k];

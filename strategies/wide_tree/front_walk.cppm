@@ -51,10 +51,11 @@ private:
         if (!fronts_) fronts_ = std::make_unique<front_cache>();
         bvtt_front& front = fronts_->find(models, motion, b.bounds(), near);
         const bvtt_front::decision decision = front.record_query(models, motion, b.bounds(), leaf_size);
+        const std::size_t most_pairs = leaves_of(a) + leaves_of(b);  // a front of more is given up
         const auto builds_front = [&] {
             return decision.margin &&
                    front.build(models, motion, *decision.margin, [&](std::vector<front_pair>& pairs) {
-                       return walk_.collect_front(a, b, to_a, *decision.margin, leaves_of(a) + leaves_of(b), pairs);
+                       return walk_.collect_front(a, b, to_a, *decision.margin, most_pairs, pairs);
                    });
         };
         if (goal == walk_goal::every_pair) {

@@ -112,8 +112,8 @@ using two_points_of_four = float __attribute__((vector_size(32)));
 /// Loads two points; the fourth lane of each is padding.
 [[nodiscard, gnu::always_inline]] inline two_points_of_four two_points(const float* p, const float* q) noexcept {
 #if defined(__AVX512VL__)
-    const __m256 low = _mm256_castps128_ps256(_mm_maskz_loadu_ps(7, p));
-    return _mm256_insertf128_ps(low, _mm_maskz_loadu_ps(7, q), 1);
+    const __m256 low = _mm256_castps128_ps256(_mm_maskz_loadu_ps(0b111, p));
+    return _mm256_insertf128_ps(low, _mm_maskz_loadu_ps(0b111, q), 1);
 #else
     return two_points_of_four{p[0], p[1], p[2], 0, q[0], q[1], q[2], 0};
 #endif

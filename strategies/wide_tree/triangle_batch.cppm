@@ -21,7 +21,7 @@ public:
         alignas(64) std::array<std::uint8_t, most_per_leaf_pair> bits{};
         simd::store_set_bits(bits.data(), mask);
         leaves_[leaf_pairs_] = {leaf_a, leaf_b};
-        const auto from = static_cast<std::uint32_t>(leaf_pairs_++ << pair_bits);
+        const auto leaf_pair = static_cast<std::uint32_t>(leaf_pairs_++ << pair_bits);
         const auto count = static_cast<std::size_t>(std::popcount(mask));
         // Almost always one iteration, so that the branch is predicted.
         std::size_t first = 0;
@@ -33,7 +33,7 @@ public:
                 simd::store_eight(&a_[row][to], simd::permuted(a.corner[row / 3][row % 3].data(), bit));
                 simd::store_eight(&b_[row][to], simd::permuted(b.corner[row / 3][row % 3].data(), bit >> 3));
             }
-            simd::store_eight(&origin_[to], bit | from);
+            simd::store_eight(&origin_[to], bit | leaf_pair);
             first += triangle_block::width;
         } while (first < count);
         pairs_ += count;
