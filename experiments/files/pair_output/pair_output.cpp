@@ -1,3 +1,6 @@
+module;
+#include <boost/sort/spreadsort/integer_sort.hpp>
+
 module aabblab.pair_output;
 
 import aabblab.fmt;
@@ -6,80 +9,13 @@ namespace aabblab {
 
 namespace {
 
-std::array<std::uint32_t, 2> words_of(const aabb::index_pair& pair) {
-    return {pair.a, pair.b};
-}
+constexpr auto objects_of = [](const auto& row) { return std::uint64_t{row.a} << 32U | row.b; };
+constexpr auto triangles_of = [](const aabb::contact& c) { return std::uint64_t{c.triangle_a} << 32U | c.triangle_b; };
 
-std::array<std::uint32_t, 4> words_of(const aabb::contact& c) {
-    return {c.a, c.b, c.triangle_a, c.triangle_b};
-}
-
-/// A radix digit: consecutive bits of one word of a row.
-struct digit {
-    static constexpr std::size_t most_bits = 8;
-    static constexpr std::size_t values = std::size_t{1} << most_bits;
-
-    std::size_t word;
-    std::size_t shift;
-    std::uint32_t mask;
-
-    [[nodiscard]] std::size_t value_in(const auto& row) const { return words_of(row)[word] >> shift & mask; }
-};
-
-/// The digits that cover all bits in which the rows differ, most significant first; sorting by others would be in vain.
-template <class Row>
-std::vector<digit> digits_of(std::span<const Row> rows) {
-    const auto first = words_of(rows[0]);
-    decltype(words_of(rows[0])) differing{};  // a bit is set if rows differ in it
-    for (const Row& row : rows) {
-        const auto words = words_of(row);
-        for (std::size_t i = 0; i < words.size(); ++i) differing[i] |= words[i] ^ first[i];
-    }
-    std::vector<digit> digits;
-    for (std::size_t i = 0; i < differing.size(); ++i) {
-        const auto lowest = static_cast<std::size_t>(std::countr_zero(differing[i]));
-        for (auto above = static_cast<std::size_t>(std::bit_width(differing[i])); above > lowest;) {
-            const std::size_t bits = std::min(digit::most_bits, above - lowest);
-            above -= bits;
-            digits.push_back({i, above, (std::uint32_t{1} << bits) - 1});
-        }
-    }
-    return digits;
-}
-
-/// Sorts rows that differ only in these digits, in place, by American flag sort: first into buckets by the first digit.
-template <class Row>
-void sort_by(std::span<const digit> digits, std::span<Row> rows) {
-    // For fewer rows a comparison sort is faster than a histogram of the digit.
-    if (rows.size() <= digit::values / 4) {
-        std::ranges::sort(rows);
-        return;
-    }
-    if (digits.empty()) return;
-    const digit d = digits.front();
-    std::array<std::size_t, digit::values> ends{};
-    for (const Row& row : rows) ++ends[d.value_in(row)];
-    std::array<std::size_t, digit::values> next{};
-    std::exclusive_scan(ends.begin(), ends.end(), next.begin(), std::size_t{0});
-    std::inclusive_scan(ends.begin(), ends.end(), ends.begin());
-    // Cycle permutation: each row is swapped into its bucket, and the displaced row continues.
-    for (std::size_t value = 0; value <= d.mask; ++value)
-        while (next[value] < ends[value]) {
-            Row row = rows[next[value]];
-            for (std::size_t target = d.value_in(row); target != value; target = d.value_in(row))
-                std::swap(row, rows[next[target]++]);
-            rows[next[value]++] = row;
-        }
-    std::size_t begin = 0;
-    for (std::size_t value = 0; value <= d.mask; ++value) {
-        sort_by(digits.subspan(1), rows.subspan(begin, ends[value] - begin));
-        begin = ends[value];
-    }
-}
-
-template <class Row>
-void sort_whole(std::span<Row> rows) {
-    if (!std::ranges::is_sorted(rows)) sort_by(digits_of(std::span<const Row>(rows)), rows);
+void sort_by(auto rows, auto key_of) {
+    boost::sort::spreadsort::integer_sort(
+        rows.begin(), rows.end(), [key_of](const auto& row, unsigned bits) { return key_of(row) >> bits; },
+        [key_of](const auto& p, const auto& q) { return key_of(p) < key_of(q); });
 }
 
 void append(std::string& text, char before, const aabb::vec3d& p) {
@@ -89,11 +25,18 @@ void append(std::string& text, char before, const aabb::vec3d& p) {
 }  // namespace
 
 void sort_rows(std::span<aabb::index_pair> pairs) {
-    sort_whole(pairs);
+    sort_by(pairs, objects_of);
 }
 
 void sort_rows(std::span<aabb::contact> contacts) {
-    sort_whole(contacts);
+    sort_by(contacts, objects_of);
+    // Radix keys have 64 bits: contacts of the same objects are sorted by their triangles on their own.
+    for (auto first = contacts.begin(); first != contacts.end();) {
+        const auto is_of_others = [&](const aabb::contact& c) { return objects_of(c) != objects_of(*first); };
+        const auto last = std::find_if(first, contacts.end(), is_of_others);
+        sort_by(std::span(first, last), triangles_of);
+        first = last;
+    }
 }
 
 std::string to_text(const aabb::triangle_intersection& common) {

@@ -13,7 +13,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Sorts in ascending order, as digests and files require, in place (McIlroy et al., Engineering Radix Sort, 1993).
+/// Sorts in ascending order, as digests and files require, in place (Ross, "The Spreadsort High-performance
+/// General-case Sorting Algorithm", 2002, from Boost).
 void sort_rows(std::span<aabb::index_pair> pairs);
 void sort_rows(std::span<aabb::contact> contacts);
 
