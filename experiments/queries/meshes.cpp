@@ -9,66 +9,30 @@ namespace aabblab {
 
 namespace {
 
-/// The vertices that triangles use, sorted by coordinates. Unused vertices may be NaN, which has no order.
-std::vector<std::uint32_t> used_vertices(const aabb::mesh& m) {
-    std::vector<bool> is_used(m.vertices.size());
-    for (const auto& corners : m.triangles)
-        for (const std::uint32_t vertex : corners) is_used[vertex] = true;
-    std::vector<std::uint32_t> used;
-    for (std::uint32_t vertex = 0; vertex < is_used.size(); ++vertex)
-        if (is_used[vertex]) used.push_back(vertex);
-    const auto coordinates = [&](std::uint32_t vertex) {
+constexpr auto no_corner = std::numeric_limits<std::size_t>::max();
+
+/// For each corner of each triangle, the next corner at its position, in the order of the triangles. Vertices are
+/// compared by position, since meshes may repeat them.
+std::vector<std::size_t> next_corners(const aabb::mesh& m) {
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t vertex = 0; vertex < m.vertices.size(); ++vertex)
+        // Those that no triangle uses may be NaN, which has no order.
+        if (aabb::is_finite(m.vertices[vertex])) vertices.push_back(vertex);
+    std::ranges::sort(vertices, {}, [&](std::uint32_t vertex) {
         const aabb::vec3f& at = m.vertices[vertex];
         return std::array{at[0], at[1], at[2]};
-    };
-    std::ranges::sort(used, {}, coordinates);
-    return used;
+    });
+    std::vector<std::size_t> position_of(m.vertices.size());  // equal for equal vertices
+    for (std::size_t i = 1; i < vertices.size(); ++i) {
+        const bool is_next = m.vertices[vertices[i]] != m.vertices[vertices[i - 1]];
+        position_of[vertices[i]] = position_of[vertices[i - 1]] + static_cast<std::size_t>(is_next);
+    }
+    std::vector<std::size_t> next(3 * m.triangles.size());
+    std::vector<std::size_t> first(m.vertices.size(), no_corner);  // by position
+    for (std::size_t corner = next.size(); corner-- > 0;)
+        next[corner] = std::exchange(first[position_of[m.triangles[corner / 3][corner % 3]]], corner);
+    return next;
 }
-
-/// Finds triangles that share a vertex, compared by position, since meshes may repeat vertices.
-class mesh_neighbours {
-public:
-    /// Groups the triangles by the positions of their corners: a counting sort.
-    explicit mesh_neighbours(const aabb::mesh& m) : mesh_(m), position_of_(m.vertices.size()) {
-        const std::vector<std::uint32_t> used = used_vertices(m);
-        std::uint32_t position = 0;
-        for (std::size_t i = 0; i < used.size(); ++i) {
-            if (i > 0 && m.vertices[used[i]] != m.vertices[used[i - 1]]) ++position;
-            position_of_[used[i]] = position;
-        }
-        begin_.resize(std::size_t{position} + 2);
-        for (const auto& corners : m.triangles)
-            for (const std::uint32_t vertex : corners) ++begin_[position_of_[vertex] + 1];
-        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-        triangles_.resize(begin_.back());
-        std::vector<std::size_t> end(begin_.begin(), begin_.end() - 1);
-        for (std::uint32_t t = 0; t < m.triangles.size(); ++t)
-            for (const std::uint32_t vertex : m.triangles[t]) triangles_[end[position_of_[vertex]]++] = t;
-    }
-
-    /// The neighbours with greater indices, ascending; valid until the next call.
-    [[nodiscard]] std::span<const std::uint32_t> after(std::uint32_t triangle) {
-        neighbours_.clear();
-        for (const std::uint32_t vertex : mesh_.triangles[triangle]) {
-            const std::size_t* const begin = &begin_[position_of_[vertex]];
-            const auto around = std::span(triangles_).subspan(begin[0], begin[1] - begin[0]);
-            merged_.clear();
-            std::set_union(neighbours_.begin(), neighbours_.end(), std::ranges::upper_bound(around, triangle),
-                           around.end(), std::back_inserter(merged_));
-            neighbours_.swap(merged_);
-        }
-        // A triangle with two corners at one position is listed there twice.
-        neighbours_.erase(std::ranges::unique(neighbours_).begin(), neighbours_.end());
-        return neighbours_;
-    }
-
-private:
-    const aabb::mesh& mesh_;
-    std::vector<std::uint32_t> position_of_;  // by vertex; equal for equal vertices
-    std::vector<std::size_t> begin_;          // offsets by position, with the end of the last
-    std::vector<std::uint32_t> triangles_;    // grouped by position, ascending
-    std::vector<std::uint32_t> neighbours_, merged_;
-};
 
 /// The number of vertices of one triangle that coincide with a vertex of the other.
 std::uint32_t shared_vertices(const aabb::mesh& m, aabb::index_pair pair) {
@@ -92,12 +56,20 @@ bool share_vertex(const aabb::mesh& m, aabb::index_pair pair) {
 /// @returns the number of pairs that share a vertex
 std::uint64_t merge_neighbours(const aabb::mesh& m, std::span<const aabb::index_pair> others,
                                const std::function<void(std::span<const aabb::index_pair>)>& take) {
-    mesh_neighbours neighbours(m);
+    const std::vector<std::size_t> next = next_corners(m);
     std::uint64_t count = 0;
     std::vector<aabb::index_pair> pairs;  // of one triangle
     for (std::uint32_t a = 0; a < m.triangle_count(); ++a) {
         pairs.clear();
-        for (const std::uint32_t b : neighbours.after(a)) pairs.push_back({a, b});
+        for (std::size_t corner = 3 * std::size_t{a}; corner < 3 * std::size_t{a} + 3; ++corner) {
+            const auto merged = static_cast<std::ptrdiff_t>(pairs.size());
+            for (std::size_t other = next[corner]; other != no_corner; other = next[other])
+                pairs.push_back({a, static_cast<std::uint32_t>(other / 3)});
+            std::ranges::inplace_merge(pairs, pairs.begin() + merged);
+        }
+        // Triangles with two corners at one position are met twice there, among them this one.
+        pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
+        std::erase(pairs, aabb::index_pair{a, a});
         count += pairs.size();
         const auto first = static_cast<std::ptrdiff_t>(pairs.size());
         for (; !others.empty() && others.front().a == a; others = others.subspan(1)) pairs.push_back(others.front());
