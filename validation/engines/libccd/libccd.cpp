@@ -12,10 +12,10 @@ namespace {
 
 struct ccd_triangle {
     ccd_vec3_t corners[3];
-    mutable std::uint32_t calls_left;
+    mutable unsigned long calls_left;
 
     template <class Real>
-    explicit ccd_triangle(const triangle3<Real>& t, std::uint32_t calls = 0xffffffff) : corners{}, calls_left(calls) {
+    ccd_triangle(const triangle3<Real>& t, unsigned long calls) : corners{}, calls_left(calls) {
         for (int i = 0; i < 3; ++i) ccdVec3Set(&corners[i], t[i][0], t[i][1], t[i][2]);
     }
 
@@ -32,7 +32,7 @@ struct ccd_triangle {
     /// found. Otherwise MPR would search for its first portal forever if the triangles are coplanar.
     static void limited_support(const void* triangle, const ccd_vec3_t* direction, ccd_vec3_t* furthest) {
         support(triangle, direction, furthest);
-        std::uint32_t& left = static_cast<const ccd_triangle*>(triangle)->calls_left;
+        unsigned long& left = static_cast<const ccd_triangle*>(triangle)->calls_left;
         if (left > 0) {
             --left;
             return;
@@ -53,24 +53,39 @@ struct ccd_triangle {
 /// Without a limit both algorithms may cycle on flat Minkowski differences; a test takes about ten iterations.
 constexpr std::uint32_t default_iterations = 1000;
 
-/// The settings of a test of two `ccd_triangle`s.
-[[nodiscard]] ccd_t settings_for(std::uint32_t iterations) {
-    ccd_t ccd;
-    CCD_INIT(&ccd);
-    ccd.support1 = &ccd_triangle::support;
-    ccd.support2 = &ccd_triangle::support;
-    ccd.center1 = &ccd_triangle::centre;
-    ccd.center2 = &ccd_triangle::centre;
-    ccd.max_iterations = iterations;
-    return ccd;
-}
+/// A test of two triangles by one of libccd's algorithms.
+class ccd_test {
+public:
+    static constexpr bool exact = false;
 
-class gjk_test {
+    template <class Real>
+    [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const {
+        const ccd_triangle first(s, ccd_.max_iterations);
+        const ccd_triangle second(t, ccd_.max_iterations);
+        return algorithm_(&first, &second, &ccd_) != 0;
+    }
+
+protected:
+    ccd_test(decltype(&ccdGJKIntersect) algorithm, std::uint32_t iterations) : algorithm_(algorithm) {
+        CCD_INIT(&ccd_);
+        ccd_.support1 = &ccd_triangle::support;
+        ccd_.support2 = &ccd_triangle::support;
+        ccd_.center1 = &ccd_triangle::centre;
+        ccd_.center2 = &ccd_triangle::centre;
+        ccd_.max_iterations = iterations;
+    }
+
+    ccd_t ccd_;
+
+private:
+    decltype(&ccdGJKIntersect) algorithm_;
+};
+
+class gjk_test : public ccd_test {
 public:
     static constexpr std::string_view name = "gjk";
     static constexpr std::string_view summary =
         "libccd's GJK in double: inexact, since its tolerance is absolute: it is wrong at small scales";
-    static constexpr bool exact = false;
 
     struct config {
         std::uint32_t iterations = default_iterations;
@@ -78,25 +93,14 @@ public:
     static constexpr std::tuple parameters{integer_parameter{"iterations", &config::iterations, 1U, 1000000U,
                                                              "after which the triangles count as disjoint"}};
 
-    explicit gjk_test(const config& c) : ccd_(settings_for(c.iterations)) {}
-
-    template <class Real>
-    [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const {
-        const ccd_triangle first(s);
-        const ccd_triangle second(t);
-        return ccdGJKIntersect(&first, &second, &ccd_) != 0;
-    }
-
-private:
-    ccd_t ccd_;
+    explicit gjk_test(const config& c) : ccd_test(ccdGJKIntersect, c.iterations) {}
 };
 
-class mpr_test {
+class mpr_test : public ccd_test {
 public:
     static constexpr std::string_view name = "mpr";
     static constexpr std::string_view summary =
         "libccd's Minkowski portal refinement in double: inexact, its tolerance is absolute too";
-    static constexpr bool exact = false;
 
     struct config {
         double tolerance = 1e-4;  ///< libccd's default
@@ -107,21 +111,10 @@ public:
         integer_parameter{"iterations", &config::iterations, 1U, 1000000U,
                           "after which the triangles count as disjoint"}};
 
-    explicit mpr_test(const config& c) : ccd_(settings_for(c.iterations)), iterations_(c.iterations) {
+    explicit mpr_test(const config& c) : ccd_test(ccdMPRIntersect, c.iterations) {
         ccd_.mpr_tolerance = c.tolerance;
         ccd_.support1 = &ccd_triangle::limited_support;
     }
-
-    template <class Real>
-    [[nodiscard]] bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const {
-        const ccd_triangle first(s, iterations_);
-        const ccd_triangle second(t);
-        return ccdMPRIntersect(&first, &second, &ccd_) != 0;
-    }
-
-private:
-    ccd_t ccd_;
-    std::uint32_t iterations_;
 };
 
 bool gjk_intersect(const triangle3f& s, const triangle3f& t) {
