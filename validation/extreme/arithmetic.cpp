@@ -33,17 +33,11 @@ bool can_flush_denormals() noexcept {
 /// Runs the work in this floating-point mode; in a thread of its own, because the mode belongs to it and must not leak.
 void in_arithmetic(arithmetic kind, const std::function<void()>& work) {
     assert(kind != arithmetic::denormals_flushed || can_flush_denormals());
-    std::exception_ptr thrown;
-    std::thread([&] {
+    std::async(std::launch::async, [&] {
         if (kind == arithmetic::denormals_flushed) flush_denormals();
         if (kind == arithmetic::rounded_upward) std::fesetround(FE_UPWARD);
-        try {
-            work();
-        } catch (...) {
-            thrown = std::current_exception();
-        }
-    }).join();
-    if (thrown) std::rethrow_exception(thrown);
+        work();
+    }).get();
 }
 
 }  // namespace aabb
