@@ -20,10 +20,10 @@ bool limit_changes_cut(const condition& c, const std::string& segments) {
 /// Claim C10: times with at most one cut per box and axis over those without this limit, for huge boxes, which feel it.
 draft c10_claim(const measurements& m) {
     draft c10{
-        .claim = {.claim = "Cutting a box more than once on an axis is not worth its cost",
+        .claim = {.claim = "More than one cut through a box on an axis is not worth its cost",
                   .measured =
                       "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
-                  .lead = "With segments widened until no box spans a whole one, compared with as many as requested",
+                  .lead = "With segments widened until none lies inside a box, compared with as many as requested",
                   .experiments = {"c10"}},
         .primary = {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.conditions_of("c10"))

@@ -39,7 +39,7 @@ const factors far_apart{{"density", "0.001"}, {"objects", "100000"}};
 /// Claim C11: both phases improved against both traditional, in three kinds of scenes whose phases weigh differently.
 draft c11_claim(const measurements& m) {
     draft c11{
-        .claim = {.claim = "The whole improved algorithm takes less time than the traditional one on the same models",
+        .claim = {.claim = "Both phases improved take less time than both traditional ones on the same models",
                   .measured = "time per frame of both phases, shell + axial_cut + compressed over insertion + none + "
                               "canonical",
                   .experiments = {"c11"}},

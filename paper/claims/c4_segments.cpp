@@ -73,7 +73,7 @@ table automatic_table(const std::vector<condition>& conditions) {
 /// Claim C4: times of finer cuts over coarser ones, and of the automatic number of segments over the most allowed.
 draft c4_claim(const measurements& m) {
     draft c4{
-        .claim = {.claim = "More segments are faster while no box spans a whole one; tiny segments are not needed",
+        .claim = {.claim = "More segments are faster until one lies inside a box; tiny segments are not needed",
                   .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
                               "with each number of segments over that with the next smaller one, up to the limit; and "
                               "with the automatic number over that at the limit",
@@ -101,9 +101,9 @@ draft c4_claim(const measurements& m) {
         return std::string(is_brownian(c) ? "drifting boxes" : "clusters");
     };
     for_each_cut([&](const condition& c, int axes) {
-        const std::string gloss = is_brownian(c) ? " (the most segments of which no box spans a whole one)" : "";
+        const std::string gloss = is_brownian(c) ? " (the most segments of which none lies inside a box)" : "";
         c4.add(ratio(c, axes, limit, {"8", "8"}),
-               boxes_of(c) + " at the limit" + gloss + ", compared with eight per axis", "axes");
+               boxes_of(c) + " at the limit" + gloss + ", compared with eight segments per axis", "axes");
     });
     for_each_cut([&](const condition& c, int axes) {
         for (std::size_t i = 1; i < segments_wanted.size(); ++i) {

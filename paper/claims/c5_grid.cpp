@@ -171,8 +171,8 @@ figure world_figure(const std::string& name, const std::string& quantity_name, c
 draft c5_claim(const measurements& m) {
     const std::string over_best_single = "axial_cut over the best single cell size";
     draft c5{
-        .claim = {.claim = "No cell size suits every scene, the axial cut does; a grid's memory and time grow with the "
-                           "world",
+        .claim = {.claim = "No grid cell size suits all scenes, the axial cut does; a grid's memory and time grow with "
+                           "the world",
                   .measured =
                       "the worst slowdown of axial_cut over that of the best single cell size; a slowdown is relative "
                       "to the best cell size of a scene, the worst is that over four scenes with the same number "
@@ -200,18 +200,19 @@ draft c5_claim(const measurements& m) {
         };
         add(
             over_best_single,
-            "greatest slowdown in four scenes (slowdown: time over that with a scene's fastest cell size), the cut "
-            "compared with the single cell size for which it is least",
+            "the cut in its worst of four scenes, compared with the best single cell size in its own worst (slowdown: "
+            "time over that of a scene's fastest cell size)",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d) - scenes.least_worst_regret(d); },
             quantity::slowdown, expectation::less);
         add(
             "axial_cut over each scene's best cell size",
-            "the cut compared with the fastest cell size, in the scene of the cut's greatest slowdown",
+            "the cut in its worst scene, compared with the fastest cell size there",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
         const resample as_measured(size.processes, size.seeds, level::none, 0);  // every cell once
         c5.claim.remark = fmt::format(
-            "With {} objects the cell size of least slowdown takes up to {:.1f} times as long as a scene's fastest.",
-            number_text(objects), std::exp(scenes.least_worst_regret(as_measured)));
+            "With {} objects the greatest slowdown is {:.2f} with the cut, and {:.2f} with the best single cell size.",
+            number_text(objects), std::exp(scenes.worst_regret_of_cut(as_measured)),
+            std::exp(scenes.least_worst_regret(as_measured)));
     }
     const std::vector<condition>& worlds = m.conditions_of("c5_world");
     add_growth(worlds, c5);

@@ -61,7 +61,7 @@ draft c7b_claim(const measurements& m) {
     const std::pair<const char*, const char*> leaf_tests[] = {
         {"triangle_box", ""},
         {"triangle_aabb", "if a leaf is tested by the box of its triangle, computed on the fly"},
-        {"none", "if a leaf is tested by its parent's box instead"}};
+        {"none", "if a leaf is tested only by its parent's box"}};
     for (const auto& [leaf_test, subject] : leaf_tests)
         for (const condition* c : conditions_by_size(m))
             c7b.add(compressed_over_canonical(*c, "detect_cpu_ms", leaf_test), subject);

@@ -20,7 +20,7 @@ bool has_pieces(const condition& c, const selection& split) {
 /// Claim C9: times with large objects split over those without, for boxes and for meshes, where any object is split.
 draft c9_claim(const measurements& m) {
     draft c9{
-        .claim = {.claim = "Splitting large objects before the search is worth its cost",
+        .claim = {.claim = "Dividing large objects into smaller ones before the broad phase is worth its cost",
                   .measured = "time per frame of the broad phase with large objects split over that without, both with "
                               "axial_cut; either their boxes are split, or their meshes",
                   .experiments = {"c9", "c9_geometry"}},

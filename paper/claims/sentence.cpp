@@ -14,7 +14,7 @@ constexpr double equality_threshold = 1.1;
 
 /// In the order of `quantity`; empty where labels name the quantity.
 std::string noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "", "", "time relative to the cut's"};
+    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "ratio of its time to the cut's"};
     return nouns[static_cast<std::size_t>(compared)];
 }
 
@@ -61,7 +61,7 @@ std::string outcome_text(std::span<const endpoint> endpoints, wording form) {
     if (form == wording::not_more) return "no more" + (noun.empty() ? "" : " " + noun);
     const bool is_named = !noun.empty() && compared != quantity::time;
     return form == wording::same ? "no difference" + (is_named ? " in the " + noun : "")
-                                 : "undecided" + (is_named ? " for the " + noun : "");
+                                 : "undecided" + (is_named ? " (" + noun + ")" : "");
 }
 
 /// Consecutive endpoints of a clause with the same outcome.

@@ -249,11 +249,13 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
     if (!origin.verdict_agreement.empty()) out.paragraph(origin.verdict_agreement);
     out.paragraph(
         fmt::format(
-            "\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and {} claims, "
-            "one of them taken from the method that it builds on (Li, Feng and Owen, \"SMB: collision detection "
-            "based on temporal coherence\", 2006). Broad phase means the paper's global search, narrow phase its "
-            "local detection; the scene brownian has drifting cubes. {}, {} size. Commit {}, {}, {}. {} rows of "
-            "{} scenes, each with up to {} seeds; per composition and seed up to {} repeats in {} processes.",
+            "\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and {} claims. C13 "
+            "is one of the method that it builds on (Li, Feng and Owen, \"SMB: collision detection based on temporal "
+            "coherence\", 2006). Only primary ratios decide verdicts. Broad phase means the paper's global search, "
+            "narrow phase its local detection; the scene brownian has drifting cubes; extents are edges of boxes. {}, "
+            "{} size. Commit {}, {}, {}. {} rows of {} scenes, each with up to {} seeds; per composition and seed up "
+            "to "
+            "{} repeats in {} processes.",
             reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler, origin.cpu, origin.rows,
             origin.scenes, origin.seeds, origin.repeats, origin.processes),
         "soft");

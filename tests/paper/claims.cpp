@@ -170,7 +170,8 @@ TEST_CASE("A sentence states direction, ratio and conditions of endpoints") {
     std::vector<endpoint> quantities{at("1", 1.2, more), at("1", 0.36, less), at("1", 0.009, less)};
     quantities[1].compared = quantity::bytes;
     quantities[2].compared = quantity::slowdown;
-    CHECK(aabblab::sentence_of(quantities) == "On boxes: 1.20 times as long, 36 % of the bytes, 0.9 %.");
+    CHECK(aabblab::sentence_of(quantities) ==
+          "On boxes: 1.20 times as long, 36 % of the bytes, 0.9 % of the slowdown.");
 }
 
 TEST_CASE("A verdict depends on the band only if its ratio is close to it") {
@@ -433,9 +434,9 @@ TEST_CASE("A reproduction writes a self-contained page, every table and figure, 
         const std::string text = bytes_of_file(folder / report);
         CHECK(holds(text, judgement.null_control.caption));
         // The last two are at a line break and at the end of the file that is built into the program.
-        for (const char* part : {"Error against run time", "A statement with its number.", "A plot.", "A table.",
-                                 "Each claim has its primary ratios",
-                                 "ratios between two compositions, two tree builds", "never between runs or machines."})
+        for (const char* part :
+             {"Error against run time", "A statement with its number.", "A plot.", "A table.",
+              "Each claim has its primary ratios", "ratios between two compositions, two tree builds", "never times."})
             CHECK_THAT(text, Catch::Matchers::ContainsSubstring(part));
     }
     CHECK(holds(macros, "\\aabbset{C5.setup}{scene brownian"));
