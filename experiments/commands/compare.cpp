@@ -17,7 +17,7 @@ int run(const compare_request& request) {
 void add_compare(const command_parser& program) {
     const command_parser command = program.add_command(
         "compare",
-        "Compare two results folders, of two commits or machines: ratios to the baseline, digests, counts, bytes");
+        "Compare two results folders, of two commits or machines: ratios to the baseline, digests, work, bytes");
     auto& request = command.set_action(run);
     command.argument("A", &request.a, "Results folder of one experiment or several");
     command.argument("B", &request.b, "Results folder to compare with A; ratios are B over A");

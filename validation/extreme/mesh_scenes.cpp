@@ -150,13 +150,13 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
                                        {"scale_1e10", 1e10},
                                        {"scale_1e30", 1e30},
                                        {"scale_1e37", 1e37}})
-        scenes.push_back(scene_of_meshes(name, "two intersecting spheres of that radius",
+        scenes.push_back(scene_of_meshes(name, "two intersecting spheres of the radius in the name",
                                          [size = radius] { return balls_of(size); }));
     for (const auto& [name, radius] : {std::pair{"beside_1e-6", 1e-6}, {"beside_1e6", 1e6}, {"beside_1e-38", 1e-38}})
-        scenes.push_back(scene_of_meshes(name, "a sphere of that radius that intersects one of radius 1",
+        scenes.push_back(scene_of_meshes(name, "a sphere of the radius in the name that intersects one of radius 1",
                                          [size = radius] { return ball_on_ball(size); }));
     for (const auto& [name, far] : {std::pair{"moved_1e6", 1e6}, {"moved_1e9", 1e9}, {"moved_1e15", 1e15}})
-        scenes.push_back(scene_of_meshes(name, "two intersecting spheres that far from the origin",
+        scenes.push_back(scene_of_meshes(name, "two intersecting spheres as far from the origin as the name says",
                                          [distance = far] { return balls_moved(distance); }));
     return scenes;
 }
