@@ -127,8 +127,8 @@ void use_calibrated_costs() {
 }
 
 std::string costs_in_force() {
-    if (date_of_loaded_costs().empty()) return "the shipped operation costs (aabblab calibrate measures yours)";
-    return "operation costs calibrated " + date_of_loaded_costs() + " (" + calibrated_costs_file().string() + ")";
+    if (date_of_loaded_costs().empty()) return "as shipped (aabblab calibrate measures yours)";
+    return "calibrated " + date_of_loaded_costs() + " (" + calibrated_costs_file().string() + ")";
 }
 
 }  // namespace aabblab

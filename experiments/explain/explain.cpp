@@ -19,7 +19,7 @@ namespace {
 std::string text_of(std::string_view stage, const std::string& strategies, const std::vector<aabb::part_bytes>& parts) {
     std::string text = fmt::format("    {}{}{}\n", stage, strategies.empty() ? "" : ": ", strategies);
     for (const aabb::part_bytes& part : parts)
-        text += fmt::format("      {:<16}{:>14} bytes\n", part.part == "projections" ? "projections, ids" : part.part,
+        text += fmt::format("      {:<16}{:>14} bytes\n", part.part == "projections" ? "lists, presence" : part.part,
                             grouped(part.bytes));
     return text;
 }
@@ -53,7 +53,7 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
     const candidate_name& name = tested.name;
     std::string text;
     if (scene.frames() > frames_before_bytes)
-        text = fmt::format("    bytes after {} of {} frames; aabblab run reports them after the last\n",
+        text = fmt::format("    memory after the first {} of {} frames; aabblab run reports it after the last\n",
                            frames_before_bytes, grouped(scene.frames()));
     text += text_of("broad phase", text_of(name, aabb::stage::global_search), runner.global_bytes());
     text += text_of(scene.meshes() ? "between phases" : "found pairs", "", {{"buffers", runner.buffer_bytes()}});
@@ -168,7 +168,7 @@ int explain(const explain_request& request) {
         // A scene that cannot be created is reported before any output.
         staged_scene scene(choice);
         limits.note_scene_read();
-        if (&choice == e.scenes.data()) print(wrapped("cost model: " + costs_in_force()) + "\n\n");
+        if (&choice == e.scenes.data()) print(wrapped("costs by which strategies plan: " + costs_in_force()) + "\n\n");
         agree &= explain_scene(e, scene, limits);
     }
     return agree ? 0 : 1;

@@ -99,7 +99,7 @@ void print_omissions(std::span<const variant> variants) {
                          fmt::format("{:.5f}{}", median_ms(fastest->times) - median_ms(times), undecided ? "?" : ""),
                          difference_text(fastest->times.back().bytes, times.back().bytes)};
     }
-    print("time per frame and bytes saved by what is left out, compared with the fastest\nvariant that has it\n");
+    print("time per frame and bytes saved by what is left out, compared with the fastest\nvariant that keeps it\n");
     print_wrapped_table(t, 0);
     print(wrapped("-: no variant that ran has it. Below 0: the variant takes less. ?: undecided, as above.") + "\n");
 }
@@ -174,8 +174,7 @@ std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector
 }
 
 /// Prints what each choice of the selected composition saves, by runs interleaved with variants that differ in one.
-/// Variants by settings are not rows of the table. Each has a feature, such as a Verlet list, that the selected one may
-/// lack; `print_omissions` shows what such an omission saves.
+/// Variants by settings have features that it may lack; `print_omissions`, not the table, shows what that saves.
 /// @returns false if variants report different pairs
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
     const scene_frames& scene = staged.scene();
@@ -227,7 +226,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
                                     counted(most_objects_to_vary_every_kind, "object")));
     print_paragraph(ms_per_frame_text);
     print_paragraph(fmt::format(
-        "ratio: ms/frame relative to the selected composition in the same round; times and ratios are medians over "
+        "ratio: ms/frame relative to the selected composition in the same round, above 1 if that is faster; medians of "
         "rounds; range: the least and the greatest ratio; ?: undecided, since the range comes within 3 % of 1; "
         "> {:.0f}: dropped after one run.",
         hopeless_ratio));

@@ -21,9 +21,9 @@ enum class absence : std::uint8_t {
 };
 
 inline constexpr std::array absence_texts = std::to_array<std::string_view>(
-    {"partition", "sort", "projection list of the x axis", "projection list of the y axis",
-     "projection list of the z axis", "projection lists beside those of the sweep itself", "Verlet list",
-     "division of large objects", "local detection", "boxes of single triangles", "node indices", "work counters"});
+    {"partition", "sort", "sorted intervals on x", "sorted intervals on y", "sorted intervals on z",
+     "sorted intervals beside those of the sweep itself", "Verlet list", "division of large objects", "local detection",
+     "boxes of single triangles", "node indices", "work counters"});
 static_assert(absence_texts.size() == static_cast<std::size_t>(absence::counters) + 1);
 
 [[nodiscard]] inline std::string to_text(absence feature) {

@@ -223,7 +223,7 @@ public:
         if (uses_brute_force_) return {};
         const column_plan& p = plan();
         return {{is_in_groups() ? plan_kind::groups_of_columns : plan_kind::columns,
-                 {p.columns() == 1 ? "a plan of one column: no axis is cut" : along[is_in_groups() ? 1 : 0][p.axis],
+                 {p.columns() == 1 ? "one column: boxes are sorted and swept" : along[is_in_groups() ? 1 : 0][p.axis],
                   {{{"u", static_cast<double>(p.across[0])},
                     {"v", static_cast<double>(p.across[1])},
                     {"axis", static_cast<double>(p.axis)}}}}}};

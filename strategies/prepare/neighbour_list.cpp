@@ -148,10 +148,10 @@ public:
         std::vector<omission> absent = search_->left_out();
         if (!keeps_pairs())
             absent.push_back({absence::neighbour_list, is_below_list_threshold()
-                                                           ? "none built, not worth its cost for so few boxes"
+                                                           ? "none yet, not worth its cost for so few boxes"
                                                        : expected_ < fewest_frames_of_first_list
-                                                           ? "none built, not worth its cost in so few frames"
-                                                           : "none built, boxes move too far or arrive too often"});
+                                                           ? "none yet, not worth its cost in so few frames"
+                                                           : "none yet, boxes move too far or arrive too often"});
         return absent;
     }
 

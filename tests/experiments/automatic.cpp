@@ -145,11 +145,12 @@ TEST_CASE_METHOD(in_folder, "explain reports what it measured and selected for a
     const std::string file = folder / "p.aabbs";
     run_well({"scene", "pile", "--n", "200", "--frames", "80", "--out", file});
     const program_result reported = run_well({"explain", file});
-    for (const char* part : {"objects       200\n", "frames        81; this table is measured in the first 4\n",
-                             "at rest       0 % of the objects\n", "counters of all work  ",
-                             "prepare    neighbour_list  frames are coherent", "    state kept from earlier frames\n",
-                             "a plan of one column: no axis is cut", " pairs of boxes, with a skin of ", "as selected",
-                             "split_large", "axial_cut", "build, tree, triangle do not apply to this scene"})
+    for (const char* part :
+         {"objects       200\n", "frames        81; this table is measured in the first 4\n",
+          "at rest       0 % of the objects\n", "counters of all work  ",
+          "prepare    neighbour_list  frames are coherent", "    state kept from earlier frames\n",
+          "one column: boxes are sorted and swept", " pairs of boxes, with a skin of ", "as selected", "split_large",
+          "axial_cut", "build, tree, triangle do not apply to this scene"})
         CHECK(holds(reported.out, part));
     CHECK_FALSE(holds(reported.out, "canonical"));
     // No other sweep can be combined with columns.
@@ -177,8 +178,8 @@ TEST_CASE_METHOD(in_folder, "explain reports what each omitted part saves and wh
     };
     const std::string table = table_of("free_fall", "8");
     INFO(table);
-    for (const char* what : {"partition", "sort", "projection list of the x axis", "projection list of the y axis",
-                             "projection list of the z axis"}) {
+    for (const char* what :
+         {"partition", "sort", "sorted intervals on x", "sorted intervals on y", "sorted intervals on z"}) {
         CHECK(line_of(table, what).size() > 30);
         CHECK_FALSE(line_of(table, what).ends_with("-"));
     }

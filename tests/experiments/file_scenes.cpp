@@ -77,7 +77,7 @@ TEST_CASE_METHOD(in_folder, "Every command finds the same pairs in a user's reco
     }
     const std::string explained = run_well({"explain", config}).out;
     CHECK(holds(explained, "motion (file=" + motion));
-    CHECK(holds(explained, "bytes after 2 of 4 frames; aabblab run reports them after the last\n"));
+    CHECK(holds(explained, "memory after the first 2 of 4 frames; aabblab run reports it after the last\n"));
     const auto manifest = nlohmann::json::parse(bytes_of_file(folder / "out/manifest.json"));
     for (const auto& scene : manifest["scenes"]) {
         const auto& parameters = scene["parameters"];

@@ -870,7 +870,7 @@ TEST_CASE("few boxes get no list, unless its margin is named") {
         const auto stage = list_stage(n);
         std::vector<box> boxes(n, cube(0));
         (void)found_by(*stage, boxes);
-        const omission few{absence::neighbour_list, "none built, not worth its cost for so few boxes"};
+        const omission few{absence::neighbour_list, "none yet, not worth its cost for so few boxes"};
         CHECK(std::ranges::count(stage->left_out(), few) == (n == 2 * simd::width ? 1 : 0));
         // A named margin is kept.
         const auto named = search_of(composed({{strategy_kind::prepare, "neighbour_list:margin=1"}}), n);
