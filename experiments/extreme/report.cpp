@@ -77,8 +77,7 @@ std::string cell_of(const row_list& rows) {
     return rejected ? "rejected" : wrong ? "wrong" : "exact";
 }
 
-/// One row per scene or class: the first columns summarise its rows, then there is one column per candidate.
-/// @param key the scene or the class of a row
+/// One row per scene or class, the `key`: the first columns summarise its rows, then there is one per candidate.
 template <class Summary>
 table candidate_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* key,
                       const std::vector<std::string>& names, Summary summary_cells) {
@@ -99,8 +98,7 @@ std::vector<extreme_row> filtered(std::span<const extreme_row> rows, Wanted want
     return selected;
 }
 
-/// The errors of triangle tests; scenes or classes without errors are omitted.
-/// @param key the scene or the class of a row, by which they are grouped
+/// The errors of triangle tests by `key`, the scene or the class of a row; those without errors are omitted.
 table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* key) {
     const auto tests = filtered(rows, [](const extreme_row& row) { return row.role == candidate_role::triangle_test; });
     std::set<std::string> wrong;
@@ -201,7 +199,7 @@ std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
         std::size_t most = 0;
         for (const extreme_row* row : of_scene) most = std::max(most, row->result.bytes);
         sentences.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions hold at most " + grouped(most) +
-                            " bytes; the limit is " + grouped(of_scene.front()->stated_bytes));
+                            " bytes; limit: 64 per triangle + 64 KiB = " + grouped(of_scene.front()->stated_bytes));
     }
     return sentences;
 }

@@ -13,14 +13,13 @@ namespace {
 /// Prints the errors of triangle tests, all together and by set of pairs.
 void print_tables(std::span<const error_point> points) {
     for (const pair_group group : groups_in(points)) {
-        print(
-            fmt::format("In {}:\nwrong: share of all pairs; FN: false negatives, share of intersecting pairs;\n"
-                        "FP: false positives, share of disjoint pairs; fewest wrong first\n"
-                        "aabblab list triangle and list library_tests explain names and parameters\n\n{}\n",
-                        title_of(group), to_text(error_summary(points, group), output_width())));
+        print(wrapped(group_statement(points, group)) +
+              "\n\nwrong: share of all pairs; FN: false negatives, share of intersecting pairs;\n"
+              "FP: false positives, share of disjoint pairs; fewest wrong first\n"
+              "aabblab list triangle and list library_tests explain names and parameters\n\n" +
+              to_text(error_summary(points, group), output_width()) + "\n");
         print(fmt::format("By set of pairs: FN + FP, here both as shares of all pairs of the set\n\n{}\n",
                           to_text(errors_by_set(points, group), output_width())));
-        print(wrapped(group_statement(points, group)) + "\n\n");
     }
 }
 

@@ -19,11 +19,11 @@ namespace {
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
     std::vector<named_table> tables = {
         {"extreme_boxes", "Boxes, compared with a test of every pair of boxes", scene_table(rows, row_group::boxes)},
-        {"extreme_meshes", "Meshes, compared with CGAL's exact kernel; -false negatives +false positives",
+        {"extreme_meshes", "Meshes, compared with CGAL's exact kernel; -2 +3: 2 false negatives, 3 false positives",
          scene_table(rows, row_group::meshes)},
         {"extreme_tests", "Meshes, by inexact triangle tests", inexact_scene_table(rows)},
         {"extreme_classes", "The same by class", class_table(rows)},
-        {"extreme_cases", "Hard pairs of triangles, by exact tests, and as two meshes in three queries",
+        {"extreme_cases", "Hard pairs of triangles, by exact tests, and as meshes: all pairs, any one, their number",
          case_table(rows)},
         {"extreme_case_tests", "The same by inexact triangle tests, in every order of corners, float and double",
          inexact_case_table(rows)}};
@@ -146,10 +146,13 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     if (shown) {
         print(
             "exact: the same pairs as the ground truth; rejected: invalid input, rejected as\n"
-            "it must be; 91 exact: all of 91 compositions or tests; -: not run, or no error;\n"
-            "flushed_, upward_: in a thread that flushes denormals to zero or rounds upward\n\n");
+            "it must be; 91 exact: each of 91 methods is; -: not run, or no error;\n"
+            "flushed_, upward_: in a thread that flushes denormals to zero or rounds upward;\n"
+            "beyond_float exact: no pairs, as engines that compute in double may report;\n"
+            "near: a displacement of a millionth changes the result; other: no such reason;\n"
+            "aabblab list engines explains engines\n\n");
         for (const named_table& t : report.tables)
-            print(t.caption + "\n\n" + to_text(t.content, output_width()) + "\n");
+            print(wrapped(t.caption) + "\n\n" + to_text(t.content, output_width()) + "\n");
         for (const std::string& sentence : report.paragraphs) print(sentence + "\n");
         print("\nRejected:\n");
         for (const std::string& sentence : rejections_in(rows)) print("  " + sentence + "\n");
@@ -166,6 +169,8 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     for (const std::string_view name : left_out_integrators())
         note("the integrator " + std::string(name) +
              " is left out of this build: its library was not found; ./aabblab validate stiff installs it");
+    if (shown)
+        print("Contacts exert forces, so wrong contacts give a wrong motion: each is compared\nwith a known one.\n\n");
     suite_report report;
     for (const stiff_study& study : chosen) {
         stiff_result result;
@@ -189,9 +194,8 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     return report;
 }
 
-/// The suite stored a whole report, as earlier versions did, rows of the extreme suite, or a result per study of stiff
-/// contacts. Any studies make a report, since each is complete and can be run alone. An interrupted extreme suite makes
-/// none: without its cases it might seem to pass.
+/// The suite stored a whole report, as earlier versions did, rows of extreme scenes, or results of studies, which need
+/// not be all. An interrupted extreme suite makes no report: without its cases it might seem to pass.
 std::optional<suite_report> stored_report(const std::filesystem::path& folder) {
     if (std::filesystem::exists(folder / "report.json")) return read_report(folder / "report.json");
     if (std::filesystem::exists(folder / "extreme.csv")) {

@@ -43,8 +43,7 @@ public:
     /// The sizes that give a grid in all scenes. The best single size is one of these.
     [[nodiscard]] const std::vector<std::string>& sizes() const { return sizes_in_all_scenes_; }
 
-    /// The regret in a scene is the logarithm of a time over that of the best cell size there. Ratios are to the cut,
-    /// so its own logarithm is 0.
+    /// The regret in a scene is log(time over the best cell size's). Ratios are to the cut, so its own logarithm is 0.
     [[nodiscard]] double worst_regret_of_cut(const resample& d) const {
         return worst([&](const auto& scene) { return -best(scene, d); });
     }
@@ -97,9 +96,8 @@ table times_table(const std::vector<condition>& conditions) {
     return t;
 }
 
-/// Adds how bytes, and times relative to the axial cut, grow from the smallest world to the largest. A sparser world
-/// has fewer pairs, so that all times fall: only relative to another method can they grow. Where growth is claimed, the
-/// ratios are of small over large, since claims favour ratios below 1.
+/// Adds how bytes, and times over the axial cut's, grow from the smallest world to the largest: in a sparse one all
+/// times fall, as pairs are fewer. Claimed growth is a ratio of small over large, since claims favour ratios below 1.
 void add_growth(const std::vector<condition>& worlds, draft& c5) {
     if (worlds.size() < 2) return;
     const condition& small = worlds.front();

@@ -53,7 +53,7 @@ TEST_CASE_METHOD(in_folder, "Wrong results are marked in the tables and listed b
     const std::vector<std::string> memory = aabblab::memory_in(rows);
     REQUIRE(memory.size() == 1);
     CHECK(memory[0].starts_with("many_against_one, "));
-    CHECK(memory[0].ends_with(" bytes; the limit is 1,000"));
+    CHECK(memory[0].ends_with(" bytes; limit: 64 per triangle + 64 KiB = 1,000"));
 
     // Stored rows give the same.
     const std::string text = csv_of(rows);

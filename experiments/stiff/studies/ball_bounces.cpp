@@ -51,8 +51,7 @@ double order_of(std::span<const double> steps, std::span<const double> errors) {
     return line_through(x, y).slope;
 }
 
-/// Measures the error of each integrator at several step sizes, without a dashpot. Adds rows: the error at the
-/// smallest, and the order of convergence, the slope of the error over the step size.
+/// Adds, without a dashpot, each integrator's error at the smallest step and its order, the slope over step sizes.
 void measure_convergence(const stiff_setting& setting, stiff_result& result) {
     const oscillator contact{1e3, 0};
     constexpr std::array steps = {0.4, 0.2, 0.1, 0.05};
@@ -102,11 +101,11 @@ void run_ball_bounces(const stiff_setting& setting, stiff_result& result) {
 
 stiff_study ball_bounces_study() {
     return {"ball_bounces",
-            "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring, without a dashpot and with one for "
-            "a restitution of 0.5, at dt·ω = 0.05 and k = 1e4 to 1e10 N/m. Errors are relative to the motion: the "
-            "greatest depth and speed. The contact time lasts from touching the floor to leaving it; it and the "
-            "restitution are not measured with symplectic_euler, whose error may be a step. adaptive_dormand_prince "
-            "equals dormand_prince where one step meets its tolerance",
+            "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring: without a dashpot for the errors, "
+            "which are relative to the greatest depth and speed; with one, at dt·ω = 0.05 and k = 1e4 to 1e10 N/m, for "
+            "the restitution, 0.5, and the contact time, from touching the floor to leaving it. Neither is measured "
+            "with symplectic_euler, whose error may be a step. adaptive_dormand_prince equals dormand_prince where one "
+            "step meets its tolerance",
             "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²)), with "
             "ω = √(k/m) and the damping ratio ζ",
             &run_ball_bounces,

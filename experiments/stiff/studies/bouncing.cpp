@@ -80,7 +80,7 @@ stiff_study bouncing_study() {
     return {
         "bouncing",
         "49 balls of 10 kg fall 5 m and bounce without loss for 20 s (4 s with --quick) on springs of 2e5 N/m. Their "
-        "energy must not drift; errors are relative to the initial energy",
+        "energy must not drift; errors are relative to the initial energy; creep is the change of their mean",
         "SimBenchmark's bouncing test (leggedrobotics/SimBenchmark, data/bouncing/sample.csv): the errors of ODE and "
         "DART with impulses",
         &run_bouncing,

@@ -267,8 +267,8 @@ stiff_study dropped_study() {
     return {
         "dropped",
         "216 balls (27 with --quick) of 80 triangles fall 5 diameters on a floor and on each other, without loss. A "
-        "pressure on the surface inside the other ball separates them. The study shows how the step size and each "
-        "method change the trajectory",
+        "pressure on the surface of one ball inside the other separates them. The study shows how the step size "
+        "and each method change the trajectory; lists with margin=0 may miss contacts by design",
         "the trajectory with exact contacts; energy errors that fall with the order of the integrator; SimBenchmark's "
         "elastic 666 test (leggedrobotics/SimBenchmark, data/666-elastic/sample.csv) for ODE and Bullet with impulses",
         &run_dropped, figures()};

@@ -127,7 +127,7 @@ void run_sliding(const stiff_setting& setting, stiff_result& result) {
 
 stiff_study sliding_study() {
     return {"sliding",
-            "A mesh of 64 teeth, each a triangle, slides on its tips along a flat mesh, over its vertices and edges, "
+            "A mesh of 64 teeth, each a triangle, slides on its tips over faces, edges and vertices of a flat mesh, "
             "in sizes of 1 m, 10 mm and 0.1 mm. Each tip whose contact is detected carries a 64th of the load. "
             "A 100,000th of its size above the flat mesh, there is no load",
             "the load, to one in a thousand, without a jump; rounding of vertices to float allows 1e-4",

@@ -64,7 +64,7 @@ void run_stack(const stiff_setting& setting, stiff_result& result) {
                     mass += world.bodies[b].mass;
                     worst = std::max(worst, std::abs(depth_of(stack.state(), b) * stiffness / (mass * gravity) - 1));
                 }
-                const std::string subject = std::string(i.name) + ", masses 1 to " + short_number(ratio) + " kg";
+                const std::string subject = std::string(i.name) + ", masses up to " + short_number(ratio) + " kg";
                 result.add(within(subject, "greatest depth (m)", greatest, mass * gravity / stiffness, 0.01));
                 result.add(at_most(subject, "error of a depth at rest over mg/k", worst, 1e-3));
                 result.add(reported(subject, "detections", static_cast<double>(stack.detections())));
