@@ -73,7 +73,7 @@ std::vector<racer> candidates_for_race(const aabblab::scene_choice& choice) {
     return aabblab::race_candidates(aabblab::scene_frames(choice));
 }
 
-bool holds(const std::vector<racer>& racers, const std::string& name) {
+bool has_racer(const std::vector<racer>& racers, const std::string& name) {
     return std::ranges::find(racers, name, &racer::name) != racers.end();
 }
 
@@ -133,8 +133,8 @@ TEST_CASE("A race finds the fastest candidate and drops those that are far behin
     REQUIRE(race.objects == 200);
     REQUIRE_FALSE(race.finalists.empty());
     CHECK(race.finalists.front().name == "fast");
-    CHECK(holds(race.finalists, "late"));
-    for (const char* name : {"slow", "stuck", "broken", "gone"}) CHECK(holds(race.dropped, name));
+    CHECK(has_racer(race.finalists, "late"));
+    for (const char* name : {"slow", "stuck", "broken", "gone"}) CHECK(has_racer(race.dropped, name));
     CHECK(race.frames_run < race.frames_of_all);
     CHECK(std::exp(race.finalists.front().log_ratio->value) == 1);
     for (const racer& r : race.finalists) {
@@ -156,7 +156,7 @@ TEST_CASE_METHOD(in_folder, "A candidate that was disturbed once is not dropped"
         std::ofstream(marker) << "once";
         return slow.tested.make_global(counted);
     };
-    CHECK(holds(race_of(scene, racers, 5).finalists, "disturbed"));
+    CHECK(has_racer(race_of(scene, racers, 5).finalists, "disturbed"));
 }
 
 TEST_CASE("A race counts the frames of repeated runs only once") {
@@ -172,7 +172,7 @@ TEST_CASE("A candidate whose pairs differ from CGAL's does not win a race") {
     CHECK(race.is_validated());
     REQUIRE(race.finalists.size() == 1);
     CHECK(race.finalists.front().name == "right");
-    CHECK(holds(race.wrong, "wrong"));
+    CHECK(has_racer(race.wrong, "wrong"));
     CHECK(aabblab::advice_of(race).back() == "wrong is rejected: its pairs differ from the ground truth.");
     CHECK_THROWS_WITH(race_of(short_scene, {racers.back()}, 2), "no candidate finds the exact pairs of this scene");
 }
@@ -270,7 +270,7 @@ TEST_CASE("A race runs fewer frames if the first ones take too long") {
     CHECK(race.finalists.front().name == "fast");
     CHECK(race.finalists.front().last->frames == 2);
     CHECK(race.is_validated());
-    for (const char* name : {"never", "early", "late"}) CHECK(holds(race.dropped, name));
+    for (const char* name : {"never", "early", "late"}) CHECK(has_racer(race.dropped, name));
     const std::string use = aabblab::advice_of(race).front();
     CHECK(use.starts_with("Use fast: "));
     CHECK(holds(use, " ms for the first 2 of 25 frames"));
@@ -291,7 +291,7 @@ TEST_CASE("A candidate that hangs after the first frames is not recommended if a
     REQUIRE(race.finalists.size() == 1);
     CHECK(race.finalists.front().name == "ends");
     CHECK(race.final_frames == 25);
-    CHECK(holds(race.dropped, "stuck"));
+    CHECK(has_racer(race.dropped, "stuck"));
 }
 
 TEST_CASE("Unfinished candidates are not recommended if one finishes, and those without time are counted") {
@@ -543,24 +543,24 @@ TEST_CASE("A paired ratio has the median, minimum and maximum over the rounds") 
 TEST_CASE("Every exact candidate starts in a race, engines included") {
     std::vector<racer> racers = candidates_for_race(scene);
     CHECK(racers.front().name == "auto (= neighbour_list + bucket + columns + simd)");
-    CHECK_FALSE(holds(racers, "neighbour_list + bucket + columns + simd"));
+    CHECK_FALSE(has_racer(racers, "neighbour_list + bucket + columns + simd"));
     for (const char* name : {"bucket + columns + simd", "insertion + none + incremental", "std + uniform_grid + simd"})
-        CHECK(holds(racers, name));
-    CHECK_FALSE(holds(racers, "split_mesh + bucket + columns + simd"));
+        CHECK(has_racer(racers, name));
+    CHECK_FALSE(has_racer(racers, "split_mesh + bucket + columns + simd"));
     for (const aabb::engine_info& engine : aabb::engines())
-        CHECK(holds(racers, engine.name) == (engine.exact && engine.searches_boxes));
+        CHECK(has_racer(racers, engine.name) == (engine.exact && engine.searches_boxes));
     // The composition that auto selects does not start twice.
     aabblab::scene_choice still = scene;
     still.settings[1].value = "1";
     racers = candidates_for_race(still);
     CHECK(racers.front().name == "auto (= bucket + columns + simd)");
-    CHECK_FALSE(holds(racers, "bucket + columns + simd"));
+    CHECK_FALSE(has_racer(racers, "bucket + columns + simd"));
     const aabblab::scene_choice meshes{"mesh_pair", {}, {"icosphere:triangles=80"}, 1, {}};
     racers = candidates_for_race(meshes);
     for (const char* name :
          {"bucket + columns + simd + sah + implicit + exact", "bucket + columns + simd + canonical + exact"})
-        CHECK(holds(racers, name));
-    CHECK_FALSE(holds(racers, "bucket + columns + simd + canonical + moller"));
+        CHECK(has_racer(racers, name));
+    CHECK_FALSE(has_racer(racers, "bucket + columns + simd + canonical + moller"));
     for (const aabb::engine_info& engine : aabb::engines())
         if (engine.collides_meshes)
             CHECK(std::ranges::any_of(racers, [&](const racer& r) { return r.name.starts_with(engine.name); }) ==
