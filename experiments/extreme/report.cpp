@@ -198,7 +198,7 @@ std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
     for (const auto& [scene, of_scene] : grouped_by(limited, &extreme_row::scene)) {
         std::size_t most = 0;
         for (const extreme_row* row : of_scene) most = std::max(most, row->result.bytes);
-        sentences.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions hold at most " + grouped(most) +
+        sentences.push_back(scene + ", " + of_scene.front()->about + ":\n  compositions: " + grouped(most) +
                             " bytes; limit: 64 per triangle + 64 KiB = " + grouped(of_scene.front()->stated_bytes));
     }
     return sentences;
