@@ -100,7 +100,7 @@ std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
 }
 
 table borders_table(const std::vector<border>& borders) {
-    table t{{{"before", false}, {"after", false}, {"along", false}, {"at"}, {"low"}, {"high"}, {"others", false}}, {}};
+    table t = empty_table({"before", "after", "along"}, {"at", "low", "high"}, {"others"});
     for (const border& b : borders)
         t.rows.push_back({b.before, b.after, b.parameter, fmt::format("{:.4g}", b.position),
                           fmt::format("{:.4g}", b.range.low), fmt::format("{:.4g}", b.range.high), b.others});

@@ -44,8 +44,8 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
                  "The fastest{} in frames after the first, in {}. Each point is a scene, placed by its number "
                  "of objects and their displacement per frame.",
                  among, clouds > 1 ? fmt::format("{:g} separate clouds", clouds) : "one cloud"),
-             .x = {"objects", true},
-             .y = {"displacement per frame (mean extents)", true}};
+             .x = {"objects", /*logarithmic=*/true},
+             .y = {"displacement per frame (mean extents)", /*logarithmic=*/true}};
     std::map<std::pair<double, double>, figure_panel> panels;  // by density and ratio
     for (const atlas_scene& scene : atlas) {
         if (scene.scene.kind != kind_of_map || scene.number("clouds") != clouds || scene.number("moving") != 1)
@@ -69,8 +69,8 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
              .caption = "The fastest" + among +
                         " in frames after the first, in all scenes with motion. Each point is a scene, placed by its "
                         "number of objects and by the inversions on the axis on which boxes overlap least.",
-             .x = {"objects", true},
-             .y = {"inversions per object and frame", true},
+             .x = {"objects", /*logarithmic=*/true},
+             .y = {"inversions per object and frame", /*logarithmic=*/true},
              .lines = empty_series(winners)};
     for (const atlas_scene& scene : atlas)
         if (scene.measures.motion && scene.measures.motion->inversions > 0)
@@ -87,8 +87,8 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
              .caption =
                  "Regret of using one composition or engine everywhere: its time per frame relative to that of "
                  "the fastest, scene by scene in ascending order.",
-             .x = {"share of the scenes", false},
-             .y = {"regret", true}};
+             .x = {"share of the scenes"},
+             .y = {"regret", /*logarithmic=*/true}};
     for (const std::string& label : labels_of(atlas)) {
         const std::vector<double> regrets = regrets_of(atlas, label, atlas_time::per_frame);
         if (regrets.size() < std::max(least_scenes, atlas.size() / 2)) continue;

@@ -257,7 +257,7 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
 }
 
 table statements_table(const std::vector<judged_statement>& judged) {
-    table t{{{"statement", false}, {"says", false}, {"source", false}, {"verdict", false}, {"ratios", false}}, {}};
+    table t = empty_table({"statement", "says", "source", "verdict", "ratios"});
     for (const judged_statement& s : judged) {
         std::string ratios;
         for (const judged_ratio& r : s.ratios) ratios += (ratios.empty() ? "" : ", ") + fmt::format("{:.3g}", r.ratio);

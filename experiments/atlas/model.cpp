@@ -97,7 +97,7 @@ table models_table(const std::vector<candidate_model>& models) {
 
 /// Each cost in ns per unit, with its 95 % interval; a cost is never negative.
 table costs_table(const std::vector<candidate_model>& models) {
-    table t{{{"candidate", false}}, {}};
+    table t = empty_table({"candidate"});
     for (const term& cost : terms)
         for (const char* part : {"", " low", " high"}) t.columns.push_back({std::string(cost.name) + part});
     for (const candidate_model& m : models) {

@@ -23,7 +23,8 @@ bool is_slower(const atlas_candidate& candidate, const atlas_candidate& best) {
 /// Per candidate: the scenes that it wins, those in which its lead over the second is significant (`shown`), and those
 /// in which it is not significantly slower than the winner (`as_fast`).
 table winners_table(const std::vector<atlas_scene>& atlas) {
-    table t{{{row_number}, {"candidate", false}, {"scenes"}, {"fastest in"}, {"shown in"}, {"as fast in"}}, {}};
+    table t = empty_table({"candidate"}, {"scenes", "fastest in", "shown in", "as fast in"});
+    t.columns.insert(t.columns.begin(), {row_number});
     struct standing {
         std::string label;
         std::size_t scenes = 0, fastest = 0, shown = 0, as_fast = 0;
@@ -58,9 +59,9 @@ table winners_table(const std::vector<atlas_scene>& atlas) {
 table cells_table(const std::vector<atlas_scene>& atlas) {
     table t = empty_table({"scene", "parameters"},
                           {"pairs_an_object", "inversions", "at_rest", "clustering", "size_ratio"}, {"fastest"});
-    t.columns.insert(
-        t.columns.end(),
-        {{"frame_ms"}, {"second", false}, {"second_ratio"}, {"second_low"}, {"second_high"}, {"auto_ratio"}});
+    const column second_name{.name = "second", .is_number = false};
+    t.columns.insert(t.columns.end(), {{"frame_ms"}, second_name, {"second_ratio"}, {"second_low"}, {"second_high"}});
+    t.columns.push_back({"auto_ratio"});
     for (const atlas_scene& scene : atlas) {
         const atlas_candidate& best = scene.fastest();
         const atlas_candidate* second = second_of(scene);

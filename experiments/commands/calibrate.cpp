@@ -19,7 +19,7 @@ struct calibrate_request {
 
 /// The fitted costs ("here", on this machine) beside the shipped ones, with 95 % confidence intervals.
 table table_of(const calibration& fit) {
-    table t{{{"cost", false}, {"unit", false}, {"shipped"}, {"here"}, {"95 %"}}, {}};
+    table t = empty_table({"cost", "unit"}, {"shipped", "here", "95 %"});
     for (std::size_t k = 0; k < aabb::cost_infos.size(); ++k) {
         const aabb::cost_info& cost = aabb::cost_infos[k];
         const auto [low, high] = fit.estimates[k].range();
@@ -32,7 +32,7 @@ table table_of(const calibration& fit) {
 
 /// How far the fitted costs mispredict the times of held-out scenes.
 table checks_of(const calibration& fit) {
-    table t{{{"predicted in held-out scenes", false}, {"times"}, {"median factor"}, {"worst"}}, {}};
+    table t = empty_table({"predicted in held-out scenes"}, {"times", "median factor", "worst"});
     for (const group_check& check : fit.checks)
         t.rows.push_back({std::string(check.group), std::to_string(check.found.observations),
                           fmt::format("{:.2f}", check.found.median), fmt::format("{:.2f}", check.found.worst)});

@@ -59,7 +59,7 @@ int validate(const validate_request& request) {
         const scene_validation result = validate_scene(scene, candidates_for(e, scene));
         print(heading_of(scene) + ", all pairs of " + std::to_string(result.frames) + " frames compared with " +
               result.exact_by + ", digest " + result.digest + "\n\n");
-        table t{{{"composition or engine", false}, {"pairs"}, {"contacts"}, {"result", false}}, {}};
+        table t = empty_table({"composition or engine"}, {"pairs", "contacts"}, {"result"});
         for (const validated_row& v : result.candidates) {
             t.rows.push_back({text_of(v.name), std::to_string(v.candidates),
                               v.contacts ? std::to_string(*v.contacts) : "-", result_of(v)});

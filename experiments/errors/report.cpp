@@ -112,8 +112,8 @@ figure figure_of(const std::string& name, const std::string& sets, std::span<con
                                "method without errors is drawn on the line of one wrong result in N = {} pairs; "
                                "by the rule of three, its share is below 3/N with 95 % confidence.",
                                sets, grouped(methods.front().count)),
-        .x = {"time per pair (ns)", true},
-        .y = {"share of wrong results", true}};
+        .x = {"time per pair (ns)", /*logarithmic=*/true},
+        .y = {"share of wrong results", /*logarithmic=*/true}};
     const double least_share = 1 / static_cast<double>(methods.front().count);
     const auto point_of = [&](const pooled& m) {
         return figure_point{.x = m.ns(), .y = std::max(least_share, m.error())};
@@ -309,7 +309,7 @@ std::string_view title_of(pair_group group) {
 
 /// Methods from the least to the greatest share of wrong results (FN: false negatives, FP: false positives).
 table error_summary(std::span<const error_point> points, pair_group group) {
-    table t{{{"triangle", false}, {"ns/pair"}, {"wrong"}, {"FN"}, {"FP"}}, {}};
+    table t = empty_table({"triangle"}, {"ns/pair", "wrong", "FN", "FP"});
     std::vector<pooled> methods = pooled_over(of_group(points, group));
     std::ranges::stable_sort(methods, {}, [](const pooled& m) { return std::pair(m.error(), m.ns()); });
     for (const pooled& m : methods)
@@ -321,7 +321,7 @@ table error_summary(std::span<const error_point> points, pair_group group) {
 
 table errors_by_set(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> subset = of_group(points, group);
-    table t{{{"triangle", false}}, {}};
+    table t = empty_table({"triangle"});
     const std::vector<std::string> sets = sets_in(subset);
     // Names of mesh scenes are too long for headers, so they are numbered.
     for (const std::string& set : sets)

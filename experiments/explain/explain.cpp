@@ -106,7 +106,7 @@ void print_measures(staged_scene& scene, const time_limits& limits) {
 }
 
 void print_selected(const std::vector<aabb::selected_strategy>& selected) {
-    table t{{{"selected", false}, {"", false}, {"because", false}}, {}};
+    table t = empty_table({"selected", "", "because"});
     for (const aabb::selected_strategy& s : selected)
         t.rows.push_back({std::string(name_of(s.kind)), to_text(s.choice), s.rule});
     print_wrapped_table(t, 2);

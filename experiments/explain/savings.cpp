@@ -89,7 +89,7 @@ std::string difference_text(std::uint64_t bytes, std::uint64_t than) {
 /// Prints what each omission of the selected composition, the first variant, saves over the fastest variant without it.
 void print_omissions(std::span<const variant> variants) {
     const std::vector<observation>& times = variants[0].times;
-    table t{{{"left out", false}, {"available with", false}, {"saved ms"}, {"bytes"}}, {}};
+    table t = empty_table({"left out", "available with"}, {"saved ms", "bytes"});
     for (const aabb::absence what : omitted_by(variants[0])) {
         t.rows.push_back({to_text(what), "-", "-", "-"});
         const variant* fastest = fastest_with(what, variants.subspan(1));
@@ -137,7 +137,7 @@ void add_row(table& t, const variant& v, const variant& selected) {
 }
 
 void print_unfinished(const std::vector<variant>& variants) {
-    table t{{{"not finished", false}, {"", false}}, {}};
+    table t = empty_table({"not finished", ""});
     for (const variant& v : variants)
         if (v.broken_off) t.rows.push_back({label_of(v), text_of(*v.broken_off)});
     if (!t.rows.empty()) print(to_text(t, output_width()) + "\n");

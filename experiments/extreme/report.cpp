@@ -176,7 +176,7 @@ table inexact_scene_table(std::span<const extreme_row> rows) {
 }
 
 table class_table(std::span<const extreme_row> rows) {
-    table t{{{"candidate", /*is_number=*/false}}, {}};
+    table t = empty_table({"candidate"});
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
     const auto shown =
         filtered(rows, [](const extreme_row& row) { return row.group == row_group::meshes && !row.must_be_exact; });

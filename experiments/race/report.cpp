@@ -18,7 +18,7 @@ namespace {
 
 /// The ranking of the finalists.
 table table_of(const race_result& race) {
-    table t{{{row_number}, {"finalist", false}, {"all ms"}, {"ratio"}, {"95 %"}, {"ms/frame"}}, {}};
+    table t{{{row_number}, {"finalist", /*is_number=*/false}, {"all ms"}, {"ratio"}, {"95 %"}, {"ms/frame"}}, {}};
     t.columns.push_back({.name = "first ms", .spare = 1});
     t.columns.push_back({.name = "build ms", .spare = 2});
     t.columns.push_back({"KiB"});
@@ -41,7 +41,7 @@ std::string reason_for_drop(const racer& r) {
 }
 
 table dropped_table_of(const race_result& race) {
-    table t{{{"dropped", false}, {"after frames"}, {"times"}}, {}};
+    table t = empty_table({"dropped"}, {"after frames", "times"});
     for (const racer& r : race.dropped)
         t.rows.push_back({r.name, r.last ? std::to_string(r.last->frames) : "-", reason_for_drop(r)});
     return t;
@@ -49,7 +49,7 @@ table dropped_table_of(const race_result& race) {
 
 /// Unfinished runs, without candidates that never ran.
 table unfinished_table_of(const race_result& race) {
-    table t{{{"not finished", false}, {"", false}}, {}};
+    table t = empty_table({"not finished", ""});
     for (const racer& r : race.dropped)
         if (r.broken_off && r.broken_off->seconds > 0) t.rows.push_back({r.name, reason_for_drop(r)});
     return t;

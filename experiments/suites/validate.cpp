@@ -43,8 +43,7 @@ std::vector<named_table> tables_of(const stiff_study& study, const stiff_result&
         auto match = std::ranges::find(tables, caption, &named_table::caption);
         if (match == tables.end()) {
             const std::string name = fmt::format("{}_{}", study.name, tables.size() + 1);
-            tables.push_back(
-                {name, caption, {{{r.quantity, false}, {"measured"}, {"expected", false}, {"", false}}, {}}});
+            tables.push_back({name, caption, empty_table({r.quantity.c_str()}, {"measured"}, {"expected", ""})});
             match = tables.end() - 1;
         }
         match->content.rows.push_back({r.subject, fmt::format("{:.4g}", r.measured), r.rule,

@@ -24,7 +24,7 @@ endpoint over_insertion(const condition& c, const std::string& gaps) {
 table gaps_table(const std::vector<condition>& conditions) {
     std::vector<const condition*> ordered = matching(conditions, {});
     std::ranges::stable_sort(ordered, {}, [](const condition* c) { return disorder_of(*c); });
-    table t{{{"inversions per element"}, {"scene", false}, {"objects"}, {"displacement"}}, {}};
+    table t{{{"inversions per element"}, {"scene", /*is_number=*/false}, {"objects"}, {"displacement"}}, {}};
     for (const std::string& gaps : gap_sequences) t.columns.push_back({gaps});
     for (const condition* c : ordered) {
         std::vector<std::string>& cells = t.rows.emplace_back(

@@ -67,7 +67,7 @@ constexpr const char* b_in_frame_of_a = "B, carried into A's frame";
 
 /// The times of all elementary tests, with their ratios to a box test in the same frame of reference.
 table table_of(const test_times& times) {
-    table t{{{"test", false}, {"ns"}, {"quartiles"}, {"over a box test"}}, {}};
+    table t = empty_table({"test"}, {"ns", "quartiles", "over a box test"});
     for (const auto& [name, processes] : times) {
         const quartiles q = spread_of(processes);
         const std::string frame = name.ends_with(frame_a_suffix) ? std::string(frame_a_suffix) : "";
@@ -82,8 +82,8 @@ table table_of(const test_times& times) {
 figure figure_of(const test_times& times) {
     figure f{"c6",
              "Time of one elementary test, on the pairs that a traversal of two trees visits; medians and quartiles.",
-             {"test", false},
-             {"time per test (ns)", false}};
+             {"test"},
+             {"time per test (ns)"}};
     series transformed{"with the transformation from B's frame to A's", series_style::points};
     series untransformed{"without a transformation", series_style::points};
     for (const auto& [name, processes] : times) {

@@ -36,8 +36,8 @@ draft c8_claim(const measurements& m) {
     figure f{"c8",
              "Time of a query in the canonical tree split at the median, over that of one split at the mean, at the "
              "middle of the box, and by the surface area heuristic; 95 % intervals. Above 1 the median is slower.",
-             {"meshes", false},
-             {"time, median over other splits", false}};
+             {"meshes"},
+             {"time, median over other splits"}};
     const std::pair<const char*, const char*> others[] = {{"mean", "compared with the mean"},
                                                           {"midpoint", "compared with the middle of the box"},
                                                           {"sah", "compared with the surface area heuristic"}};

@@ -23,7 +23,7 @@ table endpoint_table(std::span<const endpoint> endpoints, const std::function<st
     std::vector<factors> conditions;
     for (const endpoint& e : endpoints) conditions.push_back(factors_of(e));
     table t = factors_table(conditions);
-    t.columns.insert(t.columns.end(), {{"ratio"}, {"95 %"}, {"outcome", false}});
+    t.columns.insert(t.columns.end(), {{"ratio"}, {"95 %"}, {"outcome", /*is_number=*/false}});
     for (std::size_t i = 0; i < endpoints.size(); ++i)
         t.rows[i].insert(t.rows[i].end(),
                          {ratio_digits_of(endpoints[i].ratio), range_text(endpoints[i]), outcome(endpoints[i])});
@@ -40,7 +40,7 @@ table factors_table(std::span<const factors> conditions) {
             const auto differs = [n = name, v = value](const factors& other) { return value_of(other, n) != v; };
             if (named.contains(name) || std::ranges::none_of(conditions, differs)) continue;
             named.insert(name);
-            t.columns.push_back({name, false});
+            t.columns.push_back({name, /*is_number=*/false});
             for (std::size_t i = 0; i < conditions.size(); ++i)
                 t.rows[i].push_back(number_text(value_of(conditions[i], name)));
         }
@@ -98,7 +98,7 @@ table verdict_table(const reproduction& results) {
 }
 
 table brief_table(const reproduction& results) {
-    table t{{{"", false}, {"claim", false}, {"verdict", false}}, {}};
+    table t = empty_table({"", "claim", "verdict"});
     for (const claim_result& c : results.claims) t.rows.push_back({c.id, c.claim, text_of(c.verdict)});
     return t;
 }
@@ -121,7 +121,7 @@ named_table bands_table(std::span<const draft> drafts) {
     table t = empty_table({"", "claim"});
     for (const draft& d : drafts) t.rows.push_back({d.claim.id, d.claim.claim});
     for (const double band : {0.0, 0.03, 0.05, 0.1}) {
-        t.columns.push_back({fmt::format("band {:.0f} %", 100 * band), false});
+        t.columns.push_back({fmt::format("band {:.0f} %", 100 * band), /*is_number=*/false});
         const std::vector<std::vector<endpoint>> endpoints = decided(drafts, band);
         for (std::size_t i = 0; i < drafts.size(); ++i) t.rows[i].push_back(text_of(verdict_of(endpoints[i])));
     }

@@ -225,7 +225,7 @@ void add_open_choices(page& out, const reproduction& reproduced) {
 }  // namespace
 
 table rule_table() {
-    table t{{{"verdict", false}, {"when", false}}, {}};
+    table t = empty_table({"verdict", "when"});
     for (const auto& [kind, word, meaning] : verdict_words) t.rows.push_back({std::string(word), std::string(meaning)});
     return t;
 }

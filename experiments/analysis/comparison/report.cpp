@@ -62,8 +62,7 @@ void print_block(const std::string& heading, const table& t) {
 }
 
 void print_different_results(const comparison& report) {
-    table t{{{"experiment", false}, {"scene", false}, {"parameters", false}, {"digest in A", false}, {"in B", false}},
-            {}};
+    table t = empty_table({"experiment", "scene", "parameters", "digest in A", "in B"});
     for (const different_result& d : report.different_results)
         t.rows.push_back({d.experiment, d.scene.kind, parameters_text(d.scene), d.in_a, d.in_b});
     print_block(fmt::format("the results differ in {} of {} scenes", t.rows.size(), report.results_compared), t);
@@ -71,7 +70,7 @@ void print_different_results(const comparison& report) {
 
 /// The table of a scene's compared ratios or times: those that changed beyond noise, or all of them.
 table table_of(std::span<const compared_time> times, const std::string& unit, bool list_all) {
-    table t{{{"composition", false}, {unit + " in A"}, {"in B"}, {"B/A"}, {"95 %"}, {"B is", false}}, {}};
+    table t = empty_table({"composition"}, {(unit + " in A").c_str(), "in B", "B/A", "95 %"}, {"B is"});
     for (const compared_time& time : times)
         if (list_all || time.verdict == outcome::less || time.verdict == outcome::more)
             t.rows.push_back(
@@ -121,7 +120,7 @@ std::string percents(std::uint64_t before, std::uint64_t after) {
 void print_numbers(const comparison& report) {
     std::size_t changed = 0;
     for (const compared_scene& s : report.scenes) {
-        table t{{{"composition", false}, {"quantity", false}, {"in A"}, {"in B"}, {"%"}}, {}};
+        table t = empty_table({"composition", "quantity"}, {"in A", "in B", "%"});
         for (const changed_number& n : s.changed)
             t.rows.push_back(
                 {n.label, n.quantity, std::to_string(n.in_a), std::to_string(n.in_b), percents(n.in_a, n.in_b)});

@@ -189,8 +189,9 @@ std::vector<aabb::strategy_kind> differing_kinds(std::span<const candidate_name>
 
 std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differing) {
     std::vector<column> columns{{row_number}};
-    for (const aabb::strategy_kind kind : differing) columns.push_back({std::string(name_of(kind)), false});
-    if (differing.empty()) columns.push_back({"composition", false});
+    for (const aabb::strategy_kind kind : differing)
+        columns.push_back({std::string(name_of(kind)), /*is_number=*/false});
+    if (differing.empty()) columns.push_back({"composition", /*is_number=*/false});
     return columns;
 }
 

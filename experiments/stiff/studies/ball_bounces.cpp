@@ -112,8 +112,8 @@ stiff_study ball_bounces_study() {
             {figure{.name = "ball_error_over_step",
                     .caption = "Error of the ball's position and velocity during contact over the step size. It falls "
                                "with the order of each integrator.",
-                    .x = {"step times angular frequency", true},
-                    .y = {"greatest error (relative to the motion)", true}}}};
+                    .x = {"step times angular frequency", /*logarithmic=*/true},
+                    .y = {"greatest error (relative to the motion)", /*logarithmic=*/true}}}};
 }
 
 }  // namespace aabblab
