@@ -136,29 +136,42 @@ trial frames_trial(const generated_scene& scene, cost_group group, const aabb::c
     return {scene.name, scene.held_out, measure};
 }
 
-/// Adds a search by columns, and a Verlet list that is rebuilt in every even frame and reused in every odd one. Work:
-/// boxes and pairs searched, boxes kept and watched, pairs tested.
+/// The work of a frame, in the order of the costs of `cost_group::lists`.
+struct list_work {
+    double searched_boxes = 0, searched_pairs = 0, kept_boxes = 0, watched_boxes = 0, tested_pairs = 0;
+
+    [[nodiscard]] std::vector<double> by_cost() const {
+        return {searched_boxes, searched_pairs, kept_boxes, watched_boxes, tested_pairs};
+    }
+};
+
+/// Adds a search by columns, and a Verlet list that is rebuilt in every even frame and reused in every odd one.
 void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
     trials.push_back(frames_trial(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
-        return std::vector<double>{n, mean.pairs, 0, 0, 0};
+        return list_work{.searched_boxes = n, .searched_pairs = mean.pairs}.by_cost();
     }));
     aabb::composition c;
     c[aabb::strategy_kind::prepare] = {"neighbour_list", {{"every", "2"}}};
     const auto measure = [n = scene.n, run = box_run{scene.frames, c, {}}](aabb::instrumentation counted) {
         const std::vector<frame_sample> samples = sample_frames(run, counted);
+        static_assert(warm_up_frames % 2 == 0, "the first frame after the warm-up builds the list");
         const frame_sample built = mean_of(samples, warm_up_frames, /*step=*/2);
         const frame_sample reused = mean_of(samples, warm_up_frames + 1, /*step=*/2);
         // Reuse of a list tests each of its pairs and does not search.
         assert(counted == aabb::instrumentation::none ||
                (built.work[aabb::work::subsets] > 0 && reused.work[aabb::work::subsets] == 0));
-        const double listed = reused.count(aabb::work::box_tests);
-        return std::vector{measured_part{cost_group::lists, {n, listed, n, n, listed}, built.ns},
-                           measured_part{cost_group::lists, {0, 0, 0, n, listed}, reused.ns}};
+        // A build searches, then watches the boxes and tests the pairs of its list in the same frame.
+        const list_work reuse{.watched_boxes = n, .tested_pairs = reused.count(aabb::work::box_tests)};
+        list_work build = reuse;
+        build.searched_boxes = build.kept_boxes = n;
+        build.searched_pairs = reuse.tested_pairs;
+        return std::vector{measured_part{cost_group::lists, build.by_cost(), built.ns},
+                           measured_part{cost_group::lists, reuse.by_cost(), reused.ns}};
     };
     trials.push_back({scene.name, scene.held_out, measure});
 }
 
-/// Adds a search with an axial cut, or none, which sorts `lists` lists: one per cut axis, and one for the sweep.
+/// Adds a search with an axial cut, or none. It sorts `lists` lists: of each cut axis, and of the swept one if uncut.
 void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, const std::string& sort,
                    const aabb::strategy_choice& partition, double lists) {
     aabb::composition c;
@@ -171,7 +184,7 @@ void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, con
                                    mean.count(aabb::work::subsets),
                                    mean.count(aabb::work::box_tests),
                                    mean.pairs,
-                                   1};
+                                   /*constant term=*/1};
     }));
 }
 
@@ -180,13 +193,13 @@ void add_cut_trials(std::vector<trial>& trials, const generated_scene& scene) {
     const auto cut = [](const char* axes, const char* segments) {
         return aabb::strategy_choice{"axial_cut", {{"axes", axes}, {"segments", segments}}};
     };
-    add_cut_trial(trials, scene, "std", {"none", {}}, 1);
-    add_cut_trial(trials, scene, "radix", {"none", {}}, 1);
-    add_cut_trial(trials, scene, "std", cut("1", "24"), 2);
-    add_cut_trial(trials, scene, "radix", cut("2", "8"), 3);
-    add_cut_trial(trials, scene, "std", cut("2", "24"), 3);
-    add_cut_trial(trials, scene, "radix", cut("3", "4"), 3);
-    add_cut_trial(trials, scene, "radix", cut("3", "16"), 3);
+    add_cut_trial(trials, scene, "std", {"none", {}}, /*lists=*/1);
+    add_cut_trial(trials, scene, "radix", {"none", {}}, /*lists=*/1);
+    add_cut_trial(trials, scene, "std", cut("1", "24"), /*lists=*/2);
+    add_cut_trial(trials, scene, "radix", cut("2", "8"), /*lists=*/3);
+    add_cut_trial(trials, scene, "std", cut("2", "24"), /*lists=*/3);
+    add_cut_trial(trials, scene, "radix", cut("3", "4"), /*lists=*/3);
+    add_cut_trial(trials, scene, "radix", cut("3", "16"), /*lists=*/3);
 }
 
 /// Adds a search by columns along these axes; the costs `planned_by` determine how many columns it has.
@@ -201,7 +214,7 @@ void add_column_trial(std::vector<trial>& trials, const generated_scene& scene, 
                                    mean.count(aabb::work::box_tests) / double{aabb::simd::width},
                                    n,
                                    mean.pairs,
-                                   1};
+                                   /*constant term=*/1};
     }));
 }
 
@@ -278,11 +291,12 @@ std::vector<trial> box_trials(calibration_size size) {
             }
     };
     add_lists({"brownian", "mixed_sizes", "needles", "clustered"}, quick ? sizes{100, 2000} : sizes{100, 1000, 10'000},
-              {"0.003", "0.1"}, false);
-    add_lists({"hollow_sphere", "pile", "one_huge"}, quick ? sizes{300} : sizes{300, 3000}, {"0.003", "0.1"}, true);
+              {"0.003", "0.1"}, /*held_out=*/false);
+    add_lists({"hollow_sphere", "pile", "one_huge"}, quick ? sizes{300} : sizes{300, 3000}, {"0.003", "0.1"},
+              /*held_out=*/true);
     add_searches({"brownian", "mixed_sizes", "clustered"}, quick ? sizes{1000, 5000} : sizes{1000, 5000, 20'000},
-                 false);
-    add_searches({"needles", "hollow_sphere"}, quick ? sizes{2000} : sizes{2000, 10'000}, true);
+                 /*held_out=*/false);
+    add_searches({"needles", "hollow_sphere"}, quick ? sizes{2000} : sizes{2000, 10'000}, /*held_out=*/true);
     return trials;
 }
 

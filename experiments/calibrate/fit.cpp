@@ -67,22 +67,24 @@ std::vector<double> weights_of(std::span<const timed_work> observations, const E
 /// Normal equations that can be bootstrapped. Whole scenes are resampled, in the role of processes.
 class resampled_equations {
 public:
-    /// Sums up the equations of each scene and repeat, which the bootstrap draws.
+    /// Sums up the equations of each scene and repeat. The bootstrap draws scenes as its processes, with one seed each.
     resampled_equations(std::span<const timed_work> observations, std::span<const double> weights)
         : count_(static_cast<Eigen::Index>(observations.front().work.size())) {
         std::map<std::string, std::vector<std::size_t>> scenes;
         for (std::size_t o = 0; o < observations.size(); ++o) scenes[observations[o].scene].push_back(o);
-        size_ = {scenes.size(), 1, observations.front().ns.size()};
-        sums_.assign(observations.front().work.size(), cells(scenes.size(), 1));
-        products_.assign(observations.front().work.size() * observations.front().work.size(), cells(scenes.size(), 1));
+        size_ = {.processes = scenes.size(), .seeds = 1, .repeats = observations.front().ns.size()};
+        sums_.assign(observations.front().work.size(), cells(scenes.size(), /*seeds=*/1));
+        products_.assign(observations.front().work.size() * observations.front().work.size(),
+                         cells(scenes.size(), /*seeds=*/1));
         std::size_t scene = 0;
         for (const auto& [name, indices] : scenes) {
             for (std::size_t repeat = 0; repeat < size_.repeats; ++repeat) {
                 normal_equations own(count_);
                 for (const std::size_t o : indices) own.add(observations[o], observations[o].ns[repeat], weights[o]);
                 for (Eigen::Index i = 0; i < count_; ++i) {
-                    sums_[static_cast<std::size_t>(i)].add(scene, 0, own.sums[i]);
-                    for (Eigen::Index j = 0; j <= i; ++j) products_[index_of(i, j)].add(scene, 0, own.products(i, j));
+                    sums_[static_cast<std::size_t>(i)].add(scene, /*seed=*/0, own.sums[i]);
+                    for (Eigen::Index j = 0; j <= i; ++j)
+                        products_[index_of(i, j)].add(scene, /*seed=*/0, own.products(i, j));
                 }
             }
             ++scene;
