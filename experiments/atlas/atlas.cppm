@@ -172,7 +172,7 @@ namespace aabblab {
         for (const double ms : any.frame_ms) squares += (std::log(ms) - mean) * (std::log(ms) - mean);
         degrees += count - 1;
     }
-    if (degrees == 0) return {std::nan(""), 0, 1};
+    if (degrees == 0) return {.value = std::nan("")};
     return {of_repeats.value, std::sqrt(2 * squares / degrees), degrees};
 }
 

@@ -79,7 +79,8 @@ std::vector<candidate_model> models_of(const std::vector<atlas_scene>& atlas) {
         if (in_map.size() <= terms.size()) continue;
         candidate_model m{label, fit_costs(in_map)};
         m.in_map = accuracy_of(in_map, m.costs);
-        if (const std::vector<timed_work> held_out = observations_of(atlas, label, true); !held_out.empty())
+        if (const std::vector<timed_work> held_out = observations_of(atlas, label, /*held_out=*/true);
+            !held_out.empty())
             m.held_out = accuracy_of(held_out, m.costs);
         models.push_back(std::move(m));
     }

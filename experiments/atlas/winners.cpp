@@ -100,10 +100,12 @@ table regrets_table(const std::vector<atlas_scene>& atlas, atlas_time time) {
         entry.median = quartiles_of(entry.regrets).median;
     }
     std::ranges::stable_sort(standings, {}, &standing::median);
-    table t = empty_table({"used everywhere"}, {"scenes", "median", "90th percentile", "worst", "over 1.3"});
+    constexpr double far_behind = 1.3;
+    const std::string over = fmt::format("over {}", far_behind);
+    table t = empty_table({"used everywhere"}, {"scenes", "median", "90th percentile", "worst", over.c_str()});
     t.columns.insert(t.columns.begin(), {row_number});
     for (const standing& entry : standings) {
-        const auto above = std::ranges::count_if(entry.regrets, [](double r) { return r > 1.3; });
+        const auto above = std::ranges::count_if(entry.regrets, [](double r) { return r > far_behind; });
         t.rows.push_back({std::to_string(t.rows.size() + 1), entry.label, grouped(entry.regrets.size()),
                           fmt::format("{:.2f}", entry.median),
                           fmt::format("{:.2f}", entry.regrets[entry.regrets.size() * 9 / 10]),

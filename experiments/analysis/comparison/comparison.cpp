@@ -53,11 +53,11 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_sc
     std::vector<shared_scene> scenes;
     std::map<scene_key, std::size_t> indices;  // keyed without the seed
     for (const row& r : a) {
-        const scene_key seed{r.experiment, r.scene};
-        if (b.of(seed, r.name).empty()) continue;
+        const scene_key with_seed{r.experiment, r.scene};
+        if (b.of(with_seed, r.name).empty()) continue;
         const auto [index, is_new] = indices.emplace(scene_key{r.experiment, without_seed(r.scene)}, scenes.size());
-        if (is_new) scenes.push_back({&r, {}, {}});
-        add_once(scenes[index->second].seeds, seed);
+        if (is_new) scenes.push_back({.first_row = &r, .seeds = {}, .names = {}});
+        add_once(scenes[index->second].seeds, with_seed);
         add_once(scenes[index->second].names, r.name);
     }
     return scenes;
@@ -66,10 +66,7 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_sc
 /// The labels that `table_of` would give to these compositions: it summarises rows that have only names.
 std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     std::vector<row> rows(names.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        rows[i].name = names[i];
-        rows[i].status = "exact";
-    }
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].name = names[i];
     const scene_summary scene = summarise(rows).at(0);
     if (names.size() == 1 && !scene.common.empty()) return {scene.common};
     std::vector<std::string> labels;
@@ -152,10 +149,11 @@ void add_decided(std::span<const measured_candidate> measured,
     for (const measured_candidate& entry : measured) {
         const estimate a = bootstrap(entry.a), b = bootstrap(entry.b);
         const estimate change = difference_of(b, a);
+        // So few values cannot give a smaller p-value, however clear the difference.
         const double least_p = least_p_value(count_values(entry.a), count_values(entry.b));
         evidence& entry_evidence = evidences.emplace_back(evidence_of(change));
         entry_evidence.p = std::max(entry_evidence.p, least_p);
-        // Even the least p-value must survive the correction for all tests.
+        // It may not even survive the correction for all tests, whatever the direction.
         const outcome best = decide({outcome::more, least_p * static_cast<double>(measured.size())});
         times.push_back({.label = entry.label,
                          .in_a = std::exp(a.value),

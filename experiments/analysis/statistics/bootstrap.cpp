@@ -107,7 +107,7 @@ double estimate::p_if_below(double limit) const {
 /// Adds the variances of the levels. Each is that between resamples times n / (n - 1), as the bootstrap of n values
 /// underestimates it; the degrees of freedom of the sum follow Satterthwaite (1946).
 estimate bootstrap(const sample_size& size, const std::function<double(const resample&)>& statistic) {
-    estimate result{statistic(resample(size.processes, size.seeds, level::none, 0)), 0, 1};
+    estimate result{.value = statistic(resample(size.processes, size.seeds, level::none, /*random=*/0))};
     const auto variance = [&](level drawn, std::size_t count) {
         return count < 2
                    ? 0

@@ -26,17 +26,18 @@ void add_seed(const row& r, double share, candidate_summary& summary) {
     add(summary.contacts, r.contacts);
     add(summary.false_negatives, r.false_negatives);
     add(summary.false_positives, r.false_positives);
-    if (summary.status != "inexact") summary.status = r.status;
+    if (summary.status != "inexact") summary.status = r.status;  // one inexact seed is enough
     const auto all_bytes = measured("all_bytes")(r);
     summary.bytes =
         std::max(summary.bytes, all_bytes ? std::optional(static_cast<std::uint64_t>(*all_bytes)) : std::nullopt);
     const auto tree_bytes = measured("tree_bytes")(r);
     if (tree_bytes.value_or(0) > 0) summary.bytes_per_triangle = std::max(summary.bytes_per_triangle, tree_bytes);
     if (r.box_inflation) add(summary.box_inflation, std::optional(*r.box_inflation * share));
-    const double later_frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
+    // Counts are of the frames after frame 0, or of frame 0 if there is no other.
+    const double counted_frames = r.frames > 1 ? static_cast<double>(r.frames - 1) : 1;
     for (std::size_t i = 0; i < r.counts.size(); ++i)
         if (r.counts[i])
-            add(summary.counts[i], std::optional(static_cast<double>(*r.counts[i]) / later_frames * share));
+            add(summary.counts[i], std::optional(static_cast<double>(*r.counts[i]) / counted_frames * share));
     for (std::size_t i = 0; i < r.bytes.size(); ++i)
         summary.bytes_by_part[i] = std::max(summary.bytes_by_part[i], r.bytes[i]);
 }
@@ -46,14 +47,14 @@ candidate_summary summary_of(std::span<const row* const> repeats) {
     candidate_summary summary;
     summary.name = repeats[0]->name;
     summary.repeats = repeats.size();
-    std::map<std::optional<std::uint64_t>, const row*> seeds;
+    std::map<std::optional<std::uint64_t>, const row*> seeds;  // each with its first row: repeats differ in times only
     for (const row* r : repeats) seeds.emplace(r->scene.seed, r);
     for (const auto& [seed, r] : seeds) add_seed(*r, 1 / static_cast<double>(seeds.size()), summary);
     std::vector<double> times, builds;
     for (const row* r : repeats)
         if (const std::optional<double> ms = ms_per_frame(*r)) {
             times.push_back(*ms);
-            builds.push_back(*r->build_ms);
+            builds.push_back(*r->build_ms);  // timed with the frames
         }
     for (const metric& m : metrics()) {
         std::vector<double> values;
@@ -131,7 +132,7 @@ struct rows_of_scene {
         candidates[index->second].push_back(&r);
         if (r.scene.seed && std::ranges::find(scene.seeds, *r.scene.seed) == scene.seeds.end())
             scene.seeds.push_back(*r.scene.seed);
-        if (r.status == "exact") scene.digest = r.digest;
+        if (r.status == "exact") scene.digest = r.digest;  // exact rows of a seed agree, or they are rejected
     }
 };
 
@@ -168,7 +169,7 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
 std::vector<const candidate_summary*> ranking_of(const scene_summary& scene) {
     std::vector<const candidate_summary*> candidates;
     for (const candidate_summary& summary : scene.candidates) candidates.push_back(&summary);
-    const auto key = [](const candidate_summary* c) {
+    const auto key = [](const candidate_summary* c) {  // false precedes true; the pointer keeps equals in order
         const double ms = c->ms_per_frame ? c->ms_per_frame->median : 0;
         return std::tuple(!c->ms_per_frame, c->status != "exact", !c->ratio, c->ratio.value_or(0), ms, c);
     };
