@@ -127,8 +127,9 @@ figure figure_of(const std::string& name, const std::string& sets, std::span<con
     for (const std::size_t i : front_of(methods, &pooled::costs)) front.points.push_back(point_of(methods[i]));
     // Drawn first, below the curves.
     f.lines.insert(f.lines.begin(), front);
-    f.lines.push_back(
-        {"no errors (1/N to 3/N)", series_style::level, {{1, least_share, least_share, 3 * least_share}}});
+    f.lines.push_back({"no errors (1/N to 3/N)",
+                       series_style::level,
+                       {{.x = 1, .y = least_share, .low = least_share, .high = 3 * least_share}}});
     return f;
 }
 
@@ -184,7 +185,7 @@ public:
             f.caption += " A line joins the Pareto front.";
         }
         if (has_floor()) {
-            f.lines.push_back({"no errors (1/N)", series_style::level, {{1, least_share()}}});
+            f.lines.push_back({"no errors (1/N)", series_style::level, {{.x = 1, .y = least_share()}}});
             f.caption += fmt::format(" A method without errors is drawn on the line of one wrong pair in N = {}.",
                                      grouped(exact_pairs()));
         }

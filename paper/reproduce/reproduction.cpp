@@ -58,9 +58,9 @@ void add_claim(macros& tex, const claim_result& c) {
     set("because", c.evidence == c.sentence ? "" : c.evidence);
     tex.set_tex(c.id + ".figures", list_of(c.figures));
     // The first table, which `judged` inserted, has all ratios and belongs to the appendix.
-    tex.set_tex(c.id + ".tables", list_of(c.tables, 1));
+    tex.set_tex(c.id + ".tables", list_of(c.tables, /*from=*/1));
     set("setup", setup_of(c));
-    set("favourable", c.expected == expectation::less ? "below 1" : "below 1.05");
+    set("favourable", c.expected == expectation::less ? "below 1" : fmt::format("below {:.2f}", 1 + equivalence_band));
     const endpoint* const primary = c.primaries.empty() ? nullptr : &c.primaries.front();
     set("condition", primary ? text_of(primary->where) : "-");
     set("ratio", primary ? ratio_digits_of(primary->ratio) : "-");
@@ -97,22 +97,26 @@ table endpoints_of(const reproduction& reproduced) {
 
 /// The first primary ratio of every claim against the band of no difference.
 figure verdict_figure(const reproduction& reproduced) {
-    figure f{
-        "verdicts",
-        "The first primary ratio of every claim with its 95 % interval, and the band of no difference. Ratios below "
-        "0.2 are left out.",
-        {"claim", false},
-        {"ratio", true}};
+    // Smaller ones need no figure to be seen, and would stretch the axis until the band is too narrow to see.
+    constexpr double least_shown = 0.2;
+    figure f{.name = "verdicts",
+             .caption = fmt::format("The first primary ratio of every claim with its 95 % interval, and the band of no "
+                                    "difference. Ratios below {} are left out.",
+                                    least_shown),
+             .x = {"claim"},
+             .y = {"ratio", /*logarithmic=*/true}};
     series ratios{"primary ratio, 95 % interval", series_style::points};
     for (std::size_t i = 0; i < reproduced.claims.size(); ++i) {
         f.x.names.emplace_back(static_cast<double>(i), reproduced.claims[i].id);
         const std::vector<endpoint>& primaries = reproduced.claims[i].primaries;
-        if (primaries.empty() || primaries.front().ratio < 0.2) continue;
+        if (primaries.empty() || primaries.front().ratio < least_shown) continue;
         const auto& [low, high] = primaries.front().range;
         ratios.points.push_back({static_cast<double>(i), primaries.front().ratio, low, high});
     }
     f.lines = {ratios,
-               {"no difference", series_style::level, {{0, 1, 1 / (1 + equivalence_band), 1 + equivalence_band}}}};
+               {"no difference",
+                series_style::level,
+                {{.x = 0, .y = 1, .low = 1 / (1 + equivalence_band), .high = 1 + equivalence_band}}}};
     return f;
 }
 

@@ -38,8 +38,8 @@ inline constexpr double tick_room = 0.9;  ///< length of a tick with the gap to 
 constexpr double figure_width = 36;       // about 10 pixels per em on a phone of 400 pixels
 constexpr double character_width = 0.6;   // of the widest common sans-serif fonts
 constexpr double legend_row = 1.4;
-constexpr double legend_sample = 6;  // of a line in the legend, including gaps
-constexpr double end_sign = 1.6;     // of the sign before a label at a line's end, including gaps
+constexpr double legend_sample = 6;    // of a line in the legend, including gaps
+constexpr double end_sign_room = 1.6;  // of the sign before a label at a line's end, including gaps
 constexpr double gap = 0.6;
 
 /// The lines of a tick label: names are broken into short lines, numbers are not.
@@ -148,7 +148,7 @@ public:
           column_count_(std::min<std::size_t>(panel_count_, 2)),
           row_count_((panel_count_ + column_count_ - 1) / column_count_) {}
 
-    /// Margins depend on labels, the plots on margins and the legend, and the places of texts on the plots.
+    /// Margins depend on labels, the plots on margins and the legend, and the places of texts on the plots. In ems.
     arrangement arranged() && {
         place_left();
         const std::vector<end_label> ends = place_ends();
@@ -201,7 +201,7 @@ private:
         return left_margin_ + static_cast<double>(panel % column_count_) * (plot_width() + column_gap_);
     }
 
-    /// Sets the height of the plots, which grows with the number of names on the y axis, and the left margin.
+    /// Sets the height of the plots, which grows with the number of names on the y axis, and the left margin, in ems.
     void place_left() {
         const auto [width, height] = extent_of_labels(drawing_.y, y_name_length);
         plot_height_ = panel_count_ == 1 ? 17 : 10;
@@ -233,7 +233,7 @@ private:
     }
 
     /// Places the labels of the x axis, and widens the right margin and the gap between plots for outer labels that
-    /// protrude. @returns the height of the labels
+    /// protrude. @returns the height of the labels. Lengths are in ems.
     double place_x_ticks() {
         layout_.x_name_length = longest_name;
         layout_.x_ticks = drawing_.x.ticks;
@@ -263,7 +263,8 @@ private:
         }
         // Slanted labels end at their tick; vertical ones replace them if they overlap or narrow the plot too much.
         constexpr double slant = 30 * std::numbers::pi / 180;
-        constexpr double widest_margin = 16;
+        constexpr double widest_margin = 16;    // nearly half of the figure
+        constexpr double least_distance = 0.8;  // of the lines of slanted text
         layout_.x_name_length = longest_name;
         double left = left_margin_;
         double longest = 0;
@@ -271,7 +272,7 @@ private:
             longest = std::max(longest, width_of(t.label));
             left = std::max(left, width_of(t.label) * std::cos(slant) - drawing_.x.place(t.at) * plot + gap);
         }
-        if (slot * std::sin(slant) >= 0.8 && left <= widest_margin) {
+        if (slot * std::sin(slant) >= least_distance && left <= widest_margin) {
             layout_.x_name_angle = 30;
             left_margin_ = left;
             return longest * std::sin(slant) + 0.5;
@@ -296,15 +297,19 @@ private:
         return ends;
     }
 
-    /// Places labels at the ends of lines, which need no legend; returns none if one would be too far from its line.
+    /// Places labels at the ends of lines, which need no legend. Returns none, for a legend instead, if a label takes
+    /// too many lines, is too wide, overlaps another or ends up too far from its line. Lengths are in ems.
     std::vector<end_label> place_ends() {
-        constexpr double furthest = 2.2;
+        constexpr std::size_t most_lines = 3;
+        constexpr double furthest = 2.2;      // from its line: further away, a label seems to belong to another
+        constexpr double most_overlap = 0.1;  // not seen; the relaxation may not reach 0
         std::vector<end_label> ends = wanted_ends();
         double widest = 0;
         for (end_label& end : ends) {
             end.middle = end.wanted;
             widest = std::max(widest, width_of(end.lines));
-            if (end.lines.size() > 3 || widest > character_width * static_cast<double>(end_label_length)) return {};
+            if (end.lines.size() > most_lines || widest > character_width * static_cast<double>(end_label_length))
+                return {};
         }
         std::ranges::sort(ends, {}, &end_label::middle);
         // The overlap of two neighbouring labels.
@@ -322,8 +327,8 @@ private:
                 ends[i].middle += excess / 2;
             }
         for (std::size_t i = 0; i < ends.size(); ++i)
-            if ((i > 0 && overlap(i) > 0.1) || std::abs(ends[i].middle - ends[i].wanted) > furthest) return {};
-        if (!ends.empty()) right_margin_ = std::max(right_margin_, end_sign + widest + gap / 2);
+            if ((i > 0 && overlap(i) > most_overlap) || std::abs(ends[i].middle - ends[i].wanted) > furthest) return {};
+        if (!ends.empty()) right_margin_ = std::max(right_margin_, end_sign_room + widest + gap / 2);
         return ends;
     }
 
@@ -391,14 +396,17 @@ private:
     void add_plot(std::size_t panel, double bottom, double height_of_marks, const std::vector<flag>& flags) {
         const double left = plot_left(panel);
         const double top = bottom + plot_height_;
-        arrangement::box& plot = layout_.plots.emplace_back(
-            left, left + plot_width(), bottom, top, panel + column_count_ >= panel_count_, panel % column_count_ == 0);
+        const bool is_lowest = panel + column_count_ >= panel_count_;
+        const bool is_leftmost = panel % column_count_ == 0;
+        // Only outer plots have labels at their ticks, which the inner ones share.
+        arrangement::box& plot =
+            layout_.plots.emplace_back(left, left + plot_width(), bottom, top, is_lowest, is_leftmost);
         const shown_panel& shown = drawing_.panels[panel];
         if (!shown.title.empty()) add({left, top + height_of_marks + gap / 2 + line_height / 2}, shown.title);
         for (std::size_t i = 0; i < flags.size(); ++i) {
             const flag& f = flags[i];
             const double height = top + line_height * (static_cast<double>(f.row) + 0.5);
-            plot.mark_tops.push_back(height + 0.4);
+            plot.mark_tops.push_back(height + 0.4);  // at the top of its text
             if (f.line_x == f.begin)
                 add({f.line_x + gap / 2, height}, shown.marks[i].label);
             else
@@ -408,11 +416,11 @@ private:
 
     /// Adds the labels at the ends of lines, each after the sign of its line, because it may be slightly displaced.
     void add_ends(const std::vector<end_label>& ends, double bottom) {
-        const double left = layout_.plots.front().right + 0.7;
+        const double left = layout_.plots.front().right + 0.7;  // the centre of a sign; a label begins 0.8 after it
         for (const end_label& end : ends) {
             const double middle = bottom + end.middle;
             const bool has_sign = end.label->style != series_style::level;
-            if (has_sign) layout_.samples.push_back({{left, middle}, end.label, true});
+            if (has_sign) layout_.samples.push_back({{left, middle}, end.label, /*is_end=*/true});
             const place top{left + (has_sign ? 0.8 : -0.2), middle + height_of(end.lines) / 2};
             add(lines_below(top, end.lines.size()), end.lines, words::anchor::left);
         }
@@ -427,7 +435,8 @@ private:
                 const auto from_below = static_cast<double>(labels.rows - 1 - entry % labels.rows);
                 const place at{labels.left + static_cast<double>(column) * labels.column_width,
                                bottom + (from_below + 0.5) * legend_row};
-                if (&text == labels.entries[i].data()) layout_.samples.push_back({at, &drawing_.labels[i], false});
+                if (&text == labels.entries[i].data())
+                    layout_.samples.push_back({at, &drawing_.labels[i], /*is_end=*/false});
                 add({at.x + legend_sample - 0.8, at.y}, text);
                 ++entry;
             }

@@ -121,7 +121,7 @@ struct extent {
         to.marks = shown_marks(f, panel);
         for (std::size_t k = 0; k < series_list.size(); ++k) {
             if (series_list[k].panel != nullptr && series_list[k].panel != panel) continue;
-            shown_series s{series_list[k].source, appearances[k], points_of(*series_list[k].source), false};
+            shown_series s{series_list[k].source, appearances[k], points_of(*series_list[k].source), /*varies=*/false};
             std::erase_if(s.points, [&](const figure_point& p) {
                 return !has_place(f.y, p.y) || (!s.is(series_style::level) && !has_place(f.x, p.x));
             });
@@ -154,13 +154,13 @@ struct extent {
     const double half = half_gap(axis);
     for (const auto& [at, name] : axis.names) {
         if (!has_place(axis, at)) continue;
-        names.push_back({at, name, {}});
+        names.push_back({at, name, /*power=*/{}});
         values.include(axis.logarithmic ? at / half : at - half);
         values.include(axis.logarithmic ? at * half : at + half);
     }
     if (values.least > values.greatest) values = axis.logarithmic ? extent{1, 10} : extent{0, 1};
     if (names.empty()) return scale_of(values.least, values.greatest, axis.logarithmic, end);
-    return {values.least, values.greatest, axis.logarithmic, names, true};
+    return {values.least, values.greatest, axis.logarithmic, names, /*named=*/true};
 }
 
 /// A prepared figure; it refers to the original, which must outlive it.

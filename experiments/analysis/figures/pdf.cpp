@@ -51,7 +51,8 @@ std::string encoded(std::string_view utf8) {
     return text;
 }
 
-/// The width of a text in Helvetica, in ems: PDF has no anchors, so that centred texts need it.
+/// The width of a text in Helvetica, in ems: PDF has no anchors, so that centred texts need it. Control codes stand for
+/// signs; the table of widths is in thousandths.
 double width_of(std::string_view encoded_text) {
     double width = 0;
     for (const char c : encoded_text)

@@ -121,10 +121,10 @@ private:
         const sign& s = signs[appearance % signs.size()];
         strokes drawn{{}, colour_of(appearance)};
         for (const place& p : centres) add_sign(s, p, drawn.lines);
-        drawn.closed = s.corners > is_cross;
+        drawn.closed = s.corners > is_cross;  // a polygon
         drawn.round = s.corners == is_disc;
-        if (s.is_open) drawn.width = frame_width;
-        if (drawn.round) drawn.width = 2 * s.size;
+        if (s.is_open) drawn.width = frame_width;   // without a width, the area is filled
+        if (drawn.round) drawn.width = 2 * s.size;  // the caps of a point are the disc
         if (!centres.empty()) sheet_.parts.emplace_back(std::move(drawn));
     }
     void fill(places outline, std::size_t appearance) {
@@ -146,7 +146,8 @@ private:
         return y(drawing_.y.logarithmic ? std::max(p.low, drawing_.y.from) : p.low);
     }
 
-    /// The horizontal shift that puts points of several series over one name side by side.
+    /// The horizontal shift that puts points of several series over one name side by side: up to 0.3 of half the
+    /// distance of two names apart, and if there are many, closer, so that they stay within 0.7 of it.
     [[nodiscard]] double shift_of(const shown_series& s) const {
         if (!drawing_.x.named || drawing_.x.logarithmic || !s.is(series_style::points)) return 0;
         double count = 0, before = 0;
@@ -197,12 +198,12 @@ private:
     void draw_line(const shown_series& s) {
         if (s.is(series_style::level)) {
             const double height = y(s.points.front().y);
-            return stroke_series({{{plot_->left, height}, {plot_->right, height}}}, s.appearance, true);
+            return stroke_series({{{plot_->left, height}, {plot_->right, height}}}, s.appearance, /*is_dashed=*/true);
         }
         const double shift = shift_of(s);
         places points;
         for (const figure_point& p : s.points) points.push_back({x(p.x + shift), y(p.y)});
-        if (s.is_joined()) stroke_series({points}, s.appearance, true);
+        if (s.is_joined()) stroke_series({points}, s.appearance, /*is_dashed=*/true);
         // Signs at all points of a long line would merge into one thick line.
         constexpr std::size_t readable = 20;
         const std::size_t step = s.is_joined() && points.size() > readable ? points.size() / (readable / 2) : 1;
@@ -246,7 +247,7 @@ private:
         constexpr double length = 4.4;
         const auto [x, y] = s.at;
         if (s.label->style != series_style::points)
-            stroke_series({{{x, y}, {x + length, y}}}, s.label->appearance, true);
+            stroke_series({{{x, y}, {x + length, y}}}, s.label->appearance, /*is_dashed=*/true);
         if (s.label->style != series_style::level) put_signs({{x + length / 2, y}}, s.label->appearance);
     }
 

@@ -22,7 +22,7 @@ struct svg_writer {
         std::string dashes;
         for (const double length : s.dashes) dashes += (dashes.empty() ? "" : " ") + short_number(length * em);
         const bool is_area = s.width == 0;
-        picture.path("", s.lines, s.closed,
+        picture.path(/*kind=*/"", s.lines, s.closed,
                      {{"fill", is_area ? s.colour : "none"},
                       {"fill-opacity", s.faint ? short_number(faint_opacity) : ""},
                       {"stroke", is_area ? "" : s.colour},
