@@ -24,7 +24,9 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     // A sphere at depth δ in a plane shares a volume of πRδ² with it, so a pressure p acts like a spring of 2πRp.
     const double spring = gravity / (c.depth * extent);  // for 1 kg
     const double girth = std::numbers::pi * extent;      // 2πR
-    world.law = {contact_geometry::shared_volume, spring / girth, 2 * c.loss * std::sqrt(spring) / girth, 0};
+    world.law = {.geometry = contact_geometry::shared_volume,
+                 .stiffness = spring / girth,
+                 .damping = 2 * c.loss * std::sqrt(spring) / girth};
     const std::uint32_t side = lattice_side(c.balls);
     // The lattice is centred on the floor.
     const double half_width = extent * gap * (side - 1) / 2;

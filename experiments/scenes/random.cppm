@@ -23,7 +23,8 @@ public:
         return static_cast<std::uint32_t>((engine_() >> 32) * count >> 32);
     }
 
-    /// Uniform on the unit sphere (2 axes: circle, 1: two points), by rejecting points of the cube outside the ball.
+    /// Uniform on the unit sphere (2 axes: circle, 1: two points), by rejecting points of the cube outside the ball, or
+    /// so near its centre that their direction is inexact.
     [[nodiscard]] Eigen::Vector3d direction(int axes = 3) {
         while (true) {
             Eigen::Vector3d p = Eigen::Vector3d::Zero();

@@ -80,7 +80,7 @@ contact_force pressure_force(const contact_law& law, std::span<const aabb::conta
     for (const aabb::contact& c : contacts) {
         const aabb::triangle_intersection common =
             aabb::intersection_of(first.triangle(c.triangle_a), second.triangle(c.triangle_b));
-        if (common.size != 2) continue;
+        if (common.size != 2) continue;  // only a segment has an integral
         if (!origin) origin = in_eigen(common.corners[0]);
         const Vector3d p = in_eigen(common.corners[0]) - *origin;
         const Vector3d q = in_eigen(common.corners[1]) - *origin;

@@ -174,7 +174,7 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     for (const stiff_study& study : chosen) {
         stiff_result result;
         {
-            progress done("running " + std::string(study.name), 1000);
+            progress done("running " + std::string(study.name), 1000);  // thousandths
             study.run({quick, default_candidate(),
                        [&](double share) { done.update(static_cast<std::size_t>(1000 * share)); }},
                       result);

@@ -45,15 +45,17 @@ public:
           clouds_(c.clouds),
           parked_(static_cast<std::uint32_t>(c.parked * c.objects)) {
         const std::uint32_t clouds = c.clouds + (c.parked > 0 ? 1 : 0);
-        double sum = 0;
+        double sum_of_edges = 0;
         double volume = 0;
         for (const double e : edges_) {
-            sum += e;
+            sum_of_edges += e;
             volume += e * e * e;
         }
         const double width = cube_root(volume / c.density / clouds);
         place_clouds(clouds, width, width * c.apart);
-        drift(c, width, sum / std::max(c.objects, 1U), width * cube_root(clouds));
+        const double mean_edge = sum_of_edges / std::max(c.objects, 1U);
+        const double side_without_gaps = width * cube_root(clouds);  // for spacings, which are those within clouds
+        drift(c, width, mean_edge, side_without_gaps);
         const auto resting = std::max(static_cast<std::uint32_t>((1 - c.moving) * c.objects), parked_);
         for (std::uint32_t i = 0; i < resting; ++i) resting_.push_back(points_[i]);
         // Shuffled, so that the size of an object does not depend on its index.

@@ -24,7 +24,7 @@ public:
 
     /// Each cube overlaps two others of its cluster on average; the world is the bounding box of the clusters.
     clustered(const config& c, std::uint64_t seed) : drifting_boxes(name, c, seed) {
-        const double width = width_for((c.objects + c.clusters - 1) / c.clusters, 3);
+        const double width = width_for((c.objects + c.clusters - 1) / c.clusters, /*axes=*/3);
         place_clusters(c.clusters, width + 1);
         Eigen::Vector3d least = corners_.front();
         Eigen::Vector3d most = corners_.front();
@@ -34,7 +34,7 @@ public:
         }
         aabb::vec3d sides{};
         for (int k = 0; k < 3; ++k) sides[k] = most[k] - least[k] + width + 1;
-        drift(c, width, 1, sides);
+        drift(c, width, /*extent=*/1, sides);
     }
 
 private:
@@ -44,7 +44,7 @@ private:
         for (std::uint32_t cell = 0, cells = side * side * side; corners_.size() < wanted; ++cell) {
             if (random_.below(cells - cell) >= wanted - corners_.size()) continue;
             const Eigen::Vector3d start = lattice_cell(cell, side) * 8 + Eigen::Vector3d::Constant(2);
-            corners_.emplace_back((start + random_.point(1) * 3) * width);
+            corners_.emplace_back((start + random_.point(1) * 3) * width);  // from 2 to 5 of 8
         }
     }
 

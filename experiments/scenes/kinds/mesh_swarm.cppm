@@ -68,8 +68,8 @@ public:
         for (const aabb::mesh& m : meshes) centres_.push_back(centre_of(aabb::bounds_of(m)));
         huge_extent_ = c.span * side;
         const double mean = c.objects == 0 ? 0 : (sum + huge * huge_extent_) / c.objects;
-        points_ = {others, 3, side - mean_extent_, {0, c.displacement * mean}, random_};
-        huge_ = {huge, 3, side - huge_extent_, {0, c.displacement * mean}, random_};
+        points_ = {others, /*axes=*/3, side - mean_extent_, {0, c.displacement * mean}, random_};
+        huge_ = {huge, /*axes=*/3, side - huge_extent_, {0, c.displacement * mean}, random_};
         spins_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
             const Eigen::Quaterniond rotation = random_rotation(random_);

@@ -27,8 +27,8 @@ public:
         : drifting_boxes(name, c, seed, sizeof(double)),
           edges_(spread_edges(c.objects, c.ratio)),
           width_(width_around(edges_)) {
-        const double sum = std::accumulate(edges_.begin(), edges_.end(), 0.0);
-        drift(c, width_, sum / std::max(c.objects, 1U), width_ + c.ratio);
+        const double mean_edge = std::accumulate(edges_.begin(), edges_.end(), 0.0) / std::max(c.objects, 1U);
+        drift(c, width_, mean_edge, /*side=*/width_ + c.ratio);
     }
 
 private:

@@ -28,12 +28,12 @@ public:
     /// Derives the world from the unit cubes, each of which overlaps two others on average, and the huge ones from it.
     one_huge(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, drifting_points::bytes_each) {
         const std::uint32_t huge = std::min(c.objects, c.huge);
-        const double width = width_for(c.objects, 3);
+        const double width = width_for(c.objects, /*axes=*/3);
         edge_ = c.span * (width + 1);
         const double extent = (huge * edge_ + (c.objects - huge)) / std::max(c.objects, 1U);
         const double step = step_of(c, extent, {width + 1, width + 1, width + 1});
-        huge_ = {huge, 3, width + 1 - edge_, {step, step}, random_};
-        unit_ = {c.objects - huge, 3, width, {step, step}, random_};
+        huge_ = {huge, /*axes=*/3, width + 1 - edge_, {step, step}, random_};
+        unit_ = {c.objects - huge, /*axes=*/3, width, {step, step}, random_};
     }
 
 private:

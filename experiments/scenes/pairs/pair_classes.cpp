@@ -108,25 +108,26 @@ pair coplanar(random_source& random, const format&) {
     return changed(any_pair(random), [&](const Vector3d& p) -> Vector3d { return {p[0], p[1], height}; });
 }
 
-/// Two triangles of length 1 and height 1e-6 whose long edges pass each other within about that distance.
+/// Two triangles of length 1 and little height whose long edges pass each other within about that distance.
 pair sliver(random_source& random, const format&) {
+    constexpr double height = 1e-6;
     pair p = any_pair(random);
     const Vector3d meeting = random.point(1);
     for (triangle* t : {&p.a, &p.b}) {
         const Vector3d along = random.direction();
         const Vector3d off = random.direction();
         const double back = random.unit();
-        const Vector3d start = meeting - along * back + off * (1e-6 * random.signed_unit());
-        *t = {start, start + along, start + along * random.unit() + off * 1e-6};
+        const Vector3d start = meeting - along * back + off * (height * random.signed_unit());
+        *t = {start, start + along, start + along * random.unit() + off * height};
     }
     return p;
 }
 
 /// Flattens the second triangle, and the first in half of the pairs, to a segment or, seldom, a point.
 pair zero_area(random_source& random, const format&) {
-    pair p = lattice_pair(random, 4);
+    pair p = lattice_pair(random, /*most=*/4);
     const auto flatten = [&](triangle& t) {
-        const double further = static_cast<double>(random.below(4)) - 1;
+        const double further = static_cast<double>(random.below(4)) - 1;  // -1 to 2: also beyond both ends
         t[2] = t[0] + (t[1] - t[0]) * further;
         if (random.below(4) == 0) t[1] = t[0];
         std::swap(t[0], t[random.below(3)]);

@@ -85,14 +85,14 @@ std::vector<double> ticks(const view_plane& view, int axis, double pixels, doubl
                         round_step(length, std::max(2.0, pixels / pixels_each)));
 }
 
-/// Draws ticks with their values below and to the left of a panel, and the names of the axes.
+/// Draws ticks with their values below and to the left of a panel, and the names of the axes. Lengths are in pixels.
 void add_axes(svg_picture& to, const view_plane& view) {
     const double below = view.height;
-    for (const double value : ticks(view, view.across, view.width, 80)) {
+    for (const double value : ticks(view, view.across, view.width, /*pixels_each=*/80)) {
         to.line("tick", {view.x(value), below}, {view.x(value), below + 5});
         to.text("", {view.x(value), below + 19}, fmt::format("{:g}", value), {{"text-anchor", "middle"}});
     }
-    for (const double value : ticks(view, view.up, view.height, 40)) {
+    for (const double value : ticks(view, view.up, view.height, /*pixels_each=*/40)) {
         to.line("tick", {0, view.y(value)}, {-5, view.y(value)});
         to.text("", {-9, view.y(value) + 4}, fmt::format("{:g}", value), {{"text-anchor", "end"}});
     }
@@ -227,7 +227,7 @@ frame_drawing drawing_of(const picture_data::frame& frame) {
     for (const auto [a, b] : overlapping_pairs) drawing.overlapping[a] = drawing.overlapping[b] = 1;
     drawing.huge = sort_by_size(drawing.drawn_objects, frame.boxes);
     sample(drawing.drawn_objects, drawing.huge);
-    if (drawing.huge > most_outlined) drawing.huge = 0;
+    if (drawing.huge > most_outlined) drawing.huge = 0;  // so many outlines would hide the rest
     return drawing;
 }
 
@@ -235,14 +235,15 @@ frame_drawing drawing_of(const picture_data::frame& frame) {
 std::vector<std::string> caption_lines(const picture_data& data, const picture_caption& caption, const view_plane& view,
                                        bool is_sampled) {
     std::vector<std::string> lines;
+    const int omitted = 3 - view.across - view.up;  // axes 0, 1 and 2 sum to 3
     for (const std::string& text : {caption.summary, caption.parameters})
         for (const std::string& line : lines_of(text, line_length)) lines.push_back(line);
     lines.push_back(fmt::format("{}, {}; {}", counted(data.first().boxes.size(), "object"),
                                 counted(data.frames(), "frame"), displacement_text(data)));
-    lines.push_back(fmt::format(
-        "seen along {}: {} across, {} upwards{}{}", name_of_axis(3 - view.across - view.up), name_of_axis(view.across),
-        name_of_axis(view.up), view.has_equal_scales ? "" : ", each with a scale of its own",
-        is_sampled ? fmt::format("; a sample of {} boxes is drawn, huge ones first", most_boxes) : ""));
+    lines.push_back(
+        fmt::format("seen along {}: {} across, {} upwards{}{}", name_of_axis(omitted), name_of_axis(view.across),
+                    name_of_axis(view.up), view.has_equal_scales ? "" : ", each with a scale of its own",
+                    is_sampled ? fmt::format("; a sample of {} boxes is drawn, huge ones first", most_boxes) : ""));
     return lines;
 }
 

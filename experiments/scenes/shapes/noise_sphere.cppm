@@ -47,7 +47,7 @@ private:
     /// Plane waves of random directions, with amplitudes proportional to wavelengths.
     class noise {
     public:
-        /// The same waves for every mesh, each 1.2 times as frequent as the one before.
+        /// The same waves for every mesh, each 1.2 times as frequent as the one before, and as much lower.
         noise() {
             random_source random(/*seed=*/1);
             double frequency = 0.35;

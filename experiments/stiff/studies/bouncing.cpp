@@ -41,7 +41,7 @@ constexpr published_errors published[] = {{1e-3, 185.027, 72274.4}, {1e-4, 1.850
 /// order 2 has a limit, and may not grow: the mean error of the last quarter must be near that of the first.
 void run_bouncing(const stiff_setting& setting, stiff_result& result) {
     const stepped_world world = bouncing_balls();
-    const double initial_energy = 49 * mass * gravity * height;
+    const double initial_energy = 49 * mass * gravity * height;  // of 7 by 7 balls
     const double seconds = setting.quick ? 4 : duration;
     for (const published_errors& reference : published) {
         if (setting.quick && reference.step < 1e-3) break;

@@ -41,6 +41,7 @@ void run_overdamped(const stiff_setting& setting, stiff_result& result) {
                 ball.advance(sinking);
                 result.add(within(subject, "depth while it sinks over depth at rest",
                                   depth_of_ball(ball.state()) * k / gravity, share_of_rest(frequency, sinking), 1e-3));
+                // Up to the rounding of the sum of steps.
                 while (ball.state().time < end * (1 - 1e-9)) ball.advance(std::min(end / 20, end - ball.state().time));
                 result.add(within(subject, "depth after 1 s over depth at rest",
                                   depth_of_ball(ball.state()) * k / gravity, share_of_rest(frequency, end), 1e-3));

@@ -92,7 +92,7 @@ void run_plate(const stiff_setting& setting, stiff_result& result) {
             result.add({subject, "share tunnelled of " + std::to_string(shots), share,
                         swept ? "0" : short_number(expected) + " ± one shot",
                         verdict_if(std::abs(share - (swept ? 0 : expected)) <=
-                                   (swept ? 0 : 1.01 / static_cast<double>(shots)))});
+                                   (swept ? 0 : 1.01 / static_cast<double>(shots)))});  // one shot, up to rounding
         }
     }
 }

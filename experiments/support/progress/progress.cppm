@@ -46,7 +46,7 @@ public:
     ~progress() { hide(); }
 
     /// Reports that `done` steps are done. Cheap enough for steps of a millisecond: the line is redrawn at most five
-    /// times a second.
+    /// times a second. Work that takes less than two seconds shows none.
     void update(std::size_t done) {
         if (!on_terminal_) return;
         const clock::time_point now = clock::now();

@@ -80,7 +80,7 @@ export [[nodiscard]] std::vector<double> round_values(double from, double to, do
 
 /// Ticks at all multiples of powers of ten; only the given multiples of every `decades`-th power have labels.
 [[nodiscard]] std::vector<tick> decade_ticks(double from, double to, std::span<const int> multiples, int decades) {
-    const bool has_power = from < 0.9e-4 || to > 1.1e6;
+    const bool has_power = from < 0.9e-4 || to > 1.1e6;  // 1e-4 and 1e6, with some room for wider ends
     std::vector<tick> ticks;
     for (int exponent = exponent_of(from); exponent <= exponent_of(to); ++exponent)
         for (int multiple = 1; multiple < 10; ++multiple) {
@@ -103,17 +103,17 @@ export [[nodiscard]] std::vector<double> round_values(double from, double to, do
     const auto has_three_labels = [](const std::vector<tick>& ticks) {
         return std::ranges::count_if(ticks, [](const tick& t) { return !t.label.empty(); }) >= 3;
     };
-    const int decades = 1 + static_cast<int>(std::log10(to / from) / 7);
+    const int decades = 1 + static_cast<int>(std::log10(to / from) / 7);  // seven labels are readable
     const std::span powers = std::span(multiples).first(1);
     if (auto ticks = decade_ticks(from, to, powers, decades); has_three_labels(ticks)) return ticks;
     if (auto ticks = decade_ticks(from, to, multiples, 1); has_three_labels(ticks)) return ticks;
-    return linear_ticks(from, to, round_step(to - from, 6));
+    return linear_ticks(from, to, round_step(to - from, /*most=*/6));
 }
 
 /// The scale of an axis that shows `least` to `greatest`, which may be equal, and must be positive if logarithmic: it
 /// is somewhat wider.
 export [[nodiscard]] scale scale_of(double least, double greatest, bool logarithmic, scale_end end) {
-    scale s{least, greatest, logarithmic};
+    scale s{.from = least, .to = greatest, .logarithmic = logarithmic};
     if (logarithmic) {
         const double beyond = least == greatest ? 2 : std::pow(greatest / least, 0.04);
         s.from = least / beyond;
@@ -127,8 +127,8 @@ export [[nodiscard]] scale scale_of(double least, double greatest, bool logarith
         s.to += beyond;
     }
     if (end == scale_end::on_ticks) {
-        if (s.from > 0 && s.from <= s.to / 2) s.from = 0;
-        const double step = round_step(s.to - s.from, 5);
+        if (s.from > 0 && s.from <= s.to / 2) s.from = 0;  // zero shows proportions, if values fill half of the axis
+        const double step = round_step(s.to - s.from, /*most=*/5);
         s.from = std::floor(s.from / step + 1e-6) * step;
         s.to = std::ceil(s.to / step - 1e-6) * step;
         s.ticks = linear_ticks(s.from, s.to, step);
@@ -136,7 +136,7 @@ export [[nodiscard]] scale scale_of(double least, double greatest, bool logarith
         const double beyond = 0.03 * (s.to - s.from);
         s.from = s.from >= 0 && s.from <= 3 * beyond ? 0 : s.from - beyond;
         s.to += beyond;
-        s.ticks = linear_ticks(s.from, s.to, round_step(s.to - s.from, 6));
+        s.ticks = linear_ticks(s.from, s.to, round_step(s.to - s.from, /*most=*/6));
     }
     return s;
 }
