@@ -78,12 +78,12 @@ std::string frames_text(const race_result& race) {
 /// For fewer and for more frames than the final has: the nearest number from which on another candidate is faster.
 std::vector<std::string> faster_at_other_lengths(const race_result& race) {
     const racer& winner = race.finalists.front();
-    if (race.final_frames < 2 || race.finalists.size() < 2 || !winner.has_range()) return {};
+    if (race.final_frames < 2 || race.finalists.size() < 2 || !winner.has_range()) return {};  // nothing to compare
     std::vector<std::string> parts;
     for (const bool is_fewer : {true, false}) {
         const auto frames = static_cast<double>(race.final_frames);
-        double low = is_fewer ? 1.5 : frames;  // fewer than 2 frames would be a single one
-        double high = is_fewer ? frames : 1e6;
+        double low = is_fewer ? 1.5 : frames;   // fewer than 2 frames would be a single one
+        double high = is_fewer ? frames : 1e6;  // an estimate that far ahead is of no use
         const racer* faster = nullptr;
         for (const racer& other : std::span(race.finalists).subspan(1)) {
             const std::optional<break_even> point = break_even_of(other, winner);

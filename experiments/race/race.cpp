@@ -63,7 +63,7 @@ public:
         run_first_round(frames, margin);
         while (frames < result_.frames && running_.size() > most_finalists && seconds_left() > budget_ / 2) {
             frames = std::min(result_.frames, 2 * frames);
-            margin = std::max(last_margin, std::sqrt(margin));
+            margin = std::max(last_margin, std::sqrt(margin));  // halved on a logarithmic scale
             if (!run_round(frames, margin)) break;
         }
         result_.final_frames = running_.front().last->frames;
@@ -235,7 +235,7 @@ private:
     void run_final() {
         std::size_t frames = result_.frames;
         while (frames > result_.final_frames && !final_fits(frames))
-            frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);
+            frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);  // towards those of the last round
         progress shown("repeats of the final", most_repeats);
         const std::vector<racer> before = running_;
         bool is_out_of_time = false;  // time is over within a repeat, which is discarded
@@ -344,6 +344,7 @@ std::vector<racer> race_candidates(const scene_frames& scene) {
         // `auto` already is this composition.
         if (candidate tested = candidate_of(c, meshes); tested.name != automatic) add(tested, text_of(tested.name));
     }
+    // `auto` stays first. The others are shuffled, since there may be no time for all.
     std::shuffle(candidates.begin() + 1, candidates.end(), std::mt19937_64(1));
     return candidates;
 }

@@ -52,7 +52,8 @@ candidate candidate_of(const aabb::named_strategies& named, const scene_frames& 
         result.make_local = [selected, initial](aabb::instrumentation counted) mutable {
             return aabb::compose_local_detection(selected(initial), counted);
         };
-    // The name does not depend on what is selected, so that it is the same for all scenes.
+    // The name does not depend on what is selected, so that it is the same for all scenes. Of several kinds, one
+    // strategy is called none, so the kind is named with it.
     result.name = {};
     result.name.engine = candidate_name::automatic;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
@@ -75,11 +76,11 @@ std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool mesh
     if (engine.searches_boxes)
         result.make_global = [name = engine.name](aabb::instrumentation) { return aabb::make_box_engine(name); };
     else
-        set_stage(result, {}, aabb::stage::global_search);
+        set_stage(result, /*c=*/{}, aabb::stage::global_search);
     if (meshes && engine.collides_meshes)
         result.make_local = [name = engine.name](aabb::instrumentation) { return aabb::make_mesh_engine(name); };
     else if (meshes)
-        set_stage(result, {}, aabb::stage::local_detection);
+        set_stage(result, /*c=*/{}, aabb::stage::local_detection);
     return result;
 }
 

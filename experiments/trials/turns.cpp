@@ -30,7 +30,7 @@ attempt run_baseline(staged_scene& scene, const candidate& baseline, std::size_t
 interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate> candidates, std::size_t frames,
                                  std::size_t rounds, const time_limits& limits) {
     progress shown("runs", rounds * candidates.size());
-    interleaved_runs result{frames, 0, std::vector<std::vector<observation>>(candidates.size()),
+    interleaved_runs result{frames, /*rounds=*/0, std::vector<std::vector<observation>>(candidates.size()),
                             std::vector<std::optional<attempt>>(candidates.size()),
                             std::vector<bool>(candidates.size())};
     const double seconds_before = limits.to_run();
