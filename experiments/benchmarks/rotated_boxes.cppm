@@ -44,7 +44,7 @@ public:
         double furthest = 0;
         for (int k = 0; k < 3; ++k)
             furthest = std::max({furthest, std::abs(double{image.min[k]}), std::abs(double{image.max[k]})});
-        for (int k = 0; k < 3; ++k) margin_[k] = furthest * 0x1p-22;
+        for (int k = 0; k < 3; ++k) margin_[k] = furthest * 0x1p-22;  // four times the rounding to float, 2^-24
     }
 
     /// Prepares a box of A, in A's frame, and one of B, in B's frame.

@@ -117,7 +117,7 @@ void print_text(const collide_request& request, const mesh_result& result) {
     print_paragraph("bytes:" + bytes);
 }
 
-/// Rejects options that exclude each other or would have no effect, before any file is read.
+/// Rejects options that exclude each other or would have no effect, before any file is read. Plain --self is "true".
 void reject_contradictions(const collide_request& request) {
     const auto reject_if = [](bool condition, const char* sentence) {
         if (condition) throw aabb::input_error(sentence);

@@ -61,7 +61,8 @@ std::string summary_of(const metric& m) {
 
 /// An item with those properties of its kind that scripts may need.
 list_item item_of(const auto& info) {
-    list_item item{std::string(info.name), summary_of(info), {}, {{"name", info.name}, {"summary", info.summary}}};
+    list_item item{
+        std::string(info.name), summary_of(info), /*parameters=*/{}, {{"name", info.name}, {"summary", info.summary}}};
     json& members = item.members;
     if constexpr (requires { info.engine; }) members["engine"] = info.engine;
     if constexpr (requires { info.searches_boxes; }) members["searches_boxes"] = info.searches_boxes;
@@ -98,7 +99,8 @@ std::vector<section> sections() {
     list.push_back({"engines", "", items_of(aabb::engines())});
     for (const auto& e : aabb::left_out_engines()) {
         const std::string summary = "left out: " + e.library + " was not found when this was built";
-        list.back().left_out.push_back({e.name, summary, {}, {{"name", e.name}, {"not_found", e.library}}});
+        list.back().left_out.push_back(
+            {e.name, summary, /*parameters=*/{}, {{"name", e.name}, {"not_found", e.library}}});
     }
     list.push_back({"library_tests", ", triangle tests of engines' libraries, for classify and errors",
                     items_of(aabb::library_tests())});
@@ -106,7 +108,7 @@ std::vector<section> sections() {
     for (const std::string_view name : left_out_integrators()) {
         const char* summary =
             "left out: its library was not found when this was built; ./aabblab validate stiff installs it";
-        list.back().left_out.push_back({std::string(name), summary, {}, {}});
+        list.back().left_out.push_back({std::string(name), summary, /*parameters=*/{}, /*members=*/{}});
     }
     list.push_back({"scenes", "", items_of(scene_kinds())});
     list.push_back({"shapes", ", in place of a mesh file", items_of(shapes())});

@@ -151,7 +151,7 @@ void require_outputs(const scene_request& request) {
 void write_scene(const scene_request& request) {
     require_outputs(request);
     const scene_info& kind = scene_named(request.kind);
-    scene_choice choice{request.kind, {}, request.meshes, seed_of(request, kind)};
+    scene_choice choice{request.kind, /*settings=*/{}, request.meshes, seed_of(request, kind)};
     for (const auto& [name, value] : request.settings)
         if (value) choice.settings.push_back({name, *value});
     // Outputs are opened before the scene runs, so that an error is reported without delay and leaves no files.

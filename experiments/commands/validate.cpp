@@ -19,13 +19,14 @@ experiment built_in_experiment() {
     experiment e;
     for (const scene_info& info : scene_kinds())
         if (!info.has_meshes && !info.reads_file)
-            e.scenes.push_back({info.name, {{"objects", "1000"}, {"frames", "5"}}, {}, 1});
-    e.scenes.insert(e.scenes.end(),
-                    {{"mesh_pair", {{"frames", "4"}}, {"icosphere:triangles=1280", "torus_knot:triangles=2000"}, 1},
-                     {"mesh_swarm",
-                      {{"objects", "40"}, {"frames", "4"}},
-                      {"icosphere:triangles=320", "torus_knot:triangles=500", "noise_sphere:triangles=400"},
-                      1}});
+            e.scenes.push_back({info.name, {{"objects", "1000"}, {"frames", "5"}}, /*meshes=*/{}, /*seed=*/1});
+    e.scenes.insert(
+        e.scenes.end(),
+        {{"mesh_pair", {{"frames", "4"}}, {"icosphere:triangles=1280", "torus_knot:triangles=2000"}, /*seed=*/1},
+         {"mesh_swarm",
+          {{"objects", "40"}, {"frames", "4"}},
+          {"icosphere:triangles=320", "torus_knot:triangles=500", "noise_sphere:triangles=400"},
+          /*seed=*/1}});
     // Stages are independent, so each broad phase and each narrow phase runs once, not every combination.
     e.compositions = aabb::every_composition(aabb::stage::global_search);
     for (const aabb::composition& c : aabb::every_composition(aabb::stage::local_detection))

@@ -80,9 +80,12 @@ std::string text_of(const calibrated_costs& costs) {
 
 calibrated_costs parse_costs(const std::string& text, const std::string& file) {
     const document doc(text, file, longest_file, "a file of costs");
-    calibrated_costs parsed{
-        header_field(doc, "version"), "", header_field(doc, "processor"), header_field(doc, "instructions"), {}};
-    if (parsed.version != AABBLAB_VERSION) return parsed;
+    calibrated_costs parsed{.version = header_field(doc, "version"),
+                            .date = {},
+                            .processor = header_field(doc, "processor"),
+                            .instructions = header_field(doc, "instructions"),
+                            .costs = {}};
+    if (parsed.version != AABBLAB_VERSION) return parsed;  // another version, whose costs are ignored, has other keys
     doc.require_keys(doc.root(), "", {"version", "date", "processor", "instructions", "costs"});
     parsed.date = header_field(doc, "date");
     const node& table = doc.required(doc.root(), "costs", "there is no [costs]; aabblab calibrate writes it");

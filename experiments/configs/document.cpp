@@ -103,11 +103,12 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     const std::string triple(3, quote[0]);
     const bool is_multi_line = text.substr(begin).starts_with(triple);
     const std::string_view closing = is_multi_line ? triple : quote;
+    const std::size_t most_before_closing = is_multi_line ? 2 : 0;  // quotes that belong to the string
     for (std::size_t i = begin + closing.size(); i < text.size(); ++i) {
         if (text[i] == '\\' && quote == "\"")
             ++i;
         else if (text.substr(i).starts_with(closing))
-            return end_of_quotes(text, i + closing.size(), is_multi_line ? 2 : 0) - 1;
+            return end_of_quotes(text, i + closing.size(), most_before_closing) - 1;
         else if (text[i] == '\n' && !is_multi_line)
             return i - 1;
     }

@@ -15,13 +15,14 @@ const node* seed_of(const document& doc, experiment_size size);
 namespace {
 
 const std::vector<std::string> known_precisions = {"float", "double"};
+constexpr std::uint64_t default_count = 100'000;
 constexpr std::uint64_t quick_share = 20;  // a quick run takes 1/20 of the pairs by default
 
 /// The number of pairs in each set of a table: `count`, or in quick runs that of `quick`, or else a share of `count`.
 std::uint64_t count_of(const document& doc, const node& pairs, experiment_size size) {
     const node* count = pairs.find("count");
     const node* quick = pairs.find("quick");
-    std::uint64_t full_count = count ? doc.integer_of("count", *count, 1) : 100'000;
+    std::uint64_t full_count = count ? doc.integer_of("count", *count, /*least=*/1) : default_count;
     std::uint64_t quick_count = std::max<std::uint64_t>(1, full_count / quick_share);
     if (quick) {
         doc.require_table("quick", *quick, " of quick", {"count"});
@@ -48,7 +49,8 @@ void add_pairs(const document& doc, const std::string& key, const node& written,
             doc.fail(precision.line, aabb::unknown_name("precision", precision.text, known_precisions));
         for (const located_text& name : classes) {
             doc.at_line(name.line, [&] { static_cast<void>(pair_source<float>(name.text, seed)); });
-            if (!sets.add({name.text, precision.text == "double", count, seed}, name.text + " in " + precision.text))
+            if (!sets.add({name.text, /*in_double=*/precision.text == "double", count, seed},
+                          name.text + " in " + precision.text))
                 doc.fail(name.line, "these " + key + " are listed twice: " + name.text + " in " + precision.text);
         }
     }
@@ -81,7 +83,7 @@ void require_meshes(const document& doc, const node& scene) {
 /// Reads the curves, which are either all of triangle tests or all of compositions, and share no method.
 std::vector<error_curve> curves_of(const document& doc) {
     std::vector<error_curve> curves;
-    unique_list<bool> methods;
+    std::set<std::string> methods;  // of all curves so far
     for (const node& table : doc.tables_of("curve")) {
         curves.push_back(read_curve(doc, table));
         const error_curve& curve = curves.back();
@@ -92,7 +94,7 @@ std::vector<error_curve> curves_of(const document& doc) {
                                      "' cannot be in one config: triangle tests alone run on pairs of triangles, other "
                                      "compositions on scenes; put them into two configs");
         const auto add = [&](const std::string& text) {
-            if (!methods.add(true, text)) doc.fail(table.line, "'" + text + "' is a point of two curves");
+            if (!methods.insert(text).second) doc.fail(table.line, "'" + text + "' is a point of two curves");
         };
         for (const aabb::strategy_choice& choice : curve.triangles) add(to_text(choice));
         for (const aabb::composition& c : curve.compositions)

@@ -130,7 +130,7 @@ void read_query(const document& doc, experiment& e) {
     }
     constexpr std::array<std::string_view, 2> states{"warm", "cold"};
     if (const node* caches = measure->find("caches")) {
-        e.query.cold = read_word(doc, "caches", *caches, states) == 1;
+        e.query.cold = read_word(doc, "caches", *caches, states) == 1;  // "cold"
         if (e.query.cold) require_meshes("caches", *caches);
     }
     if (e.query.kind == query_kind::first) e.notes.emplace_back("query: any one contact of each frame");

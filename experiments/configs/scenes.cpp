@@ -209,7 +209,8 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
         const scene_info& info = info_of(doc, kind);
         const std::vector<std::string> meshes = meshes_of(doc, scene, notes);
         const std::vector<alternatives> keys = settings_of(doc, scene, info.reads_file);
-        const auto seeds = info.reads_file ? std::vector<std::optional<std::uint64_t>>(1) : all_seeds;
+        const std::vector<std::optional<std::uint64_t>> no_seed{std::nullopt};
+        const auto& seeds = info.reads_file ? no_seed : all_seeds;
         doc.require_small_product(written.line, "scenes", sizes_of(keys, seeds.size()), scenes.items().size());
         for (const std::vector<aabb::setting>& settings : cartesian_product(keys))
             for (const std::optional<std::uint64_t> seed_value : seeds) {

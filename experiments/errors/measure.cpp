@@ -35,7 +35,7 @@ public:
     template <class Work, class Judge>
     void run_batch(std::size_t pairs, Work work, Judge judge) {
         run_round(entries_, batches_, [&](entry& e) {
-            if (batches_ % e.batches_per_run != 0) return;
+            if (batches_ % e.batches_per_run != 0) return;  // slow tests skip batches
             const wall_stopwatch watch;
             work(*e.test);
             e.ns.push_back(watch.ms() * 1e6 / static_cast<double>(pairs));
@@ -228,7 +228,8 @@ private:
     alternating_tests<hit_point> tests_;
 };
 
-/// Generates pairs until there are enough hits, and runs the constructing tests on these.
+/// Generates pairs until there are enough hits, or too many pairs for each: in some classes hardly any intersect. Runs
+/// the constructing tests on the hits.
 /// @param done the hits of earlier sets, for the progress shown
 template <class Real>
 std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint64_t done) {

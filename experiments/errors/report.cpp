@@ -333,7 +333,7 @@ table errors_by_set(std::span<const error_point> points, pair_group group) {
         for (const std::string& set : sets) {
             const auto point = std::ranges::find_if(subset, [&](const error_point& p) {
                 return p.pairs == set && p.curve == m.curve && p.triangle == m.triangle;
-            });
+            });  // never the end: each method of a group runs on all its sets
             row.push_back(point->wrong() == 0 ? "0"
                                               : fmt::format("{}+{}", share_text(point->false_negatives, point->count),
                                                             share_text(point->false_positives, point->count)));

@@ -176,14 +176,15 @@ int explain(const explain_request& request) {
 
 /// Prints a table with the cells of one column wrapped, so that it fits the width of the output.
 void print_wrapped_table(const table& t, std::size_t column) {
+    constexpr std::size_t between = 2, least_room = 20;  // characters
     std::size_t other_widths = 0;
     for (std::size_t other = 0; other < t.columns.size(); ++other) {
         if (other == column) continue;
         std::size_t widest = t.columns[other].name.size();
         for (const std::vector<std::string>& row : t.rows) widest = std::max(widest, row[other].size());
-        other_widths += 2 + widest;
+        other_widths += between + widest;
     }
-    const std::size_t room = std::max(output_width(), other_widths + 20) - other_widths;
+    const std::size_t room = std::max(output_width(), other_widths + least_room) - other_widths;
     table broken{t.columns, {}};
     for (std::vector<std::string> cells : t.rows) {
         std::istringstream lines(wrapped(cells[column], room));

@@ -212,8 +212,8 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     }
 
     table t = empty_table({"kind", "replaced by"}, {"ms/frame", "ratio", "range"});
-    t.columns.push_back({"build ms", true, 2});
-    t.columns.push_back({"bytes", true, 1});
+    t.columns.push_back({.name = "build ms", .spare = 2});
+    t.columns.push_back({.name = "bytes", .spare = 1});
     for (std::size_t i = 0; i < in_table; ++i) add_row(t, variants[i], variants[0]);
     print_paragraph(fmt::format(
         "savings of each choice: one strategy is replaced at a time; variants run interleaved, in {} of {} each",

@@ -141,7 +141,7 @@ std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
     return list;
 }
 
-/// Tests the two triangles of each case in both orders, as meshes 2i and 2i + 1, with every query.
+/// Tests the two triangles of each case in both orders, as untransformed meshes 2i and 2i + 1, with every query.
 void run_on_cases(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes,
                   const named_candidate& tested, std::vector<extreme_row>& rows) {
     const std::unique_ptr<aabb::local_stage> stage = tested.implementation.make_local(aabb::instrumentation::none);
@@ -168,8 +168,11 @@ void run_candidates(const aabb::extreme_judge& judge, std::span<const named_cand
     for (const named_candidate& c : list) {
         // Engines always list all pairs before they return the first.
         if (c.role == candidate_role::engine && scene.query == aabb::extreme_query::first_pair) continue;
-        extreme_row row{
-            boxes ? row_group::boxes : row_group::meshes, scene.name, scene.summary, {}, c.name, {}, c.role};
+        extreme_row row{.group = boxes ? row_group::boxes : row_group::meshes,
+                        .scene = scene.name,
+                        .about = scene.summary,
+                        .candidate = c.name,
+                        .role = c.role};
         // Box tests only compare coordinates, without rounding, so every engine must be exact.
         row.must_be_exact = boxes ? c.implementation.exact_boxes : c.implementation.exact;
         row.stated_bytes = scene.most_bytes;

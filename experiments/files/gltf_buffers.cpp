@@ -58,6 +58,7 @@ std::optional<std::string> decoded_base64(std::string_view text) {
         pending -= 8;
         bytes += static_cast<char>(bits >> static_cast<unsigned>(pending) & 0xffU);
     }
+    // With six bits left, the last character is in no byte.
     return pending < 6 ? std::optional(bytes) : std::nullopt;
 }
 

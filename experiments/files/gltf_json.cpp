@@ -29,6 +29,7 @@ gltf_matrix transform_of(const object& node) {
     if (!node.has("matrix")) {
         const auto rotation = node.numbers<4>("rotation", {0, 0, 0, 1});
         const double square = std::inner_product(rotation.begin(), rotation.end(), rotation.begin(), 0.0);
+        // As exporters round, the tolerance is generous.
         if (!(std::abs(square - 1) < 1e-3)) node.fail("has a rotation that is not a quaternion of length 1");
         const auto translation = node.numbers<3>("translation", {});
         const auto scale = node.numbers<3>("scale", {1, 1, 1});
@@ -36,7 +37,7 @@ gltf_matrix transform_of(const object& node) {
         transform << turned * Eigen::Vector3d(scale.data()).asDiagonal(), Eigen::Vector3d(translation.data());
         return transform;
     }
-    const auto m = node.numbers<16>("matrix", {});
+    const auto m = node.numbers<16>("matrix", {});  // by columns
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) node.fail("has a matrix whose last row is not 0 0 0 1");
     return Eigen::Map<const Eigen::Matrix4d>(m.data()).topRows<3>();
 }

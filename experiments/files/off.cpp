@@ -131,7 +131,10 @@ read_attempt read_as(const file_text& file, arrangement tried) {
     try {
         return {.loaded = reader.read(), .rejection = {}};
     } catch (const aabb::input_error& error) {
-        return {{}, error.what(), reader.has_vertex(), reader.reached_end()};
+        return {.loaded = {},
+                .rejection = error.what(),
+                .has_vertex = reader.has_vertex(),
+                .reached_end = reader.reached_end()};
     }
 }
 

@@ -155,7 +155,7 @@ void text_decoder::append_with_line_feeds(std::string_view utf8, std::string& te
 /// the next byte, which shows whether lines end in them alone.
 void text_decoder::append_byte(char c, std::string& text) {
     if (is_padding(c)) {
-        if (padding_ == ' ') padding_ = c;
+        if (padding_ == ' ') padding_ = c;  // the first one; a blank stands for none
         return;
     }
     if (padding_ != ' ') {

@@ -193,7 +193,7 @@ table measures_table(const scene_measures& m) {
     const auto& o = m.boxes.overlaps;
     add("overlaps", fmt::format("a box overlaps {:.3g}, {:.3g}, {:.3g} others on x, y, z", o[0], o[1], o[2]));
     for (std::size_t k = 0; k < 3; ++k)
-        if (m.present > 2 && o[k] > 0.999 * static_cast<double>(m.present - 1))
+        if (m.present > 2 && o[k] > 0.999 * static_cast<double>(m.present - 1))  // boxes overlap nearly all others
             add("flat axis", std::string(1, "xyz"[k]));
     add("size ratio", (m.boxes.size_ratio ? fmt::format("{:.3g}", *m.boxes.size_ratio) : "-") +
                           ", the longest edge over that of the median box");

@@ -101,7 +101,7 @@ public:
     bool next(std::vector<aabb::pose>& poses) override {
         if (frame_ == frames_) return false;
         poses = {pose_a_, poses_b_[frame_++ % poses_b_.size()]};
-        poses.resize(meshes.size());
+        poses.resize(meshes.size());  // self-intersections have no second mesh
         return true;
     }
 

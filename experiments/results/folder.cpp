@@ -77,7 +77,7 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
     if (!rows_.empty()) {
         std::tie(date_, digests_) = resume_manifest(manifest, experiment_);
         for (std::size_t i = 0; i < rows_.size(); ++i)
-            if (!digests_.contains(rows_[i].scene))
+            if (!digests_.contains(rows_[i].scene))  // lines are counted from 1, and the first is the header
                 throw aabb::input_error(table.string() + ":" + std::to_string(i + 2) + ": manifest.json has no scene " +
                                         rows_[i].scene.kind + " with these parameters; was the row altered?");
         if (std::filesystem::exists(folder_ / "differences.csv"))
@@ -126,7 +126,7 @@ void results_folder::set_differences(const scene_choice& scene, std::span<const 
 
 /// Adds checksums of the tables to the manifest of a finished run, by which missing or altered rows are found later.
 void results_folder::seal() {
-    results_seal checksums{seal_of(folder_ / "results.csv"), std::nullopt, {}};
+    results_seal checksums{seal_of(folder_ / "results.csv"), /*differences=*/std::nullopt, /*candidates=*/{}};
     if (const std::filesystem::path table = folder_ / "differences.csv"; std::filesystem::exists(table))
         checksums.differences = seal_of(table);
     for (const row& r : rows_)

@@ -119,7 +119,7 @@ json json_of(const std::string& value) {
 std::vector<std::pair<scene_choice, std::string>> scenes_in(const parsed_manifest& manifest) {
     std::vector<std::pair<scene_choice, std::string>> scenes;
     for (const json_value& scene : manifest.content.objects("scenes")) {
-        scene_choice choice{scene.text("kind").value_or(""), {}, {}, scene.index("seed")};
+        scene_choice choice{scene.text("kind").value_or(""), /*settings=*/{}, /*meshes=*/{}, scene.index("seed")};
         // Preserve the order in which they were written, because rows have the same order.
         const json& raw = manifest.raw["scenes"][scenes.size()];
         if (!set_parameters(choice, raw.value("parameters", json()).dump()))
@@ -180,13 +180,14 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
         for (const candidate_name& name : seal->candidates) checksums["contenders"].push_back(json_of(name));
         checksums["manifest"] = checksum_of(manifest);
     }
-    return text_of(manifest, 2) + "\n";
+    return text_of(manifest, /*indent=*/2) + "\n";
 }
 
 /// Reads the parts of a manifest by which results are verified, and rejects it if it was altered after it was sealed.
 sealed_manifest read_sealed_manifest(const std::filesystem::path& file) {
     const parsed_manifest manifest = parse_manifest(file);
-    sealed_manifest result{manifest.content.text("experiment").value_or(""), scenes_in(manifest), std::nullopt};
+    sealed_manifest result{manifest.content.text("experiment").value_or(""), scenes_in(manifest),
+                           /*seal=*/std::nullopt};
     const std::optional<json_value> seal = manifest.content.member("seal");
     if (!seal) return result;
     result.seal = seal_in(*seal);
@@ -246,7 +247,7 @@ manifest_summary read_manifest(const std::filesystem::path& folder) {
                              .config = config.text("text").value_or(""),
                              .quick = config.flag("quick").value_or(false),
                              .finished = manifest.content.has("seal"),
-                             .text = text_of(manifest.raw, 2) + "\n"};
+                             .text = text_of(manifest.raw, /*indent=*/2) + "\n"};
     if (build.flag("dirty").value_or(false)) summary.commit += " (changed)";
     return summary;
 }
