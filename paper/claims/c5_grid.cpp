@@ -206,7 +206,7 @@ draft c5_claim(const measurements& m) {
             "axial_cut over each scene's best cell size",
             "the cut in its worst scene, compared with the fastest cell size there",
             [&](const resample& d) { return scenes.worst_regret_of_cut(d); }, quantity::time, expectation::not_more);
-        const resample as_measured(size.processes, size.seeds, level::none, 0);  // every cell once
+        const resample as_measured(size.processes, size.seeds, level::none, /*random=*/0);  // every cell once
         c5.claim.remark = fmt::format(
             "With {} objects the greatest slowdown is {:.2f} with the cut, and {:.2f} with the best single cell size.",
             number_text(objects), std::exp(scenes.worst_regret_of_cut(as_measured)),

@@ -28,10 +28,11 @@ struct tried_choice {
     selection baseline;
 };
 
-/// A claim's ratio of times under each choice of an open question, in a single condition; the first choice is ours.
+/// A claim's ratio of times under each choice of an open question, in a single condition: `conditions` has at most
+/// one. The first choice is ours.
 measured_choices ratios_in_condition(const std::vector<const condition*>& conditions, const std::string& metric,
                                      const std::string& note, const std::vector<tried_choice>& choices) {
-    measured_choices measured{"", choices.front().label};
+    measured_choices measured{.where = "", .ours = choices.front().label};
     for (const condition* c : conditions) {
         measured.where = text_of(c->scene()) + note;
         for (const auto& [label, tested, baseline] : choices)
@@ -52,7 +53,7 @@ measured_choices tree_choices(const measurements& m, const std::vector<tried_cho
 }
 
 measured_choices displacement_choices(const measurements& m) {
-    measured_choices measured{"brownian, objects 10,000", "0.1"};
+    measured_choices measured{.where = "brownian, objects 10,000", .ours = "0.1"};
     for (const condition* c : matching(m.conditions_of("figure1"), {{"scene", "brownian"}, {"objects", "10000"}}))
         measured.add_search(value_of(c->scene(), "displacement"), *c);
     return measured;
@@ -60,7 +61,7 @@ measured_choices displacement_choices(const measurements& m) {
 
 /// Claim C1's ratio in other scenes with our displacement, and in our choice, the drifting scene, of the nearest size.
 measured_choices scene_choices(const measurements& m) {
-    measured_choices measured{"displacement 0.1 of the extent", ""};
+    measured_choices measured{.where = "displacement 0.1 of the extent", .ours = ""};
     std::vector<const condition*> scenes =
         matching(m.conditions_of("figure1"), {{"displacement", "0.1"}, {"unit", "extent"}});
     if (scenes.empty()) return measured;
@@ -89,7 +90,7 @@ measured_choices leaf_test_choices(const measurements& m) {
 
 /// The growth of a sort's work per element, as in claim C2, for gap sequences with fixed numbers of gaps and others.
 measured_choices gap_count_choices(const measurements& m) {
-    measured_choices measured{"line, displacement 0.1", "enough for N"};
+    measured_choices measured{.where = "line, displacement 0.1", .ours = "enough for N"};
     for (endpoint e : c2_claim(m).endpoints) {
         e.expected = expectation::not_more;
         const std::string sort = value_of(e.where, "sort");
@@ -105,7 +106,7 @@ measured_choices gap_count_choices(const measurements& m) {
 
 /// Claim C11's ratio of both phases in each of its scenes, which are readings of the paper's "different models".
 measured_choices model_choices(const measurements& m) {
-    measured_choices measured{"displacement 0.05", ""};
+    measured_choices measured{.where = "displacement 0.05", .ours = ""};
     for (const condition& c : m.conditions_of("c11")) {
         const std::string label = number_text(value_of(c.scene(), "objects")) + " of " + mesh_of(c) + ", density " +
                                   value_of(c.scene(), "density");
@@ -118,7 +119,7 @@ measured_choices model_choices(const measurements& m) {
 
 /// Claim C1's ratio with the time of all frames, and with that of all but the first one, which is our choice.
 measured_choices first_frame_choices(const measurements& m) {
-    measured_choices measured{"", "without the first frame"};
+    measured_choices measured{.where = "", .ours = "without the first frame"};
     for (const condition* c : matching(m.conditions_of("figure1"), drifting)) {
         measured.where = text_of(c->scene());
         measured.add_search("without the first frame", *c);
@@ -131,7 +132,7 @@ measured_choices first_frame_choices(const measurements& m) {
 /// measurement of our choice there are no alternatives, since nothing can be compared.
 open_choice judge(const std::string& question, const std::string& ours, const std::string& why,
                   const std::string& claim, measured_choices measured) {
-    open_choice result{question, ours, why, claim, measured.where, {}};
+    open_choice result{question, ours, why, claim, measured.where, /*alternatives=*/{}};
     std::ranges::stable_partition(measured.alternatives,
                                   [&](const alternative& a) { return a.label == measured.ours; });
     if (measured.alternatives.empty() || measured.alternatives.front().label != measured.ours) return result;

@@ -48,6 +48,7 @@ std::string size_text(std::span<const endpoint> endpoints) {
     const double mild = is_faster ? 1 / high : low;
     const double strong = is_faster ? 1 / low : high;
     const std::string unit = is_faster ? " times as fast" : " times as long";
+    // Almost equal ratios are reported as one, unless they are near 1, where a small difference matters.
     if (mild >= factor_threshold && strong / mild <= equality_threshold)
         return times_text(std::sqrt(mild * strong)) + unit;
     return span_text(times_text(mild), times_text(strong)) + unit;
@@ -182,6 +183,7 @@ wording wording_of(const endpoint& e) {
     return e.corrected == support::favours ? wording::not_more : wording::open;
 }
 
+/// Appends the counts above 0, each with its verb: ", 2 hold, 1 does not hold and 3 are undecided."
 std::string counts_text(std::string text, std::initializer_list<counted_verb> counts) {
     auto left = std::ranges::count_if(counts, [](const counted_verb& c) { return c.count > 0; });
     std::string_view separator = ", ";
@@ -193,6 +195,7 @@ std::string counts_text(std::string text, std::initializer_list<counted_verb> co
     return text + ".";
 }
 
+/// Groups the digits of whole numbers, also among other words: "10,000 to 100,000".
 std::string number_text(const std::string& value) {
     if (const std::size_t blank = value.find(' '); blank != std::string::npos)
         return number_text(value.substr(0, blank)) + " " + number_text(value.substr(blank + 1));

@@ -40,9 +40,10 @@ void add_axis(svg_picture& picture, double y) {
     }
 }
 
-/// Draws a value beyond the scale as an arrow at its end, with the number.
+/// Draws a value beyond the scale as an arrow at its end, with the number. As everywhere in these pictures, x is in
+/// percent of the width and y in pixels.
 void add_arrow(svg_picture& picture, bool to_left, double y, double number) {
-    const double back = to_left ? 8 : -8;
+    const double back = to_left ? 8 : -8;  // pixels
     svg_picture head;
     head.path("", {{{back, -5}, {0, 0}, {back, 5}}}, /*closed=*/true);
     picture.put({to_left ? 1. : 99., y}, head);
@@ -61,12 +62,14 @@ void add_interval(svg_picture& picture, const endpoint& e, double y) {
     if (is_above) add_arrow(picture, /*to_left=*/false, y, e.ratio > claims_scale.to ? e.ratio : high);
 }
 
-/// A claim's ratios with their intervals, one per row, against the band of no difference. All claims share a scale.
+/// A claim's ratios with their intervals, one per row, against the band of no difference. All claims share a scale,
+/// with 1 at 50 % of the width.
 std::string interval_picture(std::span<const endpoint> endpoints) {
     const double axis_y = first_row + row_height * static_cast<double>(endpoints.size());
     std::string label;
     svg_picture picture("%");
-    add_band(picture, x_percent(1 / (1 + equivalence_band)), 50, x_percent(1 + equivalence_band), 4, axis_y);
+    add_band(picture, x_percent(1 / (1 + equivalence_band)), /*centre=*/50, x_percent(1 + equivalence_band), /*top=*/4,
+             axis_y);
     add_axis(picture, axis_y);
     for (const endpoint& e : endpoints) {
         label += (label.empty() ? "ratio " : "; ") + ratio_text(e);
@@ -88,14 +91,14 @@ std::string rule_picture() {
                                                {1.3, 1.8, "more"},
                                                {0.72, 1.35, "undecided"}}};
     // The left part of the picture has the scale, and the right part the words.
-    constexpr double plot_width = 64;
-    const scale shown{0.4, 2.5, true};
+    constexpr double plot_width = 64;  // %
+    const scale shown{.from = 0.4, .to = 2.5, .logarithmic = true};
     const auto x = [&](double ratio) { return plot_width * shown.place(ratio); };
     constexpr double row = 26;
     constexpr double first = 40;
     constexpr double end = first + row * examples.size() - 8;
     svg_picture picture("%");
-    add_band(picture, x(1 / (1 + equivalence_band)), plot_width / 2, x(1 + equivalence_band), 22, end);
+    add_band(picture, x(1 / (1 + equivalence_band)), plot_width / 2, x(1 + equivalence_band), /*top=*/22, end);
     picture.text("", {plot_width / 2, 14}, "1", {{"text-anchor", "middle"}});
     picture.text("", {0, 14}, "\u2190 for the claim");
     picture.text("", {plot_width, 14}, "against \u2192", {{"text-anchor", "end"}});

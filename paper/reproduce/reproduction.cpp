@@ -174,8 +174,9 @@ std::string macros_of(const reproduction& reproduced, const provenance& origin,
         tex.set("table." + t.name + ".caption", t.caption);
         if (t.name != "table1") continue;
         for (const std::vector<std::string>& cells : t.content.rows) {
-            tex.set("table1." + cells[0] + ".paper", cells[3]);
-            tex.set("table1." + cells[0] + ".allocated", cells[4]);
+            constexpr std::size_t nominal = 3, allocated = 4;  // columns, after the tree and the sizes of its nodes
+            tex.set("table1." + cells[0] + ".paper", cells[nominal]);
+            tex.set("table1." + cells[0] + ".allocated", cells[allocated]);
         }
     }
     return tex.text();

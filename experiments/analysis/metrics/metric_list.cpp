@@ -188,6 +188,7 @@ const row_value& measured(std::string_view name) {
     return metric_named(name).value;
 }
 
+/// The sum of the bytes of these parts; none if no part has any.
 row_value bytes_of(std::vector<std::string> parts) {
     return [parts = std::move(parts)](const row& r) -> std::optional<double> {
         std::optional<double> sum;
@@ -198,6 +199,7 @@ row_value bytes_of(std::vector<std::string> parts) {
     };
 }
 
+/// The sum of these metrics, of which the first decides whether there is one.
 row_value sum_of(const std::vector<std::string>& names) {
     std::vector<row_value> parts;
     for (const std::string& name : names) parts.push_back(measured(name));
