@@ -37,7 +37,7 @@ void for_each_true_pair(const mesh& a, const mesh& b, const relative_pose& to_a,
 /// The ground truth for two objects, by a double loop over their triangles.
 exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>& poses, index_pair objects,
                                extreme_query query) {
-    exact_objects result{objects.a, objects.b, {}, false};
+    exact_objects result{.a = objects.a, .b = objects.b, .pairs = {}};
     const mesh& a = scene.meshes[scene.mesh_of[objects.a]];
     const mesh& b = scene.meshes[scene.mesh_of[objects.b]];
     for_each_true_pair(a, b, {poses[objects.a], poses[objects.b], bounds_of(b)}, [&](index_pair pair) {

@@ -64,7 +64,8 @@ mesh coincident(std::uint32_t count) {
     return m;
 }
 
-/// Thin triangles in random directions. @param height the greatest height of a triangle, relative to lengths of about 1
+/// Thin triangles in random directions, of lengths about 1. @param height the greatest distance of the third corner
+/// from the middle of the long edge, on each axis
 std::unique_ptr<mesh_scene> needles(float height) {
     draws random(51);
     std::vector<triangle3f> triangles;

@@ -64,7 +64,7 @@ private:
             const box& b = boxes[id];
             entries_.push_back({{{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}}, id});
         }
-        // Constructed from a range, the tree is packed.
+        // Constructed from a range, the tree is packed: nodes are full, with 16 entries.
         tree_.emplace(entries_.begin(), entries_.end(), index::linear<16>(), index::indexable<entry>(),
                       index::equal_to<entry>(), counting_allocator<entry>(tree_bytes_));
     }

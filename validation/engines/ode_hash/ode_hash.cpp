@@ -69,7 +69,7 @@ private:
                                unit_ * b.max[2]},
                               id});
         }
-        drop_absent(geoms_, [](const auto&) {});
+        drop_absent(geoms_, [](const auto&) {});  // a geometry leaves its space when it is destroyed
         update_space();
     }
 
