@@ -13,7 +13,6 @@ import aabblab.tables;
 
 export namespace aabblab {
 
-/// The times that are compared.
 enum class atlas_time : unsigned char {
     per_frame,  ///< the mean per frame after the first
     whole_run   ///< all frames, including the construction of the stages

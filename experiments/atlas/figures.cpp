@@ -6,7 +6,6 @@ namespace aabblab {
 
 namespace {
 
-/// The kind of the scenes in the map.
 constexpr const char* kind_of_map = "cloud";
 
 /// The strategies that win most scenes, which get a series of their own in figures; others share the series "another".

@@ -7,8 +7,7 @@ import aabblab.scenes;
 
 export namespace aabblab {
 
-/// Numbers of objects per scene.
-inline constexpr std::array<std::uint32_t, 3> sizes = {1'000, 10'000, 100'000};
+inline constexpr std::array<std::uint32_t, 3> sizes = {1'000, 10'000, 100'000};  // objects per scene
 /// The parameter of the scene `brownian`: the maximum displacement of an object per frame, relative to the mean extent.
 inline constexpr std::array<std::string_view, 3> displacements = {"0.01", "0.1", "1"};
 
@@ -70,7 +69,6 @@ template <aabb::Strategy S>
                            {}});
 }
 
-/// The sorted projections of all boxes on an axis.
 [[nodiscard]] inline std::vector<aabb::projection> sorted_list(std::span<const aabb::box> boxes, int axis) {
     std::vector<aabb::projection> list;
     for (std::uint32_t id = 0; id < boxes.size(); ++id) list.push_back({boxes[id].min[axis], id});
@@ -78,7 +76,6 @@ template <aabb::Strategy S>
     return list;
 }
 
-/// One frame with its sorted lists.
 class sorted_frame {
 public:
     explicit sorted_frame(std::uint32_t objects) {

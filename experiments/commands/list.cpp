@@ -20,7 +20,6 @@ struct list_request {
     bool json = false;
 };
 
-/// A named item of the list, as text and as JSON.
 struct list_item {
     std::string name, summary;
     std::span<const aabb::parameter_info> parameters;

@@ -92,7 +92,6 @@ std::vector<std::string> meshes_of(const document& doc, const node& scene, std::
     return fallback;
 }
 
-/// The settings of a scene, each with its alternatives.
 std::vector<alternatives> settings_of(const document& doc, const node& scene, bool reads_file) {
     std::vector<alternatives> settings;
     for (const node& entry : scene.items) {

@@ -41,7 +41,6 @@ public:
             throw;
         }
     }
-    /// Reads standard input.
     byte_source() : name_("standard input"), descriptor_(STDIN_FILENO) {}
     byte_source(const byte_source&) = delete;
     byte_source& operator=(const byte_source&) = delete;

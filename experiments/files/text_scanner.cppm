@@ -60,7 +60,6 @@ public:
         return next_word;
     }
 
-    /// Whether words are left on the line.
     [[nodiscard]] bool has_word() {
         skip_blanks();
         return !line_.empty();
@@ -78,7 +77,6 @@ public:
     [[noreturn]] void fail_expected(const std::string& noun, std::string_view actual) const {
         fail("expected " + noun + ", found " + (actual.empty() ? "the end of the line" : in_quotes(actual)));
     }
-    /// Rejects a file that ends too early.
     [[noreturn]] void fail_at_end(const std::string& where) const { reject(file_, "ends " + where); }
 
     /// Parses an integer in the range of its type.

@@ -47,7 +47,6 @@ std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, 
     return depths;
 }
 
-/// Keeps the greatest depth of each vertex.
 void keep_deepest_of_each(std::vector<depth_of_vertex>& depths) {
     std::ranges::sort(depths, {}, [](const depth_of_vertex& d) { return std::pair(d.vertex, -d.depth); });
     const auto repeated = std::ranges::unique(depths, {}, &depth_of_vertex::vertex);

@@ -23,7 +23,6 @@ struct stiff_row {
     [[nodiscard]] bool holds() const { return verdict != stiff_verdict::fails; }
 };
 
-/// A point of a plot.
 struct stiff_point {
     std::string figure;  ///< its name
     std::string line;    ///< its label
@@ -69,7 +68,6 @@ void write_result(const std::filesystem::path& folder, const stiff_study& study,
 /// @throws aabb::input_error with file and line if they are malformed.
 [[nodiscard]] std::optional<stiff_result> read_result(const std::filesystem::path& folder, const stiff_study& study);
 
-/// The default composition.
 [[nodiscard]] candidate default_candidate() {
     return candidate_of(aabb::composition(), true);
 }

@@ -50,7 +50,6 @@ void note_idle_engines(const experiment& e) {
             for (const std::string& sentence : idle_engines(e, scene, scene.kind)) note(sentence);
 }
 
-/// The rows of a scene over all its seeds.
 std::vector<row> rows_of_all_seeds(const scene_choice& scene, std::span<const row> rows) {
     std::vector<row> matching(rows.begin(), rows.end());
     std::erase_if(matching, [&](const row& r) { return without_seed(r.scene) != without_seed(scene); });

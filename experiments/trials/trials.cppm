@@ -83,7 +83,6 @@ private:
     std::vector<std::uint32_t> arrivals_, departures_;
 };
 
-/// The stages of one run.
 struct stages {
     std::unique_ptr<aabb::global_stage> global;  ///< null for meshes if every two objects are candidates
     std::unique_ptr<aabb::local_stage> local;    ///< null in a scene of boxes
@@ -160,7 +159,6 @@ struct phases {
     [[nodiscard]] double cpu_ms() const { return update.cpu_ms + search.cpu_ms + detect.cpu_ms; }
 };
 
-/// The times and results of one frame.
 struct searched_frame {
     std::uint32_t number;
     phases took;
@@ -216,7 +214,6 @@ struct observation {
     aabb::work_counters work;              ///< summed over all frames
     std::vector<aabb::omission> left_out;  ///< by the stages, after the last frame
 
-    /// The wall time of the whole run.
     [[nodiscard]] double whole_ms() const { return build.wall_ms + first.wall_ms() + rest.wall_ms(); }
     /// The mean over the frames after frame 0.
     [[nodiscard]] double steady_ms() const { return frames > 1 ? rest.wall_ms() / static_cast<double>(frames - 1) : 0; }
@@ -305,8 +302,6 @@ private:
     scene_choice choice_;
     scene_frames scene_;
 };
-
-// Interleaved runs.
 
 /// The results of interleaved runs; the lists are indexed by candidate.
 struct interleaved_runs {

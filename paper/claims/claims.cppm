@@ -204,7 +204,6 @@ struct method {
 };
 void add_ratios(table& t, const std::vector<condition>& conditions, std::span<const method> methods);
 
-/// A figure with two logarithmic axes.
 [[nodiscard]] inline figure log_log(const std::string& name, const std::string& caption, const std::string& x,
                                     const std::string& y, std::vector<series> lines = {}) {
     return {name, caption, {x, true}, {y, true}, std::move(lines)};
@@ -245,7 +244,6 @@ inline const factors large_crowd{{"density", "0.3"}, {"objects", "60"}};  ///< o
 inline const selection traditional{{kind::sort, "insertion"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
 inline const selection improved{
     {kind::sort, "shell"}, {kind::partition, "axial_cut:axes=2"}, {kind::sweep, "one_axis"}};
-/// Shell sort without the cut.
 inline const selection uncut{{kind::sort, "shell"}, {kind::partition, "none"}, {kind::sweep, "one_axis"}};
 inline constexpr const char* compressed = "compressed:leaf_test=triangle_box";
 

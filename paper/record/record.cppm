@@ -11,10 +11,8 @@ export namespace aabblab {
 
 /// The folder of these files in an archive.
 inline constexpr const char* archive_folder = "reproduction";
-/// The name of the file of checksums.
 inline constexpr const char* sums_name = "SHA256SUMS";
 
-/// The names of the experiments in a folder.
 [[nodiscard]] std::vector<std::string> recorded_experiments(const std::filesystem::path& folder);
 
 /// The files of an archive, relative to the folder: those that a judgement reads, and SHA256SUMS if it exists.
@@ -64,7 +62,6 @@ private:
     std::vector<results_source> sources_;
 };
 
-/// The report's note about unsealed results.
 inline constexpr const char* unsealed_note =
     "the results are not sealed: the run was not finished, is of an earlier version, or lost its SHA256SUMS. Missing "
     "or altered rows would not be noticed";

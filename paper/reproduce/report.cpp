@@ -151,7 +151,6 @@ std::string paragraph(std::string_view kind, const std::string& markup) {
     return element("p", {{"class", kind}}, markup);
 }
 
-/// A verdict, followed by a sentence.
 std::string verdict_markup(const claim_result& c, const std::string& sentence) {
     return element("span", {{"class", "word"}}, std::string(word_of(c.verdict).word) + ".") + " " +
            markup_text(sentence);

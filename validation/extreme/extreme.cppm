@@ -45,7 +45,6 @@ enum class extreme_size : std::uint8_t { small, quick, full };
 /// flushed denormals are left out if the processor cannot flush them.
 [[nodiscard]] std::vector<extreme_scene> extreme_scenes(extreme_size size);
 
-/// A scene with predefined frames of boxes.
 class known_boxes final : public box_scene {
 public:
     /// @param present 0 or 1, by frame and object; empty if all objects are always present
@@ -69,7 +68,6 @@ private:
     std::size_t frames_run_ = 0;
 };
 
-/// A scene of meshes with predefined poses.
 class known_poses final : public mesh_scene {
 public:
     /// Object i is mesh i.

@@ -50,7 +50,6 @@ template <class Meshes>
     return scene;
 }
 
-/// The box with this corner and these extents.
 [[nodiscard]] inline box box_at(const vec3f& low, const vec3f& extents) {
     box b{low, low};
     for (int k = 0; k < 3; ++k) b.max[k] += extents[k];

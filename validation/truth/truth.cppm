@@ -45,7 +45,6 @@ struct differences {
                                                  std::span<const index_pair> reported, const mesh& a,
                                                  const pose& pose_a, const mesh& b, const pose& pose_b);
 
-/// One frame of a scene.
 struct scene_frame {
     std::span<const box> boxes;   ///< of the objects, in world coordinates
     std::span<const pose> poses;  ///< of the objects; empty in a scene of boxes
@@ -81,7 +80,6 @@ private:
     };
     [[nodiscard]] static sphere sphere_around(const mesh& m);
     void update_deformed_meshes();
-    /// The pairs of objects with overlapping bounding spheres.
     [[nodiscard]] std::vector<index_pair> overlapping_spheres(std::span<const pose> poses) const;
 
     const mesh_scene* meshes_;

@@ -10,7 +10,6 @@ namespace aabblab {
 
 namespace {
 
-/// A scene of an experiment.
 using scene_key = std::pair<std::string, scene_choice>;
 
 /// The rows of a run by scene, then by composition or engine.

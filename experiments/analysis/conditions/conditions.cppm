@@ -85,7 +85,6 @@ private:
     std::vector<std::uint64_t> processes_;
 };
 
-/// The size of the results of an experiment.
 struct extent_of_results {
     std::size_t rows = 0, compositions = 0, scenes = 0, processes = 0, seeds = 0, repeats = 0;
 };

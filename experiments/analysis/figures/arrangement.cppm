@@ -92,7 +92,6 @@ std::pair<double, double> extent_of_labels(const scale& axis, std::size_t name_l
     return {width, height};
 }
 
-/// The label at the end of a line.
 struct end_label {
     const shown_label* label;
     std::vector<std::string> lines;

@@ -113,8 +113,7 @@ private:
     stepped_world world_;
 };
 
-/// Diameters of balls.
-constexpr std::array<const char*, 2> sizes{"1 m", "10 mm"};
+constexpr std::array<const char*, 2> sizes{"1 m", "10 mm"};  // diameters of balls
 
 /// "depth_10_mm"
 std::string figure_name(std::string words) {

@@ -62,7 +62,6 @@ public:
     }
     void style(std::string_view css) { add("style", {}, {}, css); }
 
-    /// The picture as part of a page.
     [[nodiscard]] std::string in_page(std::string_view kind, std::string_view label, double height) const {
         return element("svg",
                        {{"class", kind}, {"role", "img"}, {"aria-label", label}, {"width", "100%"}, {"height", height}},

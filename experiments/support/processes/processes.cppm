@@ -25,7 +25,6 @@ struct program_result {
 [[nodiscard]] program_result run_child(const std::string& program, const std::vector<std::string>& arguments,
                                        const process_options& options);
 
-/// The result of a program that exited.
 struct ended_process {
     int status;
     std::vector<std::string> lines;  ///< its output

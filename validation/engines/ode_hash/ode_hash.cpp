@@ -73,7 +73,6 @@ private:
         update_space();
     }
 
-    /// Updates the space to the boxes.
     void update_space() {
         if (boxes_.empty()) return;
         if (!space_) {
