@@ -56,7 +56,8 @@ public:
         result_.frames_of_all = result_.frames * running_.size();  // if no candidate were stopped early
     }
 
-    /// Rounds reduce the candidates to so few that the final fits into the time; CGAL then checks the finalists.
+    /// Rounds reduce the candidates to so few that the final fits into its half of the time; CGAL then checks the
+    /// finalists.
     race_result run() {
         std::size_t frames = std::min(result_.frames, first_frames);
         double margin = first_margin;

@@ -37,6 +37,7 @@ candidate candidate_of(const aabb::composition& c, bool meshes) {
     return result;
 }
 
+/// A candidate `auto`: every run keeps the named strategies, and selects the others anew.
 candidate candidate_of(const aabb::named_strategies& named, const scene_frames& scene) {
     aabb::composition initial = aabb::complete_composition(named);
     const auto selected = [named, traits = traits_of(scene)](aabb::composition& c) -> const aabb::composition& {
@@ -68,6 +69,7 @@ aabb::scene_traits traits_of(const scene_frames& scene) {
     return aabb::traits_of(scene.meshes()->meshes, scene.objects(), scene.frames());
 }
 
+/// An engine of one stage runs with the default composition of the other; empty if it cannot run the scene.
 std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes) {
     if (!engine.searches_boxes && !(meshes && engine.collides_meshes)) return std::nullopt;
     candidate result;

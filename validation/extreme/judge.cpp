@@ -169,7 +169,7 @@ void require_rejections(const extreme_scene& scene, const std::function<std::uni
     require_rejection(scene, "update", [&] { stage->update(boxes); }, result);
 }
 
-/// Likewise for a narrow phase.
+/// Checks that a narrow phase that was made in IEEE arithmetic rejects each call in the scene's arithmetic.
 void require_rejections(const extreme_scene& scene, const std::function<std::unique_ptr<local_stage>()>& make,
                         extreme_result& result) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();

@@ -65,7 +65,7 @@ private:
             const Eigen::Vector3d before = p.at;
             p.at = unit(before * step_cosine_ + p.direction * step_sine_);
             const Eigen::Vector3d ahead = p.direction * step_cosine_ - before * step_sine_;
-            p.direction = unit(ahead - p.at * dot(ahead, p.at));
+            p.direction = unit(ahead - p.at * dot(ahead, p.at));  // tangent in spite of rounding
         }
     }
 

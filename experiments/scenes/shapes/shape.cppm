@@ -31,7 +31,7 @@ struct ring_counts {
     for (auto around = static_cast<std::uint32_t>(std::fmax(3, ideal * 0.7)); around <= ideal * 1.4; ++around) {
         const double rings = std::fmax(3, std::floor(half / around + 0.5));
         const double off_shape = std::fabs(around / ideal - 1);
-        const double error = std::fabs(rings * around - half) + off_shape / 2;
+        const double error = std::fabs(rings * around - half) + off_shape / 2;  // the shape only breaks ties
         if (error >= best_error) continue;
         best = {static_cast<std::uint32_t>(rings), around};
         best_error = error;

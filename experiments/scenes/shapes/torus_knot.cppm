@@ -21,7 +21,7 @@ struct torus_knot {
     /// Puts rings of vertices along the knot, and closes the tube with the band from the last ring to the first.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         // The length of the knot is about 12.5 times the circumference of the tube.
-        const auto [rings, around] = rings_for(c.triangles, 12.5);
+        const auto [rings, around] = rings_for(c.triangles, /*aspect=*/12.5);
         aabb::mesh m;
         for (std::uint32_t ring = 0; ring < rings; ++ring)
             for (std::uint32_t i = 0; i < around; ++i)

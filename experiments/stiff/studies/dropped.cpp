@@ -93,7 +93,7 @@ private:
         const std::span<const aabb::contact> contacts = balls.contacts();
         for (std::size_t i = 0; i < contacts.size(); ++i) {
             const auto& [a, b, s, t] = contacts[i];
-            if (i > 0 && contacts[i - 1].a == a && contacts[i - 1].b == b) continue;
+            if (i > 0 && contacts[i - 1].a == a && contacts[i - 1].b == b) continue;  // once per pair of bodies
             sum += world_.law.stiffness * overlap_volume(placed(a), /*is_floor=*/a == 0, placed(b));
         }
         return sum;

@@ -21,7 +21,7 @@ aabb::mesh comb_mesh() {
     aabb::mesh teeth;
     for (std::uint32_t i = 0; i < tips * tips; ++i) {
         const std::uint32_t row = i / tips;
-        const auto x = static_cast<float>(distance * (i % tips - 0.5 * tips) - 1);
+        const auto x = static_cast<float>(distance * (i % tips - 0.5 * tips) - 1);  // it slides by 2 from here
         const auto y = static_cast<float>(distance * (row - 0.5 * tips));
         for (const aabb::vec3f& v :
              {aabb::vec3f{x, y, 0}, {x + 0.06F, y + 0.08F, 0.125F}, {x - 0.06F, y - 0.08F, 0.125F}})

@@ -14,6 +14,8 @@ public:
     [[nodiscard]] std::vector<part_bytes> bytes() const override { return {{"engine", bytes_of(ids_, min_, max_)}}; }
 
 private:
+    using block_hits = std::array<std::uint32_t, 512>;  // 1 where a box of the block overlaps
+
     /// Copies the bounds into an array for each axis and end, as loops that vectorise need them.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         ids_.assign(ids.begin(), ids.end());
@@ -29,7 +31,7 @@ private:
 
     /// Tests blocks without branches, which vectorises, and looks for pairs only in blocks that have any.
     void find_pairs(std::vector<index_pair>& pairs) override {
-        std::array<std::uint32_t, 512> hits{};
+        block_hits hits{};
         for (std::size_t i = 0; i < ids_.size(); ++i)
             for (std::size_t begin = i + 1; begin < ids_.size(); begin += hits.size()) {
                 const std::size_t count = std::min(hits.size(), ids_.size() - begin);
@@ -40,8 +42,7 @@ private:
     }
 
     /// Tests box i against `count` boxes from `begin` on. @return whether any overlaps.
-    [[nodiscard]] bool test_block(std::size_t i, std::size_t begin, std::size_t count,
-                                  std::array<std::uint32_t, 512>& hits) const {
+    [[nodiscard]] bool test_block(std::size_t i, std::size_t begin, std::size_t count, block_hits& hits) const {
         const box tested{{min_[0][i], min_[1][i], min_[2][i]}, {max_[0][i], max_[1][i], max_[2][i]}};
         const std::array<const float*, 3> low = {&min_[0][begin], &min_[1][begin], &min_[2][begin]};
         const std::array<const float*, 3> high = {&max_[0][begin], &max_[1][begin], &max_[2][begin]};

@@ -157,7 +157,7 @@ private:
             least_level = std::min(least_level, level_of(extent));
             greatest_level = std::max(greatest_level, level_of(extent));
         }
-        least_level = std::max(least_level, level_of(farthest) - 30);
+        least_level = std::max(least_level, level_of(farthest) - 30);  // indices below 2^30
         dHashSpaceSetLevels(space, least_level, std::max(least_level, greatest_level));
     }
 
