@@ -80,8 +80,9 @@ std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentatio
     aabb::work_counters before;
     std::vector<frame_sample> samples;
     run_frames(scene, runner, [&](const searched_frame& frame) {
-        frame_sample sample{
-            1e6 * (frame.took.update.cpu_ms + frame.took.search.cpu_ms), static_cast<double>(frame.pairs.size()), {}};
+        frame_sample sample{.ns = 1e6 * (frame.took.update.cpu_ms + frame.took.search.cpu_ms),
+                            .pairs = static_cast<double>(frame.pairs.size()),
+                            .work = {}};
         const aabb::work_counters work = runner.counters();
         for (std::size_t k = 0; k < work.counts.size(); ++k) sample.work.counts[k] = work.counts[k] - before.counts[k];
         before = work;

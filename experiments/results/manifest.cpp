@@ -140,7 +140,7 @@ std::string parameters_json(const scene_choice& scene) {
 
 /// Sets a scene's settings and meshes from a JSON object; false if the text is none.
 bool set_parameters(scene_choice& scene, const std::string& text) {
-    const json parameters = json::parse(text, nullptr, false);
+    const json parameters = json::parse(text, nullptr, /*allow_exceptions=*/false);
     if (!parameters.is_object()) return false;
     for (const auto& [name, value] : parameters.items()) {
         if (name == "meshes") {

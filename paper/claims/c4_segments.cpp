@@ -53,12 +53,14 @@ figure figure_of(const std::string& name, const condition& c) {
 table automatic_table(const std::vector<condition>& conditions) {
     table t = factors_table(factors_of(conditions));
     const std::vector<std::vector<std::string>> places = std::exchange(t.rows, {});
+    constexpr int beyond_limit = segments_wanted.back();  // more than the limit allows anywhere
     t.columns.insert(t.columns.end(), {{"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}});
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
-            const endpoint ratio = endpoint_of(c, cut_into(axes, "auto"), cut_into(axes, "256"), "frame_cpu_ms");
+            const endpoint ratio =
+                endpoint_of(c, cut_into(axes, "auto"), cut_into(axes, std::to_string(beyond_limit)), "frame_cpu_ms");
             const auto chosen = median_of(c, cut_into(axes, "auto"), measured("segments_got"));
-            const auto limit = segments_got(c, axes, 256);
+            const auto limit = segments_got(c, axes, beyond_limit);
             if (!ratio.is_known() || !chosen || !limit) continue;
             std::vector<std::string>& cells =
                 t.rows.emplace_back(places[static_cast<std::size_t>(&c - conditions.data())]);
@@ -92,7 +94,7 @@ draft c4_claim(const measurements& m) {
         std::string number;
         std::string name;
     };
-    const segments limit{"256", "the limit"};  // more than the limit allows anywhere
+    const segments limit{std::to_string(segments_wanted.back()), "the limit"};  // more than the limit allows anywhere
     const auto ratio = [](const condition& c, int axes, const segments& finer, const segments& coarser) {
         return endpoint_of(c, cut_into(axes, finer.number), cut_into(axes, coarser.number), "frame_cpu_ms",
                            {{"axes", std::to_string(axes)}, {"segments", finer.name}, {"over", coarser.name}});

@@ -74,10 +74,11 @@ checksums_by_file stated_checksums(const std::filesystem::path& file) {
     for (std::string line; std::getline(in, line);) {
         ++number;
         while (line.ends_with('\r')) line.pop_back();
-        if (line.size() < 67 || line.substr(64, 2) != "  ")
+        constexpr std::size_t digits = 64, name = digits + 2;
+        if (line.size() <= name || line.substr(digits, 2) != "  ")
             throw aabb::input_error(
                 fmt::format("{}:{}: expected a checksum of 64 digits, two blanks and a file", file.string(), number));
-        checksums[line.substr(66)] = line.substr(0, 64);
+        checksums[line.substr(name)] = line.substr(0, digits);
     }
     return checksums;
 }

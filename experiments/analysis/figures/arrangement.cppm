@@ -236,7 +236,7 @@ private:
     double place_x_ticks() {
         layout_.x_name_length = longest_name;
         layout_.x_ticks = drawing_.x.ticks;
-        if (column_count_ > 1) column_gap_ = 1.5;
+        if (column_count_ > 1) column_gap_ = 1.5;  // at least
         std::vector<tick> labelled;
         std::ranges::copy_if(drawing_.x.ticks, std::back_inserter(labelled),
                              [](const tick& t) { return !t.label.empty(); });
@@ -261,7 +261,8 @@ private:
             return height;
         }
         // Slanted labels end at their tick; vertical ones replace them if they overlap or narrow the plot too much.
-        constexpr double slant = 30 * std::numbers::pi / 180;
+        constexpr int slant_degrees = 30;
+        constexpr double slant = slant_degrees * std::numbers::pi / 180;
         constexpr double widest_margin = 16;    // nearly half of the figure
         constexpr double least_distance = 0.8;  // of the lines of slanted text
         layout_.x_name_length = longest_name;
@@ -272,7 +273,7 @@ private:
             left = std::max(left, width_of(t.label) * std::cos(slant) - drawing_.x.place(t.at) * plot + gap);
         }
         if (slot * std::sin(slant) >= least_distance && left <= widest_margin) {
-            layout_.x_name_angle = 30;
+            layout_.x_name_angle = slant_degrees;
             left_margin_ = left;
             return longest * std::sin(slant) + 0.5;
         }

@@ -247,7 +247,7 @@ std::vector<std::string> caption_lines(const picture_data& data, const picture_c
     return lines;
 }
 
-/// Explains the colours and lines of the drawing.
+/// Explains the colours and lines of the drawing. Lengths are in pixels.
 svg_picture legend(std::size_t paths, bool has_huge) {
     svg_picture keys;
     keys.rectangle("apart", {0, -11, 13, 13});
@@ -264,7 +264,7 @@ svg_picture legend(std::size_t paths, bool has_huge) {
 
 }  // namespace
 
-/// Draws the first and the last frame as SVG, under a caption and a legend.
+/// Draws the first and the last frame as SVG, under a caption and a legend. Lengths are in pixels.
 std::string picture_of(const picture_data& data, const picture_caption& caption) {
     const view_plane view(data.world(), data.sides());
     const frame_drawing first = drawing_of(data.first());

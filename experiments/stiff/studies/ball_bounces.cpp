@@ -53,7 +53,7 @@ double order_of(std::span<const double> steps, std::span<const double> errors) {
 
 /// Adds, without a dashpot, each integrator's error at the smallest step and its order, the slope over step sizes.
 void measure_convergence(const stiff_setting& setting, stiff_result& result) {
-    const oscillator contact{1e3, 0};
+    const oscillator contact{.frequency = 1e3, .damping = 0};
     constexpr std::array steps = {0.4, 0.2, 0.1, 0.05};
     for (const integrator_info& i : integrators()) {
         std::vector<double> errors;

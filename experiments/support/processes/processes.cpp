@@ -123,7 +123,7 @@ void kill_descendants() {
     std::signal(WTERMSIG(status), SIG_DFL);
     sigprocmask(SIG_SETMASK, &none, nullptr);
     kill(keeper, WTERMSIG(status));
-    _exit(127);
+    _exit(127);  // not reached
 }
 
 /// Ends at the end of its standard input, which all keepers hold open, too.
@@ -196,7 +196,7 @@ program_result run_child(const std::string& program, const std::vector<std::stri
         if (!options.has_keeper || fork_under_keeper(output.ends[1], start_errors.ends[1], parent))
             exec_program(pointers.data(), options, output.ends[1]);
         const int why = errno;
-        _exit(write(start_errors.ends[1], &why, sizeof why) < 0 ? 126 : 127);
+        _exit(write(start_errors.ends[1], &why, sizeof why) < 0 ? 126 : 127);  // as a shell does
     }
     output.close_end(1);
     start_errors.close_end(1);

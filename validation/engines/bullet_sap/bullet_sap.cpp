@@ -25,7 +25,7 @@ box world_around(const box& bounds) {
     box world = bounds;
     for (int k = 0; k < 3; ++k) {
         const float far = std::max(std::abs(bounds.min[k]), std::abs(bounds.max[k]));
-        const float margin = (bounds.max[k] - bounds.min[k]) / 2 + far / 1024 + 1e-20F;
+        const float margin = (bounds.max[k] - bounds.min[k]) / 2 + far / 1024 + 1e-20F;  // also of a flat box
         world.min[k] -= margin;
         world.max[k] += margin;
     }
