@@ -110,7 +110,6 @@ private:
     std::set<std::string> texts_;
 };
 
-/// A key with its alternatives.
 using alternatives = std::pair<std::string, std::vector<located_text>>;
 
 /// Reads a file up to one byte beyond `most`, so that the caller can detect that it is too long.

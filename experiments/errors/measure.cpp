@@ -62,7 +62,6 @@ private:
 /// A batch of this size stays in the cache, together with its results.
 constexpr std::size_t pairs_in_batch = 4096;
 
-/// Runs the methods of a study on one set of pairs.
 class error_run {
 public:
     /// @param in_double leaves out the tests that take floats only

@@ -12,7 +12,6 @@ class exact_sum {
 public:
     void clear() noexcept { parts_.clear(); }
     void add(double x);
-    /// Sets the sum to |a| - |b|.
     void set_difference_of_magnitudes(const exact_sum& a, const exact_sum& b);
     [[nodiscard]] int sign() const noexcept;
 

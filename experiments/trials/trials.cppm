@@ -246,7 +246,6 @@ struct protocol {
 
 // Runs in child processes, since they may exceed their time or memory.
 
-/// How the work in a child process ended.
 enum class ending : std::uint8_t {
     done,
     stopped,        ///< at its time limit

@@ -24,7 +24,6 @@ std::string first_difference(const aabb::set_difference<T>& d) {
     return text_of(d.false_positives[0]) + (d.repeated ? " is reported more than once" : " is a false positive");
 }
 
-/// Compares one candidate with the ground truth.
 class validated_runner {
 public:
     validated_runner(const candidate& tested, const scene_choice& choice, const scene_frames& scene)

@@ -139,7 +139,6 @@ struct draft {
                   quantity compared = quantity::time);
 };
 
-/// A claim and the function that drafts it.
 struct claim_source {
     listed_claim listed;
     draft (*make)(const measurements& m);

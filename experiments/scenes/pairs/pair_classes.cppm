@@ -22,7 +22,6 @@ public:
     pair_source(std::string_view pair_class, std::uint64_t seed);
     ~pair_source();
 
-    /// Fills the span with the next pairs.
     void next(std::span<aabb::triangle_pair<Real>> pairs);
 
 private:

@@ -63,7 +63,6 @@ private:
 /// "mean displacement per frame: 0.1 of the mean extent, 0.063 of the mean spacing"
 [[nodiscard]] std::string displacement_text(const picture_data& data);
 
-/// The text above the drawing.
 struct picture_caption {
     std::string name;
     std::string summary;
