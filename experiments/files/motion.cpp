@@ -14,7 +14,7 @@ struct step {
     aabb::pose pose;
 };
 
-/// Reads the rest of a line: twelve numbers, the rows of [R t]. Rejects a matrix R that is no rotation.
+/// Reads the rest of a line: twelve numbers, the rows of [R t]. Rejects a singular matrix R.
 aabb::pose read_pose(text_scanner& in) {
     aabb::pose p;
     for (std::size_t row = 0; row < 3; ++row) {
@@ -24,7 +24,7 @@ aabb::pose read_pose(text_scanner& in) {
     }
     if (in.has_word()) in.fail_expected("the end of the line after frame, object and twelve numbers", in.word());
     try {
-        aabb::require_rigid(p);
+        aabb::require_full_rank(p);
     } catch (const aabb::input_error& error) {
         in.fail(error.what());
     }

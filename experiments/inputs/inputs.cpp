@@ -88,7 +88,7 @@ bool is_mesh_name(const std::string& name) {
 
 constexpr std::size_t most_poses = 10'000'000;  // as in motions; a pipe could otherwise deliver poses without end
 
-/// Parses the rows of [R t], and rejects a matrix R that is no rotation.
+/// Parses the rows of [R t], and rejects a singular matrix R.
 aabb::pose parse_pose(const std::vector<std::string>& words) {
     if (words.size() != 12)
         throw aabb::input_error(
@@ -102,7 +102,7 @@ aabb::pose parse_pose(const std::vector<std::string>& words) {
         else
             pose.rotation[3 * row + i % 4] = number;
     }
-    aabb::require_rigid(pose);
+    aabb::require_full_rank(pose);
     return pose;
 }
 

@@ -20,7 +20,7 @@ concept EigenTransform = requires(const T& from, T& to) {
     to.translation()(0) = from.translation()(0);
 };
 
-/// @throws input_error if the transform is not rigid (`require_rigid`), as an affine one may be
+/// @throws input_error if the transform is singular (`require_full_rank`)
 template <EigenTransform T>
 [[nodiscard]] inline pose to_pose(const T& transform) {
     pose p;
@@ -28,7 +28,7 @@ template <EigenTransform T>
         for (int j = 0; j < 3; ++j) p.rotation[static_cast<std::size_t>(3 * i + j)] = transform.linear()(i, j);
         p.translation[i] = transform.translation()(i);
     }
-    require_rigid(p);
+    require_full_rank(p);
     return p;
 }
 

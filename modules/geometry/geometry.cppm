@@ -9,6 +9,7 @@ export import :index_pair;
 export import :intersection;
 export import :mesh;
 export import :pose;
+export import :posed_orientations;
 export import :predicates;
 export import :triangle_box;
 export import :points;

@@ -2,12 +2,13 @@ export module aabb.geometry:pose;
 
 import aabb.std;
 import :box;
+import :predicates;
 
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
 export namespace aabb {
 
-/// A rigid motion x -> R x + t in double; `rotation` is row-major.
+/// An affine map x -> R x + t in double, by default a rigid motion; `rotation` is row-major.
 struct pose {
     std::array<double, 9> rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     vec3d translation = {0, 0, 0};
@@ -27,21 +28,34 @@ struct pose {
     return worst;
 }
 
-/// Rejects poses that are not rigid: NaN, infinity, R not orthonormal within 1e-6, or a reflection.
+/// The sign of det R, exactly.
+[[nodiscard]] inline int determinant_sign(const pose& p) noexcept {
+    const auto row = [&](std::size_t i) {
+        return vec3d{p.rotation[3 * i], p.rotation[3 * i + 1], p.rotation[3 * i + 2]};
+    };
+    return exact_side({0, 0, 0}, row(0), row(1), row(2));
+}
+
+/// Rejects poses that are no affine maps of full rank.
 /// @throws input_error with the fault
-inline void require_rigid(const pose& p) {
-    for (const double r : p.rotation)
-        if (!std::isfinite(r)) throw input_error("the pose is not rigid: its rotation has an entry that is not finite");
+inline void require_full_rank(const pose& p) {
+    if (!std::ranges::all_of(p.rotation, [](double r) { return std::isfinite(r); }))
+        throw input_error("the pose has a matrix with an entry that is not finite");
     for (const double t : p.translation.at)
         if (!std::isfinite(t)) throw input_error("the pose has a translation that is not finite");
+    if (determinant_sign(p) == 0) throw input_error("the pose is singular: the determinant of its matrix is 0");
+}
+
+/// Rejects poses that are not rigid, for what needs lengths to stay: R not orthonormal within 1e-6, or a reflection.
+/// @throws input_error with the fault, also as `require_full_rank`
+inline void require_rigid(const pose& p) {
+    require_full_rank(p);
     if (orthonormality_error(p) > 1e-6)
         throw input_error(
             "the pose is not rigid: its rotation is not orthonormal within 1e-6 (R Rᵀ differs from 1 by " +
             std::to_string(orthonormality_error(p)) + ")");
-    const auto& r = p.rotation;
-    const double determinant =
-        r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
-    if (determinant < 0) throw input_error("the pose is not rigid: its rotation is a reflection (determinant -1)");
+    if (determinant_sign(p) < 0)
+        throw input_error("the pose is not rigid: its rotation is a reflection (determinant -1)");
 }
 
 /// A motion x -> Σ columns[j] x[j] + shift of boxes, whose bounds must be moved outward by the margin.
@@ -78,57 +92,40 @@ struct box_motion {
     return distance + length(between);
 }
 
-/// Transforms vertices and boxes of mesh B into the frame of mesh A.
+/// Transforms vertices and boxes of mesh B into the frame of mesh A: y = Rᴬ⁻¹(Rᴮ x + (tᴮ - tᴬ)).
 ///
-/// The image of a vertex defines the ground truth of every triangle test: z = Rᴬᵀ(Rᴮ x + (tᴮ - tᴬ)) in double, each
-/// sum left to right without fused multiply-add, rounded to float once. Translations are subtracted first, so that two
-/// meshes moved together keep their images bit for bit, as long as tᴮ - tᴬ does not change.
+/// Exact tests decide on the true images, in real arithmetic; here these are rounded, with bounds of the error. Other
+/// tests get the images as they are: in double, each sum left to right without fused multiply-add, rounded to float
+/// once. Translations are subtracted first, so that two meshes moved together keep their images bit for bit, as long as
+/// tᴮ - tᴬ does not change. Under equal poses, the images are the vertices.
 class relative_pose {
 public:
-    /// The motion from the frame of mesh B at pose b to that of mesh A at pose a.
+    /// The motion from the frame of mesh B at pose b to that of mesh A at pose a, of full rank (`require_full_rank`).
     /// @param bounds box of the vertices of B in B's frame; only boxes and vertices inside it may be transformed
-    /// @throws input_error if their images may exceed the range of float
+    /// @throws input_error if their images may exceed the range of float, or if rounding leaves no inverse of a's
+    /// matrix
     relative_pose(const pose& a, const pose& b, const box& bounds) {
-        const vec3d& from = a.translation;
-        const vec3d& to = b.translation;
-        between_ = lanes{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-        for (std::size_t k = 0; k < 3; ++k) {
-            columns_b_[k] = lanes{b.rotation[k], b.rotation[3 + k], b.rotation[6 + k]};
-            rows_a_[k] = lanes{a.rotation[3 * k], a.rotation[3 * k + 1], a.rotation[3 * k + 2]};
-        }
-        turns_a_ = turns(a);
-        turns_b_ = turns(b);
-        moves_ = turns_a_ || turns_b_ || from != to;
-        // The magnitudes of the terms of an image add up to these sums, before and after the rotation into A's frame.
-        lanes world_sum = magnitudes(between_);
-        for (int j = 0; j < 3; ++j)
-            world_sum +=
-                magnitudes(columns_b_[j]) * std::max(std::abs(double{bounds.min[j]}), std::abs(double{bounds.max[j]}));
-        lanes image_sum{};
-        for (int k = 0; k < 3; ++k) {
-            image_sum += magnitudes(rows_a_[k]) * world_sum[k];
-            shift_ += rows_a_[k] * between_[k];
-            for (int j = 0; j < 3; ++j) turn_[j] += rows_a_[k] * columns_b_[j][k];
-        }
-        for (int j = 0; j < 3; ++j) absolute_turn_[j] = magnitudes(turn_[j]);
-        // k roundings of each term change a sum by at most γ_k = k u / (1 - k u) times its magnitudes. A vertex's image
-        // takes 7; the bounds of a box take 10: 3 in the matrix product or the shift, 5 in the centre or 6 in the
-        // radius, to which the margin is added, and 1 in their sum. 32 u exceeds γ₇ + γ₁₀ and the margin's own error.
-        constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
-        for (int i = 0; i < 3; ++i) margin_[i] = 32 * unit * image_sum[i] + std::numeric_limits<double>::denorm_min();
-        if (!is_valid((*this)(bounds)))
-            throw input_error("seen from one mesh, the other lies beyond the range of float");
+        if (a == b)
+            set(pose{}, pose{}, bounds);
+        else
+            set(a, b, bounds);
     }
 
     /// False if every image is known to equal the vertex.
     [[nodiscard]] inline bool moves() const noexcept { return moves_; }
+
+    /// Whether lengths are kept, within 2^-18 of their size.
+    [[nodiscard]] inline bool is_rigid() const noexcept { return is_rigid_; }
+
+    /// A bound on the distance, along each axis, between a vertex's image and its true image; zero without motion.
+    [[nodiscard]] inline const vec3f& image_error() const noexcept { return image_error_; }
 
     /// The image of a vertex of B, as defined above.
     [[nodiscard]] inline vec3f operator()(const vec3f& x) const noexcept {
         const lanes turned =
             (columns_b_[0] * double{x[0]} + columns_b_[1] * double{x[1]}) + columns_b_[2] * double{x[2]};
         const lanes world = turned + between_;
-        return in_float((rows_a_[0] * world[0] + rows_a_[1] * world[1]) + rows_a_[2] * world[2]);
+        return in_float((inverse_a_[0] * world[0] + inverse_a_[1] * world[1]) + inverse_a_[2] * world[2]);
     }
 
     [[nodiscard]] inline triangle3f operator()(const triangle3f& t) const noexcept {
@@ -146,12 +143,13 @@ public:
         if (!turns_a_) return world;
         std::array<Doubles, 3> image;
         for (int i = 0; i < 3; ++i)
-            image[i] = (rows_a_[0][i] * world[0] + rows_a_[1][i] * world[1]) + rows_a_[2][i] * world[2];
+            image[i] = (inverse_a_[0][i] * world[0] + inverse_a_[1][i] * world[1]) + inverse_a_[2][i] * world[2];
         return image;
     }
 
-    /// A box in A's frame that contains the image of every vertex in the box. The bounds are computed in double, grown
-    /// by the margin derived above and rounded to nearest like the images. Rounding is monotone, so no image leaves it.
+    /// A box in A's frame that overlaps every box of floats in which the true image of a point in `b` lies, and
+    /// contains the image of every vertex in `b`. The bounds are computed in double, grown by the margin derived below
+    /// and rounded to nearest: rounding is monotone and keeps floats.
     [[nodiscard]] inline box operator()(const box& b) const noexcept {
         lanes centre = shift_;
         lanes radius = margin_;
@@ -162,7 +160,7 @@ public:
         return {in_float(centre - radius), in_float(centre + radius)};
     }
 
-    /// The motion of boxes to A's frame. Images of vertices stay inside if the bounds are rounded to nearest, as they.
+    /// The motion of boxes to A's frame, with bounds to be rounded to nearest as above.
     [[nodiscard]] inline box_motion to_boxes() const noexcept {
         box_motion there;
         for (int i = 0; i < 3; ++i) {
@@ -180,7 +178,7 @@ public:
     /// inverted matrix within 3 u; sums of six terms round five times, so 64 u of all magnitudes covers these errors.
     /// Rounding the image to float adds 2^-24 of the magnitudes whose 2^-48 is the margin, and half a denormal, 2^-150;
     /// the bounds are twice and 16 times as large.
-    /// @param bounds box of A
+    /// @param bounds box of A; `is_rigid` must hold
     [[nodiscard]] inline box_motion back_to_boxes(const box& bounds) const noexcept {
         const auto cross = [](const lanes& p, const lanes& q) {
             return vec3d{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
@@ -215,6 +213,81 @@ public:
 
 private:
     using lanes = double __attribute__((vector_size(32)));  // x, y, z and an unused lane
+    static constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
+
+    void set(const pose& a, const pose& b, const box& bounds) {
+        const vec3d& from = a.translation;
+        const vec3d& to = b.translation;
+        between_ = lanes{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+        for (std::size_t k = 0; k < 3; ++k) columns_b_[k] = lanes{b.rotation[k], b.rotation[3 + k], b.rotation[6 + k]};
+        turns_a_ = turns(a);
+        turns_b_ = turns(b);
+        moves_ = turns_a_ || turns_b_ || from != to;
+        is_rigid_ = (!turns_a_ || orthonormality_error(a) <= 1e-6) && (!turns_b_ || orthonormality_error(b) <= 1e-6);
+        const double inverse_error = invert(a);
+        // The magnitudes of the terms of an image add up to these sums, before and after the map into A's frame.
+        lanes world_sum = magnitudes(between_);
+        for (int j = 0; j < 3; ++j)
+            world_sum +=
+                magnitudes(columns_b_[j]) * std::max(std::abs(double{bounds.min[j]}), std::abs(double{bounds.max[j]}));
+        lanes image_sum{};
+        for (int k = 0; k < 3; ++k) {
+            image_sum += magnitudes(inverse_a_[k]) * world_sum[k];
+            shift_ += inverse_a_[k] * between_[k];
+            for (int j = 0; j < 3; ++j) turn_[j] += inverse_a_[k] * columns_b_[j][k];
+        }
+        for (int j = 0; j < 3; ++j) absolute_turn_[j] = magnitudes(turn_[j]);
+        const double greatest = std::max({image_sum[0], image_sum[1], image_sum[2]});
+        for (int i = 0; i < 3; ++i) {
+            // An image rounds any term at most 7 times, a box at most 10 times (3 in the product of the matrices or the
+            // shift, 5 to the centre or 6 to the radius with the margin, and their sum): the errors are within
+            // γ_k = k u / (1 - k u) times the sum of the terms' magnitudes, and 32 u covers both. The true image
+            // y = Rᴬ⁻¹ w is further from X w, by (I - X Rᴬ) y: at most ρ |y| <= ρ / (1 - ρ) |X w| < 2 ρ |X w|.
+            margin_[i] =
+                32 * unit * image_sum[i] + 2 * inverse_error * greatest + std::numeric_limits<double>::denorm_min();
+        }
+        const box image = (*this)(bounds);
+        if (!is_valid(image)) throw input_error("seen from one mesh, the other lies beyond the range of float");
+        // Rounding to float adds 2^-24 of the magnitude, or half the least denormal.
+        if (moves_)
+            for (int i = 0; i < 3; ++i) {
+                const double largest = std::max(std::abs(double{image.min[i]}), std::abs(double{image.max[i]}));
+                image_error_[i] = static_cast<float>((largest * 0x1p-24 + margin_[i]) * (1 + 0x1p-20) + 0x1p-148);
+            }
+    }
+
+    /// Sets `inverse_a_` to X ≈ Rᴬ⁻¹, the adjugate over the determinant.
+    /// @returns ρ, a bound of the greatest sum of magnitudes in a row of I - X Rᴬ
+    [[nodiscard]] double invert(const pose& a) {
+        if (!turns_a_) {
+            for (int k = 0; k < 3; ++k) inverse_a_[k][k] = 1;
+            return 0;
+        }
+        const auto row = [&](int i) {
+            const auto* const r = &a.rotation[static_cast<std::size_t>(3 * (i % 3))];
+            return vec3d{r[0], r[1], r[2]};
+        };
+        const double determinant = dot(row(0), cross(row(1), row(2)));
+        for (int k = 0; k < 3; ++k) {
+            const vec3d column = cross(row(k + 1), row(k + 2));
+            inverse_a_[k] = lanes{column[0], column[1], column[2]} / determinant;
+        }
+        lanes sums{};
+        for (int j = 0; j < 3; ++j) {
+            lanes entry{};
+            entry[j] = 1;
+            lanes magnitude = entry;  // of the terms of an entry, of which each is rounded at most four times
+            for (int k = 0; k < 3; ++k) {
+                entry -= inverse_a_[k] * row(k)[j];
+                magnitude += magnitudes(inverse_a_[k] * row(k)[j]);
+            }
+            sums += magnitudes(entry) + 5 * unit * magnitude;
+        }
+        const double error = std::max({sums[0], sums[1], sums[2]});
+        const bool is_finite = std::isfinite(sums[0]) && std::isfinite(sums[1]) && std::isfinite(sums[2]);
+        if (!is_finite || error > 0.25) throw input_error("the pose of the first mesh is too close to a singular one");
+        return error;
+    }
 
     [[nodiscard]] static inline lanes magnitudes(const lanes& v) noexcept { return __builtin_elementwise_abs(v); }
     [[nodiscard]] static inline vec3f in_float(const lanes& v) noexcept {
@@ -227,40 +300,35 @@ private:
     bool turns_a_ = false;
     bool turns_b_ = false;
     bool moves_ = false;
+    bool is_rigid_ = false;
     std::array<lanes, 3> columns_b_{};
-    std::array<lanes, 3> rows_a_{};
-    lanes between_{};              // tᴮ - tᴬ
-    std::array<lanes, 3> turn_{};  // columns of RᴬᵀRᴮ
+    std::array<lanes, 3> inverse_a_{};  // columns of X
+    lanes between_{};                   // tᴮ - tᴬ
+    std::array<lanes, 3> turn_{};       // columns of X Rᴮ
     std::array<lanes, 3> absolute_turn_{};
-    lanes shift_{};  // Rᴬᵀ(tᴮ - tᴬ)
+    lanes shift_{};  // X (tᴮ - tᴬ)
     lanes margin_{};
+    vec3f image_error_{};
 };
 
-/// The world box of a mesh at a pose, for the broad phase. It is grown so that two meshes whose triangles intersect in
-/// A's frame (`relative_pose`) always have overlapping world boxes.
+/// The world box of a mesh at a pose, for the broad phase: it contains every R x + t, for x in the mesh's box, up to
+/// the rounding of its bounds to nearest, which is monotone, so that boxes of meshes that meet always overlap.
 ///
-/// The two frames differ, over a length L = A's radius plus B's diameter, to which each box adds its own part, by
-/// - rounding of images to float, at most 2^-24 L, or half the least denormal, 2^-150;
-/// - the deviation of a pose from a rotation, at most 1e-6 per entry of R Rᵀ (`require_rigid`), so 3e-6 L;
-/// - rounding in double of images and of the sums below, at most 16 u (|t| + L), u = 2^-53.
-/// The box grows by 2^-18 L > (2^-24 + 3e-6) L, 2^-48 (|t| + L) and 2^-146.
+/// A bound has at most six roundings of a term, so that 2^-48 of the magnitudes, 32 u, covers them.
 [[nodiscard]] inline box world_bounds(const box& local, const pose& p) noexcept {
-    double length = 0;
-    for (int k = 0; k < 3; ++k)
-        length += std::max(std::abs(double{local.min[k]}), std::abs(double{local.max[k]})) +
-                  (double{local.max[k]} - double{local.min[k]});
     box world;
     for (int i = 0; i < 3; ++i) {
         double low = p.translation[i];
         double high = p.translation[i];
+        double magnitude = std::abs(p.translation[i]);
         for (int j = 0; j < 3; ++j) {
             const double u = p.rotation[3 * i + j] * local.min[j];
             const double v = p.rotation[3 * i + j] * local.max[j];
             low += std::min(u, v);
             high += std::max(u, v);
+            magnitude += std::max(std::abs(u), std::abs(v));
         }
-        const double growth = length * 0x1p-18 + (std::abs(p.translation[i]) + length) * 0x1p-48 + 0x1p-146;
-        // Rounding to nearest is monotone, so both boxes of a pair may be rounded alike.
+        const double growth = magnitude * 0x1p-48 + 0x1p-1070;
         world.min[i] = static_cast<float>(low - growth);
         world.max[i] = static_cast<float>(high + growth);
     }

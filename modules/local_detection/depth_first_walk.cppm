@@ -6,6 +6,7 @@ export module aabb.local_detection:depth_first_walk;
 import aabb.counters;
 import aabb.std;
 import :model;
+import :triangle_query;
 
 export namespace aabb {
 
@@ -13,11 +14,13 @@ export namespace aabb {
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class depth_first_walk {
 public:
+    using query = triangle_query<Tree, Triangle>;
+
     /// Passes each pair of intersecting triangles (a of A, b of B) to `emit` as a list of one, until it returns true.
     template <class Emit>
-    void find_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+    void find_pairs(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                     walk_goal /*goal*/, Emit emit) {
-        begin();
+        begin(test.image_error());
         push_if_overlapping(a, b, to_a, {a.root(), b.root(), to_a(b.bounds())}, new_node::both);
         static_cast<void>(test_pending(test, a, b, to_a, emit));
     }
@@ -25,9 +28,9 @@ public:
     /// Passes each pair of intersecting triangles of one mesh to `emit`, in either order, until it returns true, by
     /// testing the two children of each node against each other.
     template <class Emit>
-    void find_self_pairs(const Triangle& test, const model<Tree>& m, Emit emit) {
+    void find_self_pairs(const query& test, const model<Tree>& m, Emit emit) {
         constexpr same_frame identity;
-        begin();
+        begin({});
         nodes_.assign(1, m.root());
         while (!nodes_.empty()) {
             const cursor node = nodes_.back();
@@ -65,8 +68,9 @@ private:
     enum class new_node : std::uint8_t { a, b, both };
 
     /// Discards the state of an earlier query, which may have stopped early.
-    void begin() {
+    void begin(const vec3f& image_error) {
         require_ieee_arithmetic();
+        image_error_ = image_error;
         stack_.clear();
         image_of_ = no_triangle;
     }
@@ -75,7 +79,7 @@ private:
     /// pending or `emit` returns true.
     /// @returns whether it did
     template <class Frame, class Emit>
-    [[nodiscard]] bool test_pending(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a,
+    [[nodiscard]] bool test_pending(const query& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a,
                                     Emit& emit) {
         const Tree& tree_a = a.tree();
         const Tree& tree_b = b.tree();
@@ -103,10 +107,11 @@ private:
     }
 
     template <class Frame>
-    [[nodiscard]] bool triangles_intersect(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
+    [[nodiscard]] bool triangles_intersect(const query& test, const model<Tree>& a, const model<Tree>& b,
                                            const Frame& to_a, const node_pair& leaves) {
         counters_.add(work::triangle_tests);
-        return test.intersects(a.triangles().triangle(a.tree().triangle(leaves.a)), triangle_in_a(b, to_a, leaves.b));
+        const index_pair pair{a.tree().triangle(leaves.a), b.tree().triangle(leaves.b)};
+        return test.intersects([&] { return pair; }, a.triangles().triangle(pair.a), triangle_in_a(b, to_a, leaves.b));
     }
 
     /// The triangle of a leaf of B in A's frame. The last one is cached, since a leaf meets many nodes of A in a row.
@@ -124,7 +129,7 @@ private:
         if constexpr (!Tree::has_leaf_boxes)
             if (b.tree().is_leaf(child))
                 return b.tree().leaf_test() == leaf_test_choice::triangle_aabb
-                           ? bounds_of(triangle_in_a(b, to_a, child))
+                           ? grown(bounds_of(triangle_in_a(b, to_a, child)))
                            : parent;
         return to_a(b.tree().bounds(child));
     }
@@ -153,10 +158,19 @@ private:
             if (tests_triangle_in_box && a_is_leaf)
                 return intersects_box(a.triangles().triangle(a.tree().triangle(next.a)), next.b_bounds, test);
             if (tests_triangle_in_box && b_is_leaf)
-                return intersects_box(triangle_in_a(b, to_a, next.b), a.tree().bounds(next.a), test);
+                return intersects_box(triangle_in_a(b, to_a, next.b), grown(a.tree().bounds(next.a)), test);
         }
         counters_.add(work::box_tests);
         return overlaps(a.tree().bounds(next.a), next.b_bounds);
+    }
+
+    /// The box that contains every true image whose rounded one lies in the box; sums are rounded, so twice the error.
+    [[nodiscard]] box grown(box b) const noexcept {
+        for (int k = 0; k < 3; ++k) {
+            b.min[k] -= 2 * image_error_[k];
+            b.max[k] += 2 * image_error_[k];
+        }
+        return b;
     }
 
     [[nodiscard]] bool intersects_box(const triangle3f& t, const box& b, leaf_test_choice test) {
@@ -176,6 +190,7 @@ private:
     static constexpr std::uint32_t no_triangle = 0xffffffff;
     std::uint32_t image_of_ = no_triangle;  // the triangle of B whose image is cached
     triangle3f image_{};
+    vec3f image_error_{};
 };
 
 }  // namespace aabb

@@ -4,6 +4,7 @@ export import :depth_first_walk;
 export import :model;
 export import :policies;
 export import :tree_validation;
+export import :triangle_query;
 
 export import aabb.counters;
 export import aabb.geometry;
@@ -22,8 +23,9 @@ depth_first_walk<Tree, Triangle, Counters> walk_in(...);
 export namespace aabb {
 
 /// The narrow phase (local detection in the paper, section 3): traverses two BVHs together down to pairs of triangles,
-/// in A's frame (`relative_pose`). Nothing is allocated once the buffers have grown to the largest query. Every query
-/// throws input_error as `require_ieee_arithmetic` and `relative_pose` do.
+/// in A's frame (`relative_pose`); exact triangle tests decide at the poses themselves. Nothing is allocated once the
+/// buffers have grown to the largest query. Every query throws input_error as `require_ieee_arithmetic` and
+/// `relative_pose` do.
 template <TreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters = no_counters>
 class local_detection {
     static_assert(aabb::is_accepted<sentence_of<Tree, Triangle>()>);
@@ -79,7 +81,9 @@ public:
     /// Passes each of the same pairs to `take` as it is found, without storing any, until it returns true.
     template <class Take>
     void each_self_pair(const model<Tree>& m, const Take& take) {
-        walk_.find_self_pairs(triangle_, m, [&](std::span<const index_pair> batch) {
+        const relative_pose identity({}, {}, m.bounds());
+        const triangle_query<Tree, Triangle> test(triangle_, m, m, std::nullopt, identity);
+        walk_.find_self_pairs(test, m, [&](std::span<const index_pair> batch) {
             return std::ranges::any_of(batch, [&](const index_pair& p) { return take(ordered_pair(p.a, p.b)); });
         });
     }
@@ -91,7 +95,9 @@ private:
     template <class Emit>
     void walk(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, walk_goal goal,
               Emit emit) {
-        walk_.find_pairs(triangle_, a, b, relative_pose(pose_a, pose_b, b.bounds()), goal, emit);
+        const relative_pose to_a(pose_a, pose_b, b.bounds());
+        const std::optional<pose_pair> poses({pose_a, pose_b});
+        walk_.find_pairs(triangle_query<Tree, Triangle>(triangle_, a, b, poses, to_a), a, b, to_a, goal, emit);
     }
 
     [[no_unique_address]] Triangle triangle_;

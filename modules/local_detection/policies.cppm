@@ -160,6 +160,13 @@ concept DoubleTrianglePolicy = TrianglePolicy<R> && requires(const R policy, con
     { policy.intersects(s, t) } -> std::same_as<bool>;
 };
 
+/// An exact triangle test that also decides on triangles of meshes at poses, in world coordinates that are not rounded.
+template <class R>
+concept PosedTrianglePolicy =
+    TrianglePolicy<R> && requires(const R policy, const pose_pair& poses, const triangle3d& s, const triangle3d& t) {
+        { policy.intersects(poses, s, t) } -> std::same_as<bool>;
+    };
+
 /// A triangle test that also constructs the intersection of two triangles; floats are converted to double.
 template <class R>
 concept ConstructingTrianglePolicy =

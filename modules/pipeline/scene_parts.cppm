@@ -5,15 +5,15 @@ import :scene;
 
 export namespace aabb {
 
-/// Rejects poses that are not one rigid pose per object of the scene.
-/// @throws input_error with both numbers, or with the first object whose pose is not rigid
+/// Rejects poses that are not one affine map of full rank per object of the scene.
+/// @throws input_error with both numbers, or with the first object whose pose is singular
 void require_poses(const mesh_scene& scene, std::span<const pose> poses) {
     if (poses.size() != scene.mesh_of.size())
         throw input_error("the scene has " + std::to_string(scene.mesh_of.size()) + " objects, but the frame has " +
                           std::to_string(poses.size()) + " poses");
     for (std::size_t object = 0; object < poses.size(); ++object) {
         try {
-            require_rigid(poses[object]);
+            require_full_rank(poses[object]);
         } catch (const input_error& error) {
             throw input_error("object " + std::to_string(object) + ": " + error.what());
         }

@@ -16,11 +16,18 @@ struct exact_triangle : orientation_test<orientations> {
         "exact for any finite triangles, zero-area ones included: orientation signs, filtered in double";
     static constexpr bool filtered = true;
 
+    using orientation_test<orientations>::intersects;
+    /// The same at poses, as they are given: `posed_orientations`.
+    [[nodiscard]] static bool intersects(const pose_pair& poses, const triangle3d& s, const triangle3d& t) noexcept {
+        return orientation_test<posed_orientations>::intersects(poses, s, t);
+    }
+
     [[nodiscard]] static triangle_intersection intersection(const triangle3d& s, const triangle3d& t) {
         return intersection_of(s, t);
     }
 };
 
-static_assert(DoubleTrianglePolicy<exact_triangle> && ConstructingTrianglePolicy<exact_triangle>);
+static_assert(DoubleTrianglePolicy<exact_triangle> && PosedTrianglePolicy<exact_triangle> &&
+              ConstructingTrianglePolicy<exact_triangle>);
 
 }  // namespace aabb

@@ -13,9 +13,6 @@ struct interval {
     double low;
     double high;
 
-    /// Encloses p - q.
-    [[nodiscard]] static inline interval difference(double p, double q) noexcept { return widened(p - q, p - q); }
-
     friend inline interval operator+(const interval& p, const interval& q) noexcept {
         return widened(p.low + q.low, p.high + q.high);
     }
@@ -47,8 +44,8 @@ private:
 
 using interval3 = std::array<interval, 3>;
 
-[[nodiscard]] inline interval3 difference(const vec3d& p, const vec3d& q) noexcept {
-    return {interval::difference(p[0], q[0]), interval::difference(p[1], q[1]), interval::difference(p[2], q[2])};
+[[nodiscard]] inline interval3 operator-(const interval3& p, const interval3& q) noexcept {
+    return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
 [[nodiscard]] inline interval3 cross(const interval3& p, const interval3& q) noexcept {
     return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
@@ -57,30 +54,82 @@ using interval3 = std::array<interval, 3>;
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-/// Signs by interval arithmetic.
-/// @tparam Exact whether an undecided sign is computed exactly
-template <bool Exact>
-class interval_signs {
-public:
-    interval_signs(const triangle3d& s, const triangle3d& t, const lanes<double>&, const lanes<double>&) noexcept
+/// Corners whose coordinates are doubles.
+struct given_corners {
+    given_corners(const triangle3d& s, const triangle3d& t, const lanes<double>&, const lanes<double>&) noexcept
         : s_(s), t_(t) {}
 
+    [[nodiscard]] const triangle3d& s() const noexcept { return s_; }
+    [[nodiscard]] const triangle3d& t() const noexcept { return t_; }
+    [[nodiscard]] inline interval3 operator()(const vec3d& p) const noexcept {
+        return {{{p[0], p[0]}, {p[1], p[1]}, {p[2], p[2]}}};
+    }
+    [[nodiscard]] int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
+        return exact_side(a, b, c, d);
+    }
+    [[nodiscard]] int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
+        return exact_turn(a, b, c, axis);
+    }
+
+private:
+    const triangle3d& s_;
+    const triangle3d& t_;
+};
+
+/// Corners R v + t of meshes at poses, whose coordinates are intervals; exact signs are those of `posed_orientations`.
+struct posed_corners : posed_orientations {
+    posed_corners(const pose_pair& poses, const triangle3d& s, const triangle3d& t) noexcept
+        : posed_orientations(poses, s, t) {
+        const auto in_world = [](const pose& p, const vec3d& v, std::size_t k) {
+            const auto number = [](double x) { return interval{x, x}; };
+            const double* const r = &p.rotation[3 * k];
+            return number(r[0]) * number(v[0]) + number(r[1]) * number(v[1]) + number(r[2]) * number(v[2]) +
+                   number(p.translation[static_cast<int>(k)]);
+        };
+        for (int i = 0; i < 3; ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                world_[static_cast<std::size_t>(i)][k] = in_world(poses.a, s[i], k);
+                world_[static_cast<std::size_t>(3 + i)][k] = in_world(poses.b, t[i], k);
+            }
+    }
+
+    [[nodiscard]] inline interval3 operator()(const vec3d& p) const noexcept {
+        return world_[static_cast<std::size_t>(index_of(p))];
+    }
+
+private:
+    std::array<interval3, 6> world_{};
+};
+
+/// Signs by interval arithmetic.
+/// @tparam Corners the corners as intervals, with the exact signs
+/// @tparam Exact whether an undecided sign is computed exactly
+template <class Corners, bool Exact>
+class interval_signs {
+public:
+    template <class... Given>
+    explicit interval_signs(const Given&... given) noexcept : corners_(given...) {}
+
+    [[nodiscard]] const triangle3d& s() const noexcept { return corners_.s(); }
+    [[nodiscard]] const triangle3d& t() const noexcept { return corners_.t(); }
+    [[nodiscard]] bool are_apart() const noexcept { return corners_.are_apart(); }
+
     [[nodiscard]] inline bool part(corner_sides& s_to_t, corner_sides& t_to_s) noexcept {
-        s_to_t = sides(s_, t_);
+        s_to_t = sides(s(), t());
         if (s_to_t.on_one_side()) return true;
-        t_to_s = sides(t_, s_);
+        t_to_s = sides(t(), s());
         return t_to_s.on_one_side();
     }
 
     [[nodiscard]] inline int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept {
-        return sign(dot(cross(difference(b, a), difference(c, a)), difference(d, a)),
-                    [&] { return exact_side(a, b, c, d); });
+        const interval3 origin = corners_(a);
+        return sign(dot(cross(corners_(b) - origin, corners_(c) - origin), corners_(d) - origin),
+                    [&] { return corners_.side(a, b, c, d); });
     }
     [[nodiscard]] inline int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
-        const int x = (axis + 1) % 3, y = (axis + 2) % 3;
-        const auto across = [](const vec3d& p, const vec3d& q, int k) { return interval::difference(p[k], q[k]); };
-        return sign(across(b, a, x) * across(c, a, y) - across(b, a, y) * across(c, a, x),
-                    [&] { return exact_turn(a, b, c, axis); });
+        const auto x = static_cast<std::size_t>((axis + 1) % 3), y = static_cast<std::size_t>((axis + 2) % 3);
+        const interval3 p = corners_(b) - corners_(a), q = corners_(c) - corners_(a);
+        return sign(p[x] * q[y] - p[y] * q[x], [&] { return corners_.turn(a, b, c, axis); });
     }
 
     [[nodiscard]] inline bool in_order(const vec3d& s0, const vec3d& s1, const vec3d& s2, const vec3d& t0,
@@ -97,9 +146,10 @@ public:
 private:
     /// The sides of the plane of `t` on which the corners of `s` lie.
     [[nodiscard]] inline corner_sides sides(const triangle3d& s, const triangle3d& t) noexcept {
-        const interval3 normal = cross(difference(t[1], t[0]), difference(t[2], t[0]));
+        const interval3 origin = corners_(t[0]);
+        const interval3 normal = cross(corners_(t[1]) - origin, corners_(t[2]) - origin);
         const auto of = [&](const vec3d& p) {
-            return sign(dot(normal, difference(p, t[0])), [&] { return exact_side(t[0], t[1], t[2], p); });
+            return sign(dot(normal, corners_(p) - origin), [&] { return corners_.side(t[0], t[1], t[2], p); });
         };
         // Braced lists are evaluated from left to right.
         return corner_sides(std::array{of(s[0]), of(s[1]), of(s[2])});
@@ -118,8 +168,7 @@ private:
         return 0;
     }
 
-    const triangle3d& s_;
-    const triangle3d& t_;
+    Corners corners_;
     bool unsure_ = false;
 };
 
@@ -156,15 +205,24 @@ public:
 
     template <class Real>
     [[nodiscard]] inline bool intersects(const triangle3<Real>& s, const triangle3<Real>& t) const noexcept {
-        if (fallback_ == fallback_choice::exact)
-            return orientation_test<detail::interval_signs<true>>::intersects(s, t);
-        return orientation_test<detail::interval_signs<false>>::intersects(s, t);
+        return intersect_by<detail::given_corners>(s, t);
+    }
+    /// The same at poses, as they are given.
+    [[nodiscard]] bool intersects(const pose_pair& poses, const triangle3d& s, const triangle3d& t) const noexcept {
+        return intersect_by<detail::posed_corners>(poses, s, t);
     }
 
 private:
+    template <class Corners, class... Given>
+    [[nodiscard]] inline bool intersect_by(const Given&... given) const noexcept {
+        if (fallback_ == fallback_choice::exact)
+            return orientation_test<detail::interval_signs<Corners, true>>::intersects(given...);
+        return orientation_test<detail::interval_signs<Corners, false>>::intersects(given...);
+    }
+
     fallback_choice fallback_ = fallback_choice::exact;
 };
 
-static_assert(DoubleTrianglePolicy<interval_arithmetic_triangle>);
+static_assert(DoubleTrianglePolicy<interval_arithmetic_triangle> && PosedTrianglePolicy<interval_arithmetic_triangle>);
 
 }  // namespace aabb

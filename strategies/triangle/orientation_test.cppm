@@ -27,6 +27,16 @@ public:
         return near_intersects(s_in_double, t_in_double, signs);
     }
 
+    /// Tests triangles of meshes at poses, in world coordinates: `Signs` is constructed from both and has their
+    /// corners.
+    [[nodiscard]] static inline bool intersects(const pose_pair& poses, const triangle3d& s,
+                                                const triangle3d& t) noexcept
+        requires std::constructible_from<Signs, const pose_pair&, const triangle3d&, const triangle3d&>
+    {
+        Signs signs(poses, s, t);
+        return !signs.are_apart() && near_intersects(signs.s(), signs.t(), signs);
+    }
+
 private:
     using sides = corner_sides;
 

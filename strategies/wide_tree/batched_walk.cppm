@@ -14,6 +14,8 @@ export namespace aabb {
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class batched_walk {
 public:
+    using query = triangle_query<Tree, Triangle>;
+
     static void require_ready(const model<Tree>& a, const model<Tree>& b) {
         require_ieee_arithmetic();
         a.require_fit();
@@ -22,7 +24,7 @@ public:
 
     /// Passes intersecting pairs of triangles (a of A, b of B) to `emit`, in batches, until `emit` returns true.
     template <class Emit>
-    void find_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+    void find_pairs(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                     walk_goal goal, Emit emit) {
         if (goal == walk_goal::first_pair) return find_first_pair(test, a, b, to_a, emit);
         find_all_pairs(test, a, b, to_a, query_kind::two_meshes, emit);
@@ -30,7 +32,7 @@ public:
 
     /// Finds the self-intersections of a mesh; each pair is reported once, in either order.
     template <class Emit>
-    void find_self_pairs(const Triangle& test, const model<Tree>& m, Emit emit) {
+    void find_self_pairs(const query& test, const model<Tree>& m, Emit emit) {
         find_all_pairs(test, m, m, relative_pose({}, {}, m.bounds()), query_kind::one_mesh, emit);
     }
 
@@ -52,9 +54,8 @@ public:
 
     /// Passes intersecting pairs of triangles to `emit` as `find_pairs`, but tests only the pairs of leaves of a front.
     template <class Emit>
-    void find_pairs_in_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
-                             const relative_pose& to_a, std::span<const front_pair> pairs, front_leaves<Tree>& leaves,
-                             walk_goal goal, Emit emit) {
+    void find_pairs_in_front(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                             std::span<const front_pair> pairs, front_leaves<Tree>& leaves, walk_goal goal, Emit emit) {
         const bool any_pair = goal == walk_goal::first_pair;
         const auto triangles_at = triangle_lookup(a, b);
         queue_.clear();
@@ -100,7 +101,7 @@ private:
 
     /// Descends to the leaves and tests all pairs. The caches of leaves are reset only if the descent comes to leaves.
     template <class Emit>
-    void find_all_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+    void find_all_pairs(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                         query_kind kind, const Emit& emit) {
         const auto triangles_at = triangle_lookup(a, b);
         queue_.clear();
@@ -109,7 +110,8 @@ private:
             if (!std::exchange(reached_leaves, true))
                 leaf_pairs_.begin(
                     a, b, to_a,
-                    {.shares_corners = kind == query_kind::one_mesh, .rejects_by_exact_boxes = !is_filtered});
+                    {.shares_corners = kind == query_kind::one_mesh, .rejects_by_exact_boxes = !is_filtered},
+                    test.greatest_error());
             return test_leaves(test, a, b, to_a, kind, leaves_a, leaves_b, triangles_at, emit);
         };
         if (!descend_to_leaves(a, b, to_a, kind, /*margin=*/0, test_batch))
@@ -118,20 +120,20 @@ private:
 
     /// Finds any one pair: tests each pair of leaves, nearest ones first (`nearest_walk`), before it reads the next.
     template <class Emit>
-    void find_first_pair(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+    void find_first_pair(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                          const Emit& emit) {
         require_ready(a, b);
         const auto triangles_at = triangle_lookup(a, b);
         queue_.clear();
         bool reached_leaves = false;
-        nearest_.for_each_leaf_pair(a, b, to_a, counters_,
-                                    [&](const std::uint32_t& leaf_a, const std::uint32_t& leaf_b) {
-                                        if (!std::exchange(reached_leaves, true))
-                                            leaf_pairs_.begin(a, b, to_a, {.rejects_by_exact_boxes = !is_filtered});
-                                        return test_leaves(test, a, b, to_a, query_kind::two_meshes, {&leaf_a, 1},
-                                                           {&leaf_b, 1}, triangles_at, emit) ||
-                                               queue_.test_queued(test, /*flush=*/true, triangles_at, emit);
-                                    });
+        nearest_.for_each_leaf_pair(
+            a, b, to_a, counters_, [&](const std::uint32_t& leaf_a, const std::uint32_t& leaf_b) {
+                if (!std::exchange(reached_leaves, true))
+                    leaf_pairs_.begin(a, b, to_a, {.rejects_by_exact_boxes = !is_filtered}, test.greatest_error());
+                return test_leaves(test, a, b, to_a, query_kind::two_meshes, {&leaf_a, 1}, {&leaf_b, 1}, triangles_at,
+                                   emit) ||
+                       queue_.test_queued(test, /*flush=*/true, triangles_at, emit);
+            });
     }
 
     /// Descends to the pairs of leaves whose boxes overlap. Each iteration takes a batch of the lowest step that has
@@ -222,7 +224,7 @@ private:
     /// Queues the pairs of triangles of these leaves whose boxes overlap, and tests them when a batch is full.
     /// @returns whether to stop
     template <class TrianglesAt, class Emit>
-    [[nodiscard]] bool test_leaves(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
+    [[nodiscard]] bool test_leaves(const query& test, const model<Tree>& a, const model<Tree>& b,
                                    const relative_pose& to_a, query_kind kind, std::span<const std::uint32_t> leaves_a,
                                    std::span<const std::uint32_t> leaves_b, const TrianglesAt& triangles_at,
                                    const Emit& emit) {

@@ -15,7 +15,7 @@ public:
     /// @param margin the distance up to which children count as meeting
     void begin(const Tree& a, const Tree& b, const relative_pose& to_a, const box& bounds_of_a, double margin) {
         images_in_a_.begin(b.level(0), nodes_of(b), grown(to_a.to_boxes(), margin));
-        tests_in_b_ = to_a.growth() > least_growth;
+        tests_in_b_ = to_a.is_rigid() && to_a.growth() > least_growth;
         if (tests_in_b_) images_in_b_.begin(a.level(0), nodes_of(a), grown(to_a.back_to_boxes(bounds_of_a), margin));
     }
 
@@ -72,7 +72,7 @@ public:
 private:
     static constexpr double least_growth = 1.2;  // above, the second test saves more than it costs
 
-    /// A pose is a rotation within 1e-6, so that lengths in both frames agree within 2^-18.
+    /// A rigid pose is a rotation within 1e-6, so that lengths in both frames agree within 2^-18.
     [[nodiscard]] static box_motion grown(box_motion motion, double margin) noexcept {
         for (int k = 0; k < 3; ++k) motion.margin[k] += margin * (1 + 0x1p-16);
         return motion;

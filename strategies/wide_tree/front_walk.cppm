@@ -10,19 +10,21 @@ export namespace aabb {
 template <WideTreePolicy Tree, TrianglePolicy Triangle, CounterPolicy Counters>
 class front_walk {
 public:
+    using query = triangle_query<Tree, Triangle>;
+
     /// Passes intersecting pairs of triangles (a of A, b of B) to `emit`, in batches, until `emit` returns true.
     template <class Emit>
-    void find_pairs(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+    void find_pairs(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                     walk_goal goal, Emit emit) {
         if constexpr (requires { requires Triangle::filtered; })
-            if (a.tree().keeps_fronts() && leaves_of(a) + leaves_of(b) >= front_cache::least_leaves)
+            if (a.tree().keeps_fronts() && to_a.is_rigid() && leaves_of(a) + leaves_of(b) >= front_cache::least_leaves)
                 return find_pairs_with_front(test, a, b, to_a, goal, emit);
         walk_.find_pairs(test, a, b, to_a, goal, emit);
     }
 
     /// Finds the self-intersections of a mesh; each pair is reported once, in either order.
     template <class Emit>
-    void find_self_pairs(const Triangle& test, const model<Tree>& m, Emit emit) {
+    void find_self_pairs(const query& test, const model<Tree>& m, Emit emit) {
         walk_.find_self_pairs(test, m, emit);
     }
 
@@ -38,8 +40,8 @@ private:
     /// Tests only the pairs of the front if it is still valid, or of a new one if that is worth its cost; otherwise
     /// walks from the roots. A first-pair query tries the last hit first, and builds a front only if that fails.
     template <class Emit>
-    void find_pairs_with_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
-                               const relative_pose& to_a, walk_goal goal, const Emit& emit) {
+    void find_pairs_with_front(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                               walk_goal goal, const Emit& emit) {
         batched_walk<Tree, Triangle, Counters>::require_ready(a, b);
         const model_pair models{.numbers = {a.number(), b.number()}, .states = {a.state(), b.state()}};
         const box_motion motion = to_a.to_boxes();
@@ -67,7 +69,8 @@ private:
         }
         if (front.hit) {
             walk_.counters().add(work::triangle_tests);
-            if (test.intersects(a.triangles().triangle(front.hit->a), to_a(b.triangles().triangle(front.hit->b)))) {
+            if (test.intersects([&] { return *front.hit; }, a.triangles().triangle(front.hit->a),
+                                to_a(b.triangles().triangle(front.hit->b)))) {
                 emit(std::span<const index_pair>(&*front.hit, 1));
                 return;
             }
@@ -83,7 +86,7 @@ private:
     }
 
     template <class Emit>
-    void test_front(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+    void test_front(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                     const bvtt_front& front, walk_goal goal, const Emit& emit) {
         if (front.pairs().empty()) return;
         if (!leaves_) leaves_ = std::make_unique<front_leaves<Tree>>();

@@ -26,7 +26,7 @@ public:
         bool rejects_by_exact_boxes = false;  ///< for inexact tests: results must not depend on the grid's rounding
     };
     /// Starts a query: fits the grid to both meshes and empties the caches.
-    /// @param margin the distance up to which triangles count as close
+    /// @param margin the distance along each axis up to which triangles count as close: at least the error of images
     void begin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, query_options options,
                float margin = 0) {
         grid_.begin(a.bounds(), to_a(b.bounds()));
@@ -54,9 +54,8 @@ public:
                 fit_missing_slabs(leaves_b, overlapping);
                 std::size_t count = 0;
                 for (const auto& [pair, box_mask] : overlapping) {
-                    const std::uint64_t mask =
-                        box_mask &
-                        copied_to_rows(cache_b_[leaves_b[pair]].slab.triangles_inside(cache_a_[leaves_a[pair]].block));
+                    const std::uint64_t mask = box_mask & copied_to_rows(cache_b_[leaves_b[pair]].slab.triangles_inside(
+                                                              cache_a_[leaves_a[pair]].block, margin_));
                     in_slab_[count] = {pair, mask};
                     count += mask != 0;
                 }

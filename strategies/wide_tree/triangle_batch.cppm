@@ -43,26 +43,24 @@ public:
     /// @param flush whether to test all pairs, instead of full vectors only
     /// @param triangles_at maps triangles i and j of two leaves to those of the meshes, as `(leaf_a, i, leaf_b, j)`
     /// @returns what `emit` returned: whether to stop
-    template <class TrianglesAt, class Emit>
-    [[nodiscard]] bool test_queued(const Triangle& test, bool flush, const TrianglesAt& triangles_at,
-                                   const Emit& emit) {
+    template <class Query, class TrianglesAt, class Emit>
+    [[nodiscard]] bool test_queued(const Query& test, bool flush, const TrianglesAt& triangles_at, const Emit& emit) {
         std::size_t done = 0;
         std::size_t hit_count = 0;
         for (; done + simd::width <= pairs_ || (flush && done < pairs_); done += simd::width) {
             const std::uint32_t present = simd::lanes_below(pairs_ - done);
-            const filtered_pairs by_filter = filter(done);
+            const filtered_pairs by_filter = filter(done, test.image_error());
             std::uint32_t hits = by_filter.hits & present;
             for (std::uint32_t open = by_filter.undecided & present; open != 0; open &= open - 1) {
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
-                if (test.intersects(triangle(a_, done + lane), triangle(b_, done + lane))) hits |= 1U << lane;
+                const std::size_t at = done + lane;
+                if (test.intersects([&] { return pair_at(origin_[at], triangles_at); }, triangle(a_, at),
+                                    triangle(b_, at)))
+                    hits |= 1U << lane;
             }
             hit_count += simd::compress_store(&hits_[hit_count], simd::load(&origin_[done]), hits);
         }
-        for (std::size_t i = 0; i < hit_count; ++i) {
-            const std::uint32_t origin = hits_[i];
-            const auto& [leaf_a, leaf_b] = leaves_[origin >> pair_bits];
-            pairs_of_hits_[i] = triangles_at(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U);
-        }
+        for (std::size_t i = 0; i < hit_count; ++i) pairs_of_hits_[i] = pair_at(hits_[i], triangles_at);
         drop_first(std::min(done, pairs_));
         return hit_count != 0 && emit(std::span<const index_pair>(pairs_of_hits_).first(hit_count));
     }
@@ -74,9 +72,16 @@ private:
     static constexpr unsigned pair_bits = 6;  // of the number 8 j + i within a leaf pair
     using corners = std::array<std::array<float, capacity + triangle_block::width>, rows>;
 
-    [[nodiscard]] inline filtered_pairs filter(std::size_t first) const noexcept {
+    /// The triangles of the meshes, from the index of a pair of leaves and the places in them.
+    template <class TrianglesAt>
+    [[nodiscard]] inline index_pair pair_at(std::uint32_t origin, const TrianglesAt& triangles_at) const {
+        const auto& [leaf_a, leaf_b] = leaves_[origin >> pair_bits];
+        return triangles_at(leaf_a, origin & 7U, leaf_b, origin >> 3 & 7U);
+    }
+
+    [[nodiscard]] inline filtered_pairs filter(std::size_t first, const vec3f& image_error) const noexcept {
         if constexpr (requires { requires Triangle::filtered; })
-            return triangle_filter::decide(&a_[0][first], &b_[0][first], a_[0].size());
+            return triangle_filter::decide(&a_[0][first], &b_[0][first], a_[0].size(), image_error.at);
         else
             return {.hits = 0, .undecided = simd::every_lane};
     }

@@ -19,21 +19,27 @@ struct filtered_pairs {
 ///
 /// For coordinates that differ by at most X, Y and Z, the error of a determinant is 46 u XYZ to first order, u = 2^-24:
 /// three differences, six products and their sums are rounded. Underflow adds at most 20 times 2^-150 of a factor X, Y,
-/// Z or 1. After an overflow all comparisons are false, so that the pair stays undecided.
+/// Z or 1. If corners of B are off by at most e, f and g along the axes, differences change by twice that, and six
+/// products of three by at most 12 (e YZ + f XZ + g XY), with 2 e, 2 f and 2 g added to X, Y and Z. After an overflow
+/// all comparisons are false, so that the pair stays undecided.
 class triangle_filter {
 public:
     /// Decides pairs by the signs of eight orientations: the corners of each triangle against the plane of the other,
     /// and two pairs of edges. Pairs with a sign that rounding could change stay undecided.
     /// @param a,b the first of nine rows at a distance of `stride`: row 3 c + k has axis k of corner c
-    [[nodiscard]] static inline filtered_pairs decide(const float* a, const float* b, std::size_t stride) noexcept {
+    /// @param error_of_b how far, along each axis, a corner of B may be from its place
+    [[nodiscard]] static inline filtered_pairs decide(const float* a, const float* b, std::size_t stride,
+                                                      const float* error_of_b) noexcept {
 #pragma clang fp contract(fast)
         corners s = load(a, stride);
         corners t = load(b, stride);
-        const simd::floats x = extent_of(s, t, 0);
-        const simd::floats y = extent_of(s, t, 1);
-        const simd::floats z = extent_of(s, t, 2);
-        // 2^-18 XYZ is 64 u XYZ, which exceeds 46 u XYZ; the other term exceeds what underflow adds.
-        const error_bound error(0x1p-18F * (x * y * z) + 0x1p-140F * (x + y + z + 1));
+        const float e = error_of_b[0], f = error_of_b[1], g = error_of_b[2];
+        const simd::floats x = extent_of(s, t, 0) + 2 * e;
+        const simd::floats y = extent_of(s, t, 1) + 2 * f;
+        const simd::floats z = extent_of(s, t, 2) + 2 * g;
+        // 2^-18 XYZ is 64 u XYZ, which exceeds 46 u XYZ; the last term exceeds what underflow adds.
+        const error_bound error(0x1p-18F * (x * y * z) + 12.5F * (e * (y * z) + f * (x * z) + g * (x * y)) +
+                                0x1p-140F * (x + y + z + 1));
 
         const point s_normal = cross(s[1] - s[0], s[2] - s[0]);
         const sides of_t =
@@ -56,7 +62,8 @@ public:
         const simd::flags crossing = error.below(first) & error.below(second);
         const std::uint32_t hits = simd::bits(~separated & certain & crossing);
         const std::uint32_t undecided = simd::bits(~separated & ~(certain & (beyond | crossing)));
-        if (undecided == 0) return {.hits = hits, .undecided = 0};
+        // Corners that are equal only as rounded need not be the same point.
+        if (undecided == 0 || e + f + g > 0) return {.hits = hits, .undecided = undecided};
         const std::uint32_t touching = undecided & simd::bits(share_corner(s, t));
         return {.hits = hits | touching, .undecided = undecided & ~touching};
     }

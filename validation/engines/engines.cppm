@@ -58,5 +58,7 @@ struct library_test_info {
 /// Do two closed triangles share a point? By CGAL's exact kernel; zero-area ones count as segments or points.
 [[nodiscard]] bool exactly_intersect(const triangle3f& s, const triangle3f& t);
 [[nodiscard]] bool exactly_intersect(const triangle3d& s, const triangle3d& t);
+/// The same for triangles of meshes at poses: in world coordinates R v + t, computed exactly.
+[[nodiscard]] bool exactly_intersect(const pose_pair& poses, const triangle3f& s, const triangle3f& t);
 
 }  // namespace aabb

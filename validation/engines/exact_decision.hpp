@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <type_traits>
 
 namespace aabb {
 
@@ -32,6 +33,20 @@ template <class Kernel>
 [[nodiscard]] bool triangles_intersect(const auto& s, const auto& t) {
     const auto point = [](const auto& p) { return typename Kernel::Point_3(p[0], p[1], p[2]); };
     return hulls_intersect<Kernel>({point(s[0]), point(s[1]), point(s[2])}, {point(t[0]), point(t[1]), point(t[2])});
+}
+
+/// The triangle of a mesh at a pose in world coordinates R v + t, as a Triangle of exact numbers.
+template <class Triangle>
+[[nodiscard]] Triangle exactly_transformed(const auto& t, const auto& at) {
+    Triangle world;
+    using number = std::remove_cvref_t<decltype(world[0][0])>;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) {
+            world[i][k] = number(at.translation[k]);
+            for (int j = 0; j < 3; ++j)
+                world[i][k] += number(at.rotation[static_cast<std::size_t>(3 * k + j)]) * number(double{t[i][j]});
+        }
+    return world;
 }
 
 }  // namespace aabb

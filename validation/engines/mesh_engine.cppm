@@ -15,6 +15,17 @@ namespace aabb {
     return transformed;
 }
 
+/// A box in A's frame that overlaps the boxes of all triangles of A that intersect a triangle of B.
+[[nodiscard]] box box_around(const triangle3f& of_b, const relative_pose& to_a) {
+    box around = bounds_of(to_a(of_b));
+    // Rounding to nearest is monotone, so that the differences stay below any float that the exact ones are below.
+    for (int k = 0; k < 3; ++k) {
+        around.min[k] -= to_a.image_error()[k];
+        around.max[k] += to_a.image_error()[k];
+    }
+    return around;
+}
+
 /// A cache key: the poses of two models for which something was built.
 class posed_pair {
 public:

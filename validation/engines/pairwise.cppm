@@ -26,8 +26,12 @@ using candidate_search = std::vector<index_pair>(std::span<const box> a, std::sp
 /// CGAL's intersection of box sequences (Zomorodian and Edelsbrunner 2002).
 candidate_search candidates_by_cgal;
 
-/// Tests two triangles in the same frame.
-using triangle_decision = bool(const triangle3f&, const triangle3f&);
+/// Tests two triangles of meshes at poses, of which the second is also given as seen in the frame of the first.
+using triangle_decision = bool(const pose_pair& poses, const triangle3f& s, const triangle3f& t,
+                               const triangle3f& image_of_t);
+
+/// Decides exactly, at the poses.
+triangle_decision intersect_exactly;
 
 struct boxed_model : engine_model {
     std::vector<box> boxes{};  ///< by triangle
@@ -69,9 +73,12 @@ private:
         const mesh& b = *q.b.source;
         const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
         std::vector<box> boxes_b;
-        for (std::uint32_t t = 0; t < b.triangle_count(); ++t) boxes_b.push_back(bounds_of(to_a(b.triangle(t))));
-        for (const index_pair near : search_(q.a.boxes, boxes_b))
-            if (decide_(q.a.source->triangle(near.a), to_a(b.triangle(near.b))) && emit(near)) return;
+        for (std::uint32_t t = 0; t < b.triangle_count(); ++t) boxes_b.push_back(box_around(b.triangle(t), to_a));
+        const pose_pair poses{q.pose_a, q.pose_b};
+        for (const index_pair near : search_(q.a.boxes, boxes_b)) {
+            const triangle3f t = b.triangle(near.b);
+            if (decide_(poses, q.a.source->triangle(near.a), t, to_a(t)) && emit(near)) return;
+        }
     }
 
     candidate_search& search_;

@@ -24,14 +24,12 @@ void add_changes(exact_box_frame& frame, const std::vector<std::uint8_t>& previo
     }
 }
 
-/// Calls `visit` for all intersecting pairs, with b transformed by `to_a`, until it returns true.
+/// Calls `visit` for all intersecting pairs of triangles of two meshes at their poses, until it returns true.
 template <class Visit>
-void for_each_true_pair(const mesh& a, const mesh& b, const relative_pose& to_a, Visit visit) {
-    for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
-        const triangle3f transformed = to_a(b.triangle(t));
+void for_each_true_pair(const mesh& a, const mesh& b, const pose_pair& poses, Visit visit) {
+    for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
         for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
-            if (exactly_intersect(a.triangle(s), transformed) && visit(index_pair{s, t})) return;
-    }
+            if (exactly_intersect(poses, a.triangle(s), b.triangle(t)) && visit(index_pair{s, t})) return;
 }
 
 /// The ground truth for two objects, by a double loop over their triangles.
@@ -40,7 +38,7 @@ exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>&
     exact_objects result{.a = objects.a, .b = objects.b, .pairs = {}};
     const mesh& a = scene.meshes[scene.mesh_of[objects.a]];
     const mesh& b = scene.meshes[scene.mesh_of[objects.b]];
-    for_each_true_pair(a, b, {poses[objects.a], poses[objects.b], bounds_of(b)}, [&](index_pair pair) {
+    for_each_true_pair(a, b, {poses[objects.a], poses[objects.b]}, [&](index_pair pair) {
         result.intersect = true;
         if (query != extreme_query::first_pair) result.pairs.push_back(pair);
         return query == extreme_query::first_pair;
@@ -90,8 +88,7 @@ bool is_true_pair(const mesh_scene& scene, const exact_mesh_frame& frame, const 
     const mesh& a = scene.meshes[scene.mesh_of[objects.a]];
     const mesh& b = scene.meshes[scene.mesh_of[objects.b]];
     if (pair.a >= a.triangle_count() || pair.b >= b.triangle_count()) return false;
-    const relative_pose to_a(frame.poses[objects.a], frame.poses[objects.b], bounds_of(b));
-    return exactly_intersect(a.triangle(pair.a), to_a(b.triangle(pair.b)));
+    return exactly_intersect({frame.poses[objects.a], frame.poses[objects.b]}, a.triangle(pair.a), b.triangle(pair.b));
 }
 
 }  // namespace aabb

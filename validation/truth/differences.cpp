@@ -21,18 +21,6 @@ triangle3<Real> converted_to(const triangle3f& t) {
     return result;
 }
 
-/// The triangle in world coordinates, transformed without rounding.
-exact_triangle exactly_transformed(const triangle3f& t, const pose& p) {
-    exact_triangle world;
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) {
-            world[i][k] = rational(p.translation[k]);
-            for (int j = 0; j < 3; ++j)
-                world[i][k] += rational(p.rotation[static_cast<std::size_t>(3 * k + j)]) * rational(double{t[i][j]});
-        }
-    return world;
-}
-
 template <class Real>
 vec3<Real> normal_of(const triangle3<Real>& t) {
     return cross(t[1] - t[0], t[2] - t[0]);
@@ -119,10 +107,11 @@ bool are_near(const triangle3f& s, const triangle3f& t) {
 /// The class of a wrong result: the first that applies. @param engine_result whether the engine reports the pair.
 difference_class class_of_difference(const triangle3f& s, const pose& pose_s, const triangle3f& t, const pose& pose_t,
                                      const triangle3f& t_seen_from_s, bool engine_result) {
-    if (has_no_area(s) || has_no_area(t) || has_no_area(t_seen_from_s)) return difference_class::degenerate;
-    if (triangles_intersect<kernel>(exactly_transformed(s, pose_s), exactly_transformed(t, pose_t)) == engine_result)
+    if (has_no_area(s) || has_no_area(t)) return difference_class::degenerate;
+    if (triangles_intersect<kernel>(converted_to<rational>(s), converted_to<rational>(t_seen_from_s)) == engine_result)
         return difference_class::pose_rounding;
-    const exact_triangle exact_s = converted_to<rational>(s), exact_t = converted_to<rational>(t_seen_from_s);
+    const exact_triangle exact_s = exactly_transformed<exact_triangle>(s, pose_s),
+                         exact_t = exactly_transformed<exact_triangle>(t, pose_t);
     if (are_coplanar(exact_s, exact_t)) return difference_class::coplanar;
     if (!engine_result && only_touch(exact_s, exact_t)) return difference_class::touching;
     if (are_near(s, t_seen_from_s)) return difference_class::near;

@@ -23,7 +23,7 @@ struct set_difference {
 /// Why an engine's result for two triangles differs from the ground truth; the first class that applies.
 enum class difference_class : std::uint8_t {
     degenerate,     ///< one of the triangles has zero area
-    pose_rounding,  ///< the engine is right for the raw pose, before vertices are rounded to float
+    pose_rounding,  ///< the engine is right for vertices rounded to float in the other mesh's frame
     coplanar,       ///< the triangles are coplanar
     touching,       ///< they touch without crossing; only false negatives
     near,           ///< a displacement of a millionth of the pair's extent changes the ground truth
@@ -44,6 +44,11 @@ struct differences {
 [[nodiscard]] differences compare_triangle_pairs(std::span<const index_pair> exact,
                                                  std::span<const index_pair> reported, const mesh& a,
                                                  const pose& pose_a, const mesh& b, const pose& pose_b);
+
+/// Do two triangles of meshes at poses share a point? A second judge, which shares no code with CGAL or a strategy: by
+/// separating axes, in integers of any size.
+/// @param s,t finite, as are the poses, whose matrices have full rank
+[[nodiscard]] bool intersect_in_integers(const pose_pair& poses, const triangle3d& s, const triangle3d& t);
 
 struct scene_frame {
     std::span<const box> boxes;   ///< of the objects, in world coordinates

@@ -73,7 +73,7 @@ engine brute_force_engine() {
     return {.name = "brute_force",
             .summary = "every pair of boxes; every pair of triangles whose boxes overlap, by CGAL's exact kernel",
             .boxes = make_stage<global_stage, brute_force_boxes>,
-            .meshes = [] { return make_pairwise_engine(candidates_by_double_loop, exactly_intersect); }};
+            .meshes = [] { return make_pairwise_engine(candidates_by_double_loop, intersect_exactly); }};
 }
 
 }  // namespace aabb

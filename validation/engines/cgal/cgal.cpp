@@ -61,7 +61,7 @@ engine cgal_engine() {
     return {.name = "cgal",
             .summary = "CGAL's intersection of box sequences, and its exact kernel for triangles",
             .boxes = make_stage<global_stage, cgal_boxes>,
-            .meshes = [] { return make_pairwise_engine(candidates_by_cgal, exactly_intersect); },
+            .meshes = [] { return make_pairwise_engine(candidates_by_cgal, intersect_exactly); },
             .triangles = cgal_tests()};
 }
 

@@ -19,16 +19,29 @@ using kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using kernel_triangles = std::vector<kernel::Triangle_3>;
 using primitive = CGAL::AABB_triangle_primitive<kernel, kernel_triangles::const_iterator>;
 
+/// The triangle that `in_kernel` has converted.
+[[nodiscard]] triangle3f in_float(const kernel::Triangle_3& t) {
+    triangle3f result;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) result[i][k] = static_cast<float>(t[i][k]);
+    return result;
+}
+
 [[nodiscard]] kernel::Triangle_3 in_kernel(const triangle3f& t) {
     const auto point = [](const vec3f& v) { return kernel::Point_3(v[0], v[1], v[2]); };
     return {point(t[0]), point(t[1]), point(t[2])};
 }
 
-/// A triangle to be tested against a tree.
+/// A triangle of B to be tested against a tree of A.
 struct query_triangle {
-    explicit query_triangle(const triangle3f& t) : triangle(in_kernel(t)), bounds(triangle.bbox()) {}
+    query_triangle(const pose_pair& poses_of_both, const triangle3f& of_b, const relative_pose& to_a)
+        : poses(poses_of_both), triangle(of_b) {
+        const box around = box_around(of_b, to_a);
+        bounds = {around.min[0], around.min[1], around.min[2], around.max[0], around.max[1], around.max[2]};
+    }
 
-    kernel::Triangle_3 triangle;
+    const pose_pair& poses;
+    triangle3f triangle;
     CGAL::Bbox_3 bounds;
 };
 
@@ -41,9 +54,8 @@ struct tree_traits : CGAL::AABB_traits<kernel, primitive> {
         }
         [[nodiscard]] bool operator()(const query_triangle& query, const primitive& leaf) const {
             const kernel::Triangle_3& s = *leaf.id();
-            const kernel::Triangle_3& t = query.triangle;
             return CGAL::do_overlap(query.bounds, s.bbox()) &&
-                   hulls_intersect<kernel>({s[0], s[1], s[2]}, {t[0], t[1], t[2]});
+                   exactly_intersect(query.poses, in_float(s), query.triangle);
         }
     };
     [[nodiscard]] Do_intersect do_intersect_object() const { return {}; }
@@ -76,8 +88,9 @@ class cgal_tree final : public model_engine<tree_model> {
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         const mesh& b = *q.b.source;
         const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
+        const pose_pair poses{q.pose_a, q.pose_b};
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
-            if (const auto hit = q.a.tree.any_intersected_primitive(query_triangle(to_a(b.triangle(t)))))
+            if (const auto hit = q.a.tree.any_intersected_primitive(query_triangle(poses, b.triangle(t), to_a)))
                 return index_pair{q.a.number_of(*hit), t};
         return std::nullopt;
     }
@@ -85,14 +98,12 @@ class cgal_tree final : public model_engine<tree_model> {
     /// Queries A's tree with each triangle of B, in A's frame.
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         const mesh& b = *q.b.source;
-        // Transforms each vertex once, since triangles share vertices.
-        const std::vector<vec3f> transformed = transformed_vertices(q.pose_a, q.pose_b, b, q.b.bounds);
+        const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
+        const pose_pair poses{q.pose_a, q.pose_b};
         std::vector<kernel_triangles::const_iterator> hits;
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
-            const auto& [i, j, k] = b.triangles[t];
             hits.clear();
-            q.a.tree.all_intersected_primitives(query_triangle({transformed[i], transformed[j], transformed[k]}),
-                                                std::back_inserter(hits));
+            q.a.tree.all_intersected_primitives(query_triangle(poses, b.triangle(t), to_a), std::back_inserter(hits));
             for (const auto hit : hits) pairs.push_back({q.a.number_of(hit), t});
         }
     }

@@ -128,7 +128,9 @@ class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
         fcl::collide(&q.a.local.get(), transform(q.pose_a), &q.b.local.get(), transform(q.pose_b), request, result);
     }
 
+    /// @throws input_error if the pose is not rigid, as FCL requires
     [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
+        require_rigid(p);
         fcl::Transform3d result = fcl::Transform3d::Identity();
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j < 3; ++j) result.linear()(i, j) = p.rotation[static_cast<std::size_t>(3 * i + j)];

@@ -117,9 +117,9 @@ public:
     }
 };
 
-bool gjk_intersect(const triangle3f& s, const triangle3f& t) {
+bool gjk_intersect(const pose_pair&, const triangle3f& s, const triangle3f&, const triangle3f& image_of_t) {
     static const gjk_test test({});
-    return test.intersects(s, t);
+    return test.intersects(s, image_of_t);
 }
 
 }  // namespace

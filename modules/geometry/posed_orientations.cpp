@@ -1,0 +1,126 @@
+module;
+#include <cassert>
+
+module aabb.geometry;
+
+import :wide_integer;
+
+namespace aabb {
+
+namespace {
+
+/// A finite double as ± mantissa · 2^exponent with an odd mantissa; mantissa 0 for zero.
+struct factor {
+    std::uint64_t mantissa = 0;
+    int exponent = 0;
+    bool is_negative = false;
+
+    explicit factor(double x) noexcept {
+        assert(std::isfinite(x));
+        const auto bits = std::bit_cast<std::uint64_t>(x);
+        const auto biased = static_cast<int>(bits >> 52U & 0x7ffU);
+        mantissa = bits & 0xf'ffff'ffff'ffffU;
+        if (biased != 0) mantissa |= std::uint64_t{1} << 52U;
+        if (mantissa == 0) return;
+        const int zeros = std::countr_zero(mantissa);
+        mantissa >>= static_cast<unsigned>(zeros);
+        exponent = std::max(biased, 1) - 1075 + zeros;
+        is_negative = std::signbit(x);
+    }
+};
+
+/// A term of a coordinate: a product of two doubles, exactly.
+struct term {
+    unsigned_128 magnitude = 0;
+    int exponent = 0;
+    bool is_negative = false;
+
+    term() = default;
+    term(const factor& x, const factor& y) noexcept
+        : magnitude(unsigned_128{x.mantissa} * y.mantissa),
+          exponent(x.exponent + y.exponent),
+          is_negative(x.is_negative != y.is_negative) {}
+
+    /// The exponent of a power of two above the magnitude, which is not 0.
+    [[nodiscard]] int end() const noexcept {
+        const auto high = static_cast<std::uint64_t>(magnitude >> 64U);
+        const int bits = high != 0 ? 64 + static_cast<int>(std::bit_width(high))
+                                   : static_cast<int>(std::bit_width(static_cast<std::uint64_t>(magnitude)));
+        return exponent + bits;
+    }
+};
+
+/// The terms of a corner's coordinates: on each axis three products and the translation.
+using corner_terms = std::array<std::array<term, 4>, 3>;
+
+corner_terms terms_of(const posed_point& p) noexcept {
+    corner_terms terms;
+    const std::array vertex{factor((*p.vertex)[0]), factor((*p.vertex)[1]), factor((*p.vertex)[2])};
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t j = 0; j < 3; ++j) terms[k][j] = term(factor(p.at->rotation[3 * k + j]), vertex[j]);
+        terms[k][3] = term(factor(p.at->translation[static_cast<int>(k)]), factor(1));
+    }
+    return terms;
+}
+
+/// The integers of all corners in units of 2^unit, which divides every term.
+template <std::size_t Limbs>
+std::array<vec3<wide_integer<Limbs>>, 6> integers_of(const std::array<corner_terms, 6>& corners, int unit) noexcept {
+    std::array<vec3<wide_integer<Limbs>>, 6> integers{};
+    for (std::size_t c = 0; c < 6; ++c)
+        for (std::size_t k = 0; k < 3; ++k)
+            for (const term& t : corners[c][k])
+                if (t.magnitude != 0)
+                    integers[c][static_cast<int>(k)].add(t.magnitude, t.exponent - unit, t.is_negative);
+    return integers;
+}
+
+}  // namespace
+
+/// Finds the unit and the width of the integers. A coordinate of four terms below 2^end is below 2^(end + 2), so that
+/// differences are below 2^(end + 3); with a bit for the sign, a component of a normal fits twice as many limbs, and a
+/// determinant, below 6 · 2^(3 (end + 3)) < 2^(3 (end + 4)), three times.
+exact_corners::exact_corners(const std::array<posed_point, 6>& points) noexcept {
+    std::array<corner_terms, 6> corners;
+    int unit = std::numeric_limits<int>::max(), end = std::numeric_limits<int>::min();
+    for (std::size_t c = 0; c < 6; ++c) {
+        corners[c] = terms_of(points[c]);
+        for (const auto& along : corners[c])
+            for (const term& t : along)
+                if (t.magnitude != 0) {
+                    unit = std::min(unit, t.exponent);
+                    end = std::max(end, t.end());
+                }
+    }
+    const int bits = end < unit ? 0 : end - unit + 5;
+    if (bits <= 3 * 64)
+        corners_ = integers_of<3>(corners, unit);
+    else if (bits <= 8 * 64)
+        corners_ = integers_of<8>(corners, unit);
+    else
+        corners_ = integers_of<68>(corners, unit);
+}
+
+int exact_corners::side(int a, int b, int c, int d) const noexcept {
+    return std::visit(
+        [&](const auto& corners) {
+            const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
+            const auto p = at(b) - at(a), q = at(c) - at(a), r = at(d) - at(a);
+            const auto along = [&](int x, int y, int z) { return (p[x] * q[y] - p[y] * q[x]) * r[z]; };
+            return (along(0, 1, 2) + along(1, 2, 0) + along(2, 0, 1)).sign();
+        },
+        corners_);
+}
+
+int exact_corners::turn(int a, int b, int c, int axis) const noexcept {
+    return std::visit(
+        [&](const auto& corners) {
+            const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
+            const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+            const auto p = at(b) - at(a), q = at(c) - at(a);
+            return (p[x] * q[y] - p[y] * q[x]).sign();
+        },
+        corners_);
+}
+
+}  // namespace aabb
