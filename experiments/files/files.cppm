@@ -70,7 +70,7 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
 /// Opens a motion file that moves these meshes: object i has mesh i modulo their number. Each line holds a frame, an
 /// object and twelve numbers, the rows of its pose [R t]; `#` begins a comment. Frames count from 0 in ascending order;
 /// frame 0 places every object, later frames list only objects that moved, and frames without motion may be omitted.
-/// @throws aabb::input_error with file and line on malformed lines, non-rigid poses, or more meshes than objects.
+/// @throws aabb::input_error with file and line on malformed lines, singular poses, or more meshes than objects.
 [[nodiscard]] std::unique_ptr<aabb::mesh_scene> open_motion(const std::filesystem::path& file,
                                                             std::vector<aabb::mesh> meshes);
 

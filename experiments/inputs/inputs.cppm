@@ -26,7 +26,7 @@ template <class Real>
 [[nodiscard]] std::vector<std::string> split_numbers(std::string_view line);
 
 /// Parses the pose in an option: twelve comma-separated numbers, the rows of [R t]. Without the option, it is identity.
-/// @throws aabb::input_error that names the option if the text is malformed or the pose is not rigid.
+/// @throws aabb::input_error that names the option if the text is malformed or the pose is singular.
 [[nodiscard]] aabb::pose pose_of(const std::optional<std::string>& text, const char* option);
 
 struct given_poses {

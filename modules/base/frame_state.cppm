@@ -7,7 +7,7 @@ import aabb.std;
 
 export namespace aabb {
 
-/// Invalid input: a malformed file, an unknown name, a NaN, a pose that is not rigid. `what()` is one sentence for the
+/// Invalid input: a malformed file, an unknown name, a NaN, a singular pose. `what()` is one sentence for the
 /// user; the program prints it and exits with status 2.
 class input_error : public std::runtime_error {
 public:

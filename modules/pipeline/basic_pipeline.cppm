@@ -47,7 +47,7 @@ public:
 
     /// A frame has three steps that can be timed separately. The first takes one pose per object and refits the trees
     /// of deformed meshes.
-    /// @throws input_error on a pose that is not rigid or moves an object beyond the range of float, with its number
+    /// @throws input_error on a pose that is singular or moves an object beyond the range of float, with its number
     void update(std::span<const pose> poses) {
         frame_.begin();
         searched_ = false;

@@ -37,7 +37,7 @@ public:
     /// Processes a frame: returns every pair of intersecting triangles of two objects once, by objects a < b, in
     /// unspecified order, valid until the next frame. Nothing is allocated once the buffers have grown to the scene.
     /// @param poses one pose of full rank (`require_full_rank`) per object, in the units of the meshes
-    /// @throws input_error on a pose that is not rigid or moves an object beyond the range of float, with its number,
+    /// @throws input_error on a pose that is singular or moves an object beyond the range of float, with its number,
     /// and as `require_ieee_arithmetic`; the next frame may succeed
     [[nodiscard]] std::span<const contact> contacts(std::span<const pose> poses) {
         find_candidates(poses);
