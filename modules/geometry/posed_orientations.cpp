@@ -75,6 +75,14 @@ std::array<vec3<wide_integer<Limbs>>, 6> integers_of(const std::array<corner_ter
     return integers;
 }
 
+/// The sign that `sign_of` computes for corners of whatever width; unlike `std::visit`, it cannot throw.
+template <class Corners, class SignOf>
+int sign_in(const Corners& corners, const SignOf& sign_of) noexcept {
+    if (const auto* const narrow = std::get_if<0>(&corners)) return sign_of(*narrow);
+    if (const auto* const medium = std::get_if<1>(&corners)) return sign_of(*medium);
+    return sign_of(*std::get_if<2>(&corners));
+}
+
 }  // namespace
 
 /// Finds the unit and the width of the integers. A coordinate of four terms below 2^end is below 2^(end + 2), so that
@@ -102,25 +110,21 @@ exact_corners::exact_corners(const std::array<posed_point, 6>& points) noexcept 
 }
 
 int exact_corners::side(int a, int b, int c, int d) const noexcept {
-    return std::visit(
-        [&](const auto& corners) {
-            const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
-            const auto p = at(b) - at(a), q = at(c) - at(a), r = at(d) - at(a);
-            const auto along = [&](int x, int y, int z) { return (p[x] * q[y] - p[y] * q[x]) * r[z]; };
-            return (along(0, 1, 2) + along(1, 2, 0) + along(2, 0, 1)).sign();
-        },
-        corners_);
+    return sign_in(corners_, [&](const auto& corners) {
+        const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
+        const auto p = at(b) - at(a), q = at(c) - at(a), r = at(d) - at(a);
+        const auto along = [&](int x, int y, int z) { return (p[x] * q[y] - p[y] * q[x]) * r[z]; };
+        return (along(0, 1, 2) + along(1, 2, 0) + along(2, 0, 1)).sign();
+    });
 }
 
 int exact_corners::turn(int a, int b, int c, int axis) const noexcept {
-    return std::visit(
-        [&](const auto& corners) {
-            const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
-            const int x = (axis + 1) % 3, y = (axis + 2) % 3;
-            const auto p = at(b) - at(a), q = at(c) - at(a);
-            return (p[x] * q[y] - p[y] * q[x]).sign();
-        },
-        corners_);
+    return sign_in(corners_, [&](const auto& corners) {
+        const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
+        const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+        const auto p = at(b) - at(a), q = at(c) - at(a);
+        return (p[x] * q[y] - p[y] * q[x]).sign();
+    });
 }
 
 }  // namespace aabb

@@ -80,7 +80,7 @@ struct pair_vector {
         }
     }
     [[nodiscard]] filtered_pairs filtered() const {
-        return triangle_filter::decide(a[0].data(), b[0].data(), simd::width);
+        return triangle_filter::decide(a[0].data(), b[0].data(), simd::width, vec3f{}.at);
     }
 };
 

@@ -2,8 +2,12 @@
 #include "pairs.hpp"
 #include "support.hpp"
 
+#include <rapidcheck.h>
+
 import aabb.triangle.exact;
 import aabb.triangle.interval_arithmetic;
+import aabb.triangle.orientation_test;
+import aabb.wide_tree.triangle_filter;
 
 // Exact tests of triangles of meshes at poses, compared with two judges: integers of any size, and CGAL.
 
@@ -147,6 +151,76 @@ const std::array<pose_class, 12> pose_classes{{
      }},
 }};
 
+/// Signs by integers alone, without a filter.
+class integer_signs {
+public:
+    integer_signs(const pose_pair& poses, const triangle3d& s, const triangle3d& t)
+        : corners_(poses, s, t),
+          integers_({{{&s[0], &poses.a},
+                      {&s[1], &poses.a},
+                      {&s[2], &poses.a},
+                      {&t[0], &poses.b},
+                      {&t[1], &poses.b},
+                      {&t[2], &poses.b}}}) {}
+
+    [[nodiscard]] const triangle3d& s() const { return corners_.s(); }
+    [[nodiscard]] const triangle3d& t() const { return corners_.t(); }
+    [[nodiscard]] static bool are_apart() { return false; }
+    [[nodiscard]] bool part(aabb::corner_sides& s_to_t, aabb::corner_sides& t_to_s) const {
+        const auto sides = [&](int first, int plane) {
+            const auto of = [&](int i) { return integers_.side(plane, plane + 1, plane + 2, first + i); };
+            return aabb::corner_sides(std::array{of(0), of(1), of(2)});
+        };
+        s_to_t = sides(0, 3);
+        t_to_s = sides(3, 0);
+        return s_to_t.on_one_side() || t_to_s.on_one_side();
+    }
+    [[nodiscard]] int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) const {
+        return integers_.side(at(a), at(b), at(c), at(d));
+    }
+    [[nodiscard]] bool in_order(const vec3d& s0, const vec3d& s1, const vec3d& s2, const vec3d& t0, const vec3d& t1,
+                                const vec3d& t2) const {
+        return side(s0, s1, t0, t1) <= 0 && side(s0, s2, t0, t2) >= 0;
+    }
+    [[nodiscard]] int turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) const {
+        return integers_.turn(at(a), at(b), at(c), axis);
+    }
+    [[nodiscard]] bool beyond(const vec3d& a, const vec3d& b, int own, const triangle3d& t, int axis) const {
+        const int first = turn(a, b, t[0], axis);
+        return first != 0 && first != own && turn(a, b, t[1], axis) == first && turn(a, b, t[2], axis) == first;
+    }
+
+private:
+    [[nodiscard]] int at(const vec3d& corner) const { return corners_.index_of(corner); }
+
+    aabb::posed_orientations corners_;
+    aabb::exact_corners integers_;
+};
+
+bool intersect_by_integers(const pose_pair& poses, const triangle3d& s, const triangle3d& t) {
+    return aabb::orientation_test<integer_signs>::intersects(poses, s, t);
+}
+
+/// What the filter of the wide tree decides of a pair; nothing if its image leaves the range of float.
+std::optional<bool> filtered(const pose_pair& poses, const aabb::triangle3f& s, const aabb::triangle3f& t) {
+    std::optional<aabb::relative_pose> to_a;
+    try {
+        to_a.emplace(poses.a, poses.b, bounds_of(t));
+    } catch (const aabb::input_error&) {
+        return std::nullopt;
+    }
+    const aabb::triangle3f image = (*to_a)(t);
+    std::array<std::array<std::array<float, aabb::simd::width>, 9>, 2> rows{};
+    for (std::size_t row = 0; row < 9; ++row)
+        for (std::size_t lane = 0; lane < aabb::simd::width; ++lane) {
+            rows[0][row][lane] = s[static_cast<int>(row / 3)][static_cast<int>(row % 3)];
+            rows[1][row][lane] = image[static_cast<int>(row / 3)][static_cast<int>(row % 3)];
+        }
+    const aabb::filtered_pairs decided =
+        aabb::triangle_filter::decide(rows[0][0].data(), rows[1][0].data(), aabb::simd::width, to_a->image_error().at);
+    return (decided.undecided & 1U) != 0 ? std::nullopt : std::optional((decided.hits & 1U) != 0);
+}
+
 }  // namespace
 
 TEST_CASE("exact tests decide triangles of meshes at poses as two judges do, in either order") {
@@ -225,4 +299,59 @@ TEST_CASE("two cubes at poses intersect in the pairs that rational arithmetic fi
         }
     }
     CHECK(lines == 36);
+}
+
+// With RC_PARAMS=max_success=1000000 in the environment, 10^8 pairs.
+TEST_CASE("no filter at poses contradicts integers") {
+    generator g(541);
+    std::array<std::uint64_t, 3> decided{};  // by the filter in float, and those left by it; hits
+    REQUIRE(rc::check([&] {
+        const pose_class& c = pose_classes[*rc::gen::inRange<std::size_t>(0, pose_classes.size())];
+        for (int i = 0; i < 100; ++i) {
+            const auto pattern = static_cast<std::size_t>(i) % triangle_pairs::patterns.size();
+            const auto pair = triangle_pairs::of_type<float>(triangle_pairs::patterned(g, pattern));
+            const triangle3d s = in_double(pair.a), t = in_double(pair.b);
+            const pose_pair poses = c.make(g);
+            const bool truth = intersect_by_integers(poses, s, t);
+            RC_ASSERT(aabb::exact_triangle::intersects(poses, s, t) == truth);
+            const std::optional<bool> in_float = filtered(poses, pair.a, pair.b);
+            RC_ASSERT(in_float.value_or(truth) == truth);
+            ++decided[in_float ? 0 : 1];
+            decided[2] += truth;
+        }
+    }));
+    CAPTURE(decided);
+    CHECK(std::ranges::min(decided) > 100);
+}
+
+TEST_CASE("around degenerate pairs, unit by unit in the last place, filters at poses agree with integers") {
+    generator g(542);
+    for (const pose_class& c : pose_classes) {
+        CAPTURE(c.name);
+        std::array<std::uint64_t, 2> results{};
+        std::uint64_t wrong = 0;
+        for (std::size_t pattern = 1; pattern < triangle_pairs::patterns.size(); ++pattern) {
+            const auto pair = triangle_pairs::of_type<double>(triangle_pairs::patterned(g, pattern));
+            const pose_pair poses = c.make(g);
+            triangle3d moved = pair.b;
+            vec3d& corner = moved[triangle_pairs::integer(g, 0, 2)];
+            const int x = triangle_pairs::integer(g, 0, 2), y = (x + 1) % 3;
+            const auto step = [](double from, int units) {
+                return std::bit_cast<double>(std::bit_cast<std::uint64_t>(from + 4) +
+                                             static_cast<std::uint64_t>(units));
+            };
+            const double from_x = corner[x], from_y = corner[y];
+            for (int i = -32; i < 32; ++i)
+                for (int j = -32; j < 32; ++j) {
+                    corner[x] = step(from_x, i) - 4;
+                    corner[y] = step(from_y, j) - 4;
+                    const bool truth = intersect_by_integers(poses, pair.a, moved);
+                    wrong += aabb::exact_triangle::intersects(poses, pair.a, moved) != truth;
+                    ++results[truth ? 1 : 0];
+                }
+        }
+        CHECK(wrong == 0);
+        CHECK(results[0] > 0);
+        CHECK(results[1] > 0);
+    }
 }
