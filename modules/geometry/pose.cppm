@@ -36,6 +36,11 @@ struct pose {
     return exact_side({0, 0, 0}, row(0), row(1), row(2));
 }
 
+/// Whether R is orthonormal within 1e-6, and no reflection.
+[[nodiscard]] inline bool is_rigid(const pose& p) noexcept {
+    return orthonormality_error(p) <= 1e-6 && determinant_sign(p) > 0;
+}
+
 /// Rejects poses that are no affine maps of full rank.
 /// @throws input_error with the fault
 inline void require_full_rank(const pose& p) {
@@ -44,18 +49,6 @@ inline void require_full_rank(const pose& p) {
     for (const double t : p.translation.at)
         if (!std::isfinite(t)) throw input_error("the pose has a translation that is not finite");
     if (determinant_sign(p) == 0) throw input_error("the pose is singular: the determinant of its matrix is 0");
-}
-
-/// Rejects poses that are not rigid, for what needs lengths to stay: R not orthonormal within 1e-6, or a reflection.
-/// @throws input_error with the fault, also as `require_full_rank`
-inline void require_rigid(const pose& p) {
-    require_full_rank(p);
-    if (orthonormality_error(p) > 1e-6)
-        throw input_error(
-            "the pose is not rigid: its rotation is not orthonormal within 1e-6 (R Rᵀ differs from 1 by " +
-            std::to_string(orthonormality_error(p)) + ")");
-    if (determinant_sign(p) < 0)
-        throw input_error("the pose is not rigid: its rotation is a reflection (determinant -1)");
 }
 
 /// A motion x -> Σ columns[j] x[j] + shift of boxes, whose bounds must be moved outward by the margin.

@@ -75,12 +75,21 @@ std::array<vec3<wide_integer<Limbs>>, 6> integers_of(const std::array<corner_ter
     return integers;
 }
 
-/// The sign that `sign_of` computes for corners of whatever width; unlike `std::visit`, it cannot throw.
-template <class Corners, class SignOf>
-int sign_in(const Corners& corners, const SignOf& sign_of) noexcept {
-    if (const auto* const narrow = std::get_if<0>(&corners)) return sign_of(*narrow);
-    if (const auto* const medium = std::get_if<1>(&corners)) return sign_of(*medium);
-    return sign_of(*std::get_if<2>(&corners));
+/// Whether three corners, from `first` on, are all below those from `second` on.
+template <class Corners>
+bool are_below(const Corners& corners, std::size_t first, std::size_t second, int axis) noexcept {
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            if ((corners[first + i][axis] - corners[second + j][axis]).sign() >= 0) return false;
+    return true;
+}
+
+/// What `compute` returns for corners of whatever width; unlike `std::visit`, it cannot throw.
+template <class Corners, class Compute>
+int compute_in(const Corners& corners, const Compute& compute) noexcept {
+    if (const auto* const narrow = std::get_if<0>(&corners)) return compute(*narrow);
+    if (const auto* const medium = std::get_if<1>(&corners)) return compute(*medium);
+    return compute(*std::get_if<2>(&corners));
 }
 
 }  // namespace
@@ -110,7 +119,7 @@ exact_corners::exact_corners(const std::array<posed_point, 6>& points) noexcept 
 }
 
 int exact_corners::side(int a, int b, int c, int d) const noexcept {
-    return sign_in(corners_, [&](const auto& corners) {
+    return compute_in(corners_, [&](const auto& corners) {
         const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
         const auto p = at(b) - at(a), q = at(c) - at(a), r = at(d) - at(a);
         const auto along = [&](int x, int y, int z) { return (p[x] * q[y] - p[y] * q[x]) * r[z]; };
@@ -118,8 +127,17 @@ int exact_corners::side(int a, int b, int c, int d) const noexcept {
     });
 }
 
+bool exact_corners::boxes_are_disjoint() const noexcept {
+    const int separating_axes = compute_in(corners_, [](const auto& corners) {
+        return static_cast<int>(std::ranges::count_if(std::array{0, 1, 2}, [&](int axis) {
+            return are_below(corners, 0, 3, axis) || are_below(corners, 3, 0, axis);
+        }));
+    });
+    return separating_axes != 0;
+}
+
 int exact_corners::turn(int a, int b, int c, int axis) const noexcept {
-    return sign_in(corners_, [&](const auto& corners) {
+    return compute_in(corners_, [&](const auto& corners) {
         const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
         const int x = (axis + 1) % 3, y = (axis + 2) % 3;
         const auto p = at(b) - at(a), q = at(c) - at(a);

@@ -32,6 +32,8 @@ public:
 
     /// The sign of the determinant of `exact_side` of four corners, by index.
     [[nodiscard]] int side(int a, int b, int c, int d) const noexcept;
+    /// Whether the boxes of the two triangles share no point.
+    [[nodiscard]] bool boxes_are_disjoint() const noexcept;
     /// The sign of `exact_turn` of three corners, by index.
     [[nodiscard]] int turn(int a, int b, int c, int axis) const noexcept;
 
@@ -108,6 +110,9 @@ public:
         }
         return apart;
     }
+
+    /// Whether they are disjoint, exactly.
+    [[nodiscard]] bool boxes_are_disjoint() noexcept { return exact().boxes_are_disjoint(); }
 
     /// As `orientations::part`.
     [[nodiscard]] bool part(corner_sides& s_to_t, corner_sides& t_to_s) noexcept {

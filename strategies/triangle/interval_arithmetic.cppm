@@ -113,6 +113,11 @@ public:
     [[nodiscard]] const triangle3d& s() const noexcept { return corners_.s(); }
     [[nodiscard]] const triangle3d& t() const noexcept { return corners_.t(); }
     [[nodiscard]] bool are_apart() const noexcept { return corners_.are_apart(); }
+    [[nodiscard]] bool boxes_are_disjoint() noexcept
+        requires requires(Corners corners) { corners.boxes_are_disjoint(); }
+    {
+        return corners_.boxes_are_disjoint();
+    }
 
     [[nodiscard]] inline bool part(corner_sides& s_to_t, corner_sides& t_to_s) noexcept {
         s_to_t = sides(s(), t());

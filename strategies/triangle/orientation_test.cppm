@@ -152,6 +152,9 @@ private:
     /// by the line of an edge, or they are collinear and their boxes are disjoint. Sets with disjoint projections are
     /// disjoint; sets that intersect in a projection in which their plane is not edge-on do intersect.
     [[nodiscard]] static inline bool flat_intersects(Signs& signs, const triangle3d& s, const triangle3d& t) noexcept {
+        // Not known yet for corners that are rounded.
+        if constexpr (requires { signs.boxes_are_disjoint(); })
+            if (signs.boxes_are_disjoint()) return false;
         for (int axis = 0; axis < 3; ++axis) {
             const int s_turn = signs.turn(s[0], s[1], s[2], axis);
             const int t_turn = signs.turn(t[0], t[1], t[2], axis);

@@ -54,12 +54,11 @@ TEST_CASE("a transform of floats becomes a pose up to rounding") {
     for (std::size_t k = 0; k < 9; ++k) REQUIRE(p.rotation[k] == double{static_cast<float>(any_pose().rotation[k])});
 }
 
-TEST_CASE("a transform that is not rigid is rejected") {
+TEST_CASE("a singular transform is rejected") {
     const auto rejects = [](const Eigen::Affine3d& transform, const char* sentence) {
         REQUIRE_THROWS_MATCHES(to_pose(transform), input_error, MessageMatches(ContainsSubstring(sentence)));
     };
-    rejects(Eigen::Affine3d(Eigen::Scaling(2.0)), "not orthonormal");
-    rejects(Eigen::Affine3d(Eigen::Scaling(1.0, 1.0, -1.0)), "a reflection");
+    rejects(Eigen::Affine3d(Eigen::Scaling(1.0, 1.0, 0.0)), "singular");
     rejects(Eigen::Affine3d(Eigen::Translation3d(0, NAN, 0)), "a translation that is not finite");
 }
 

@@ -21,7 +21,7 @@ TEST_CASE("without global search all pairs of objects are candidates, at any dis
     CHECK(local_only.boxes().empty());
     CHECK(local_only.candidates().size() == 1);
     CHECK(local_only.contacts().size() == 16);
-    poses[1].rotation[0] = 2;
+    poses[1].rotation[0] = 0;
     CHECK_THROWS_AS(local_only.update(poses), input_error);
     CHECK_THROWS_AS(local_only.search(), input_error);
     CHECK_THROWS_AS(local_only.update(std::vector<pose>(1)), input_error);

@@ -137,8 +137,7 @@ TEST_CASE("rejections name the objects of divided meshes by their own ids") {
     CHECK_THROWS_AS(divided.stages.search(), input_error);
     poses[2] = {};
     poses[3].rotation[0] = NAN;
-    CHECK_REFUSED(divided.stages.update(poses),
-                  "object 3: the pose is not rigid: its rotation has an entry that is not finite");
+    CHECK_REFUSED(divided.stages.update(poses), "object 3: the pose has a matrix with an entry that is not finite");
     CHECK_REFUSED(divided.stages.update(std::vector<pose>(4)), "the scene has 5 objects, but the frame has 4 poses");
     poses[3] = {};
     const float before = std::exchange(scene.meshes[0].vertices[77][1], NAN);

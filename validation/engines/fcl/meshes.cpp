@@ -90,6 +90,14 @@ protected:
     virtual void collide(const model_query& q, const fcl::CollisionRequestd& request,
                          fcl::CollisionResultd& result) = 0;
 
+    /// B's tree in A's frame, which is kept until a pose changes.
+    [[nodiscard]] static fcl::BVHModel<Volume>& transformed(const model_query& q) {
+        q.b.poses.renew(q.pose_a, q.pose_b, [&] {
+            q.b.transformed.build(*q.b.source, transformed_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds));
+        });
+        return q.b.transformed.get();
+    }
+
 private:
     void update_model(model& changed) final {
         changed.poses.forget();
@@ -122,15 +130,19 @@ private:
     }
 };
 
-/// Oriented boxes. FCL uses the raw poses, so that no vertex is rounded to float.
+/// Oriented boxes. FCL uses the raw poses, so that no vertex is rounded to float. It requires rotations; at other
+/// poses, it gets B's vertices in A's frame.
 class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
     void collide(const model_query& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
-        fcl::collide(&q.a.local.get(), transform(q.pose_a), &q.b.local.get(), transform(q.pose_b), request, result);
+        if (is_rigid(q.pose_a) && is_rigid(q.pose_b)) {
+            fcl::collide(&q.a.local.get(), transform(q.pose_a), &q.b.local.get(), transform(q.pose_b), request, result);
+            return;
+        }
+        const fcl::Transform3d identity = fcl::Transform3d::Identity();
+        fcl::collide(&q.a.local.get(), identity, &transformed(q), identity, request, result);
     }
 
-    /// @throws input_error if the pose is not rigid, as FCL requires
     [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
-        require_rigid(p);
         fcl::Transform3d result = fcl::Transform3d::Identity();
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j < 3; ++j) result.linear()(i, j) = p.rotation[static_cast<std::size_t>(3 * i + j)];
@@ -145,12 +157,9 @@ class fcl_axis_aligned final : public fcl_meshes<fcl::AABBd> {
     /// Calls the parts of FCL's own call, which would copy and rebuild both trees in each query: B's tree is refitted
     /// for each new pose and cached until the pose changes.
     void collide(const model_query& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
-        q.b.poses.renew(q.pose_a, q.pose_b, [&] {
-            q.b.transformed.build(*q.b.source, transformed_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds));
-        });
         fcl::Transform3d identity = fcl::Transform3d::Identity();
         fcl::detail::MeshCollisionTraversalNode<fcl::AABBd> node;
-        fcl::detail::initialize(node, q.a.local.get(), identity, q.b.transformed.get(), identity, request, result);
+        fcl::detail::initialize(node, q.a.local.get(), identity, transformed(q), identity, request, result);
         fcl::detail::collide(&node);
     }
 };
