@@ -67,9 +67,10 @@ public:
                   {&t[2], &poses.b}}} {
         const vec3d between = poses.b.translation - poses.a.translation;
         lanes<double> error{};
+        const motion of_a(poses.a, {}), of_b(poses.b, between);
         for (int i = 0; i < 3; ++i) {
-            s_[i] = in_world(poses.a, s[i], {}, error);
-            t_[i] = in_world(poses.b, t[i], between, error);
+            s_[i] = of_a(s[i], error);
+            t_[i] = of_b(t[i], error);
         }
         const auto [low, high] = range(s_, t_);
         const lanes<double> width = high - low + 2 * error;
@@ -153,22 +154,27 @@ public:
 private:
     static constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
-    /// R v + t in double.
-    /// @param error raised to the error bound of each coordinate
-    [[nodiscard]] static vec3d in_world(const pose& p, const vec3d& v, const vec3d& translation,
-                                        lanes<double>& error) noexcept {
-        vec3d world;
-        for (int k = 0; k < 3; ++k) {
-            const double* const r = &p.rotation[static_cast<std::size_t>(3 * k)];
-            world[k] = r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + translation[k];
-            const double magnitude =
-                std::abs(r[0] * v[0]) + std::abs(r[1] * v[1]) + std::abs(r[2] * v[2]) + std::abs(translation[k]);
-            const double bound = 8 * unit * magnitude + 0x1p-1070;
-            if (!(bound <= error[k])) error[k] = bound;  // also if it is NaN
+    /// The columns of a pose's matrix, and a translation.
+    struct motion {
+        std::array<lanes<double>, 3> columns;
+        lanes<double> translation;
+
+        motion(const pose& p, const vec3d& by) noexcept : translation(coordinates(by)) {
+            for (std::size_t k = 0; k < 3; ++k)
+                columns[k] = coordinates(vec3d{p.rotation[k], p.rotation[3 + k], p.rotation[6 + k]});
         }
-        error[3] = error[2];
-        return world;
-    }
+
+        /// R v + t in double.
+        /// @param error raised to the error bound of each coordinate
+        [[nodiscard]] inline vec3d operator()(const vec3d& v, lanes<double>& error) const noexcept {
+            const lanes<double> x = columns[0] * v[0], y = columns[1] * v[1], z = columns[2] * v[2];
+            const lanes<double> world = x + y + z + translation;
+            const auto size = [](const lanes<double>& term) { return __builtin_elementwise_abs(term); };
+            const lanes<double> bound = 8 * unit * (size(x) + size(y) + size(z) + size(translation)) + 0x1p-1070;
+            error = bound <= error ? error : bound;
+            return {world[0], world[1], world[2]};
+        }
+    };
 
     [[nodiscard]] static std::pair<lanes<double>, lanes<double>> range(const triangle3d& s,
                                                                        const triangle3d& t) noexcept {

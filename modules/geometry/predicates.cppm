@@ -70,22 +70,37 @@ struct scaled_double {
 /// more u. Other extents make the bound infinite or NaN, so that everything is computed exactly; floats never have such
 /// extents. An extent of zero makes the bound zero, and the computed zero is exact.
 ///
+/// If the coordinates themselves are known up to an error b on each axis, E is the extent of the box plus 2 b; a true
+/// difference and a computed one differ by at most 2 b, so that a turn may be off by 2 (2 b E) per axis more, and a
+/// side by 6 (2 b E E). Signs that this leaves uncertain stay undecided: 0, and `unsure`.
+///
 /// If the filter fails, all coordinates may lie on a lattice: multiples of a unit on their axis such that E is less
 /// than 2^16 units. Then differences are integers below 2^16, components of the normal below 2^33, and the sums of a
 /// volume below 3 · 2^49, so nothing was rounded and the bound is zero.
-class orientations {
+/// @tparam IsExact whether coordinates are exact, and signs that the filter leaves uncertain are computed exactly
+template <bool IsExact>
+class filtered_orientations {
 public:
     /// All queried points must be corners of `s` or `t`, which outlive this object and lie in the box `low` to `high`.
-    inline orientations(const triangle3d& s, const triangle3d& t, const lanes<double>& low,
-                        const lanes<double>& high) noexcept
+    /// @param error of the coordinates on each axis; 0 if they are exact
+    inline filtered_orientations(const triangle3d& s, const triangle3d& t, const lanes<double>& low,
+                                 const lanes<double>& high, const vec3d& error = {}) noexcept
         : s_(s), t_(t) {
-        const lanes<double> width = high - low;
+        lanes<double> width = high - low;
+        if constexpr (!IsExact) width += 2 * coordinates(error);
         const auto in_range = (width == 0) | ((width >= 0x1p-200) & (width <= 0x1p200));
         // Beyond that range the bounds become infinite, so that everything is computed exactly.
         const lanes<double> extent = in_range ? width : lanes<double>{} + std::numeric_limits<double>::infinity();
         extent_ = {extent[0], extent[1], extent[2]};
         // In units of u E E E: 48.1 for the terms, 0.9 for rounding E and this product, and 1 for underflow.
         side_error_ = 50 * unit * extent[0] * extent[1] * extent[2];
+        if constexpr (!IsExact)
+            for (int k = 0; k < 3; ++k) {
+                const int x = (k + 1) % 3, y = (k + 2) % 3;
+                // Rounding of these sums is covered by 13 in place of 12, and 5 in place of 4.
+                side_error_ += 13 * error[k] * extent[x] * extent[y];
+                turn_error_of_coordinates_[k] = 5 * (error[x] * extent[y] + error[y] * extent[x]);
+            }
     }
 
     /// The sides of the other's plane on which each triangle's corners lie. Some may stay undecided if the others prove
@@ -99,6 +114,10 @@ public:
         if (s_to_t.on_one_side() || t_to_s.on_one_side()) return true;
         if ((s_to_t.all_off_plane() && t_to_s.all_off_plane()) || side_error_ == 0) [[likely]]
             return false;
+        if constexpr (!IsExact) {
+            unsure_ = true;
+            return false;
+        }
         if (on_lattice()) {
             s_to_t = certain_signs(of_s, 0);
             t_to_s = certain_signs(of_t, 0);
@@ -116,6 +135,10 @@ public:
         const int sign = certain_sign(computed, side_error_);
         if (sign != 0 || side_error_ == 0) [[likely]]
             return sign;
+        if constexpr (!IsExact) {
+            unsure_ = true;
+            return 0;
+        }
         return on_lattice() ? certain_sign(computed, 0) : exact_side(a, b, c, d);
     }
 
@@ -136,6 +159,10 @@ public:
         const double error = turn_error(x, y);
         const int sign = certain_sign(computed, error);
         if (sign != 0 || error == 0) return sign;
+        if constexpr (!IsExact) {
+            unsure_ = true;
+            return 0;
+        }
         return on_lattice() ? certain_sign(computed, 0) : exact_turn(a, b, c, axis);
     }
 
@@ -149,6 +176,10 @@ public:
         corner_sides turns = certain_signs(computed, error);
         if (!turns.all_off_plane() && error != 0) {
             if (turns.above != 0 && turns.below != 0) return false;
+            if constexpr (!IsExact) {
+                unsure_ = true;
+                return false;
+            }
             if (on_lattice())
                 turns = certain_signs(computed, 0);
             else
@@ -156,6 +187,13 @@ public:
                     {exact_turn(a, b, t[0], axis), exact_turn(a, b, t[1], axis), exact_turn(a, b, t[2], axis)});
         }
         return (own <= 0 && turns.above == 7) || (own >= 0 && turns.below == 7);
+    }
+
+    /// Whether a sign could not be decided so far.
+    [[nodiscard]] bool unsure() const noexcept
+        requires(!IsExact)
+    {
+        return unsure_;
     }
 
 private:
@@ -181,6 +219,7 @@ private:
     }
 
     [[nodiscard]] inline double turn_error(int x, int y) const noexcept {
+        if constexpr (!IsExact) return turn_error_of_coordinates_[3 - x - y] + 10 * unit * extent_[x] * extent_[y];
         return is_lattice_ ? 0 : 10 * unit * extent_[x] * extent_[y];
     }
 
@@ -199,6 +238,10 @@ private:
     double side_error_;
     bool is_lattice_known_ = false;
     bool is_lattice_ = false;
+    bool unsure_ = false;                // only for coordinates with errors, as is the next
+    vec3d turn_error_of_coordinates_{};  // by the axis of projection
 };
+
+using orientations = filtered_orientations<true>;
 
 }  // namespace aabb

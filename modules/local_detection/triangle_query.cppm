@@ -23,6 +23,16 @@ public:
     /// @param s,t the triangles in A's frame, that of B rounded to float
     template <class PairOf>
     [[nodiscard]] inline bool intersects(const PairOf& pair_of, const triangle3f& s, const triangle3f& t) const {
+        if constexpr (requires { test_.intersects_if_certain(s, t, image_error_); })
+            if (poses_)
+                if (const std::optional<bool> known = test_.intersects_if_certain(s, t, image_error_)) return *known;
+        return intersects_unfiltered(pair_of, s, t);
+    }
+
+    /// The same for pairs that a filter has left undecided.
+    template <class PairOf>
+    [[nodiscard]] inline bool intersects_unfiltered(const PairOf& pair_of, const triangle3f& s,
+                                                    const triangle3f& t) const {
         if constexpr (PosedTrianglePolicy<Triangle>)
             if (poses_) {
                 const index_pair pair = pair_of();

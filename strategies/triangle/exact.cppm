@@ -17,6 +17,11 @@ struct exact_triangle : orientation_test<orientations> {
     static constexpr bool filtered = true;
 
     using orientation_test<orientations>::intersects;
+    /// The same for an image of `t` with an error on each axis; nothing if the error could change the result.
+    [[nodiscard]] static std::optional<bool> intersects_if_certain(const triangle3f& s, const triangle3f& t,
+                                                                   const vec3f& error_of_t) noexcept {
+        return orientation_test<filtered_orientations<false>>::intersects_if_certain(s, t, error_of_t);
+    }
     /// The same at poses, as they are given: `posed_orientations`.
     [[nodiscard]] static bool intersects(const pose_pair& poses, const triangle3d& s, const triangle3d& t) noexcept {
         return orientation_test<posed_orientations>::intersects(poses, s, t);

@@ -27,6 +27,23 @@ public:
         return near_intersects(s_in_double, t_in_double, signs);
     }
 
+    /// Tests triangles whose second is known only up to an error on each axis.
+    /// @returns nothing if that error could change the result
+    [[nodiscard]] static inline std::optional<bool> intersects_if_certain(const triangle3f& s, const triangle3f& t,
+                                                                          const vec3f& error_of_t) noexcept {
+        const triangle3d s_in_double = in_double(s);
+        const triangle3d t_in_double = in_double(t);
+        const auto [s_low, s_high] = range(s_in_double);
+        const auto [t_low, t_high] = range(t_in_double);
+        const vec3d error{error_of_t[0], error_of_t[1], error_of_t[2]};
+        // The differences of floats have a relative error of 2^-53.
+        const lanes<double> beyond = coordinates(error) * (1 + 0x1p-50);
+        if (bits((s_low - t_high > beyond) | (t_low - s_high > beyond)) != 0) return false;
+        Signs signs(s_in_double, t_in_double, lesser(s_low, t_low), greater(s_high, t_high), error);
+        if (!near_intersects(s_in_double, t_in_double, signs)) return false;
+        return signs.unsure() ? std::nullopt : std::optional(true);
+    }
+
     /// Tests triangles of meshes at poses, in world coordinates: `Signs` is constructed from both and has their
     /// corners.
     [[nodiscard]] static inline bool intersects(const pose_pair& poses, const triangle3d& s,

@@ -54,8 +54,9 @@ public:
                 fit_missing_slabs(leaves_b, overlapping);
                 std::size_t count = 0;
                 for (const auto& [pair, box_mask] : overlapping) {
-                    const std::uint64_t mask = box_mask & copied_to_rows(cache_b_[leaves_b[pair]].slab.triangles_inside(
-                                                              cache_a_[leaves_a[pair]].block, margin_));
+                    const std::uint64_t mask =
+                        box_mask &
+                        copied_to_rows(cache_b_[leaves_b[pair]].slab.triangles_inside(cache_a_[leaves_a[pair]].block));
                     in_slab_[count] = {pair, mask};
                     count += mask != 0;
                 }
@@ -83,10 +84,9 @@ public:
                 const read_leaf& leaf_a = cache_a_[leaves_a[o.pair]];
                 const read_leaf_of_b& leaf_b = cache_b_[leaves_b[o.pair]];
                 leaf_slab slab_of_a;
-                slab_of_a.fit(leaf_a.block, grid_.edges());
-                const std::uint64_t mask = o.mask &
-                                           expanded_to_rows(slab_of_a.triangles_inside(leaf_b.block, margin_)) &
-                                           copied_to_rows(leaf_b.slab.triangles_inside(leaf_a.block, margin_));
+                slab_of_a.fit(leaf_a.block, grid_.edges(), margin_);
+                const std::uint64_t mask = o.mask & expanded_to_rows(slab_of_a.triangles_inside(leaf_b.block)) &
+                                           copied_to_rows(leaf_b.slab.triangles_inside(leaf_a.block));
                 return mask != 0 && take(o.pair, mask);
             });
     }
@@ -204,7 +204,7 @@ private:
             leaf.has_slab = true;
         }
         for (read_leaf_of_b* const leaf : std::span(missing_slabs_).first(missing))
-            leaf->slab.fit(leaf->block, grid_.edges());
+            leaf->slab.fit(leaf->block, grid_.edges(), margin_);
     }
 
     /// Sets bit 8 j + i where the float boxes of triangle i of A's leaf and j of B's overlap or lie within the margin.

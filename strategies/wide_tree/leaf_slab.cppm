@@ -13,7 +13,8 @@ class leaf_slab {
 public:
     /// Fits the slab to a leaf, inflated by the errors of all heights; it stays infinite if arithmetic could overflow.
     /// @param edges extents of a box around the leaf's vertices and all that are compared with the slab
-    void fit(const triangle_block& block, const std::array<float, 3>& edges) noexcept {
+    /// @param margin by which the slab is inflated along each axis
+    void fit(const triangle_block& block, const std::array<float, 3>& edges, float margin = 0) noexcept {
         set_normal(block);
         float magnitude = 0;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -24,17 +25,15 @@ public:
         high_ = std::numeric_limits<float>::infinity();
         if (!(magnitude < most_magnitude)) return;
         const heights own_heights(*this, block);
-        const float error = error_of(magnitude);
-        low_ = simd::least(own_heights.low) - 2 * error;
-        high_ = -simd::least(-own_heights.high) + 2 * error;
+        const float beyond = 2 * error_of(magnitude) + margin * length();
+        low_ = simd::least(own_heights.low) - beyond;
+        high_ = -simd::least(-own_heights.high) + beyond;
     }
 
     /// Sets bit j if triangle j of the other block may intersect the slab.
-    /// @param margin by which the slab is inflated
-    [[nodiscard]] inline std::uint32_t triangles_inside(const triangle_block& other, float margin = 0) const noexcept {
+    [[nodiscard]] inline std::uint32_t triangles_inside(const triangle_block& other) const noexcept {
         const heights of_other(*this, other);
-        const float grown = margin == 0 ? 0 : margin * length();
-        return 0xffU & ~simd::bits_of_eight((of_other.low > high_ + grown) | (of_other.high < low_ - grown));
+        return 0xffU & ~simd::bits_of_eight((of_other.low > high_) | (of_other.high < low_));
     }
 
 private:

@@ -54,8 +54,8 @@ public:
             for (std::uint32_t open = by_filter.undecided & present; open != 0; open &= open - 1) {
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(open));
                 const std::size_t at = done + lane;
-                if (test.intersects([&] { return pair_at(origin_[at], triangles_at); }, triangle(a_, at),
-                                    triangle(b_, at)))
+                if (test.intersects_unfiltered([&] { return pair_at(origin_[at], triangles_at); }, triangle(a_, at),
+                                               triangle(b_, at)))
                     hits |= 1U << lane;
             }
             hit_count += simd::compress_store(&hits_[hit_count], simd::load(&origin_[done]), hits);

@@ -349,7 +349,8 @@ TEST_CASE("a slab leaves out no triangle that intersects one of the leaf, of any
                 for (auto& corner : before.corner)
                     for (std::size_t k = 0; k < 3; ++k)
                         for (float& x : corner[k]) x -= margin * (k == 0 ? 0.6F : k == 1 ? -0.63F : 0.47F);
-                const std::uint32_t inside_margin = slab.triangles_inside(before, margin);
+                slab.fit(blocks[0], edges, margin);
+                const std::uint32_t inside_margin = slab.triangles_inside(before);
                 for (std::size_t j = 0; j < 8; ++j)
                     for (std::size_t i = 0; i < 8; ++i) {
                         if (!exact_triangle::intersects(sides[0][i], sides[1][j])) continue;
