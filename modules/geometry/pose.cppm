@@ -223,21 +223,27 @@ private:
         for (int j = 0; j < 3; ++j)
             world_sum +=
                 magnitudes(columns_b_[j]) * std::max(std::abs(double{bounds.min[j]}), std::abs(double{bounds.max[j]}));
-        lanes image_sum{};
+        lanes image_sum{}, inverse_sum{};
         for (int k = 0; k < 3; ++k) {
             image_sum += magnitudes(inverse_a_[k]) * world_sum[k];
+            inverse_sum += magnitudes(inverse_a_[k]);
             shift_ += inverse_a_[k] * between_[k];
             for (int j = 0; j < 3; ++j) turn_[j] += inverse_a_[k] * columns_b_[j][k];
         }
         for (int j = 0; j < 3; ++j) absolute_turn_[j] = magnitudes(turn_[j]);
+        double extent = 1;
+        for (int j = 0; j < 3; ++j)
+            extent += std::max(std::abs(double{bounds.min[j]}), std::abs(double{bounds.max[j]}));
         const double greatest = std::max({image_sum[0], image_sum[1], image_sum[2]});
         for (int i = 0; i < 3; ++i) {
             // An image rounds any term at most 7 times, a box at most 10 times (3 in the product of the matrices or the
             // shift, 5 to the centre or 6 to the radius with the margin, and their sum): the errors are within
             // γ_k = k u / (1 - k u) times the sum of the terms' magnitudes, and 32 u covers both. The true image
             // y = Rᴬ⁻¹ w is further from X w, by (I - X Rᴬ) y: at most ρ |y| <= ρ / (1 - ρ) |X w| < 2 ρ |X w|.
+            // What underflows in the world is less than 2^-1072, before the inverse, and in the matrices' product,
+            // before the vertices.
             margin_[i] =
-                32 * unit * image_sum[i] + 2 * inverse_error * greatest + std::numeric_limits<double>::denorm_min();
+                32 * unit * image_sum[i] + 2 * inverse_error * greatest + 0x1p-1070 * (inverse_sum[i] + extent);
         }
         const box image = (*this)(bounds);
         if (!is_valid(image)) throw input_error("seen from one mesh, the other lies beyond the range of float");
@@ -256,14 +262,18 @@ private:
             for (int k = 0; k < 3; ++k) inverse_a_[k][k] = 1;
             return 0;
         }
-        const auto row = [&](int i) {
-            const auto* const r = &a.rotation[static_cast<std::size_t>(3 * (i % 3))];
-            return vec3d{r[0], r[1], r[2]};
-        };
-        const double determinant = dot(row(0), cross(row(1), row(2)));
-        for (int k = 0; k < 3; ++k) {
-            const vec3d column = cross(row(k + 1), row(k + 2));
-            inverse_a_[k] = lanes{column[0], column[1], column[2]} / determinant;
+        // Rows are scaled by powers of two, so that the determinant neither overflows nor underflows.
+        std::array<vec3d, 3> rows{};
+        std::array<int, 3> exponents{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double* const r = &a.rotation[3 * i];
+            static_cast<void>(std::frexp(std::max({std::abs(r[0]), std::abs(r[1]), std::abs(r[2])}), &exponents[i]));
+            for (int j = 0; j < 3; ++j) rows[i][j] = std::ldexp(r[j], -exponents[i]);
+        }
+        const double determinant = dot(rows[0], cross(rows[1], rows[2]));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const vec3d column = cross(rows[(k + 1) % 3], rows[(k + 2) % 3]);
+            for (int i = 0; i < 3; ++i) inverse_a_[k][i] = std::ldexp(column[i] / determinant, -exponents[k]);
         }
         lanes sums{};
         for (int j = 0; j < 3; ++j) {
@@ -271,8 +281,9 @@ private:
             entry[j] = 1;
             lanes magnitude = entry;  // of the terms of an entry, of which each is rounded at most four times
             for (int k = 0; k < 3; ++k) {
-                entry -= inverse_a_[k] * row(k)[j];
-                magnitude += magnitudes(inverse_a_[k] * row(k)[j]);
+                const lanes term = inverse_a_[k] * a.rotation[static_cast<std::size_t>(3 * k + j)];
+                entry -= term;
+                magnitude += magnitudes(term);
             }
             sums += magnitudes(entry) + 5 * unit * magnitude;
         }

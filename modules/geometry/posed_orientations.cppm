@@ -112,6 +112,14 @@ public:
         return apart;
     }
 
+    /// Whether two corners of one triangle are the same point: a map of full rank keeps vertices apart.
+    [[nodiscard]] bool are_equal(const vec3d& p, const vec3d& q) const noexcept {
+        const auto vertex = [&](const vec3d& corner) -> const vec3d& {
+            return *given_[static_cast<std::size_t>(index_of(corner))].vertex;
+        };
+        return vertex(p) == vertex(q);
+    }
+
     /// Whether they are disjoint, exactly.
     [[nodiscard]] bool boxes_are_disjoint() noexcept { return exact().boxes_are_disjoint(); }
 

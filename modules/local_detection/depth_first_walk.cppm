@@ -156,7 +156,7 @@ private:
             if (a_is_leaf && b_is_leaf && test != leaf_test_choice::triangle_aabb) return true;
             if (test == leaf_test_choice::none && (which_is_new == new_node::a ? a_is_leaf : b_is_leaf)) return true;
             if (tests_triangle_in_box && a_is_leaf)
-                return intersects_box(a.triangles().triangle(a.tree().triangle(next.a)), next.b_bounds, test);
+                return intersects_box(a.triangles().triangle(a.tree().triangle(next.a)), grown(next.b_bounds), test);
             if (tests_triangle_in_box && b_is_leaf)
                 return intersects_box(triangle_in_a(b, to_a, next.b), grown(a.tree().bounds(next.a)), test);
         }
@@ -164,7 +164,9 @@ private:
         return overlaps(a.tree().bounds(next.a), next.b_bounds);
     }
 
-    /// The box that contains every true image whose rounded one lies in the box; sums are rounded, so twice the error.
+    /// The box grown by the error of images: a box of images is rounded to nearest, which keeps overlaps with boxes of
+    /// floats only, not with triangles; and a true image may lie that far from its rounded one. Sums are rounded, so
+    /// twice the error.
     [[nodiscard]] box grown(box b) const noexcept {
         for (int k = 0; k < 3; ++k) {
             b.min[k] -= 2 * image_error_[k];

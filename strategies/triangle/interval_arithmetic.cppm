@@ -113,6 +113,11 @@ public:
     [[nodiscard]] const triangle3d& s() const noexcept { return corners_.s(); }
     [[nodiscard]] const triangle3d& t() const noexcept { return corners_.t(); }
     [[nodiscard]] bool are_apart() const noexcept { return corners_.are_apart(); }
+    [[nodiscard]] bool are_equal(const vec3d& p, const vec3d& q) const noexcept
+        requires requires(Corners corners) { corners.are_equal(p, q); }
+    {
+        return corners_.are_equal(p, q);
+    }
     [[nodiscard]] bool boxes_are_disjoint() noexcept
         requires requires(Corners corners) { corners.boxes_are_disjoint(); }
     {

@@ -179,8 +179,15 @@ private:
                 return !edge_separates(signs, s, s_turn, t, axis) && !edge_separates(signs, t, t_turn, s, axis);
         }
         // Two segments or points. If they are coplanar, do they intersect in all three projections?
-        const vec3d& s_end = s[1] == s[0] ? s[2] : s[1];
-        const vec3d& t_end = t[1] == t[0] ? t[2] : t[1];
+        const auto end_of = [&](const triangle3d& u) -> const vec3d& {
+            // Different corners may be rounded to the same point.
+            if constexpr (requires { signs.are_equal(u[0], u[1]); })
+                return signs.are_equal(u[0], u[1]) ? u[2] : u[1];
+            else
+                return u[0] == u[1] ? u[2] : u[1];
+        };
+        const vec3d& s_end = end_of(s);
+        const vec3d& t_end = end_of(t);
         if (signs.side(s[0], s_end, t[0], t_end) != 0) return false;
         for (int axis = 0; axis < 3; ++axis)
             if (signs.beyond(s[0], s_end, /*own=*/0, t, axis) || signs.beyond(t[0], t_end, /*own=*/0, s, axis))

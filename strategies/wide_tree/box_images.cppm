@@ -15,8 +15,12 @@ public:
         for (std::size_t k = 0; k < 3; ++k) {
             const auto axis = static_cast<int>(k);
             shift_[k] = motion.shift[axis];
-            margin_[k] = motion.margin[axis] + least;
-            for (std::size_t j = 0; j < 3; ++j) turn_[k][j] = motion.columns[j][axis];
+            double stretch = 1;
+            for (std::size_t j = 0; j < 3; ++j) {
+                turn_[k][j] = motion.columns[j][axis];
+                stretch += std::abs(turn_[k][j]);
+            }
+            margin_[k] = motion.margin[axis] + least * stretch;
         }
     }
 
@@ -50,7 +54,7 @@ public:
     }
 
 private:
-    static constexpr double least = 0x1p-160;  // for denormal coordinates
+    static constexpr double least = 0x1p-160;  // for denormal coordinates, of which a map may make greater ones
 
     [[nodiscard]] static inline simd::eight_doubles doubles_of(const quantized_aabbs::row& codes) noexcept {
         return __builtin_convertvector(simd::load_eight<simd::eight_bytes>(codes.data()), simd::eight_doubles);

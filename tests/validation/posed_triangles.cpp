@@ -175,6 +175,7 @@ public:
         t_to_s = sides(3, 0);
         return s_to_t.on_one_side() || t_to_s.on_one_side();
     }
+    [[nodiscard]] bool are_equal(const vec3d& p, const vec3d& q) const { return corners_.are_equal(p, q); }
     [[nodiscard]] bool boxes_are_disjoint() const { return integers_.boxes_are_disjoint(); }
     [[nodiscard]] int side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) const {
         return integers_.side(at(a), at(b), at(c), at(d));
@@ -353,4 +354,70 @@ TEST_CASE("around degenerate pairs, unit by unit in the last place, filters at p
     }
     CHECK(results[0] > 10'000);
     CHECK(results[1] > 10'000);
+}
+
+namespace {
+
+/// The pairs of two meshes by every exact composition, either way round, are those of a judge.
+void check_meshes(const aabb::mesh& a, const pose& pose_a, const aabb::mesh& b, const pose& pose_b) {
+    std::vector<aabb::index_pair> truth, swapped;
+    for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
+        for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
+            if (aabb::intersect_in_integers({pose_a, pose_b}, in_double(a.triangle(s)), in_double(b.triangle(t)))) {
+                truth.push_back({s, t});
+                swapped.push_back({t, s});
+            }
+    std::ranges::sort(swapped);
+    REQUIRE_FALSE(truth.empty());
+    for (const aabb::composition& c : exact_local_compositions()) {
+        CAPTURE(text_of_local(c));
+        CHECK(pairs_of(*local_of(c, aabb::instrumentation::none), a, pose_a, b, pose_b) == truth);
+        CHECK(pairs_of(*local_of(c, aabb::instrumentation::none), b, pose_b, a, pose_a) == swapped);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("segments whose corners coincide only as rounded are no points") {
+    constexpr double e = 0x1p-60;
+    const triangle3d s{{{1, 1, 1}, {1, 2, 1}, {1, 1, 1}}};
+    const pose_pair poses{{}, {pose{}.rotation, {1, 1, 1}}};
+    const vec3d p{-e, -e, 0}, q{e / 2, 0, 0};
+    for (const triangle3d& t : {triangle3d{{p, q, p}}, triangle3d{{p, p, q}}, triangle3d{{q, p, p}}}) {
+        CHECK_FALSE(aabb::exact_triangle::intersects(poses, s, t));
+        CHECK_FALSE(aabb::exact_triangle::intersects({poses.b, poses.a}, t, s));
+        CHECK_FALSE(aabb::interval_arithmetic_triangle().intersects(poses, s, t));
+    }
+}
+
+TEST_CASE("a tiny mesh is found in an oblique triangle far from the origin") {
+    constexpr float c = 0x1p20F, d = 0x1p-10F;
+    const aabb::mesh a{{{c + 2, c - 2 + 0x1p-4F, -5}, {c - 2 + 0x1p-4F, c + 2, -5}, {c + 2, c - 2 + 0x1p-4F, 5}},
+                       {{0, 1, 2}}};
+    const aabb::mesh b{{{-d, -d, 0}, {d, d, 0}, {-d, d, d}, {d, -d, d}}, {{0, 1, 2}, {0, 1, 3}}};
+    check_meshes(a, {}, b, {pose{}.rotation, {c + 0x1p-5, c + 0x1p-5, -2}});
+}
+
+TEST_CASE("what underflows in the world is found in a frame that magnifies it") {
+    constexpr float u = 0x1p-80F;
+    const aabb::mesh a{{{0.75F * u, 0, 0}, {1.25F * u, 0, u / 8}, {1.25F * u, 0, -u / 8}}, {{0, 1, 2}}};
+    const aabb::mesh b{{{u, -u, -u}, {u, u, -u}, {u, 0, u}}, {{0, 1, 2}}};
+    const std::array<double, 9> matrix{0x1p-1000, 0, 0, 0, 0x1p1000, 0, 0, 0, 1};
+    check_meshes(a, {matrix, {0, 0, 0}}, b, {matrix, {0, 0, 0x1p-90}});
+}
+
+TEST_CASE("nodes of denormal boxes touch at a pose that magnifies them") {
+    constexpr float v = 0x1p-149F, m = 0x1.0000f8p-60F;
+    const aabb::mesh a{{{m, -m, -m}, {m, m, -m}, {m, 0, m}}, {{0, 1, 2}}};
+    const aabb::mesh b{{{0, 0, 0}, {v, 0, 0}, {0, v, v}}, {{0, 1, 2}}};
+    check_meshes(a, {}, b,
+                 {{0x1.1705c780491abp+99, 0x1.82fbb50b8e52ap+99, 0x1.9aeadbfe6ab87p+99, 0, 1, 0, 0, 0, 1}, {m, 0, 0}});
+}
+
+TEST_CASE("meshes scaled by any power meet as they do unscaled") {
+    const aabb::mesh ball = aabb::sphere(4);
+    for (const double scale : {1e-110, 1e-30, 1e30, 1e110}) {
+        const std::array<double, 9> matrix{scale, 0, 0, 0, scale, 0, 0, 0, scale};
+        check_meshes(ball, {matrix, {0, 0, 0}}, ball, {matrix, {scale / 4, 0, 0}});
+    }
 }

@@ -83,11 +83,11 @@ std::vector<index_pair> ground_truth::overlapping_spheres(std::span<const pose> 
     for (std::size_t object = 0; object < poses.size(); ++object) {
         const pose& p = poses[object];
         const sphere& local = spheres_[meshes_->mesh_of[object]];
-        // An affine map scales lengths by at most the Frobenius norm of its matrix, a rotation by 1.
-        double square = 0;
-        for (const double r : p.rotation) square += r * r;
-        const double scale = orthonormality_error(p) <= 1e-6 ? 1 : std::sqrt(square);
-        sphere world{p.translation, local.radius * scale + 1e-9 * length_of(p.translation)};  // for rounding
+        // A rotation keeps lengths; another map scales them by at most three times its greatest entry.
+        const auto size = [](double x) { return std::abs(x); };
+        const double scale = orthonormality_error(p) <= 1e-6 ? 1 : 3 * size(std::ranges::max(p.rotation, {}, size));
+        constexpr double least = std::numeric_limits<double>::denorm_min();
+        sphere world{p.translation, local.radius * scale + 1e-9 * length_of(p.translation) + least};  // for rounding
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) world.centre[i] += p.rotation[3 * i + j] * local.centre[j];
         spheres.push_back(world);
