@@ -190,8 +190,8 @@ private:
     static constexpr float half_range = 32500;  // of i16, less a margin for rounding
     using row = std::array<float, most>;
 
-    /// Quantises the centres on an axis to i16, the range from the least to the greatest: a vector of these compares
-    /// twice as many as one of floats. If a float cannot hold the scale, as for equal centres, all become equal.
+    /// Quantises the centres on an axis to i16, the range from the least to the greatest: a vector holds twice the
+    /// number of floats. If a float cannot hold the scale, as for equal centres, all become equal.
     inline void quantize_centres(std::size_t axis, std::size_t vectors) noexcept {
         std::array<simd::sixteen_floats, most / lanes> centre;
         simd::sixteen_floats least = simd::sixteen_floats{} + std::numeric_limits<float>::infinity();

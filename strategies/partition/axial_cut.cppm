@@ -245,7 +245,7 @@ private:
         const vec3d share = shares_of(along);
         candidate_cut best{.cut = cut, .segments = 1, .cost = never};
         const cost_model& ns = machine_costs();
-        const double most = config_.segments.value_or(65'535);  // as many as a `range` can name
+        const double most = config_.segments.value_or(65'535);  // the most that a `range` can number
         for (double s = config_.segments.value_or(1); s <= most; s = std::ceil(s * 1.1)) {
             double subsets = 1, copies = objects, swept_share = 1;
             for (int k = 0; k < 3; ++k) {

@@ -108,8 +108,7 @@ TEST_CASE("every exact composition finds exactly the self-intersections of a mes
 
 // Boxes that are transformed from frame to frame must grow by what rounding may do (`relative_pose`), or most of these
 // pairs are missed.
-TEST_CASE("coincident points are found at any common pose, even far from the origin, and near ones told apart",
-          "[long]") {
+TEST_CASE("coincident points are found at any common pose, even far from the origin, but near ones are not", "[long]") {
     const std::vector<aabb::composition> compositions = exact_local_compositions();
     REQUIRE(rc::check([&] {
         const pose pose_a = any_pose();

@@ -1,8 +1,7 @@
 #include "../compositions.hpp"
+#include "../random_poses.hpp"
 #include "pairs.hpp"
 #include "support.hpp"
-
-#include <rapidcheck.h>
 
 import aabb.triangle.exact;
 import aabb.triangle.interval_arithmetic;
@@ -35,16 +34,7 @@ pose integer_map(generator& g) {
 
 /// A rotation by a random quaternion, rounded.
 pose rotation(generator& g) {
-    std::array<double, 4> q{};
-    double square = 0;
-    for (double& c : q) c = real(g);
-    for (const double c : q) square += c * c;
-    for (double& c : q) c /= std::sqrt(square);
-    const auto [w, x, y, z] = q;
-    return {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
-             1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
-             1 - 2 * (x * x + y * y)},
-            {}};
+    return turned_by({real(g), real(g), real(g), real(g)}, {});
 }
 
 /// p after q, rounded; exact if the entries of q are small integers and those of p have few digits.

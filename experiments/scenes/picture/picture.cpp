@@ -227,7 +227,7 @@ frame_drawing drawing_of(const picture_data::frame& frame) {
     for (const auto [a, b] : overlapping_pairs) drawing.overlapping[a] = drawing.overlapping[b] = 1;
     drawing.huge = sort_by_size(drawing.drawn_objects, frame.boxes);
     sample(drawing.drawn_objects, drawing.huge);
-    if (drawing.huge > most_outlined) drawing.huge = 0;  // so many outlines would hide the rest
+    if (drawing.huge > most_outlined) drawing.huge = 0;  // more outlines would hide the rest
     return drawing;
 }
 
