@@ -130,7 +130,7 @@ private:
     aabb::model<walked_tree> a_{scene_->meshes[0], aabb::median_build()};
     aabb::model<walked_tree> b_{scene_->meshes[1], aabb::median_build()};
     std::vector<aabb::pose> poses_ = first_poses(*scene_);
-    aabb::relative_pose to_a_{poses_[0], poses_[1], b_.bounds()};
+    aabb::relative_pose to_a_ = pose_relative_to(a_, poses_[0], b_, poses_[1]);
     rotated_boxes rotated_{poses_[0], poses_[1], b_.bounds()};
     std::vector<node_pair> open_;
     std::vector<reached_leaf> leaves_of_a_, leaves_of_b_;

@@ -131,6 +131,7 @@ void add_content(aabb::digest& digest, const scene_choice& choice, const scene_i
         const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
         for (const aabb::mesh& m : scene->meshes) {
             for (const aabb::vec3f& v : m.vertices) digest.add(std::bit_cast<std::array<std::uint32_t, 3>>(v));
+            for (const aabb::vec3d& v : m.given) digest.add(std::bit_cast<std::array<std::uint32_t, 6>>(v));
             for (const std::array<std::uint32_t, 3>& triangle : m.triangles) digest.add(triangle);
         }
         if (info.reads_file) add_frames<aabb::pose>(digest, *scene, scene->mesh_of.size());

@@ -124,7 +124,7 @@ std::vector<error_point> run_pairs(const error_study& study, const pair_set& set
 void add_overlapping(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b,
                      std::vector<aabb::triangle_pair<float>>& overlapping) {
     const aabb::box bounds_b = aabb::bounds_of(b);
-    const aabb::relative_pose to_a(pose_a, pose_b, bounds_b);
+    const aabb::relative_pose to_a(pose_a, pose_b, bounds_b, a.frame, b.frame);
     if (!aabb::overlaps(aabb::bounds_of(a), to_a(bounds_b))) return;
     std::vector<aabb::box> boxes;
     std::vector<aabb::triangle3f> images;  // of the triangles of B, in the frame of A

@@ -64,7 +64,7 @@ void require_memory(const std::string& work, double bytes);
 /// The extensions of the supported mesh formats, such as ".off".
 [[nodiscard]] std::vector<std::string> mesh_endings();
 
-/// Writes OFF with the shortest decimals that round-trip to the same floats.
+/// Writes OFF with the shortest decimals that read back as the same doubles.
 void write_off(const aabb::mesh& mesh, const std::filesystem::path& file);
 
 /// Opens a motion file that moves these meshes: object i has mesh i modulo their number. Each line holds a frame, an

@@ -41,7 +41,7 @@ public:
     [[nodiscard]] loaded_mesh read() {
         for (const std::size_t node : placed_nodes()) add_node(asset_.nodes[node]);
         mesh_.ignore(asset_.animations, static_cast<std::size_t>(std::ranges::count(is_mesh_shown_, false)));
-        return mesh_.finish(/*rounded_coordinates=*/0, file_.name + ": face ");
+        return mesh_.finish(file_.name + ": face ");
     }
 
 private:
@@ -220,7 +220,7 @@ private:
             file_.fail("its scene has more than 2^32 - 1 vertices");
         // The scene may have many instances of a mesh, so the file's size does not bound it.
         require_memory(file_.name + ": its scene",
-                       static_cast<double>(mesh_.vertices() + count) * sizeof(aabb::vec3f) +
+                       static_cast<double>(mesh_.vertices() + count) * sizeof(aabb::vec3d) +
                            static_cast<double>(faces_) * sizeof(std::array<std::uint32_t, 3>));
         const gltf_mesh& mesh = asset_.meshes[*node.mesh];
         morph(points, primitive, node.weights.value_or(mesh.weights.value_or(std::vector<double>())), mesh_name);
@@ -229,7 +229,8 @@ private:
         for (std::size_t v = 0; v < count; ++v) {
             const Eigen::Vector3d p(&points[3 * v]);
             // Joints place a skinned mesh; the format ignores the transform of its node.
-            mesh_.add_vertex(in_float(node.skin ? skinned(p, v, sets, joints, mesh_name) : moved(transform, p)));
+            const Eigen::Vector3d world = node.skin ? skinned(p, v, sets, joints, mesh_name) : moved(transform, p);
+            mesh_.add_vertex({world[0], world[1], world[2]});
         }
         return count;
     }

@@ -14,11 +14,9 @@ struct skipped_parts {
 
 /// How reading changed a mesh, and what it left out.
 struct mesh_report {
-    std::size_t polygons = 0;   ///< faces of more than three corners
-    std::size_t concave = 0;    ///< polygons that were ear-clipped; the others were fan-triangulated
-    std::size_t zero_area = 0;  ///< triangles of exactly zero area; they are kept
-    /// Coordinates rounded to the nearest float. Text counts if the double that it denotes differs, so "0.1" does.
-    std::size_t rounded = 0;
+    std::size_t polygons = 0;            ///< faces of more than three corners
+    std::size_t concave = 0;             ///< polygons that were ear-clipped; the others were fan-triangulated
+    std::size_t zero_area = 0;           ///< triangles of exactly zero area; they are kept
     std::size_t dropped = 0;             ///< faces of fewer than three corners, points, lines
     std::size_t stitches = 0;            ///< triangles of strips that repeat a corner; they are skipped
     std::size_t not_finite = 0;          ///< unused vertices with NaN or infinity; they are moved onto a used one

@@ -62,7 +62,6 @@ std::string mesh_report::text() const {
     if (polygons > concave) add(line, counted(polygons - concave, "polygon") + " fan-triangulated");
     if (concave) add(line, counted(concave, "concave polygon") + " ear-clipped");
     if (zero_area) add(line, counted(zero_area, "triangle") + " of zero area kept");
-    if (rounded) add(line, counted(rounded, "coordinate") + " rounded to float");
     if (const std::string others = left_out(); !others.empty()) add(line, others);
     return line;
 }
@@ -91,7 +90,8 @@ void write_off(const aabb::mesh& mesh, const std::filesystem::path& file) {
         out.write(text);
         text.clear();
     };
-    for (const aabb::vec3f& p : mesh.vertices) {
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        const aabb::vec3d p = mesh.given_vertex(v);
         text += aabb::shortest(p[0]) + ' ' + aabb::shortest(p[1]) + ' ' + aabb::shortest(p[2]) + '\n';
         write_full_block();
     }

@@ -8,10 +8,9 @@ import :polygon;
 namespace aabblab {
 
 /// Exact test for collinear or coincident corners.
-[[nodiscard]] inline bool has_zero_area(const aabb::triangle3f& t) {
-    const aabb::triangle3d d = aabb::in_double(t);
-    return aabb::exact_turn(d[0], d[1], d[2], 0) == 0 && aabb::exact_turn(d[0], d[1], d[2], 1) == 0 &&
-           aabb::exact_turn(d[0], d[1], d[2], 2) == 0;
+[[nodiscard]] inline bool has_zero_area(const aabb::triangle3d& t) {
+    return aabb::exact_turn(t[0], t[1], t[2], 0) == 0 && aabb::exact_turn(t[0], t[1], t[2], 1) == 0 &&
+           aabb::exact_turn(t[0], t[1], t[2], 2) == 0;
 }
 
 class mesh_builder {
@@ -20,14 +19,14 @@ public:
 
     /// Coordinates that are not finite are allowed as long as no face uses the vertex.
     /// @param line in the file; 0 if the format has no lines
-    void add_vertex(const aabb::vec3f& p, std::size_t line = 0) {
-        if (!aabb::is_finite(p)) not_finite_.push_back({loaded_.mesh.vertices.size(), line});
-        loaded_.mesh.vertices.push_back(p);
+    void add_vertex(const aabb::vec3d& p, std::size_t line = 0) {
+        if (!aabb::is_finite(p)) not_finite_.push_back({vertices_.size(), line});
+        vertices_.push_back(p);
     }
-    [[nodiscard]] std::size_t vertices() const noexcept { return loaded_.mesh.vertices.size(); }
-    [[nodiscard]] const aabb::vec3f& vertex(std::size_t index) const { return loaded_.mesh.vertices[index]; }
+    [[nodiscard]] std::size_t vertices() const noexcept { return vertices_.size(); }
+    [[nodiscard]] const aabb::vec3d& vertex(std::size_t index) const { return vertices_[index]; }
     void reserve(std::size_t vertices, std::size_t triangles) {
-        loaded_.mesh.vertices.reserve(vertices);
+        vertices_.reserve(vertices);
         loaded_.mesh.triangles.reserve(triangles);
     }
 
@@ -78,25 +77,24 @@ public:
     /// Validates the mesh, now that all vertices are known, triangulates its polygons and returns it.
     /// @param location_prefix "FILE:" or "FILE: face ", which precedes a face's location in messages
     /// @param first_index of a vertex in this format: 0 or 1
-    [[nodiscard]] loaded_mesh finish(std::size_t rounded_coordinates, std::string_view location_prefix,
-                                     std::size_t first_index = 0) {
+    [[nodiscard]] loaded_mesh finish(std::string_view location_prefix, std::size_t first_index = 0) {
         aabb::mesh& m = loaded_.mesh;
-        if (needed_vertices_ > m.vertices.size())
+        if (needed_vertices_ > vertices_.size())
             reject(std::string(location_prefix) + std::to_string(needed_at_),
                    "a face uses vertex " + std::to_string(needed_vertices_ - 1 + first_index) + ", but there are " +
-                       std::to_string(m.vertices.size()) + " vertices, counted from " + std::to_string(first_index));
+                       std::to_string(vertices_.size()) + " vertices, counted from " + std::to_string(first_index));
         move_unused_vertices(first_index);
+        cut_polygons(location_prefix);
+        m.triangles.shrink_to_fit();
+        set_vertices(m, std::move(vertices_));
         try {
             aabb::require_valid(m);
         } catch (const aabb::input_error& error) {
             const std::string left_out = loaded_.report.left_out();
             reject(file_, error.what() + (left_out.empty() ? "" : " (" + left_out + ")"));
         }
-        cut_polygons(location_prefix);
-        m.vertices.shrink_to_fit();
-        m.triangles.shrink_to_fit();
-        loaded_.report.rounded = rounded_coordinates;
-        for (std::uint32_t t = 0; t < m.triangle_count(); ++t) loaded_.report.zero_area += has_zero_area(m.triangle(t));
+        for (std::uint32_t t = 0; t < m.triangle_count(); ++t)
+            loaded_.report.zero_area += has_zero_area(m.given_triangle(t));
         return std::move(loaded_);
     }
 
@@ -112,7 +110,7 @@ private:
         polygon_cutter cutter;
         for (const polygon& p : polygons_) {
             const std::span fan = std::span(loaded_.mesh.triangles).subspan(p.first_triangle, p.corners - 2);
-            const polygon_shape shape = cutter.cut(loaded_.mesh.vertices, fan);
+            const polygon_shape shape = cutter.cut(vertices_, fan);
             const auto fail = [&](const std::string& sentence) {
                 reject(std::string(location_prefix) + std::to_string(p.location),
                        "the boundary of a face of " + std::to_string(p.corners) + " corners " + sentence);
@@ -133,7 +131,7 @@ private:
     void move_unused_vertices(std::size_t first_index) {
         if (not_finite_.empty()) return;
         aabb::mesh& m = loaded_.mesh;
-        std::vector<bool> is_used(m.vertices.size());
+        std::vector<bool> is_used(vertices_.size());
         for (const auto& triangle : m.triangles)
             for (const std::uint32_t corner : triangle) is_used[corner] = true;
         for (const auto& [index, line] : not_finite_) {
@@ -141,13 +139,14 @@ private:
                 reject(file_ + (line == 0 ? "" : ":" + std::to_string(line)),
                        "vertex " + std::to_string(index + first_index) +
                            " has a coordinate that is not finite, and a face uses it");
-            if (!m.triangles.empty()) m.vertices[index] = m.vertices[m.triangles[0][0]];
+            if (!m.triangles.empty()) vertices_[index] = vertices_[m.triangles[0][0]];
         }
         loaded_.report.not_finite = not_finite_.size();
     }
 
     std::string file_;
     loaded_mesh loaded_;
+    std::vector<aabb::vec3d> vertices_;
     std::vector<polygon> polygons_;  // with more than three corners
     std::vector<located_vertex> not_finite_;
     std::size_t needed_vertices_ = 0;  // one more than the greatest corner index so far

@@ -63,7 +63,7 @@ loaded_mesh read_obj(const file_text& file) {
         const std::size_t line = in.line();
         const std::string_view statement = words.next();
         if (statement == "v") {
-            aabb::vec3f p{};
+            aabb::vec3d p{};
             for (int k = 0; k < 3; ++k) p[k] = in.coordinate(words.next());
             mesh.add_vertex(p, line);
             for (std::string_view word = words.next(); !word.empty(); word = words.next())
@@ -80,7 +80,7 @@ loaded_mesh read_obj(const file_text& file) {
             while (!words.next().empty()) continue;
         }
     }
-    return mesh.finish(in.rounded_coordinates(), file.name + ":", /*first_index=*/1);
+    return mesh.finish(file.name + ":", /*first_index=*/1);
 }
 
 }  // namespace aabblab

@@ -62,7 +62,7 @@ public:
             in_.fail("expected the end of the file after " + counted(vertices, "vertex", "vertices") + " and " +
                      counted(faces, "face") + ", found " + in_quotes(in_.word()));
         reached_end_ = true;
-        return mesh_.finish(in_.rounded_coordinates(), name_ + ":");
+        return mesh_.finish(name_ + ":");
     }
 
     [[nodiscard]] bool has_vertex() const { return mesh_.vertices() > 0; }
@@ -80,7 +80,7 @@ private:
         const bool has_line = arrangement_ == arrangement::lines;
         const auto where = [&] { return "after " + std::to_string(v) + " of " + std::to_string(count) + " vertices"; };
         if (has_line && !in_.next_line()) in_.fail_at_end(where());
-        aabb::vec3f p{};
+        aabb::vec3d p{};
         for (int k = 0; k < 3; ++k) {
             if (!has_line) advance_to_word(where);
             p[k] = in_.coordinate(in_.word());

@@ -152,7 +152,7 @@ public:
         if (!in_.next_line())
             in_.fail_at_end(fmt::format("after {} of {} elements {}", index, e.count, in_quotes(e.name)));
     }
-    [[nodiscard]] float coordinate(scalar) { return in_.coordinate(in_.word()); }
+    [[nodiscard]] double coordinate(scalar) { return in_.coordinate(in_.word()); }
     [[nodiscard]] std::uint32_t integer(scalar) { return in_.integer<std::uint32_t>("a whole number"); }
     /// Reads a corner of a strip, or -1, which ends a part of it.
     [[nodiscard]] std::int64_t corner_or_end(scalar) {
@@ -173,7 +173,6 @@ public:
         if (in_.next_line())
             in_.fail("expected the end of the file after the last element, found " + in_quotes(in_.word()));
     }
-    [[nodiscard]] std::size_t rounded_coordinates() const { return in_.rounded_coordinates(); }
     static constexpr std::string_view location_prefix = ":";
 
 private:
@@ -189,13 +188,7 @@ public:
         element_ = &e;
         index_ = index;
     }
-    [[nodiscard]] float coordinate(scalar type) {
-        const double exact = number(type);
-        const auto value = static_cast<float>(exact);
-        if (std::isfinite(exact) && std::isinf(value)) fail("has a coordinate that is too large for a float");
-        if (std::isfinite(exact)) rounded_coordinates_ += value != exact;
-        return value;
-    }
+    [[nodiscard]] double coordinate(scalar type) { return number(type); }
     [[nodiscard]] std::uint32_t integer(scalar type) {
         const double value = number(type);
         if (value < 0) fail("has a negative length or corner");
@@ -214,7 +207,6 @@ public:
             reject(file_, fmt::format("continues for {} bytes after the last element that its header announces",
                                       bytes_.size()));
     }
-    [[nodiscard]] std::size_t rounded_coordinates() const { return rounded_coordinates_; }
     [[nodiscard]] static std::size_t line() { return 0; }
     static constexpr std::string_view location_prefix = ": face ";
 
@@ -237,7 +229,6 @@ private:
     bool is_big_endian_;
     const element* element_ = nullptr;
     std::uint64_t index_ = 0;
-    std::size_t rounded_coordinates_ = 0;
 };
 
 /// Splits a strip into triangles of three consecutive corners. Every other triangle is reversed for consistent winding.
@@ -279,7 +270,7 @@ loaded_mesh read_elements(const file_text& file, const header& h, Values values)
             mesh.report_skipped("element", e.name, e.count);
         for (std::uint64_t index = 0; index < e.count; ++index) {
             values.begin(e, index);
-            aabb::vec3f point{};
+            aabb::vec3d point{};
             for (const property& p : e.properties) {
                 if (p.means == meaning::strip) {
                     strip_triangles strip(mesh, values.location(index));
@@ -303,7 +294,7 @@ loaded_mesh read_elements(const file_text& file, const header& h, Values values)
         }
     }
     values.end();
-    return mesh.finish(values.rounded_coordinates(), file.name + std::string(Values::location_prefix));
+    return mesh.finish(file.name + std::string(Values::location_prefix));
 }
 
 }  // namespace

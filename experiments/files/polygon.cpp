@@ -59,13 +59,10 @@ void exact_sum::set_difference_of_magnitudes(const exact_sum& a, const exact_sum
 }
 
 /// Replaces the fan of a concave polygon by an ear-clipping triangulation; the fan of a convex one is valid and stays.
-polygon_shape polygon_cutter::cut(std::span<const aabb::vec3f> vertices,
+polygon_shape polygon_cutter::cut(std::span<const aabb::vec3d> vertices,
                                   std::span<std::array<std::uint32_t, 3>> triangles) {
     corners_.clear();
-    const auto add = [&](std::uint32_t vertex) {
-        const aabb::vec3f& p = vertices[vertex];
-        corners_.push_back({.p = {p[0], p[1], p[2]}, .vertex = vertex});
-    };
+    const auto add = [&](std::uint32_t vertex) { corners_.push_back({.p = vertices[vertex], .vertex = vertex}); };
     add(triangles.front()[0]);
     add(triangles.front()[1]);
     for (const auto& triangle : triangles) add(triangle[2]);
@@ -91,16 +88,28 @@ std::size_t polygon_cutter::distinct_corners() const noexcept {
 /// Chooses the axis of projection, along which Newell's normal of the polygon is longest; returns its sign there.
 int polygon_cutter::project() {
     for (exact_sum& component : normal_) component.clear();
-    const vec3d* p = &corners_.back().p;
+    double greatest = 0;
+    for (const corner& c : corners_)
+        for (const double x : c.p.at) greatest = std::max(greatest, std::abs(x));
+    // Scaled by a power of two, so that products neither overflow nor, unless they are negligible, underflow.
+    const int exponent = greatest == 0 ? 0 : -std::ilogb(greatest);
+    const auto scaled = [&](const vec3d& v) {
+        return vec3d{std::ldexp(v[0], exponent), std::ldexp(v[1], exponent), std::ldexp(v[2], exponent)};
+    };
+    const auto add_product = [](exact_sum& sum, double x, double y) {
+        const double product = x * y;
+        sum.add(product);
+        sum.add(__builtin_fma(x, y, -product));
+    };
+    vec3d p = scaled(corners_.back().p);
     for (const corner& c : corners_) {
-        const vec3d& q = c.p;
+        const vec3d q = scaled(c.p);
         for (int k = 0; k < 3; ++k) {
             const int x = (k + 1) % 3, y = (k + 2) % 3;
-            // The product of two floats is exact in double.
-            normal_[static_cast<std::size_t>(k)].add((*p)[x] * q[y]);
-            normal_[static_cast<std::size_t>(k)].add(-(*p)[y] * q[x]);
+            add_product(normal_[static_cast<std::size_t>(k)], p[x], q[y]);
+            add_product(normal_[static_cast<std::size_t>(k)], -p[y], q[x]);
         }
-        p = &q;
+        p = q;
     }
     std::size_t dominant = 0;
     for (std::size_t k = 1; k < 3; ++k) {
@@ -147,11 +156,11 @@ int polygon_cutter::turn(const vec3d& a, const vec3d& b, const vec3d& c) const n
     const int x = (axis_ + 1) % 3, y = (axis_ + 2) % 3;
     const double left = (b[x] - a[x]) * (c[y] - a[y]);
     const double right = (b[y] - a[y]) * (c[x] - a[x]);
-    // Shewchuk's error bound; with float coordinates nothing overflows or underflows.
+    // Shewchuk's error bound; what overflows or underflows is computed exactly.
     constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
     const double error = (3 + 16 * unit) * unit * (std::abs(left) + std::abs(right));
     const double turned = left - right;
-    return std::abs(turned) > error || error == 0 ? sign_of(turned) : aabb::exact_turn(a, b, c, axis_);
+    return std::abs(turned) > error && error > 0x1p-900 ? sign_of(turned) : aabb::exact_turn(a, b, c, axis_);
 }
 
 bool polygon_cutter::precedes(const vec3d& a, const vec3d& b) const noexcept {

@@ -1,4 +1,4 @@
-/// Triangulates polygons. Every predicate is exact for the float coordinates of the mesh.
+/// Triangulates polygons. Every predicate is exact.
 module aabblab.files:polygon;
 
 import aabb.geometry;
@@ -40,7 +40,7 @@ enum class polygon_shape : std::uint8_t {
 class polygon_cutter {
 public:
     /// @param triangles the fan of the polygon from its first corner, n - 2 triangles; replaced if it is concave
-    [[nodiscard]] polygon_shape cut(std::span<const aabb::vec3f> vertices,
+    [[nodiscard]] polygon_shape cut(std::span<const aabb::vec3d> vertices,
                                     std::span<std::array<std::uint32_t, 3>> triangles);
 
 private:

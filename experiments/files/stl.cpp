@@ -19,13 +19,13 @@ public:
 
     /// Prefetches the slot of the vertex, so that it is in the cache when `index_of` needs it.
     /// @returns the hash for `index_of`
-    [[nodiscard]] std::size_t prefetch(const aabb::vec3f& p) const noexcept {
+    [[nodiscard]] std::size_t prefetch(const aabb::vec3d& p) const noexcept {
         const std::size_t hash = hash_of(bits_of(p));
         __builtin_prefetch(&slots_[hash & (slots_.size() - 1)]);
         return hash;
     }
     /// The index of the vertex with these coordinates, which is added if the mesh has none yet.
-    [[nodiscard]] std::uint32_t index_of(const aabb::vec3f& p, std::size_t hash) {
+    [[nodiscard]] std::uint32_t index_of(const aabb::vec3d& p, std::size_t hash) {
         const auto bits = bits_of(p);
         std::size_t slot = hash & (slots_.size() - 1);
         for (; slots_[slot] != none; slot = next_slot(slot))
@@ -36,21 +36,24 @@ public:
         if (2 * mesh_.vertices() > slots_.size()) double_slots();
         return added;
     }
-    [[nodiscard]] std::uint32_t index_of(const aabb::vec3f& p) { return index_of(p, prefetch(p)); }
+    [[nodiscard]] std::uint32_t index_of(const aabb::vec3d& p) { return index_of(p, prefetch(p)); }
 
 private:
-    using bits_of_vertex = std::array<std::uint32_t, 3>;
+    using bits_of_vertex = std::array<std::uint64_t, 3>;
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-    [[nodiscard]] static bits_of_vertex bits_of(const aabb::vec3f& p) noexcept {
+    [[nodiscard]] static bits_of_vertex bits_of(const aabb::vec3d& p) noexcept {
         return std::bit_cast<bits_of_vertex>(p);
     }
     /// Multiplications mix bits upwards; shifts bring the upper bits down to those that select the slot.
     [[nodiscard]] static std::size_t hash_of(const bits_of_vertex& bits) noexcept {
         constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;  // 2^64 over the golden ratio (Knuth, volume 3, 6.4)
-        std::uint64_t hash = (bits[0] | std::uint64_t{bits[1]} << 32U) * odd;
-        hash = (hash ^ hash >> 32U ^ bits[2]) * odd;
-        return hash ^ hash >> 32U;
+        std::uint64_t hash = 0;
+        for (const std::uint64_t part : bits) {
+            hash = (hash ^ part) * odd;
+            hash ^= hash >> 32U;
+        }
+        return hash;
     }
     [[nodiscard]] std::size_t next_slot(std::size_t slot) const noexcept { return (slot + 1) & (slots_.size() - 1); }
 
@@ -93,7 +96,7 @@ loaded_mesh read_text(const file_text& file) {
     while (in.next_line()) {
         const std::string_view word = in.word();
         if (is_keyword(word, "vertex") && in_facet) {
-            aabb::vec3f p{};
+            aabb::vec3d p{};
             for (int k = 0; k < 3; ++k) p[k] = in.coordinate(in.word());
             require_end_of_line();
             if (!aabb::is_finite(p)) in.fail("the vertex has a coordinate that is not finite");
@@ -122,7 +125,7 @@ loaded_mesh read_text(const file_text& file) {
         }
     }
     if (in_solid) in.fail_at_end(in_facet ? "inside a facet" : "without endsolid");
-    return mesh.finish(in.rounded_coordinates(), file.name + ":");
+    return mesh.finish(file.name + ":");
 }
 
 /// The size of a binary file with this number of triangles.
@@ -149,13 +152,16 @@ std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, st
     vertex_merger merger(mesh, count);
     constexpr std::uint32_t most_at_once = 64;
     std::array<char, triangle_bytes * most_at_once> bytes{};
-    std::array<aabb::vec3f, 3 * most_at_once> points{};
+    std::array<aabb::vec3d, 3 * most_at_once> points{};
     std::array<std::size_t, 3 * most_at_once> hashes{};
     for (std::uint32_t first = 0; first < count; first += std::min(most_at_once, count - first)) {
         const std::uint32_t triangles = std::min(most_at_once, count - first);
         opened.read(bytes.data(), triangle_bytes * triangles);
-        for (std::size_t t = 0; t < triangles; ++t)
-            std::memcpy(&points[3 * t], bytes.data() + triangle_bytes * t + normal_bytes, 3 * sizeof points[0]);
+        for (std::size_t t = 0; t < triangles; ++t) {
+            std::array<aabb::vec3f, 3> corners{};
+            std::memcpy(corners.data(), bytes.data() + triangle_bytes * t + normal_bytes, sizeof corners);
+            for (std::size_t i = 0; i < 3; ++i) points[3 * t + i] = aabb::in_double(corners[i]);
+        }
         // All hashes of a block come first, so that the slots are in the cache when they are searched.
         for (std::size_t i = 0; i < 3 * triangles; ++i) {
             if (!aabb::is_finite(points[i]))
@@ -168,7 +174,7 @@ std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, st
             mesh.add_face(corners, first + t);
         }
     }
-    return mesh.finish(/*rounded_coordinates=*/0, file.string() + ": triangle ");
+    return mesh.finish(file.string() + ": triangle ");
 }
 
 /// Whether the bytes are text STL: UTF-16, or UTF-8 with "solid" and no control characters but those that the decoder

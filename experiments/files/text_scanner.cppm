@@ -17,8 +17,6 @@ struct read_number {
         is_number = stopped == end && error != std::errc::invalid_argument;
         out_of_range = error == std::errc::result_out_of_range;
         // from_chars does not distinguish underflow, which rounds to zero, from overflow; strtod does.
-        if constexpr (std::same_as<Number, float>)
-            if (out_of_range) value = std::strtof(std::string(text).c_str(), nullptr);
         if constexpr (std::same_as<Number, double>)
             if (out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
     }
@@ -97,18 +95,14 @@ public:
         return number.value;
     }
 
-    /// Parses a coordinate, correctly rounded to float. It is NaN or infinite only if the text is. Counts those that
-    /// rounding changes, which the report of the mesh states: the text denotes a double that differs from the float.
-    [[nodiscard]] float coordinate(std::string_view text) {
-        const read_number<float> number(text);
+    /// Parses a coordinate, correctly rounded to double. It is NaN or infinite only if the text is.
+    [[nodiscard]] double coordinate(std::string_view text) {
+        const read_number<double> number(text);
         if (!number.is_number) fail_expected("three coordinates", text);
         if (number.out_of_range && std::isinf(number.value))
-            fail("the coordinate " + in_quotes(text) + " is too large for a float");
-        const bool is_changed = number.out_of_range || read_number<double>(text).value != double{number.value};
-        if (std::isfinite(number.value) && is_changed) ++rounded_coordinates_;
+            fail("the coordinate " + in_quotes(text) + " is too large for a double");
         return number.value;
     }
-    [[nodiscard]] std::size_t rounded_coordinates() const noexcept { return rounded_coordinates_; }
 
 private:
     [[nodiscard]] static bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
@@ -122,7 +116,6 @@ private:
     std::string_view rest_;
     std::string_view line_;
     std::size_t number_ = 0;
-    std::size_t rounded_coordinates_ = 0;
     char comment_;
 };
 

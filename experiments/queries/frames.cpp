@@ -60,7 +60,7 @@ void hit_geometry::set_meshes(const aabb::mesh& a, const aabb::pose& pose_a, con
     a_ = &a;
     b_ = &b;
     pose_a_ = pose_a;
-    to_a_.emplace(pose_a, pose_b, aabb::bounds_of(b));
+    to_a_.emplace(pose_a, pose_b, aabb::bounds_of(b), a.frame, b.frame);
 }
 
 aabb::triangle_intersection hit_geometry::operator()(aabb::index_pair triangles) const {

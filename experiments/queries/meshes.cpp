@@ -17,14 +17,14 @@ std::vector<std::size_t> next_corners(const aabb::mesh& m) {
     std::vector<std::uint32_t> vertices;
     for (std::uint32_t vertex = 0; vertex < m.vertices.size(); ++vertex)
         // Those that no triangle uses may be NaN, which has no order.
-        if (aabb::is_finite(m.vertices[vertex])) vertices.push_back(vertex);
+        if (aabb::is_finite(m.given_vertex(vertex))) vertices.push_back(vertex);
     std::ranges::sort(vertices, {}, [&](std::uint32_t vertex) {
-        const aabb::vec3f& at = m.vertices[vertex];
+        const aabb::vec3d at = m.given_vertex(vertex);
         return std::array{at[0], at[1], at[2]};
     });
     std::vector<std::size_t> position_of(m.vertices.size());  // equal for equal vertices
     for (std::size_t i = 1; i < vertices.size(); ++i) {
-        const bool is_next = m.vertices[vertices[i]] != m.vertices[vertices[i - 1]];
+        const bool is_next = m.given_vertex(vertices[i]) != m.given_vertex(vertices[i - 1]);
         position_of[vertices[i]] = position_of[vertices[i - 1]] + static_cast<std::size_t>(is_next);
     }
     std::vector<std::size_t> next(3 * m.triangles.size());
@@ -36,8 +36,8 @@ std::vector<std::size_t> next_corners(const aabb::mesh& m) {
 
 /// The number of vertices of one triangle that coincide with a vertex of the other.
 std::uint32_t shared_vertices(const aabb::mesh& m, aabb::index_pair pair) {
-    const aabb::triangle3f s = m.triangle(pair.a);
-    const aabb::triangle3f t = m.triangle(pair.b);
+    const aabb::triangle3d s = m.given_triangle(pair.a);
+    const aabb::triangle3d t = m.given_triangle(pair.b);
     std::uint32_t shared = 0;
     for (int i = 0; i < 3; ++i) shared += s[i] == t[0] || s[i] == t[1] || s[i] == t[2];
     return shared;
@@ -82,7 +82,8 @@ std::uint64_t merge_neighbours(const aabb::mesh& m, std::span<const aabb::index_
 /// The number of triangles without area.
 std::uint64_t count_degenerate(const aabb::mesh& m) {
     std::uint64_t count = 0;
-    for (std::uint32_t t = 0; t < m.triangle_count(); ++t) count += !aabb::self_intersection::has_area(m.triangle(t));
+    for (std::uint32_t t = 0; t < m.triangle_count(); ++t)
+        count += !aabb::self_intersection::has_area(m.given_triangle(t));
     return count;
 }
 
@@ -122,7 +123,7 @@ struct query_result {
 bool is_reported(const aabb::mesh& m, aabb::index_pair pair, self_pairs wanted) {
     if (!share_vertex(m, pair)) return true;
     return wanted == self_pairs::intersecting &&
-           aabb::self_intersection::intersects(m.triangle(pair.a), m.triangle(pair.b));
+           aabb::self_intersection::intersects(m.given_triangle(pair.a), m.given_triangle(pair.b));
 }
 
 /// Runs the query. Within one mesh, neighbours (pairs that share a vertex) are counted separately, and stored on

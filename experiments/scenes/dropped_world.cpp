@@ -19,8 +19,8 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     world.meshes = std::move(meshes);
     world.gravity = gravity;
     world.bodies = {{}};
-    const aabb::box bounds = aabb::bounds_of(world.meshes[1]);
-    const double extent = longest_extent(bounds);
+    const aabb::mesh& ball = world.meshes[1];
+    const double extent = longest_extent(ball);
     // A sphere at depth δ in a plane shares a volume of πRδ² with it, so a pressure p acts like a spring of 2πRp.
     const double spring = gravity / (c.depth * extent);  // for 1 kg
     const double girth = std::numbers::pi * extent;      // 2πR
@@ -35,7 +35,7 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     for (std::uint32_t i = 0; i < c.balls; ++i) {
         const Eigen::Vector3d offset = {random.signed_unit(), random.signed_unit(), random.signed_unit()};
         const Eigen::Vector3d place = (lattice_cell(i, side).reverse() * gap + offset * perturbation) * extent + first;
-        const aabb::pose p = placed(centre_of(bounds), random_rotation(random), place);
+        const aabb::pose p = placed(centre_of(ball), random_rotation(random), place);
         world.bodies.push_back(
             {.mesh = 1, .position = p.translation, .velocity = {0, 0, -c.speed}, .mass = 1, .rotation = p.rotation});
     }

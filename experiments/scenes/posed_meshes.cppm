@@ -53,27 +53,38 @@ namespace aabblab {
     return aabb::to_pose(at);
 }
 
-[[nodiscard]] inline Eigen::Vector3d centre_of(const aabb::box& b) {
-    return (in_eigen(b.min) + in_eigen(b.max)) / 2;
+/// The centre of the mesh's box, in the coordinates of the mesh.
+[[nodiscard]] inline Eigen::Vector3d centre_of(const aabb::mesh& m) {
+    const aabb::box b = aabb::bounds_of(m);
+    const Eigen::Vector3d centre = (in_eigen(b.min) + in_eigen(b.max)) / 2;
+    return in_eigen(m.frame.vertex({centre[0], centre[1], centre[2]}));
 }
 
-[[nodiscard]] inline double longest_extent(const aabb::box& b) {
+/// The longest extent of the mesh's box.
+[[nodiscard]] inline double longest_extent(const aabb::mesh& m) {
+    const aabb::box b = aabb::bounds_of(m);
     const int k = aabb::longest_axis(b);
-    return double{b.max[k]} - double{b.min[k]};
+    return m.frame.scale * (double{b.max[k]} - double{b.min[k]});
+}
+
+/// Replaces each vertex by the image of its given one, rounded to float once.
+inline void set_floats(aabb::mesh& m, const auto& image_of) {
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) m.vertices[v] = in_float(image_of(in_eigen(m.given_vertex(v))));
+    m.given.clear();
+    m.frame = {};
 }
 
 /// Centres a mesh at the origin and scales it to a longest extent; each vertex is rounded to float once.
 inline void normalise(aabb::mesh& m, double wanted_extent = 1) {
-    const aabb::box bounds = aabb::bounds_of(m);
-    const Eigen::Vector3d centre = centre_of(bounds);
-    const double extent = longest_extent(bounds);
+    const Eigen::Vector3d centre = centre_of(m);
+    const double extent = longest_extent(m);
     if (extent == 0) return;
-    for (aabb::vec3f& v : m.vertices) {
-        Eigen::Vector3d scaled = (in_eigen(v) - centre) / extent * wanted_extent;
+    set_floats(m, [&](const Eigen::Vector3d& v) {
+        Eigen::Vector3d scaled = (v - centre) / extent * wanted_extent;
         // A vertex that no triangle uses may lie anywhere, but must stay finite.
         for (double& x : scaled) x = std::fmin(std::fmax(x, -0x1p100), 0x1p100);
-        v = in_float(scaled);
-    }
+        return scaled;
+    });
 }
 
 /// A scene of meshes whose poses are generated frame by frame.

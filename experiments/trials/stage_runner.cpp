@@ -120,7 +120,7 @@ std::vector<aabb::part_bytes> stage_runner::local_bytes() const {
     std::size_t triangles = 0, vertices = 0;
     for (const aabb::mesh& m : scene_.meshes()->meshes) {
         triangles += aabb::bytes_of(m.triangles);
-        vertices += aabb::bytes_of(m.vertices);
+        vertices += aabb::bytes_of(m.vertices, m.given);
     }
     parts.push_back({"triangles", triangles});
     parts.push_back({"vertices", vertices});

@@ -118,12 +118,12 @@ template <EigenColumns<6> Matrix>
 }
 
 /// Copies a mesh from matrices of points and triangles, one per column, or one per row if there are three columns and
-/// not three rows. Coordinates are rounded to float; vertex indices start at 0.
+/// not three rows. Vertex indices start at 0.
 /// @throws input_error as `require_valid`
 template <class Vertices, class Triangles>
 [[nodiscard]] inline mesh to_mesh(const Vertices& vertices, const Triangles& triangles)
     requires requires {
-        { vertices(0, 0) } -> std::convertible_to<float>;
+        { vertices(0, 0) } -> std::convertible_to<double>;
         { triangles(0, 0) } -> std::convertible_to<std::int64_t>;
     }
 {
@@ -136,9 +136,6 @@ template <class Vertices, class Triangles>
             take([&](std::ptrdiff_t k) { return in_columns ? m(k, i) : m(i, k); });
     };
     mesh result;
-    for_each(vertices, [&](auto at) {
-        result.vertices.push_back({static_cast<float>(at(0)), static_cast<float>(at(1)), static_cast<float>(at(2))});
-    });
     for_each(triangles, [&](auto at) {
         const auto corner = [&](std::ptrdiff_t k) {
             const std::int64_t v = at(k);
@@ -149,6 +146,9 @@ template <class Vertices, class Triangles>
         };
         result.triangles.push_back({corner(0), corner(1), corner(2)});
     });
+    std::vector<vec3d> points;
+    for_each(vertices, [&](auto at) { points.push_back({double(at(0)), double(at(1)), double(at(2))}); });
+    set_vertices(result, std::move(points));
     require_valid(result);
     return result;
 }

@@ -13,3 +13,4 @@ export import :posed_orientations;
 export import :predicates;
 export import :triangle_box;
 export import :points;
+export import :vertex_frame;

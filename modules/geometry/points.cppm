@@ -39,7 +39,8 @@ template <class Real>
     return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
 }
 
-[[nodiscard]] inline bool is_finite(const vec3f& p) noexcept {
+template <class Real>
+[[nodiscard]] inline bool is_finite(const vec3<Real>& p) noexcept {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
@@ -85,11 +86,14 @@ struct triangle_pair {
 };
 
 /// Converts to double without rounding.
+[[nodiscard]] constexpr vec3d in_double(const vec3f& p) noexcept {
+    return {p[0], p[1], p[2]};
+}
 [[nodiscard]] constexpr triangle3d in_double(const triangle3d& t) noexcept {
     return t;
 }
 [[nodiscard]] constexpr triangle3d in_double(const triangle3f& t) noexcept {
-    return {{{t[0][0], t[0][1], t[0][2]}, {t[1][0], t[1][1], t[1][2]}, {t[2][0], t[2][1], t[2][2]}}};
+    return {in_double(t[0]), in_double(t[1]), in_double(t[2])};
 }
 
 /// Converts to float, rounded to nearest.

@@ -3,6 +3,7 @@ export module aabb.geometry:pose;
 import aabb.std;
 import :box;
 import :predicates;
+import :vertex_frame;
 
 #pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
 
@@ -56,12 +57,12 @@ struct box_motion {
     std::array<vec3d, 3> columns;
     vec3d shift;
     vec3d margin;
+    vec3d image_error;  ///< as `relative_pose::image_error`
 };
 
-/// A bound on the rounding error of a vertex's image (`relative_pose::to_boxes`): rounding to float contributes, on
-/// each axis, 2^-24 of the magnitudes whose 2^-48 is the margin, or half the least denormal; twice that covers double.
+/// A bound on the distance between a vertex's image in float and its true image.
 [[nodiscard]] inline double rounding_bound(const box_motion& p) noexcept {
-    return (p.margin[0] + p.margin[1] + p.margin[2]) * 0x1p25 + 0x1p-147;
+    return (p.image_error[0] + p.image_error[1] + p.image_error[2]) * (1 + 0x1p-50);
 }
 
 /// A bound on the distance between the rounded images of a vertex under two poses (`relative_pose::to_boxes`), and so
@@ -90,18 +91,22 @@ struct box_motion {
 /// Exact tests decide on the true images, in real arithmetic; here these are rounded, with bounds of the error. Other
 /// tests get the images as they are: in double, each sum left to right without fused multiply-add, rounded to float
 /// once. Translations are subtracted first, so that two meshes moved together keep their images bit for bit, as long as
-/// tᴮ - tᴬ does not change. Under equal poses, the images are the vertices.
+/// tᴮ - tᴬ does not change. Under equal poses and frames, the images are the vertices.
+///
+/// With floats x of a vertex frame, a vertex is o + s x: R becomes s R, and t becomes t + R o.
 class relative_pose {
 public:
     /// The motion from the frame of mesh B at pose b to that of mesh A at pose a, of full rank (`require_full_rank`).
-    /// @param bounds box of the vertices of B in B's frame; only boxes and vertices inside it may be transformed
+    /// @param bounds box of the floats of B; only boxes and vertices inside it may be transformed
+    /// @param frame_a,frame_b of the meshes' floats
     /// @throws input_error if their images may exceed the range of float, or if rounding leaves no inverse of a's
     /// matrix
-    relative_pose(const pose& a, const pose& b, const box& bounds) {
+    relative_pose(const pose& a, const pose& b, const box& bounds, const vertex_frame& frame_a = {},
+                  const vertex_frame& frame_b = {}) {
         if (a == b)
-            set(pose{}, pose{}, bounds);
+            set(pose{}, pose{}, bounds, frame_a, frame_b);
         else
-            set(a, b, bounds);
+            set(a, b, bounds, frame_a, frame_b);
     }
 
     /// False if every image is known to equal the vertex.
@@ -110,7 +115,8 @@ public:
     /// Whether lengths are kept, within 2^-18 of their size.
     [[nodiscard]] inline bool is_rigid() const noexcept { return is_rigid_; }
 
-    /// A bound on the distance, along each axis, between a vertex's image and its true image; zero without motion.
+    /// A bound on the distance, along each axis, between a vertex's image and its true image, and as far as a vertex of
+    /// A may lie from its float; zero without motion if all vertices are floats.
     [[nodiscard]] inline const vec3f& image_error() const noexcept { return image_error_; }
 
     /// The image of a vertex of B, as defined above.
@@ -159,6 +165,7 @@ public:
         for (int i = 0; i < 3; ++i) {
             there.shift[i] = shift_[i];
             there.margin[i] = margin_[i];
+            there.image_error[i] = image_error_[i];
             for (int j = 0; j < 3; ++j) there.columns[static_cast<std::size_t>(j)][i] = turn_[j][i];
         }
         return there;
@@ -169,8 +176,7 @@ public:
     ///
     /// The inverse is the adjugate over the determinant. Each entry is within 16 u of the true inverse, and the
     /// inverted matrix within 3 u; sums of six terms round five times, so 64 u of all magnitudes covers these errors.
-    /// Rounding the image to float adds 2^-24 of the magnitudes whose 2^-48 is the margin, and half a denormal, 2^-150;
-    /// the bounds are twice and 16 times as large.
+    /// The rest of the margin is what rounding to float and the errors of both meshes' floats add to an image.
     /// @param bounds box of A; `is_rigid` must hold
     [[nodiscard]] inline box_motion back_to_boxes(const box& bounds) const noexcept {
         const auto cross = [](const lanes& p, const lanes& q) {
@@ -192,7 +198,7 @@ public:
                 const double entry = row[j] / determinant;
                 back.columns[static_cast<std::size_t>(j)][i] = entry;
                 back.shift[i] -= entry * shift_[j];
-                back.margin[i] += std::abs(entry) * margin_[j] * 0x1p25;
+                back.margin[i] += std::abs(entry) * 2 * (margin_[j] + image_error_[j]);
             }
         }
         return back;
@@ -208,14 +214,15 @@ private:
     using lanes = double __attribute__((vector_size(32)));  // x, y, z and an unused lane
     static constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
-    void set(const pose& a, const pose& b, const box& bounds) {
-        const vec3d& from = a.translation;
-        const vec3d& to = b.translation;
-        between_ = lanes{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    void set(pose a, pose b, const box& bounds, const vertex_frame& frame_a, const vertex_frame& frame_b) {
+        double between_error = 0;
+        between_ = translation_between(a, frame_a.origin, b, frame_b.origin, between_error);
+        for (double& r : a.rotation) r *= frame_a.scale;
+        for (double& r : b.rotation) r *= frame_b.scale;
         for (std::size_t k = 0; k < 3; ++k) columns_b_[k] = lanes{b.rotation[k], b.rotation[3 + k], b.rotation[6 + k]};
         turns_a_ = turns(a);
         turns_b_ = turns(b);
-        moves_ = turns_a_ || turns_b_ || from != to;
+        moves_ = turns_a_ || turns_b_ || a.translation != b.translation || frame_a.origin != frame_b.origin;
         is_rigid_ = (!turns_a_ || orthonormality_error(a) <= 1e-6) && (!turns_b_ || orthonormality_error(b) <= 1e-6);
         const double inverse_error = invert(a);
         // The magnitudes of the terms of an image add up to these sums, before and after the map into A's frame.
@@ -244,15 +251,55 @@ private:
             // before the vertices.
             margin_[i] =
                 32 * unit * image_sum[i] + 2 * inverse_error * greatest + 0x1p-1070 * (inverse_sum[i] + extent);
+            // What the floats of both meshes are off by.
+            double error_of_floats = frame_a.rounding[i] + inverse_sum[i] * between_error;
+            for (int j = 0; j < 3; ++j) error_of_floats += absolute_turn_[j][i] * double{frame_b.rounding[j]};
+            margin_[i] += error_of_floats * (1 + 0x1p-20);
         }
         const box image = (*this)(bounds);
         if (!is_valid(image)) throw input_error("seen from one mesh, the other lies beyond the range of float");
         // Rounding to float adds 2^-24 of the magnitude, or half the least denormal.
-        if (moves_)
+        if (moves_ || !frame_a.is_exact() || !frame_b.is_exact())
             for (int i = 0; i < 3; ++i) {
                 const double largest = std::max(std::abs(double{image.min[i]}), std::abs(double{image.max[i]}));
-                image_error_[i] = static_cast<float>((largest * 0x1p-24 + margin_[i]) * (1 + 0x1p-20) + 0x1p-148);
+                const double of_rounding = moves_ ? largest * 0x1p-24 : 0;
+                image_error_[i] = static_cast<float>((of_rounding + margin_[i]) * (1 + 0x1p-20) + 0x1p-148);
             }
+    }
+
+    /// tᴮ + Rᴮ oᴮ - tᴬ - Rᴬ oᴬ. Around origins other than 0, the sum is computed as if in twice the precision (Ogita,
+    /// Rump and Oishi, "Accurate sum and dot product", 2005): then its error is u of the result, as without origins,
+    /// and at most γ²₁₆ of the terms' magnitudes.
+    /// @param error set to a bound of the latter
+    [[nodiscard]] static lanes translation_between(const pose& a, const vec3d& origin_a, const pose& b,
+                                                   const vec3d& origin_b, double& error) noexcept {
+        lanes between{};
+        for (int i = 0; i < 3; ++i) {
+            between[i] = b.translation[i] - a.translation[i];
+            if (origin_a == vec3d{} && origin_b == vec3d{}) continue;
+            double sum = 0, rest = 0, magnitude = 0;
+            const auto add = [&](double x) {
+                const double total = sum + x;
+                const double of_x = total - sum;
+                rest += (sum - (total - of_x)) + (x - of_x);
+                sum = total;
+                magnitude += std::abs(x);
+            };
+            const auto add_product = [&](double x, double y) {
+                const double product = x * y;
+                add(product);
+                rest += __builtin_fma(x, y, -product);
+            };
+            add(b.translation[i]);
+            add(-a.translation[i]);
+            for (int j = 0; j < 3; ++j) {
+                add_product(b.rotation[static_cast<std::size_t>(3 * i + j)], origin_b[j]);
+                add_product(-a.rotation[static_cast<std::size_t>(3 * i + j)], origin_a[j]);
+            }
+            between[i] = sum + rest;
+            error = std::max(error, 256 * unit * unit * magnitude + 0x1p-1070);
+        }
+        return between;
     }
 
     /// Sets `inverse_a_` to X ≈ Rᴬ⁻¹, the adjugate over the determinant.
@@ -318,19 +365,23 @@ private:
 /// The world box of a mesh at a pose, for the broad phase: it contains every R x + t, for x in the mesh's box, up to
 /// the rounding of its bounds to nearest, which is monotone, so that boxes of meshes that meet always overlap.
 ///
-/// A bound has at most six roundings of a term, so that 2^-48 of the magnitudes, 32 u, covers them.
-[[nodiscard]] inline box world_bounds(const box& local, const pose& p) noexcept {
+/// A bound has at most eight roundings of a term, so that 2^-48 of the magnitudes, 32 u, covers them.
+/// @param frame of the floats of the mesh
+[[nodiscard]] inline box world_bounds(const box& local, const pose& p, const vertex_frame& frame = {}) noexcept {
+    const vec3d rounding = in_double(frame.rounding);
+    const vec3d lowest = frame.vertex(in_double(local.min) - rounding);
+    const vec3d highest = frame.vertex(in_double(local.max) + rounding);
     box world;
     for (int i = 0; i < 3; ++i) {
         double low = p.translation[i];
         double high = p.translation[i];
         double magnitude = std::abs(p.translation[i]);
         for (int j = 0; j < 3; ++j) {
-            const double u = p.rotation[3 * i + j] * local.min[j];
-            const double v = p.rotation[3 * i + j] * local.max[j];
+            const double u = p.rotation[3 * i + j] * lowest[j];
+            const double v = p.rotation[3 * i + j] * highest[j];
             low += std::min(u, v);
             high += std::max(u, v);
-            magnitude += std::max(std::abs(u), std::abs(v));
+            magnitude += std::max(std::abs(u), std::abs(v)) + std::abs(p.rotation[3 * i + j] * frame.origin[j]);
         }
         const double growth = magnitude * 0x1p-48 + 0x1p-1070;
         world.min[i] = static_cast<float>(low - growth);

@@ -30,7 +30,7 @@ public:
     template <class Emit>
     void find_self_pairs(const query& test, const model<Tree>& m, Emit emit) {
         constexpr same_frame identity;
-        begin({});
+        begin(test.image_error());
         nodes_.assign(1, m.root());
         while (!nodes_.empty()) {
             const cursor node = nodes_.back();

@@ -81,8 +81,9 @@ public:
     /// Passes each of the same pairs to `take` as it is found, without storing any, until it returns true.
     template <class Take>
     void each_self_pair(const model<Tree>& m, const Take& take) {
-        const relative_pose identity({}, {}, m.bounds());
-        const triangle_query<Tree, Triangle> test(triangle_, m, m, std::nullopt, identity);
+        const relative_pose identity = pose_relative_to(m, {}, m, {});
+        const pose_pair unposed;
+        const triangle_query<Tree, Triangle> test(triangle_, m, m, unposed, identity);
         walk_.find_self_pairs(test, m, [&](std::span<const index_pair> batch) {
             return std::ranges::any_of(batch, [&](const index_pair& p) { return take(ordered_pair(p.a, p.b)); });
         });
@@ -95,8 +96,8 @@ private:
     template <class Emit>
     void walk(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, walk_goal goal,
               Emit emit) {
-        const relative_pose to_a(pose_a, pose_b, b.bounds());
-        const std::optional<pose_pair> poses({pose_a, pose_b});
+        const relative_pose to_a = pose_relative_to(a, pose_a, b, pose_b);
+        const pose_pair poses{pose_a, pose_b};
         walk_.find_pairs(triangle_query<Tree, Triangle>(triangle_, a, b, poses, to_a), a, b, to_a, goal, emit);
     }
 

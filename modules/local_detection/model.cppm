@@ -91,4 +91,11 @@ private:
     std::uint64_t state_ = number_;
 };
 
+/// The motion from the frame of model B to that of model A.
+template <TreePolicy Tree>
+[[nodiscard]] relative_pose pose_relative_to(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
+                                             const pose& pose_b) {
+    return {pose_a, pose_b, b.bounds(), a.triangles().frame, b.triangles().frame};
+}
+
 }  // namespace aabb

@@ -52,12 +52,15 @@ struct balanced_order {
     constexpr std::uint32_t unseen = 0xffffffff;
     std::vector<std::uint32_t> number(m.vertices.size(), unseen);
     mesh reordered;
+    reordered.frame = m.frame;
     reordered.vertices.reserve(m.vertices.size());
+    reordered.given.reserve(m.given.size());
     reordered.triangles.reserve(m.triangles.size());
     const auto place = [&](std::uint32_t v) {
         if (number[v] == unseen) {
             number[v] = static_cast<std::uint32_t>(reordered.vertices.size());
             reordered.vertices.push_back(m.vertices[v]);
+            if (!m.given.empty()) reordered.given.push_back(m.given[v]);
         }
         return number[v];
     };
@@ -162,10 +165,10 @@ concept DoubleTrianglePolicy = TrianglePolicy<R> && requires(const R policy, con
 
 /// An exact triangle test that also decides on triangles of meshes at poses, in world coordinates that are not rounded.
 template <class R>
-concept PosedTrianglePolicy =
-    TrianglePolicy<R> && requires(const R policy, const pose_pair& poses, const triangle3d& s, const triangle3d& t) {
-        { policy.intersects(poses, s, t) } -> std::same_as<bool>;
-    };
+concept PosedTrianglePolicy = DoubleTrianglePolicy<R> && requires(const R policy, const pose_pair& poses,
+                                                                  const triangle3d& s, const triangle3d& t) {
+    { policy.intersects(poses, s, t) } -> std::same_as<bool>;
+};
 
 /// A triangle test that also constructs the intersection of two triangles; floats are converted to double.
 template <class R>

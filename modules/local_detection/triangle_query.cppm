@@ -5,18 +5,18 @@ import :model;
 
 export namespace aabb {
 
-/// The triangle test of one query. An exact test decides on the triangles of meshes that move against each other at
-/// their poses (`PosedTrianglePolicy`); all others decide on A's triangle and the image of B's in A's frame.
+/// The triangle test of one query. An exact test decides on the triangles as they are given, and at their poses if the
+/// meshes move against each other (`PosedTrianglePolicy`); all others decide on floats in A's frame.
 template <TreePolicy Tree, TrianglePolicy Triangle>
 class triangle_query {
 public:
-    /// @param poses empty for one mesh; all arguments must outlive this object
-    triangle_query(const Triangle& test, const model<Tree>& a, const model<Tree>& b,
-                   const std::optional<pose_pair>& poses, const relative_pose& to_a)
-        : test_(test), a_(a), b_(b) {
-        if (!PosedTrianglePolicy<Triangle> || !poses || !to_a.moves()) return;
-        poses_ = &*poses;
-        image_error_ = to_a.image_error();
+    /// @param poses equal for one mesh; all arguments must outlive this object
+    triangle_query(const Triangle& test, const model<Tree>& a, const model<Tree>& b, const pose_pair& poses,
+                   const relative_pose& to_a)
+        : test_(test), poses_(poses), a_(a), b_(b) {
+        if constexpr (PosedTrianglePolicy<Triangle>) image_error_ = to_a.image_error();
+        floats_are_exact_ = greatest_error() == 0;
+        are_posed_ = poses.a != poses.b;
     }
 
     /// @param pair_of returns the indices of the triangles; called only if the test needs them
@@ -24,7 +24,7 @@ public:
     template <class PairOf>
     [[nodiscard]] inline bool intersects(const PairOf& pair_of, const triangle3f& s, const triangle3f& t) const {
         if constexpr (requires { test_.intersects_if_certain(s, t, image_error_); })
-            if (poses_)
+            if (!floats_are_exact_)
                 if (const std::optional<bool> known = test_.intersects_if_certain(s, t, image_error_)) return *known;
         return intersects_unfiltered(pair_of, s, t);
     }
@@ -34,15 +34,17 @@ public:
     [[nodiscard]] inline bool intersects_unfiltered(const PairOf& pair_of, const triangle3f& s,
                                                     const triangle3f& t) const {
         if constexpr (PosedTrianglePolicy<Triangle>)
-            if (poses_) {
+            if (!floats_are_exact_) {
                 const index_pair pair = pair_of();
-                return test_.intersects(*poses_, in_double(a_.triangles().triangle(pair.a)),
-                                        in_double(b_.triangles().triangle(pair.b)));
+                const triangle3d given_s = a_.triangles().given_triangle(pair.a);
+                const triangle3d given_t = b_.triangles().given_triangle(pair.b);
+                // One map of full rank for both changes nothing.
+                return are_posed_ ? test_.intersects(poses_, given_s, given_t) : test_.intersects(given_s, given_t);
             }
         return test_.intersects(s, t);
     }
 
-    /// The error of B's corners in A's frame, along each axis: 0 if the rounded images are what is tested.
+    /// The error of corners in A's frame, along each axis: 0 if the floats are what is tested.
     [[nodiscard]] const vec3f& image_error() const noexcept { return image_error_; }
     [[nodiscard]] float greatest_error() const noexcept {
         return std::max({image_error_[0], image_error_[1], image_error_[2]});
@@ -50,10 +52,12 @@ public:
 
 private:
     const Triangle& test_;
+    const pose_pair& poses_;
     const model<Tree>& a_;
     const model<Tree>& b_;
-    const pose_pair* poses_ = nullptr;
     vec3f image_error_{};
+    bool floats_are_exact_ = true;
+    bool are_posed_ = false;
 };
 
 }  // namespace aabb

@@ -21,9 +21,10 @@ void require_poses(const mesh_scene& scene, std::span<const pose> poses) {
 }
 
 /// The world box of an object or of a part of it.
+/// @param local box of the floats, in this frame
 /// @throws input_error if it lies beyond the range of float
-[[nodiscard]] box posed_box(const box& local, const pose& at, std::size_t object) {
-    const box world = world_bounds(local, at);
+[[nodiscard]] box posed_box(const box& local, const vertex_frame& frame, const pose& at, std::size_t object) {
+    const box world = world_bounds(local, at, frame);
     if (!is_valid(world)) throw input_error("object " + std::to_string(object) + " lies beyond the range of float");
     return world;
 }
@@ -43,8 +44,10 @@ public:
         require_poses(scene_, poses);
         for (std::uint32_t m = 0; m < mesh_bounds_.size(); ++m)
             if (scene_.deforms(m)) mesh_bounds_[m] = bounds_of(scene_.meshes[m]);
-        for (std::size_t object = 0; object < poses.size(); ++object)
-            boxes_[object] = posed_box(mesh_bounds_[scene_.mesh_of[object]], poses[object], object);
+        for (std::size_t object = 0; object < poses.size(); ++object) {
+            const std::uint32_t m = scene_.mesh_of[object];
+            boxes_[object] = posed_box(mesh_bounds_[m], scene_.meshes[m].frame, poses[object], object);
+        }
     }
 
     /// The boxes of the current frame, by object.

@@ -15,6 +15,17 @@ struct part {
     std::vector<std::uint32_t> triangles;  // the same for triangles
 };
 
+/// Copies the vertices of a part from the scene's mesh.
+void copy_vertices(const mesh& m, part& to) {
+    to.own_mesh.frame = m.frame;
+    to.own_mesh.vertices.resize(to.vertices.size());
+    to.own_mesh.given.resize(m.given.empty() ? 0 : to.vertices.size());
+    for (std::size_t v = 0; v < to.vertices.size(); ++v) {
+        to.own_mesh.vertices[v] = m.vertices[to.vertices[v]];
+        if (!m.given.empty()) to.own_mesh.given[v] = m.given[to.vertices[v]];
+    }
+}
+
 /// Copies triangles of a mesh, with the vertices that they use in the same order, to a mesh of their own.
 part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
     assert(!triangles.empty());
@@ -28,8 +39,7 @@ part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
     const auto own_index = [&](std::uint32_t vertex) {
         return static_cast<std::uint32_t>(std::ranges::lower_bound(result.vertices, vertex) - result.vertices.begin());
     };
-    result.own_mesh.vertices.reserve(result.vertices.size());
-    for (const std::uint32_t v : result.vertices) result.own_mesh.vertices.push_back(m.vertices[v]);
+    copy_vertices(m, result);
     result.own_mesh.triangles.reserve(triangles.size());
     for (const std::uint32_t t : triangles) {
         const auto& [a, b, c] = m.triangles[t];
@@ -86,18 +96,15 @@ public:
             if (scene_.deforms(m)) require_still_valid(scene_.meshes[m], triangle_counts_[m]);
         for (auto& [source, part_index, bounds] : models_) {
             if (!scene_.deforms(source)) continue;
-            if (part_index != no_part) {
-                part& p = parts_[part_index];
-                for (std::size_t v = 0; v < p.vertices.size(); ++v)
-                    p.own_mesh.vertices[v] = scene_.meshes[source].vertices[p.vertices[v]];
-            }
+            if (part_index != no_part) copy_vertices(scene_.meshes[source], parts_[part_index]);
             bounds = bounds_of(part_index == no_part ? scene_.meshes[source] : parts_[part_index].own_mesh);
         }
     }
     void place(std::span<const pose> poses) override {
         require_poses(scene_, poses);
         for (std::size_t i = 0; i < pieces_.size(); ++i)
-            boxes_[i] = posed_box(models_[pieces_[i].model].bounds, poses[pieces_[i].object], pieces_[i].object);
+            boxes_[i] = posed_box(models_[pieces_[i].model].bounds, mesh_of(pieces_[i].model).frame,
+                                  poses[pieces_[i].object], pieces_[i].object);
     }
     [[nodiscard]] std::span<const box> boxes() const noexcept override { return boxes_; }
     void append_objects(std::vector<index_pair>& objects) override {
@@ -117,7 +124,7 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept override {
         std::size_t total = bytes_of(triangle_counts_, parts_, models_, pieces_, boxes_);
         for (const part& p : parts_)
-            total += bytes_of(p.own_mesh.vertices, p.own_mesh.triangles, p.vertices, p.triangles);
+            total += bytes_of(p.own_mesh.vertices, p.own_mesh.given, p.own_mesh.triangles, p.vertices, p.triangles);
         return total;
     }
 

@@ -14,9 +14,9 @@ class self_intersection {
 public:
     /// The distinct corners that two triangles share, and those that each has alone.
     struct corner_sets {
-        explicit corner_sets(const triangle3f& s, const triangle3f& t) noexcept {
-            for (const vec3f& corner : s.corner) (is_in(corner, t.corner) ? shared : of_s).add(corner);
-            for (const vec3f& corner : t.corner)
+        explicit corner_sets(const triangle3d& s, const triangle3d& t) noexcept {
+            for (const vec3d& corner : s.corner) (is_in(corner, t.corner) ? shared : of_s).add(corner);
+            for (const vec3d& corner : t.corner)
                 if (!is_in(corner, s.corner)) of_t.add(corner);
         }
 
@@ -25,22 +25,21 @@ public:
             std::array<vec3d, 3> at;
             std::uint32_t size = 0;
 
-            void add(const vec3f& corner) noexcept {
-                const vec3d added{corner[0], corner[1], corner[2]};
-                if (std::find(at.begin(), at.begin() + size, added) == at.begin() + size) at[size++] = added;
+            void add(const vec3d& corner) noexcept {
+                if (std::find(at.begin(), at.begin() + size, corner) == at.begin() + size) at[size++] = corner;
             }
         };
 
         list shared, of_s, of_t;
 
     private:
-        [[nodiscard]] static bool is_in(const vec3f& corner, const vec3f (&corners)[3]) noexcept {
+        [[nodiscard]] static bool is_in(const vec3d& corner, const vec3d (&corners)[3]) noexcept {
             return corner == corners[0] || corner == corners[1] || corner == corners[2];
         }
     };
 
     /// Whether the triangles have more in common than the corners that they share and the edge between two of these.
-    [[nodiscard]] static bool intersects(const triangle3f& s, const triangle3f& t) noexcept {
+    [[nodiscard]] static bool intersects(const triangle3d& s, const triangle3d& t) noexcept {
         if (are_clean_neighbours(s, t)) return false;  // a fast filter for the most frequent pairs
         const corner_sets corners(s, t);
         if (corners.shared.size == 0) return orientation_test<orientations>::intersects(s, t);
@@ -52,11 +51,10 @@ public:
     }
 
     /// False if the corners of a triangle lie on a line.
-    [[nodiscard]] static bool has_area(const triangle3f& t) noexcept {
-        const triangle3d corners = in_double(t);
-        signs_of signs(corners, corners);
+    [[nodiscard]] static bool has_area(const triangle3d& t) noexcept {
+        signs_of signs(t, t);
         for (int axis = 0; axis < 3; ++axis)
-            if (signs.turn(corners[0], corners[1], corners[2], axis) != 0) return true;
+            if (signs.turn(t[0], t[1], t[2], axis) != 0) return true;
         return false;
     }
 
@@ -64,7 +62,7 @@ private:
     /// Decides most neighbours, by a filter in double: true if two triangles certainly have no more in common than one
     /// corner or edge. At a corner, the two others of one triangle lie strictly on one side of the other's plane; at an
     /// edge, it and the two other corners span a volume.
-    [[nodiscard]] static bool are_clean_neighbours(const triangle3f& s, const triangle3f& t) noexcept {
+    [[nodiscard]] static bool are_clean_neighbours(const triangle3d& s, const triangle3d& t) noexcept {
         std::uint32_t equal = 0;  // bit 3 i + j for corner i of s and j of t
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) equal |= std::uint32_t{s[i] == t[j]} << (3 * i + j);
@@ -73,10 +71,8 @@ private:
         const bool is_corner = std::popcount(equal) == 1;
         const bool is_edge = std::popcount(equal) == 2 && first / 3 != second / 3 && first % 3 != second % 3;
         if (!is_corner && !is_edge) return false;
-        const vec3f& origin = s[first / 3];
-        const auto from_origin = [&](const vec3f& p) {
-            return vec3d{double{p[0]} - origin[0], double{p[1]} - origin[1], double{p[2]} - origin[2]};
-        };
+        const vec3d& origin = s[first / 3];
+        const auto from_origin = [&](const vec3d& p) { return p - origin; };
         // At an edge, `p` is its other end, `q` the corner of s (indices add up to 3) and `r` that of t.
         const vec3d p = from_origin(is_edge ? s[second / 3] : s[(first / 3 + 1) % 3]);
         const vec3d q = from_origin(is_edge ? s[3 - first / 3 - second / 3] : s[(first / 3 + 2) % 3]);
@@ -85,7 +81,8 @@ private:
         double extent = 0;
         for (const vec3d* v : {&p, &q, &r, &w})
             for (int k = 0; k < 3; ++k) extent = std::max(extent, std::abs((*v)[k]));
-        // The bound of `orientations` for a volume, 50 u E³.
+        if (!(extent >= 0x1p-200 && extent <= 0x1p200)) return false;
+        // The bound of `orientations` for a volume, 50 u E³, for such extents.
         const double error = 50 * (std::numeric_limits<double>::epsilon() / 2) * extent * extent * extent;
         const auto are_on_one_side = [&](const vec3d& normal, const vec3d& a, const vec3d& b) {
             const double of_a = dot(normal, a), of_b = dot(normal, b);
@@ -138,9 +135,7 @@ private:
     /// Whether a triangle reaches into another with which it shares a single corner, by the edge opposite that corner:
     /// the line through the corner and any other common point leaves one of the two triangles first, at that edge.
     /// Without area, such an edge may contain the shared corner itself, and only its ends count.
-    [[nodiscard]] static bool reaches(const triangle3f& s, const corner_sets::list& own,
-                                      const triangle3f& other) noexcept {
-        const triangle3d t = in_double(other);
+    [[nodiscard]] static bool reaches(const triangle3d& s, const corner_sets::list& own, const triangle3d& t) noexcept {
         const vec3d& first = own.at[0];
         const vec3d& last = own.at[own.size - 1];
         if (!segment_meets(first, last, t)) return false;

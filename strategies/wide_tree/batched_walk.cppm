@@ -33,7 +33,7 @@ public:
     /// Finds the self-intersections of a mesh; each pair is reported once, in either order.
     template <class Emit>
     void find_self_pairs(const query& test, const model<Tree>& m, Emit emit) {
-        find_all_pairs(test, m, m, relative_pose({}, {}, m.bounds()), query_kind::one_mesh, emit);
+        find_all_pairs(test, m, m, pose_relative_to(m, {}, m, {}), query_kind::one_mesh, emit);
     }
 
     /// Appends the BVTT front: pairs of leaves with triangles within a margin, less rounding (`rounding_bound`).

@@ -5,13 +5,13 @@
 namespace {
 
 /// The first coordinate of an OFF file, given as this text.
-float read_coordinate(const temporary_folder& folder, const std::string& text) {
+double read_coordinate(const temporary_folder& folder, const std::string& text) {
     const auto file = folder.write("a.off", "OFF\n3 1 0\n" + text + " 0 0\n0 1 0\n0 0 1\n3 0 1 2\n");
-    return aabblab::read_mesh(file).mesh.vertices[0][0];
+    return aabblab::read_mesh(file).mesh.given_vertex(0)[0];
 }
 
-bool same_bits(float a, float b) {
-    return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+bool same_bits(double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
 }  // namespace
@@ -29,45 +29,52 @@ TEST_CASE_METHOD(in_folder, "text coordinates are correctly rounded") {
         "2.3509887016445750159374730744444913556373311135441750430175034126e-38");
     for (std::string text; texts >> text;) {
         CAPTURE(text);
-        REQUIRE(same_bits(read_coordinate(folder, text), std::strtof(text.c_str(), nullptr)));
+        REQUIRE(same_bits(read_coordinate(folder, text), std::strtod(text.c_str(), nullptr)));
     }
 }
 
-TEST_CASE_METHOD(in_folder, "decimals near the midpoint of two floats are correctly rounded") {
-    REQUIRE(rc::check("agrees with strtof", [&](std::uint32_t bits, std::uint64_t digits, bool below) {
-        const float low = std::fabs(std::bit_cast<float>(bits));
-        const float high = std::nextafterf(low, std::numeric_limits<float>::infinity());
+TEST_CASE_METHOD(in_folder, "decimals near the midpoint of two doubles are correctly rounded") {
+    REQUIRE(rc::check("agrees with strtod", [&](std::uint64_t bits, std::uint64_t digits, bool below) {
+        const double low = std::fabs(std::bit_cast<double>(bits));
+        const double high = std::nextafter(low, std::numeric_limits<double>::infinity());
         RC_PRE(std::isfinite(high));
-        const double midpoint = (double{low} + double{high}) / 2;
-        // All digits of the midpoint, or of the last double before it, and then some more.
-        std::array<char, 512> text{};
-        std::snprintf(text.data(), text.size(), "%.200e", below ? std::nextafter(midpoint, 0) : midpoint);
+        const long double midpoint = (static_cast<long double>(low) + static_cast<long double>(high)) / 2;
+        // All digits of the midpoint, or of the last number of 64 bits before it, and then some more.
+        std::array<char, 1024> text{};
+        std::snprintf(text.data(), text.size(), "%.800Le", below ? std::nextafter(midpoint, 0) : midpoint);
         std::string decimal = text.data();
         decimal.insert(decimal.find('e'), std::to_string(digits));
-        RC_ASSERT(same_bits(read_coordinate(folder, decimal), std::strtof(decimal.c_str(), nullptr)));
+        RC_ASSERT(same_bits(read_coordinate(folder, decimal), std::strtod(decimal.c_str(), nullptr)));
     }));
 }
 
 TEST_CASE_METHOD(in_folder, "a mesh round-trips through OFF bit for bit") {
-    REQUIRE(rc::check("round trip", [&](const std::vector<std::array<std::uint32_t, 3>>& points) {
-        aabb::mesh m;
+    REQUIRE(rc::check("round trip", [&](const std::vector<std::array<std::uint64_t, 3>>& points, bool are_floats) {
+        std::vector<aabb::vec3d> vertices;
         for (const auto& bits : points) {
-            aabb::vec3f p{};
+            aabb::vec3d p{};
             for (std::size_t k = 0; k < 3; ++k) {
-                const float value = std::bit_cast<float>(bits[k]);
+                const double value = are_floats ? std::bit_cast<float>(static_cast<std::uint32_t>(bits[k]))
+                                                : std::bit_cast<double>(bits[k]);
                 p[static_cast<int>(k)] = std::isfinite(value) ? value : 0;
             }
-            m.vertices.push_back(p);
+            vertices.push_back(p);
         }
-        m.vertices.insert(m.vertices.end(), {{-0.0F, 1e-45F, 3.4028235e38F}, {0, 1, 2}, {0.1F, 0.2F, 0.3F}});
-        const auto last = static_cast<std::uint32_t>(m.vertices.size() - 1);
+        const double tenth = are_floats ? 0.1F : 0.1;
+        vertices.insert(vertices.end(), {{-0.0, 1e-45F, 3.4028235e38F}, {0, 1, 2}, {tenth, tenth, 0.5}});
+        const auto last = static_cast<std::uint32_t>(vertices.size() - 1);
+        aabb::mesh m;
         m.triangles = {{0, last, last - 1}, {last, last - 2, 0}};
+        set_vertices(m, vertices);
+        RC_ASSERT(m.given.empty() == are_floats);
         aabblab::write_off(m, folder / "a.off");
         const aabb::mesh read = aabblab::read_mesh(folder / "a.off").mesh;
         RC_ASSERT(read.triangles == m.triangles);
-        RC_ASSERT(read.vertices.size() == m.vertices.size());
-        for (std::size_t v = 0; v < m.vertices.size(); ++v)
-            for (int k = 0; k < 3; ++k) RC_ASSERT(same_bits(read.vertices[v][k], m.vertices[v][k]));
+        RC_ASSERT(read.vertices.size() == vertices.size());
+        RC_ASSERT(read.frame == m.frame);
+        for (const auto& triangle : m.triangles)
+            for (const std::uint32_t v : triangle)
+                for (int k = 0; k < 3; ++k) RC_ASSERT(same_bits(read.given_vertex(v)[k], vertices[v][k]));
     }));
     REQUIRE(folder.files() == 1);
 }

@@ -61,8 +61,7 @@ TEST_CASE_METHOD(in_folder, "malformed text meshes are rejected with the line nu
               ":5: a face uses vertex 3, but there are 3 vertices, counted from 0"},
              {"a.off", "OFF\n3 1 0\n0 -INF 0\n1 0 0\n0 1 0\n3 0 1 2\n",
               ":3: vertex 0 has a coordinate that is not finite, and a face uses it"},
-             {"a.off", "OFF\n3 1 0\n0 1e39 0\n", ":3: the coordinate '1e39' is too large for a float"},
-             {"a.off", "OFF\n3 1 0\n0 -1e999 0\n", ":3: the coordinate '-1e999' is too large for a float"},
+             {"a.off", "OFF\n3 1 0\n0 -1e999 0\n", ":3: the coordinate '-1e999' is too large for a double"},
              {"a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 3\n",
               ":6: a face uses vertex 3, but there are 3 vertices, counted from 0"},
              {"a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 -1\n", ":6: expected a face of 3 corners, found '-1'"},
@@ -155,7 +154,6 @@ TEST_CASE_METHOD(in_folder, "malformed binary meshes are rejected") {
         "property float z\nend_header\n";
     for (const auto& [file, bytes, error] : {
              malformed{"a.ply", huge_count, ": ends in element 0 of 4000000000 elements 'vertex'"},
-             {"a.ply", huge_count + raw(1e300) + raw(1.0), ": vertex 0 has a coordinate that is too large for a float"},
              {"a.ply", ply_binary + ply_points().substr(1), ": ends in element 2 of 3 elements 'vertex'"},
              {"a.ply", ply_binary + ply_points(not_a_number) + face + raw(2),
               ": vertex 2 has a coordinate that is not finite, and a face uses it"},

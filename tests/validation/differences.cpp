@@ -20,7 +20,7 @@ void require_class(difference_class expected, const triangle3f& s, const pose& p
                    const pose& pose_t) {
     const mesh a = one_triangle(s);
     const mesh b = one_triangle(t);
-    const bool truth = exactly_intersect({pose_s, pose_t}, s, t);
+    const bool truth = exactly_intersect({pose_s, pose_t}, in_double(s), in_double(t));
     const differences counts = truth ? compare_triangle_pairs(one_pair, no_pairs, a, pose_s, b, pose_t)
                                      : compare_triangle_pairs(no_pairs, one_pair, a, pose_s, b, pose_t);
     REQUIRE(total(counts) == 1);

@@ -13,7 +13,8 @@ std::vector<index_pair> expected(const mesh_case& c) {
     std::vector<index_pair> pairs;
     for (std::uint32_t s = 0; s < c.a.triangle_count(); ++s)
         for (std::uint32_t t = 0; t < c.b.triangle_count(); ++t)
-            if (exactly_intersect({c.pose_a, c.pose_b}, c.a.triangle(s), c.b.triangle(t))) pairs.push_back({s, t});
+            if (exactly_intersect({c.pose_a, c.pose_b}, c.a.given_triangle(s), c.b.given_triangle(t)))
+                pairs.push_back({s, t});
     return pairs;
 }
 

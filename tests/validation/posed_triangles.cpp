@@ -141,6 +141,36 @@ const std::array<pose_class, 12> pose_classes{{
      }},
 }};
 
+/// What vertices look like: a map of the coordinates of patterns, which are floats.
+struct vertex_class {
+    const char* name;
+    double factor;
+    double offset;
+};
+
+const std::array<vertex_class, 8> vertex_classes{{{"floats", 1, 0},
+                                                  {"decimals", 0.1, 0},
+                                                  {"far", 1, 3948995},
+                                                  {"decimals, far", 0.1, 3948995.7},
+                                                  {"huge", 0x1.23456789abcdep980, 0},
+                                                  {"tiny", 0x1.23456789abcdep-980, 0},
+                                                  {"denormal", 0x1p-1072, 0},
+                                                  {"beyond floats, far", 0x1p200, 0x1p240}}};
+
+/// The triangle with its coordinates mapped, by a function that is the same for all of a mesh.
+triangle3d mapped(triangle3d t, const vertex_class& by) {
+    for (vec3d& corner : t.corner)
+        for (double& x : corner.at) x = x * by.factor + by.offset;
+    return t;
+}
+
+/// A triangle as a mesh.
+aabb::mesh mesh_of(const triangle3d& t) {
+    aabb::mesh m{{}, {{0, 1, 2}}};
+    set_vertices(m, {t[0], t[1], t[2]});
+    return m;
+}
+
 /// Signs by integers alone, without a filter.
 class integer_signs {
 public:
@@ -193,15 +223,17 @@ bool intersect_by_integers(const pose_pair& poses, const triangle3d& s, const tr
     return aabb::orientation_test<integer_signs>::intersects(poses, s, t);
 }
 
-/// What the filter of the wide tree decides of a pair; nothing if its image leaves the range of float.
-std::optional<bool> filtered(const pose_pair& poses, const aabb::triangle3f& s, const aabb::triangle3f& t) {
+/// What the filter in float of the wide tree, and then that in double, decide of a pair in the frame of the first mesh;
+/// nothing if its image leaves the range of float.
+std::array<std::optional<bool>, 2> filtered(const pose_pair& poses, const aabb::mesh& a, const aabb::mesh& b) {
     std::optional<aabb::relative_pose> to_a;
     try {
-        to_a.emplace(poses.a, poses.b, bounds_of(t));
+        to_a.emplace(poses.a, poses.b, bounds_of(b), a.frame, b.frame);
     } catch (const aabb::input_error&) {
-        return std::nullopt;
+        return {};
     }
-    const aabb::triangle3f image = (*to_a)(t);
+    const aabb::triangle3f s = a.triangle(0);
+    const aabb::triangle3f image = (*to_a)(b.triangle(0));
     std::array<std::array<std::array<float, aabb::simd::width>, 9>, 2> rows{};
     for (std::size_t row = 0; row < 9; ++row)
         for (std::size_t lane = 0; lane < aabb::simd::width; ++lane) {
@@ -210,7 +242,8 @@ std::optional<bool> filtered(const pose_pair& poses, const aabb::triangle3f& s, 
         }
     const aabb::filtered_pairs decided =
         aabb::triangle_filter::decide(rows[0][0].data(), rows[1][0].data(), aabb::simd::width, to_a->image_error().at);
-    return (decided.undecided & 1U) != 0 ? std::nullopt : std::optional((decided.hits & 1U) != 0);
+    return {(decided.undecided & 1U) != 0 ? std::nullopt : std::optional((decided.hits & 1U) != 0),
+            aabb::exact_triangle::intersects_if_certain(s, image, to_a->image_error())};
 }
 
 }  // namespace
@@ -225,15 +258,16 @@ TEST_CASE("exact tests decide triangles of meshes at poses as two judges do, in 
         int wrong = 0, wrong_intervals = 0, contradicted = 0;
         for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
             for (int i = 0; i < 200; ++i) {
-                const auto pair = triangle_pairs::of_type<double>(triangle_pairs::patterned(g, pattern));
+                auto pair = triangle_pairs::of_type<double>(triangle_pairs::patterned(g, pattern));
+                const vertex_class& vertices = vertex_classes[static_cast<std::size_t>(i) % vertex_classes.size()];
+                pair = {mapped(pair.a, vertices), mapped(pair.b, vertices)};
                 const pose_pair poses = c.make(g);
                 const bool truth = aabb::intersect_in_integers(poses, pair.a, pair.b);
                 ++results[truth ? 1 : 0];
                 wrong += exact.intersects(poses, pair.a, pair.b) != truth;
                 wrong += exact.intersects({poses.b, poses.a}, pair.b, pair.a) != truth;
                 wrong_intervals += intervals.intersects(poses, pair.a, pair.b) != truth;
-                if (i % 10 == 0)
-                    contradicted += aabb::exactly_intersect(poses, in_float(pair.a), in_float(pair.b)) != truth;
+                if (i % 10 == 0) contradicted += aabb::exactly_intersect(poses, pair.a, pair.b) != truth;
             }
         CHECK(wrong == 0);
         CHECK(wrong_intervals == 0);
@@ -296,20 +330,22 @@ TEST_CASE("two cubes at poses intersect in the pairs that rational arithmetic fi
 // With RC_PARAMS=max_success=1000000 in the environment, 10^8 pairs.
 TEST_CASE("no filter at poses contradicts integers") {
     generator g(541);
-    std::array<std::uint64_t, 3> decided{};  // by the filter in float, and those left by it; hits
+    std::array<std::uint64_t, 4> decided{};  // by the filter in float, then that in double, then neither; hits
     REQUIRE(rc::check([&] {
         const pose_class& c = pose_classes[*rc::gen::inRange<std::size_t>(0, pose_classes.size())];
         for (int i = 0; i < 100; ++i) {
             const auto pattern = static_cast<std::size_t>(i) % triangle_pairs::patterns.size();
             const auto pair = triangle_pairs::of_type<float>(triangle_pairs::patterned(g, pattern));
-            const triangle3d s = in_double(pair.a), t = in_double(pair.b);
+            const vertex_class& vertices = vertex_classes[*rc::gen::inRange<std::size_t>(0, vertex_classes.size())];
+            const triangle3d s = mapped(in_double(pair.a), vertices), t = mapped(in_double(pair.b), vertices);
             const pose_pair poses = c.make(g);
             const bool truth = intersect_by_integers(poses, s, t);
             RC_ASSERT(aabb::exact_triangle::intersects(poses, s, t) == truth);
-            const std::optional<bool> in_float = filtered(poses, pair.a, pair.b);
+            const auto [in_float, in_double] = filtered(poses, mesh_of(s), mesh_of(t));
             RC_ASSERT(in_float.value_or(truth) == truth);
-            ++decided[in_float ? 0 : 1];
-            decided[2] += truth;
+            RC_ASSERT(in_double.value_or(truth) == truth);
+            ++decided[in_float ? 0 : in_double ? 1 : 2];
+            decided[3] += truth;
         }
     }));
     CAPTURE(decided);
@@ -349,16 +385,17 @@ TEST_CASE("around degenerate pairs, unit by unit in the last place, filters at p
 namespace {
 
 /// The pairs of two meshes by every exact composition, either way round, are those of a judge.
-void check_meshes(const aabb::mesh& a, const pose& pose_a, const aabb::mesh& b, const pose& pose_b) {
+void check_meshes(const aabb::mesh& a, const pose& pose_a, const aabb::mesh& b, const pose& pose_b,
+                  bool intersect = true) {
     std::vector<aabb::index_pair> truth, swapped;
     for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
-            if (aabb::intersect_in_integers({pose_a, pose_b}, in_double(a.triangle(s)), in_double(b.triangle(t)))) {
+            if (aabb::intersect_in_integers({pose_a, pose_b}, a.given_triangle(s), b.given_triangle(t))) {
                 truth.push_back({s, t});
                 swapped.push_back({t, s});
             }
     std::ranges::sort(swapped);
-    REQUIRE_FALSE(truth.empty());
+    REQUIRE(truth.empty() != intersect);
     for (const aabb::composition& c : exact_local_compositions()) {
         CAPTURE(text_of_local(c));
         CHECK(pairs_of(*local_of(c, aabb::instrumentation::none), a, pose_a, b, pose_b) == truth);
@@ -409,5 +446,88 @@ TEST_CASE("meshes scaled by any power meet as they do unscaled") {
     for (const double scale : {1e-110, 1e-30, 1e30, 1e110}) {
         const std::array<double, 9> matrix{scale, 0, 0, 0, scale, 0, 0, 0, scale};
         check_meshes(ball, {matrix, {0, 0, 0}}, ball, {matrix, {scale / 4, 0, 0}});
+    }
+}
+
+namespace {
+
+/// The mesh with its vertices mapped, in double.
+aabb::mesh mapped(aabb::mesh m, auto map) {
+    std::vector<vec3d> vertices;
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) {
+        vec3d p = m.given_vertex(v);
+        for (int k = 0; k < 3; ++k) p[k] = map(p[k], k);
+        vertices.push_back(p);
+    }
+    set_vertices(m, vertices);
+    return m;
+}
+
+}  // namespace
+
+TEST_CASE("meshes of doubles at poses intersect in the pairs that a judge finds, either way round") {
+    generator g(543);
+    const aabb::mesh ball = aabb::sphere(4);
+    for (const vertex_class& c : vertex_classes) {
+        CAPTURE(c.name);
+        const aabb::mesh a = mapped(ball, [&](double x, int) { return x * c.factor + c.offset; });
+        const aabb::mesh b = mapped(ball, [&](double x, int k) { return (x + (k == 0)) * c.factor + c.offset; });
+        // Squares of such coordinates leave the range of double, which poses may make greater.
+        const bool is_extreme = std::abs(std::ilogb(c.factor)) > 300;
+        CHECK(a.given.empty() == (c.factor == 1 && c.offset == 0));
+        check_meshes(a, {}, b, {});
+        const pose turned = rotation(g);
+        check_meshes(a, turned, b, turned);
+        pose moved = turned;
+        moved.translation[0] += c.factor / 3;
+        check_meshes(a, turned, b, moved);
+        if (is_extreme) continue;
+        for (const pose& p : {turned, integer_map(g)})
+            check_meshes(a, p, a, composed(p, {pose{}.rotation, {c.factor, 0, 0}}));
+    }
+}
+
+TEST_CASE("what lies a little apart in doubles, and nowhere near it in floats, does not touch") {
+    const aabb::mesh cube = mapped(aabb::grid(1), [](double x, int k) { return k == 2 ? 1 : x; });
+    for (const double gap : {0.1, 1e-9, -1e-9})
+        for (const vec3d& at : {vec3d{388096, 3948995, 10}, vec3d{0.1, 0.2, 0.3}}) {
+            CAPTURE(gap, at[1]);
+            const auto placed = [&](double up) {
+                return mapped(cube, [&](double x, int k) { return x + at[k] + (k == 1 ? up : 0); });
+            };
+            const bool intersect = gap < 0;
+            check_meshes(placed(0), {}, placed(1 + gap), {}, intersect);
+            check_meshes(placed(0), {}, placed(0), {pose{}.rotation, {0, 1 + gap, 0}}, intersect);
+        }
+}
+
+TEST_CASE("a mesh of doubles intersects itself in the pairs that a judge finds") {
+    for (const vertex_class& c : vertex_classes) {
+        CAPTURE(c.name);
+        // Two balls in one mesh, of which some vertices coincide as floats.
+        aabb::mesh both = aabb::sphere(4);
+        const auto vertices = static_cast<std::uint32_t>(both.vertices.size());
+        const auto triangles = both.triangles;
+        for (const auto& [p, q, r] : triangles) both.triangles.push_back({p + vertices, q + vertices, r + vertices});
+        std::vector<vec3d> given;
+        for (const double shift : {0.0, 0x1p-30})
+            for (std::uint32_t v = 0; v < vertices; ++v) {
+                vec3d p = both.given_vertex(v);
+                for (double& x : p.at) x = (x + shift) * c.factor + c.offset;
+                given.push_back(p);
+            }
+        set_vertices(both, given);
+        std::vector<aabb::index_pair> truth;
+        for (std::uint32_t s = 0; s < both.triangle_count(); ++s)
+            for (std::uint32_t t = s + 1; t < both.triangle_count(); ++t)
+                if (aabb::intersect_in_integers({}, both.given_triangle(s), both.given_triangle(t)))
+                    truth.push_back({s, t});
+        for (const aabb::composition& composed : exact_local_compositions()) {
+            CAPTURE(text_of_local(composed));
+            const auto stage = local_of(composed, aabb::instrumentation::none);
+            std::vector<aabb::index_pair> pairs;
+            stage->self_pairs(stage->add_model(both), pairs);
+            CHECK(sorted(pairs) == truth);
+        }
     }
 }

@@ -8,12 +8,12 @@ namespace {
 
 using aabb::intersection_kind;
 using aabb::self_intersection;
-using aabb::triangle3f;
+using aabb::triangle3d;
 
 /// Whether the intersection is more than the shared corners and the edge between two of these.
-bool exceeds_shared_corners(const triangle3f& s, const triangle3f& t) {
+bool exceeds_shared_corners(const triangle3d& s, const triangle3d& t) {
     const self_intersection::corner_sets corners(s, t);
-    const aabb::exact_intersection common(in_double(s), in_double(t));
+    const aabb::exact_intersection common(s, t);
     aabb::triangle_intersection shared;
     shared.kind = common.kind();
     switch (corners.shared.size) {
@@ -39,13 +39,13 @@ TEST_CASE("self-intersection is what two triangles share beyond their common cor
     for (const int most : {0, 1, 2, 3})
         for (int i = 0; i < 40'000; ++i) {
             std::uniform_int_distribution<int> small(0, most);
-            std::uniform_real_distribution<float> real(-1, 1);
-            const auto coordinate = [&] { return most == 0 ? real(g) : static_cast<float>(small(g)); };
+            std::uniform_real_distribution<double> real(-1, 1);
+            const auto coordinate = [&] { return most == 0 ? real(g) : double(small(g)); };
             // Half of the triangles lie in one plane, or nearly so.
-            const float height = i % 2 != 0 ? 1.0F : most == 0 ? 0x1p-24F : 0.0F;
-            const auto corner = [&] { return aabb::vec3f{coordinate(), coordinate(), height * coordinate()}; };
-            const triangle3f s{{corner(), corner(), corner()}};
-            triangle3f t{{corner(), corner(), corner()}};
+            const double height = i % 2 != 0 ? 1 : most == 0 ? 0x1p-53 : 0;
+            const auto corner = [&] { return aabb::vec3d{coordinate(), coordinate(), height * coordinate()}; };
+            const triangle3d s{{corner(), corner(), corner()}};
+            triangle3d t{{corner(), corner(), corner()}};
             for (int shared = 0; shared < i % 4; ++shared) t[shared] = s[(shared + i / 4) % 3];
             const bool intersect = self_intersection::intersects(s, t);
             wrong += intersect != exceeds_shared_corners(s, t);
@@ -61,13 +61,13 @@ TEST_CASE("self-intersection is what two triangles share beyond their common cor
 
 TEST_CASE("self-intersection of neighbours is decided where doubles cannot") {
     // The corners of two faces at an edge or a corner: nearly in one plane, by one unit in the last place.
-    const float up = std::nextafter(1.0F, 2.0F);
-    const triangle3f face{{{0, 0, 1}, {3, 0, 1}, {0, 3, 1}}};
-    for (const float height : {1.0F, up})
-        for (const aabb::vec3f& apex : {aabb::vec3f{1, 1, height}, aabb::vec3f{1, -1, height}}) {
-            const triangle3f at_edge{{{0, 0, 1}, {3, 0, 1}, apex}};
+    const double up = std::nextafter(1.0, 2.0);
+    const triangle3d face{{{0, 0, 1}, {3, 0, 1}, {0, 3, 1}}};
+    for (const double height : {1.0, up})
+        for (const aabb::vec3d& apex : {aabb::vec3d{1, 1, height}, aabb::vec3d{1, -1, height}}) {
+            const triangle3d at_edge{{{0, 0, 1}, {3, 0, 1}, apex}};
             CHECK(self_intersection::intersects(face, at_edge) == exceeds_shared_corners(face, at_edge));
-            const triangle3f at_corner{{{0, 0, 1}, apex, {2, 4, 1}}};
+            const triangle3d at_corner{{{0, 0, 1}, apex, {2, 4, 1}}};
             CHECK(self_intersection::intersects(face, at_corner) == exceeds_shared_corners(face, at_corner));
         }
 }
@@ -79,15 +79,14 @@ TEST_CASE("self-intersection of neighbours in one plane is found where doubles r
     int missed = 0;
     for (int i = 0; i < 2'000; ++i) {
         const auto corner = [&] {
-            return aabb::vec3f{static_cast<float>(coordinate(g)), static_cast<float>(coordinate(g)),
-                               static_cast<float>(coordinate(g))};
+            return aabb::vec3d{double(coordinate(g)), double(coordinate(g)), double(coordinate(g))};
         };
-        const aabb::vec3f p = corner();
-        const aabb::vec3f q = corner();
-        const triangle3f face{{{0, 0, 0}, p, q}};
-        const triangle3f at_edge{{{0, 0, 0}, p, p + q}};
-        const triangle3f at_corner{{{0, 0, 0}, p + q, p + p + q}};
-        for (const triangle3f& t : {at_edge, at_corner})
+        const aabb::vec3d p = corner();
+        const aabb::vec3d q = corner();
+        const triangle3d face{{{0, 0, 0}, p, q}};
+        const triangle3d at_edge{{{0, 0, 0}, p, p + q}};
+        const triangle3d at_corner{{{0, 0, 0}, p + q, p + p + q}};
+        for (const triangle3d& t : {at_edge, at_corner})
             missed += !self_intersection::intersects(face, t) + !self_intersection::intersects(t, face);
     }
     CHECK(missed == 0);

@@ -56,9 +56,11 @@ struct library_test_info {
 [[nodiscard]] std::unique_ptr<triangle_test> make_library_test(const strategy_choice& choice);
 
 /// Do two closed triangles share a point? By CGAL's exact kernel; zero-area ones count as segments or points.
-[[nodiscard]] bool exactly_intersect(const triangle3f& s, const triangle3f& t);
 [[nodiscard]] bool exactly_intersect(const triangle3d& s, const triangle3d& t);
+[[nodiscard]] inline bool exactly_intersect(const triangle3f& s, const triangle3f& t) {
+    return exactly_intersect(in_double(s), in_double(t));
+}
 /// The same for triangles of meshes at poses: in world coordinates R v + t, computed exactly.
-[[nodiscard]] bool exactly_intersect(const pose_pair& poses, const triangle3f& s, const triangle3f& t);
+[[nodiscard]] bool exactly_intersect(const pose_pair& poses, const triangle3d& s, const triangle3d& t);
 
 }  // namespace aabb

@@ -19,23 +19,19 @@ using rational_triangle = triangle3<rational_kernel::FT>;
 
 }  // namespace
 
-bool exactly_intersect(const triangle3f& s, const triangle3f& t) {
-    return triangles_intersect<kernel>(s, t);
-}
-
 bool exactly_intersect(const triangle3d& s, const triangle3d& t) {
     return triangles_intersect<kernel>(s, t);
 }
 
-bool exactly_intersect(const pose_pair& poses, const triangle3f& s, const triangle3f& t) {
+bool exactly_intersect(const pose_pair& poses, const triangle3d& s, const triangle3d& t) {
     // An affine map of full rank keeps what intersects.
     if (poses.a == poses.b) return exactly_intersect(s, t);
     return triangles_intersect<rational_kernel>(exactly_transformed<rational_triangle>(s, poses.a),
                                                 exactly_transformed<rational_triangle>(t, poses.b));
 }
 
-bool intersect_exactly(const pose_pair& poses, const triangle3f& s, const triangle3f& t, const triangle3f&) {
-    return exactly_intersect(poses, s, t);
+bool intersect_exactly(const posed_triangles& pair) {
+    return exactly_intersect(pair.poses, pair.s, pair.t);
 }
 
 }  // namespace aabb

@@ -5,10 +5,10 @@ import aabb.std;
 
 namespace aabb {
 
-/// The vertices of B in A's frame, by index. Unused vertices outside B's box (`bounds`) stay unchanged.
-[[nodiscard]] std::vector<vec3f> transformed_vertices(const pose& pose_a, const pose& pose_b, const mesh& b,
-                                                      const box& bounds) {
-    const relative_pose to_a(pose_a, pose_b, bounds);
+/// The floats of B's vertices in A's frame, by index. Unused vertices outside B's box (`bounds`) stay unchanged.
+[[nodiscard]] std::vector<vec3f> transformed_vertices(const mesh& a, const pose& pose_a, const mesh& b,
+                                                      const pose& pose_b, const box& bounds) {
+    const relative_pose to_a(pose_a, pose_b, bounds, a.frame, b.frame);
     std::vector<vec3f> transformed = b.vertices;
     for (vec3f& v : transformed)
         if (contains(bounds, bounds_of(v))) v = to_a(v);

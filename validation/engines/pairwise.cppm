@@ -26,9 +26,13 @@ using candidate_search = std::vector<index_pair>(std::span<const box> a, std::sp
 /// CGAL's intersection of box sequences (Zomorodian and Edelsbrunner 2002).
 candidate_search candidates_by_cgal;
 
-/// Tests two triangles of meshes at poses, of which the second is also given as seen in the frame of the first.
-using triangle_decision = bool(const pose_pair& poses, const triangle3f& s, const triangle3f& t,
-                               const triangle3f& image_of_t);
+/// Two triangles of meshes at poses: as they are given, and as floats in the frame of the first mesh.
+struct posed_triangles {
+    const pose_pair& poses;
+    triangle3d s, t;
+    triangle3f s_in_float, image_of_t;
+};
+using triangle_decision = bool(const posed_triangles& pair);
 
 /// Decides exactly, at the poses.
 triangle_decision intersect_exactly;
@@ -71,13 +75,19 @@ private:
     template <class Emit>
     void decide(const model_query& q, Emit emit) const {
         const mesh& b = *q.b.source;
-        const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
+        const mesh& a = *q.a.source;
+        const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds, a.frame, b.frame);
         std::vector<box> boxes_b;
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t) boxes_b.push_back(box_around(b.triangle(t), to_a));
         const pose_pair poses{q.pose_a, q.pose_b};
         for (const index_pair near : search_(q.a.boxes, boxes_b)) {
-            const triangle3f t = b.triangle(near.b);
-            if (decide_(poses, q.a.source->triangle(near.a), t, to_a(t)) && emit(near)) return;
+            if (decide_({.poses = poses,
+                         .s = a.given_triangle(near.a),
+                         .t = b.given_triangle(near.b),
+                         .s_in_float = a.triangle(near.a),
+                         .image_of_t = to_a(b.triangle(near.b))}) &&
+                emit(near))
+                return;
         }
     }
 

@@ -14,7 +14,7 @@ using rational = kernel::FT;
 using exact_triangle = triangle3<rational>;
 
 template <class Real>
-triangle3<Real> converted_to(const triangle3f& t) {
+triangle3<Real> converted_to(const auto& t) {
     triangle3<Real> result;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) result[i][k] = Real(double{t[i][k]});
@@ -31,7 +31,7 @@ bool is_zero(const vec3<Real>& v) {
     return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
-bool has_no_area(const triangle3f& t) {
+bool has_no_area(const triangle3d& t) {
     return is_zero(normal_of(converted_to<rational>(t)));
 }
 
@@ -104,17 +104,21 @@ bool are_near(const triangle3f& s, const triangle3f& t) {
     return std::abs(signed_distance(local_s, local_t)) <= 1e-6 * extent;
 }
 
-/// The class of a wrong result: the first that applies. @param engine_result whether the engine reports the pair.
-difference_class class_of_difference(const triangle3f& s, const pose& pose_s, const triangle3f& t, const pose& pose_t,
-                                     const triangle3f& t_seen_from_s, bool engine_result) {
+/// The class of a wrong result: the first that applies.
+/// @param s,t as they are given
+/// @param s_in_float,image_of_t as floats in the frame of the first mesh
+/// @param engine_result whether the engine reports the pair
+difference_class class_of_difference(const triangle3d& s, const triangle3d& t, const pose_pair& poses,
+                                     const triangle3f& s_in_float, const triangle3f& image_of_t, bool engine_result) {
     if (has_no_area(s) || has_no_area(t)) return difference_class::degenerate;
-    if (triangles_intersect<kernel>(converted_to<rational>(s), converted_to<rational>(t_seen_from_s)) == engine_result)
+    if (triangles_intersect<kernel>(converted_to<rational>(s_in_float), converted_to<rational>(image_of_t)) ==
+        engine_result)
         return difference_class::pose_rounding;
-    const exact_triangle exact_s = exactly_transformed<exact_triangle>(s, pose_s),
-                         exact_t = exactly_transformed<exact_triangle>(t, pose_t);
+    const exact_triangle exact_s = exactly_transformed<exact_triangle>(s, poses.a),
+                         exact_t = exactly_transformed<exact_triangle>(t, poses.b);
     if (are_coplanar(exact_s, exact_t)) return difference_class::coplanar;
     if (!engine_result && only_touch(exact_s, exact_t)) return difference_class::touching;
-    if (are_near(s, t_seen_from_s)) return difference_class::near;
+    if (are_near(s_in_float, image_of_t)) return difference_class::near;
     return difference_class::other;
 }
 
@@ -131,13 +135,13 @@ differences& differences::operator+=(const differences& other) {
 /// Classifies each pair that is in only one of the two lists.
 differences compare_triangle_pairs(std::span<const index_pair> exact, std::span<const index_pair> reported,
                                    const mesh& a, const pose& pose_a, const mesh& b, const pose& pose_b) {
-    const relative_pose to_a(pose_a, pose_b, bounds_of(b));
+    const relative_pose to_a(pose_a, pose_b, bounds_of(b), a.frame, b.frame);
     differences counts;
     const auto count = [&](index_pair pair, bool engine_result) {
-        const triangle3f s = a.triangle(pair.a);
-        const triangle3f t = b.triangle(pair.b);
         auto& classes = engine_result ? counts.false_positives : counts.false_negatives;
-        ++classes[static_cast<std::size_t>(class_of_difference(s, pose_a, t, pose_b, to_a(t), engine_result))];
+        ++classes[static_cast<std::size_t>(class_of_difference(a.given_triangle(pair.a), b.given_triangle(pair.b),
+                                                               {pose_a, pose_b}, a.triangle(pair.a),
+                                                               to_a(b.triangle(pair.b)), engine_result))];
     };
     std::vector<index_pair> false_negatives, false_positives;
     std::ranges::set_difference(exact, reported, std::back_inserter(false_negatives));

@@ -66,9 +66,10 @@ ground_truth::sphere ground_truth::sphere_around(const mesh& m) {
     const box bounds = bounds_of(m);
     sphere bounding{};
     for (int k = 0; k < 3; ++k) bounding.centre[k] = (double{bounds.min[k]} + double{bounds.max[k]}) / 2;
+    bounding.centre = m.frame.vertex(bounding.centre);
     double extent = 0;
-    for (const vec3f& v : m.vertices) {
-        const vec3d p{v[0], v[1], v[2]};
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) {
+        const vec3d p = m.given_vertex(v);
         bounding.radius = std::max(bounding.radius, length_of(p - bounding.centre));
         extent = std::max(extent, length_of(p));
     }

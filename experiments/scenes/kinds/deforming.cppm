@@ -37,16 +37,15 @@ public:
         // A single mesh is paired with a copy of itself.
         if (meshes.size() == 1) meshes.push_back(meshes.front());
         mesh_of = {0, 1};
-        const aabb::box rigid = aabb::bounds_of(meshes[0]);
-        const aabb::box waving = aabb::bounds_of(meshes[1]);
-        waving_extent_ = longest_extent(waving);
+        set_floats(meshes[1], [](const Eigen::Vector3d& v) { return v; });
+        waving_extent_ = longest_extent(meshes[1]);
         amplitude_ = c.amplitude * waving_extent_;
         random_source random(seed);
         rigid_rotation_ = random_rotation(random);
         rotation_per_frame_ = turn(random.direction(), /*angle=*/0.1);
-        rigid_centre_ = centre_of(rigid);
-        rigid_place_ = random.direction() * (c.distance * (longest_extent(rigid) + waving_extent_) / 2);
-        waving_pose_ = placed(centre_of(waving), random_rotation(random), Eigen::Vector3d::Zero());
+        rigid_centre_ = centre_of(meshes[0]);
+        rigid_place_ = random.direction() * (c.distance * (longest_extent(meshes[0]) + waving_extent_) / 2);
+        waving_pose_ = placed(centre_of(meshes[1]), random_rotation(random), Eigen::Vector3d::Zero());
         wave_direction_ = random.direction();
         offset_direction_ = random.direction();
         rest_vertices_ = meshes[1].vertices;

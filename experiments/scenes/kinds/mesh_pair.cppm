@@ -33,8 +33,8 @@ public:
     mesh_pair(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise), is_turning_(c.turn > 0) {
         mesh_of = {0, static_cast<std::uint32_t>(meshes.size() - 1)};
-        const aabb::box first = aabb::bounds_of(meshes.front());
-        const aabb::box second = aabb::bounds_of(meshes.back());
+        const aabb::mesh& first = meshes.front();
+        const aabb::mesh& second = meshes.back();
         first_pose_ = placed(centre_of(first), Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
         second_centre_ = centre_of(second);
         random_source random(seed);

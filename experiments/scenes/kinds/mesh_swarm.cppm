@@ -52,7 +52,7 @@ public:
         const std::uint32_t first_other_mesh = huge > 0 ? 1 : 0;
         if (meshes.size() == first_other_mesh) meshes.push_back(meshes[0]);
         std::vector<double> extents;
-        for (const aabb::mesh& m : meshes) extents.push_back(longest_extent(aabb::bounds_of(m)));
+        for (const aabb::mesh& m : meshes) extents.push_back(longest_extent(m));
         mesh_of.assign(huge, 0);
         double sum = 0;
         double volume = 0;
@@ -65,7 +65,7 @@ public:
         mean_extent_ = others == 0 ? 0 : sum / others;
         const double side = cube_root((others == 0 ? huge : volume) / c.density);
         if (huge > 0) normalise(meshes[0], c.span * side);
-        for (const aabb::mesh& m : meshes) centres_.push_back(centre_of(aabb::bounds_of(m)));
+        for (const aabb::mesh& m : meshes) centres_.push_back(centre_of(m));
         huge_extent_ = c.span * side;
         const double mean = c.objects == 0 ? 0 : (sum + huge * huge_extent_) / c.objects;
         points_ = {others, /*axes=*/3, side - mean_extent_, {0, c.displacement * mean}, random_};

@@ -19,29 +19,32 @@ using kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using kernel_triangles = std::vector<kernel::Triangle_3>;
 using primitive = CGAL::AABB_triangle_primitive<kernel, kernel_triangles::const_iterator>;
 
-/// The triangle that `in_kernel` has converted.
-[[nodiscard]] triangle3f in_float(const kernel::Triangle_3& t) {
-    triangle3f result;
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) result[i][k] = static_cast<float>(t[i][k]);
-    return result;
-}
-
 [[nodiscard]] kernel::Triangle_3 in_kernel(const triangle3f& t) {
     const auto point = [](const vec3f& v) { return kernel::Point_3(v[0], v[1], v[2]); };
     return {point(t[0]), point(t[1]), point(t[2])};
 }
 
+/// The poses of both meshes, and A, whose floats the tree has.
+struct tree_query {
+    pose_pair poses;
+    const mesh& a;
+    const kernel_triangles& triangles;  // of the tree
+
+    [[nodiscard]] std::uint32_t number_of(kernel_triangles::const_iterator t) const {
+        return static_cast<std::uint32_t>(t - triangles.begin());
+    }
+};
+
 /// A triangle of B to be tested against a tree of A.
 struct query_triangle {
-    query_triangle(const pose_pair& poses_of_both, const triangle3f& of_b, const relative_pose& to_a)
-        : poses(poses_of_both), triangle(of_b) {
-        const box around = box_around(of_b, to_a);
+    query_triangle(const tree_query& of_query, const mesh& b, std::uint32_t t, const relative_pose& to_a)
+        : query(of_query), triangle(b.given_triangle(t)) {
+        const box around = box_around(b.triangle(t), to_a);
         bounds = {around.min[0], around.min[1], around.min[2], around.max[0], around.max[1], around.max[2]};
     }
 
-    const pose_pair& poses;
-    triangle3f triangle;
+    const tree_query& query;
+    triangle3d triangle;
     CGAL::Bbox_3 bounds;
 };
 
@@ -54,8 +57,9 @@ struct tree_traits : CGAL::AABB_traits<kernel, primitive> {
         }
         [[nodiscard]] bool operator()(const query_triangle& query, const primitive& leaf) const {
             const kernel::Triangle_3& s = *leaf.id();
+            const auto& [poses, a, triangles] = query.query;
             return CGAL::do_overlap(query.bounds, s.bbox()) &&
-                   exactly_intersect(query.poses, in_float(s), query.triangle);
+                   exactly_intersect(poses, a.given_triangle(query.query.number_of(leaf.id())), query.triangle);
         }
     };
     [[nodiscard]] Do_intersect do_intersect_object() const { return {}; }
@@ -65,9 +69,6 @@ struct tree_model : engine_model {
     kernel_triangles triangles{};
     CGAL::AABB_tree<tree_traits> tree{};  // destroyed first: it points to the triangles
 
-    [[nodiscard]] std::uint32_t number_of(kernel_triangles::const_iterator t) const {
-        return static_cast<std::uint32_t>(t - triangles.begin());
-    }
     [[nodiscard]] std::size_t bytes() const {
         using node = CGAL::AABB_node<tree_traits>;
         return bytes_of(triangles) + tree.size() * sizeof(primitive) + (tree.size() - 1) * sizeof(node);
@@ -87,24 +88,26 @@ class cgal_tree final : public model_engine<tree_model> {
     /// Queries A's tree with each triangle of B, in A's frame, until one is hit.
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         const mesh& b = *q.b.source;
-        const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
-        const pose_pair poses{q.pose_a, q.pose_b};
+        const mesh& a = *q.a.source;
+        const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds, a.frame, b.frame);
+        const tree_query query{{q.pose_a, q.pose_b}, a, q.a.triangles};
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
-            if (const auto hit = q.a.tree.any_intersected_primitive(query_triangle(poses, b.triangle(t), to_a)))
-                return index_pair{q.a.number_of(*hit), t};
+            if (const auto hit = q.a.tree.any_intersected_primitive(query_triangle(query, b, t, to_a)))
+                return index_pair{query.number_of(*hit), t};
         return std::nullopt;
     }
 
     /// Queries A's tree with each triangle of B, in A's frame.
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         const mesh& b = *q.b.source;
-        const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds);
-        const pose_pair poses{q.pose_a, q.pose_b};
+        const mesh& a = *q.a.source;
+        const relative_pose to_a(q.pose_a, q.pose_b, q.b.bounds, a.frame, b.frame);
+        const tree_query query{{q.pose_a, q.pose_b}, a, q.a.triangles};
         std::vector<kernel_triangles::const_iterator> hits;
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
             hits.clear();
-            q.a.tree.all_intersected_primitives(query_triangle(poses, b.triangle(t), to_a), std::back_inserter(hits));
-            for (const auto hit : hits) pairs.push_back({q.a.number_of(hit), t});
+            q.a.tree.all_intersected_primitives(query_triangle(query, b, t, to_a), std::back_inserter(hits));
+            for (const auto hit : hits) pairs.push_back({query.number_of(hit), t});
         }
     }
 };

@@ -101,7 +101,8 @@ private:
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
             q.b.transformed.build(quality_, *q.b.source,
-                                  transformed_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds), embree_bytes_);
+                                  transformed_vertices(*q.a.source, q.pose_a, *q.b.source, q.pose_b, q.b.bounds),
+                                  embree_bytes_);
         });
         const std::size_t known = pairs.size();
         pair_collector collected{pairs};

@@ -18,16 +18,16 @@ template <class Volume>
 class fcl_tree {
 public:
     /// Builds the tree, or refits it if it has the same triangles.
-    void build(const mesh& m, std::span<const vec3f> vertices) {
+    void build(const mesh& m, std::span<const vec3d> vertices) {
         // Removed during the refit: after a failure, FCL would continue it and write beyond the vertices.
         std::unique_ptr<tree> built = std::move(tree_);
         if (built && has_same_triangles(*built, m)) {
             require_done(built->beginReplaceModel());
-            for (const vec3f& v : vertices) require_done(built->replaceVertex(in_double(v)));
+            for (const vec3d& v : vertices) require_done(built->replaceVertex({v[0], v[1], v[2]}));
             require_done(built->endReplaceModel(/*refit=*/true, /*bottomup=*/true));
         } else {
             std::vector<fcl::Vector3d> points;
-            for (const vec3f& v : vertices) points.push_back(in_double(v));
+            for (const vec3d& v : vertices) points.emplace_back(v[0], v[1], v[2]);
             std::vector<fcl::Triangle> triangles;
             for (const auto& t : m.triangles) triangles.emplace_back(t[0], t[1], t[2]);
             built = std::make_unique<tree>();
@@ -60,8 +60,6 @@ private:
                std::ranges::equal(indices, m.triangles, same);
     }
 
-    [[nodiscard]] static fcl::Vector3d in_double(const vec3f& v) { return {v[0], v[1], v[2]}; }
-
     /// FCL reports a lack of memory by an error code, and would continue with an incomplete tree.
     static void require_done(int code) {
         if (code != fcl::BVH_OK) throw std::bad_alloc();
@@ -93,7 +91,10 @@ protected:
     /// B's tree in A's frame, which is kept until a pose changes.
     [[nodiscard]] static fcl::BVHModel<Volume>& transformed(const model_query& q) {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
-            q.b.transformed.build(*q.b.source, transformed_vertices(q.pose_a, q.pose_b, *q.b.source, q.b.bounds));
+            std::vector<vec3d> vertices;
+            for (const vec3f& v : transformed_vertices(*q.a.source, q.pose_a, *q.b.source, q.pose_b, q.b.bounds))
+                vertices.push_back(q.a.source->frame.vertex(in_double(v)));
+            q.b.transformed.build(*q.b.source, vertices);
         });
         return q.b.transformed.get();
     }
@@ -101,7 +102,10 @@ protected:
 private:
     void update_model(model& changed) final {
         changed.poses.forget();
-        changed.local.build(*changed.source, changed.source->vertices);
+        std::vector<vec3d> vertices;
+        for (std::size_t v = 0; v < changed.source->vertices.size(); ++v)
+            vertices.push_back(changed.source->given_vertex(v));
+        changed.local.build(*changed.source, vertices);
     }
 
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) final {

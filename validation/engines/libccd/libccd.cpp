@@ -117,9 +117,9 @@ public:
     }
 };
 
-bool gjk_intersect(const pose_pair&, const triangle3f& s, const triangle3f&, const triangle3f& image_of_t) {
+bool gjk_intersect(const posed_triangles& pair) {
     static const gjk_test test({});
-    return test.intersects(s, image_of_t);
+    return test.intersects(pair.s_in_float, pair.image_of_t);
 }
 
 }  // namespace

@@ -1,0 +1,76 @@
+export module aabb.geometry:vertex_frame;
+
+import aabb.std;
+import :points;
+
+#pragma clang fp contract(off) reassociate(off) reciprocal(off)  // see aabb.base:floating_point
+
+export namespace aabb {
+
+/// How the vertices of a mesh are represented by floats f: each is origin + scale · f, up to `rounding`.
+struct vertex_frame {
+    vec3d origin{};
+    double scale = 1;  ///< a power of two
+    vec3f rounding{};  ///< a bound of the error on each axis, in units of `scale`; 0 if the floats are exact
+
+    friend bool operator==(const vertex_frame&, const vertex_frame&) = default;
+
+    [[nodiscard]] bool is_exact() const noexcept { return rounding == vec3f{}; }
+
+    /// The float of a vertex. Monotone on each axis, so that boxes which overlap still do as floats.
+    [[nodiscard]] vec3f operator()(const vec3d& vertex) const noexcept {
+        const vec3d f = unrounded(vertex);
+        return {static_cast<float>(f[0]), static_cast<float>(f[1]), static_cast<float>(f[2])};
+    }
+    /// The vertex at f in this frame, rounded to double.
+    [[nodiscard]] vec3d vertex(const vec3d& f) const noexcept {
+        return {origin[0] + scale * f[0], origin[1] + scale * f[1], origin[2] + scale * f[2]};
+    }
+
+    /// The frame in which these vertices become floats with small errors. The origin stays 0 unless the mesh lies so
+    /// far off that floats would lose more than four bits, and the scale 1 unless squares or cubes of floats could
+    /// leave their range.
+    [[nodiscard]] static vertex_frame around(std::span<const vec3d> vertices) noexcept {
+        vertex_frame frame;
+        if (vertices.empty()) return frame;
+        vec3d low = vertices.front(), high = low;
+        for (const vec3d& v : vertices)
+            for (int k = 0; k < 3; ++k) {
+                low[k] = std::min(low[k], v[k]);
+                high[k] = std::max(high[k], v[k]);
+            }
+        double extent = 0, magnitude = 0;  // halves, which cannot overflow
+        for (int k = 0; k < 3; ++k) {
+            extent = std::max(extent, high[k] / 2 - low[k] / 2);
+            magnitude = std::max({magnitude, std::abs(low[k]) / 2, std::abs(high[k]) / 2});
+        }
+        if (magnitude > 16 * extent) {
+            for (int k = 0; k < 3; ++k) frame.origin[k] = low[k] / 2 + high[k] / 2;
+            magnitude = extent / 2;
+        }
+        // Below 2^-960, products with the entries of a matrix would underflow.
+        const int exponent = magnitude == 0 ? 0 : std::ilogb(magnitude);
+        if (std::abs(exponent) > 30) frame.scale = std::ldexp(1, std::clamp(exponent, -960, 960));
+        for (const vec3d& v : vertices) {
+            const vec3d f = frame.unrounded(v);
+            const vec3f rounded = frame(v);
+            for (int k = 0; k < 3; ++k) {
+                double error = std::abs(f[k] - rounded[k]);
+                // The difference from the origin is rounded, too, and what the scale makes smaller may underflow.
+                if (frame.origin[k] != 0) error += std::abs(f[k]) * 0x1p-52;
+                if (frame.scale > 1) error += std::numeric_limits<double>::denorm_min();
+                if (error > 0)
+                    frame.rounding[k] = std::max(frame.rounding[k], static_cast<float>(error * (1 + 0x1p-20)) +
+                                                                        std::numeric_limits<float>::denorm_min());
+            }
+        }
+        return frame;
+    }
+
+private:
+    [[nodiscard]] vec3d unrounded(const vec3d& vertex) const noexcept {
+        return {(vertex[0] - origin[0]) / scale, (vertex[1] - origin[1]) / scale, (vertex[2] - origin[2]) / scale};
+    }
+};
+
+}  // namespace aabb
