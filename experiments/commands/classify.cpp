@@ -9,7 +9,6 @@ import aabblab.files;
 import aabblab.inputs;
 import aabblab.pair_output;
 import aabblab.progress;
-import aabblab.queries;
 
 namespace aabblab {
 
@@ -20,6 +19,17 @@ struct classify_request {
     std::string triangle{info_of(aabb::strategy_kind::triangle).fallback};
     bool keep_doubles = false, geometry = false;
 };
+
+/// The triangle test for --geometry.
+/// @throws aabb::input_error if it does not construct intersections, with the names of those that do
+std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choice& choice) {
+    auto test = triangle_test_named(choice);
+    if (test->constructs()) return test;
+    throw aabb::input_error(
+        fmt::format("--geometry: {} decides whether triangles intersect, but does not construct their intersection; "
+                    "give --triangle {}",
+                    choice.name, fmt::join(constructing_tests(), " or ")));
+}
 
 /// Tests two triangles: 0 or 1, or their intersection. `words` are the corners of the first, then of the second.
 template <class Real>
@@ -52,7 +62,7 @@ void classify_lines(line_stream lines, const aabb::triangle_test& test, const cl
 
 void classify(const classify_request& request) {
     const aabb::strategy_choice choice = aabb::parse_strategy(request.triangle);
-    const auto test = request.geometry ? constructing_test(choice, false) : triangle_test_named(choice);
+    const auto test = request.geometry ? constructing_test(choice) : triangle_test_named(choice);
     if (request.keep_doubles && !test->takes_double())
         throw aabb::input_error("--double: " + choice.name + " tests triangles of floats only");
     classify_lines(request.file == "-" ? line_stream() : line_stream(request.file), *test, request);

@@ -28,13 +28,14 @@ struct collide_request {
     std::optional<std::string> out, poses_of_b;
     std::size_t repeats = 1;
     std::string self;  ///< a key of `self_choices`; empty without --self
-    bool first = false, count = false, geometry = false, exit_code = false, json = false;
+    bool touching = true, first = false, count = false, geometry = false, exit_code = false, json = false;
 
     [[nodiscard]] std::vector<std::string> meshes() const { return b ? std::vector{a, *b} : std::vector{a}; }
     [[nodiscard]] mesh_query query() const {
         const query_kind ask = count ? query_kind::count : first ? query_kind::first : query_kind::pairs;
         return {.ask = ask,
                 .self = self.empty() ? std::nullopt : std::optional(self_choices.at(self)),
+                .hits = {.touching = touching, .geometry = geometry},
                 .by_pose = poses_of_b.has_value(),
                 .repeats = repeats,
                 .between = a + " against " + b.value_or("itself")};
@@ -57,10 +58,14 @@ void print_json(const collide_request& request, const mesh_result& result) {
     };
     nlohmann::ordered_json summary = {{"triangles", result.triangles},
                                       {"pairs", by_pose(result.counts)},
+                                      {"kinds", nullptr},
                                       {"digest", nullptr},
                                       {"build_ms", result.build_ms},
                                       {"query_ms", by_pose(result.query_ms, request.repeats > 1)},
                                       {"bytes_per_triangle", nullptr}};
+    nlohmann::ordered_json kinds;
+    for (const kind_counts& counts : result.kinds) kinds.push_back(by_name(counts));
+    if (!kinds.empty()) summary["kinds"] = by_pose(kinds);
     if (result.digest) summary["digest"] = *result.digest;
     if (result.bytes_per_triangle) summary["bytes_per_triangle"] = *result.bytes_per_triangle;
     if (result.neighbours) summary["neighbours"] = *result.neighbours;
@@ -74,6 +79,8 @@ void print_json(const collide_request& request, const mesh_result& result) {
     if (request.first && request.geometry) summary["geometry"] = by_pose(geometry);
     summary["method"] = result.method.name;
     summary["exact"] = result.method.exact;
+    summary["exact_for"] = nullptr;
+    if (result.method.exact) summary["exact_for"] = request.self.empty() ? exact_for_meshes : "vertices in double";
     for (const aabb::part_bytes& part : result.bytes) summary["bytes"][part.part] = part.bytes;
     print(summary.dump() + "\n");
 }
@@ -95,6 +102,10 @@ void print_results(const collide_request& request, const mesh_result& result) {
         counted(std::accumulate(result.counts.begin(), result.counts.end(), std::uint64_t{0}), "intersecting pair"),
         request.self.empty() || request.query().self == self_pairs::intersecting ? "" : " that share no vertex",
         result.digest ? ", digest " + *result.digest : ""));
+    kind_counts kinds{};
+    for (const kind_counts& counts : result.kinds)
+        for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k] += counts[k];
+    print(to_text(kinds));
     if (result.neighbours)
         print(fmt::format("{} more among triangles that share a vertex\n", grouped(*result.neighbours)));
     if (result.degenerate.value_or(0) > 0) print(counted(*result.degenerate, "triangle") + " without area\n");
@@ -132,6 +143,8 @@ void reject_contradictions(const collide_request& request) {
         reject_if(request.poses[0] || request.poses[1] || request.poses_of_b,
                   "--self finds self-intersections, which no pose changes; omit the poses");
         reject_if(request.first && request.self != "true", "--first works with plain --self only");
+        reject_if(!request.touching && request.self == "all",
+                  "--self=all is about triangles that touch; give --touching=no with plain --self");
     }
     reject_if(request.poses[1] && request.poses_of_b, "--pose-b and --poses both set the pose of B; give one of them");
     reject_if(request.first && request.count, "--first and --count exclude each other");
@@ -157,7 +170,7 @@ std::optional<number_table> open_rows(const collide_request& request) {
 /// Rejects bad options, poses and outputs first, since reading and searching large meshes takes long.
 int collide(const collide_request& request) {
     reject_contradictions(request);
-    const search_choice choice = request.method.choice(request.geometry);
+    const search_choice choice = request.method.choice();
     const aabb::pose pose_a = pose_of(request.poses[0], "--pose-a");
     given_poses poses_b{{pose_of(request.poses[1], "--pose-b")}, /*file=*/{}, /*lines=*/{}};
     if (request.poses_of_b) poses_b = read_poses(*request.poses_of_b);
@@ -194,6 +207,7 @@ void add_collide(const command_parser& program) {
         "--self [=all|no-adjacent]", &request.self,
         "Find self-intersections of A: pairs of triangles that meet outside their shared corners and edge; all: every "
         "pair with a common point, neighbours included; no-adjacent: only pairs without a shared corner");
+    add_touching(command, &request.touching, "pairs");
     command.flag("--first", &request.first, "Stop at the first pair found");
     command.flag("--count", &request.count, "Count the pairs without storing them");
     const auto take_repeats = [&request](const std::string& text) {

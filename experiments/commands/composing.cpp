@@ -39,15 +39,13 @@ void method_options::add_to(const command_parser& command, const std::string& re
 
 /// Reads the options: what to search with. An engine replaces the last stage, so it excludes strategies of that stage.
 /// Compositions that are invalid for every input are rejected here, before any file is read.
-search_choice method_options::choice(bool geometry) const {
-    if (geometry && engine_)
-        throw aabb::input_error("--geometry needs a triangle test, so --engine cannot be combined with it");
+search_choice method_options::choice() const {
     const auto is_set = [&](aabb::strategy_kind kind) { return values_[kind].has_value(); };
     const aabb::stage replaced_by_engine = stages_.back();
     if (engine_ && std::ranges::any_of(kinds_of(replaced_by_engine), is_set))
         throw aabb::input_error(fmt::format("--engine replaces {}, so give it {}", option_names(replaced_by_engine),
                                             stages_.size() == 1 ? "alone" : "without them"));
-    search_choice choice{stages_, /*named=*/{}, engine_, geometry};
+    search_choice choice{stages_, /*named=*/{}, engine_};
     for (const aabb::stage stage : stages_)
         for (const aabb::strategy_kind kind : kinds_of(stage)) {
             if (!is_set(kind)) continue;
@@ -61,6 +59,16 @@ search_choice method_options::choice(bool geometry) const {
 
 std::string listed_names(aabb::strategy_kind kind) {
     return fmt::format("{}", fmt::join(aabb::strategy_names(kind), ", "));
+}
+
+void add_touching(const command_parser& command, bool* touching, const std::string& hits) {
+    const auto take = [touching](const std::string& text) {
+        if (text != "yes" && text != "no")
+            throw aabb::input_error(fmt::format("--touching is yes or no, not '{}'", text));
+        *touching = text == "yes";
+    };
+    command.option("--touching V", take,
+                   "no: leave out " + hits + " that only touch, in a point or along a segment (default yes)");
 }
 
 }  // namespace aabblab

@@ -16,16 +16,22 @@ public:
 
     /// @param replaced what an engine replaces, for the help
     void add_to(const command_parser& command, const std::string& replaced);
-    /// @param geometry whether to construct the intersections of triangles, too
     /// @throws aabb::input_error on an unknown strategy or parameter, on a strategy that the engine replaces, and on an
     /// invalid combination, so that all of these are rejected before any file is read.
-    [[nodiscard]] search_choice choice(bool geometry = false) const;
+    [[nodiscard]] search_choice choice() const;
 
 private:
     std::vector<aabb::stage> stages_;
     aabb::by_kind<std::optional<std::string>> values_;
     std::optional<std::string> engine_;
 };
+
+/// What exact answers about moving meshes are exact for.
+inline constexpr const char* exact_for_meshes = "vertices and poses in double";
+
+/// The option --touching.
+/// @param hits "pairs" or "contacts", for the help
+void add_touching(const command_parser& command, bool* touching, const std::string& hits);
 
 /// The names of a kind's strategies, "median, mean, …", for help texts.
 [[nodiscard]] std::string listed_names(aabb::strategy_kind kind);

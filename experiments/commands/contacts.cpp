@@ -18,15 +18,23 @@ struct contacts_request {
     std::vector<std::string> meshes;
     method_options method{{aabb::stage::global_search, aabb::stage::local_detection}};
     std::optional<std::string> out;
-    bool geometry = false, json = false;
+    bool touching = true, geometry = false, json = false;
 };
 
 std::string json_of(const search_method& method, const frames_result& result) {
-    const nlohmann::ordered_json summary = {{"objects", result.objects},   {"frames", result.ms.size()},
-                                            {"candidates", result.pairs},  {"object_pairs", result.object_pairs},
-                                            {"contacts", result.contacts}, {"digest", result.digest},
-                                            {"build_ms", result.build_ms}, {"ms", result.ms},
-                                            {"method", method.name},       {"exact", method.exact}};
+    nlohmann::ordered_json summary = {{"objects", result.objects},
+                                      {"frames", result.ms.size()},
+                                      {"candidates", result.pairs},
+                                      {"object_pairs", result.object_pairs},
+                                      {"contacts", result.contacts},
+                                      {"kinds", by_name(result.kinds)},
+                                      {"digest", result.digest},
+                                      {"build_ms", result.build_ms},
+                                      {"ms", result.ms},
+                                      {"method", method.name},
+                                      {"exact", method.exact}};
+    summary["exact_for"] = nullptr;
+    if (method.exact) summary["exact_for"] = exact_for_meshes;
     return summary.dump() + "\n";
 }
 
@@ -36,6 +44,7 @@ std::string text_of(const contacts_request& request, const search_method& method
            fmt::format("{} of triangles in {} of objects ({} of boxes), digest {}\n",
                        counted(result.contacts, "contact"), counted(result.object_pairs, "contact"),
                        counted(result.pairs, "pair"), result.digest) +
+           to_text(result.kinds) +
            fmt::format("{}: built in {:.3f} ms,\n{:.3f} ms per frame (mean, with frame 0)\n", method.text(),
                        result.build_ms, result.mean_ms());
 }
@@ -43,7 +52,7 @@ std::string text_of(const contacts_request& request, const search_method& method
 void find_contacts(const contacts_request& request) {
     if (request.geometry && !request.out)
         throw aabb::input_error("--geometry adds columns to the contacts, so give --out FILE");
-    const search_choice choice = request.method.choice(request.geometry);
+    const search_choice choice = request.method.choice();
     std::optional<number_table> rows;
     if (request.out) {
         require_other_file(*request.out, request.motion);
@@ -54,7 +63,8 @@ void find_contacts(const contacts_request& request) {
     }
     scene_frames scene(open_motion(request.motion, read_meshes(request.meshes)), request.motion);
     search_method method = method_of(choice, traits_of(scene));
-    const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr);
+    const frames_result result = search_frames(scene, method, rows ? &*rows : nullptr,
+                                               {.touching = request.touching, .geometry = request.geometry});
     print(request.json ? json_of(method, result) : text_of(request, method, result));
 }
 
@@ -71,6 +81,7 @@ void add_contacts(const command_parser& program) {
         "MESH", &request.meshes,
         "Mesh files (OFF, OBJ, PLY, STL, glTF) or shapes; object i has mesh i modulo the number of meshes");
     request.method.add_to(command, "build, tree and triangle test");
+    add_touching(command, &request.touching, "contacts");
     command.option("--out FILE", &request.out,
                    "CSV file for the contacts: rows frame,object_a,object_b,triangle_a,triangle_b");
     command.flag("--geometry", &request.geometry,

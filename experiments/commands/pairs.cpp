@@ -21,9 +21,11 @@ struct pairs_request {
 };
 
 std::string json_of(const search_method& method, const frames_result& result) {
-    const nlohmann::ordered_json summary = {
+    nlohmann::ordered_json summary = {
         {"objects", result.objects}, {"frames", result.ms.size()}, {"pairs", result.pairs}, {"digest", result.digest},
         {"ms", result.ms},           {"method", method.name},      {"exact", method.exact}};
+    summary["exact_for"] = nullptr;
+    if (method.exact) summary["exact_for"] = "the recorded boxes";
     return summary.dump() + "\n";
 }
 

@@ -1,5 +1,6 @@
 module aabblab.queries;
 
+import aabb.triangle.intersection;
 import aabb.validation;
 import aabblab.fmt;
 import aabblab.numbers;
@@ -20,53 +21,46 @@ std::size_t count_object_pairs(std::span<const aabb::contact> sorted) {
     return pairs;
 }
 
-/// Adds a row per contact. The geometry is set up once for consecutive contacts of the same two objects.
-void add_contacts(number_table& rows, const searched_frame& frame, const scene_frames& scene,
-                  std::optional<hit_geometry>& geometry) {
+/// The geometry of the contacts of two objects in the current frame.
+hit_geometry geometry_of(const scene_frames& scene, const aabb::contact& c) {
     const auto mesh_of = [&](std::uint32_t object) -> const aabb::mesh& {
         return scene.meshes()->meshes[scene.meshes()->mesh_of[object]];
     };
-    const aabb::contact* before = nullptr;
-    for (const aabb::contact& c : frame.contacts) {
-        std::string cells;
-        if (geometry) {
-            if (before == nullptr || !are_of_same_objects(c, *before))
-                geometry->set_meshes(mesh_of(c.a), scene.poses()[c.a], mesh_of(c.b), scene.poses()[c.b]);
-            cells = to_cells((*geometry)({c.triangle_a, c.triangle_b}));
-            before = &c;
-        }
-        rows.add({frame.number, c.a, c.b, c.triangle_a, c.triangle_b}, cells);
-    }
+    return {mesh_of(c.a), scene.poses()[c.a], mesh_of(c.b), scene.poses()[c.b]};
 }
 
 }  // namespace
 
-/// The triangle test for --geometry, which must construct intersections. In a composition, only strategies are allowed.
-std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choice& choice, bool composed) {
-    auto test = composed ? aabb::make_triangle_test(choice) : triangle_test_named(choice);
-    if (test->constructs()) return test;
-    std::vector<std::string> names = constructing_tests();
-    const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);
-    if (composed)
-        std::erase_if(names, [&](const std::string& name) { return std::ranges::count(strategies, name) == 0; });
-    throw aabb::input_error(
-        fmt::format("--geometry: {} decides whether triangles intersect, but does not construct their intersection; "
-                    "give --triangle {}",
-                    choice.name, fmt::join(names, " or ")));
-}
-
-void hit_geometry::set_meshes(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b,
-                              const aabb::pose& pose_b) {
-    a_ = &a;
-    b_ = &b;
-    pose_a_ = pose_a;
-    to_a_.emplace(pose_a, pose_b, aabb::bounds_of(b), a.frame, b.frame);
+aabb::intersection_kind hit_geometry::kind(aabb::index_pair triangles) const {
+    return intersection_kind_of(poses_, a_.given_triangle(triangles.a), b_.given_triangle(triangles.b));
 }
 
 aabb::triangle_intersection hit_geometry::operator()(aabb::index_pair triangles) const {
-    const aabb::triangle3f s = a_->triangle(triangles.a);
-    const aabb::triangle3f t = (*to_a_)(b_->triangle(triangles.b));
-    return aabb::transformed(test_->intersection(in_double(s), in_double(t)), pose_a_);
+    return intersection_of(poses_, a_.given_triangle(triangles.a), b_.given_triangle(triangles.b));
+}
+
+std::map<std::string, std::uint64_t> by_name(const kind_counts& counts) {
+    std::map<std::string, std::uint64_t> named;
+    for (std::size_t k = 0; k < counts.size(); ++k)
+        if (k > 0 || counts[k] > 0) named.emplace(aabb::intersection_kind_names[k], counts[k]);
+    return named;
+}
+
+std::string to_text(const kind_counts& counts) {
+    constexpr std::array<std::string_view, std::tuple_size_v<kind_counts>> what{
+        "do not intersect", "touch in a point", "touch along a segment", "pass through each other",
+        "overlap in a plane"};
+    std::string line;
+    for (std::size_t k = 0; k < counts.size(); ++k)
+        if (counts[k] > 0) line += fmt::format("{}{} {}", line.empty() ? "" : ", ", grouped(counts[k]), what[k]);
+    return line.empty() ? line : line + "\n";
+}
+
+bool hit_filter::keeps(aabb::intersection_kind kind) {
+    using enum aabb::intersection_kind;
+    if (!touching_ && (kind == point || kind == segment)) return false;
+    ++counts_[static_cast<std::size_t>(kind)];
+    return true;
 }
 
 /// Makes the stages of a search. An engine takes the place of the last one; strategies without a name are selected.
@@ -85,13 +79,12 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
             method.run_stages.local =
                 by_engine ? aabb::make_mesh_engine(*choice.engine) : aabb::compose_local_detection(c, uncounted);
     }
-    if (choice.geometry) method.geometry.emplace(c[aabb::strategy_kind::triangle]);
     return method;
 }
 
-/// Searches every frame, and sums up times and results. Moves the stages out of `method`, but uses its name and
-/// geometry. `rows` receives every result and is committed at the end; it may be null.
-frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows) {
+/// Searches every frame, and sums up times and results. Moves the stages out of `method`, but uses its name. `rows`
+/// receives every result and is committed at the end; it may be null.
+frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows, const hit_choice& hits) {
     const bool meshes = scene.meshes() != nullptr;
     frames_result result;
     result.objects = scene.objects();
@@ -101,24 +94,36 @@ frames_result search_frames(scene_frames& scene, search_method& method, number_t
     result.build_ms = building.ms();
     progress shown("frames searched", scene.frames());
     tally totals(meshes);
+    hit_filter wanted(hits.touching);
+    std::vector<aabb::contact> contacts;
     run_frames(scene, *searcher, [&](const searched_frame& frame) {
         result.ms.push_back(whole_nanoseconds(frame.ms()));
         const std::string where = fmt::format("{}, frame {}", method.name, frame.number);
+        contacts.clear();
         if (meshes) {
             require_each_once(frame.contacts, where);
-            if (rows) add_contacts(*rows, frame, scene, method.geometry);
+            for (const aabb::contact& c : frame.contacts) {
+                const hit_geometry geometry = geometry_of(scene, c);
+                const aabb::index_pair triangles{c.triangle_a, c.triangle_b};
+                if (!wanted.keeps(geometry.kind(triangles))) continue;
+                contacts.push_back(c);
+                if (rows)
+                    rows->add({frame.number, c.a, c.b, c.triangle_a, c.triangle_b},
+                              hits.geometry ? to_cells(geometry(triangles)) : "");
+            }
         } else {
             require_each_once(frame.pairs, where);
             if (rows)
                 for (const auto [a, b] : frame.pairs) rows->add({frame.number, a, b});
         }
-        totals.add(frame.pairs, frame.contacts);
-        result.object_pairs += count_object_pairs(frame.contacts);
+        totals.add(frame.pairs, contacts);
+        result.object_pairs += count_object_pairs(contacts);
         shown.update(frame.number + 1);
     });
     if (rows) rows->commit();
     result.pairs = totals.candidates();
     result.contacts = totals.contacts().value_or(0);
+    result.kinds = wanted.counts();
     result.digest = totals.digest();
     return result;
 }

@@ -149,7 +149,7 @@ query_result result_of(stage_runner& runner, const mesh_query& query, const aabb
     return result;
 }
 
-/// Records the pairs of each pose in order, with the intersections of their triangles, and rejects duplicates.
+/// Records the wanted pairs of each pose in order, with the intersections of their triangles, and rejects duplicates.
 class pair_record {
 public:
     /// @param rows may be null
@@ -162,9 +162,15 @@ public:
         sort_rows(hits.pairs);
         require_each_once(hits.pairs, method_.name);
         const std::vector<aabb::mesh>& meshes = scene_.meshes()->meshes;
-        if (method_.geometry)
-            method_.geometry->set_meshes(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
-        if (query_.ask == query_kind::first) result_.first.emplace_back();
+        geometry_.emplace(meshes.front(), scene_.poses().front(), meshes.back(), scene_.poses().back());
+        hit_filter wanted(query_.hits.touching);
+        std::erase_if(hits.pairs, [&](aabb::index_pair pair) { return !wanted.keeps(geometry_->kind(pair)); });
+        result_.kinds.push_back(wanted.counts());
+        if (!query_.hits.touching) result_.counts.back() = hits.pairs.size();
+        if (query_.ask == query_kind::first) {
+            result_.first.emplace_back();
+            if (hits.pairs.size() > 1) hits.pairs.resize(1);
+        }
         if (query_.self != self_pairs::all || neighbours_too) return add_sorted(hits.pairs);
         const std::uint64_t neighbours = merge_neighbours(
             meshes.front(), hits.pairs, [&](std::span<const aabb::index_pair> pairs) { add_sorted(pairs); });
@@ -177,10 +183,10 @@ public:
 private:
     void add_sorted(std::span<const aabb::index_pair> pairs) {
         digest_.add(pose_, pairs);
-        if (!rows_ && !method_.geometry && query_.ask != query_kind::first) return;
+        if (!rows_ && !query_.hits.geometry && query_.ask != query_kind::first) return;
         for (const aabb::index_pair pair : pairs) {
             intersecting_pair row{pair, {}};
-            if (method_.geometry) row.common = (*method_.geometry)(pair);
+            if (query_.hits.geometry) row.common = (*geometry_)(pair);
             if (rows_) add_row(row);
             if (query_.ask == query_kind::first) result_.first.back() = row;
         }
@@ -203,6 +209,7 @@ private:
     mesh_result& result_;
     search_method& method_;
     number_table* rows_;
+    std::optional<hit_geometry> geometry_;
     aabb::digest digest_;
     std::uint32_t pose_ = 0;
 };
@@ -239,13 +246,16 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     // follow from the mesh.
     const bool neighbours_too = query.self == self_pairs::all && !result.method.exact && query.ask != query_kind::count;
     pair_record record(query, scene, result, rows);
+    // Which pairs only touch is known once they are stored.
+    mesh_query search = query;
+    if (!query.hits.touching) search.ask = query_kind::pairs;
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
         query_result hits;
         try {
             searcher->update();
             searcher->search();
             const wall_stopwatch searching;
-            hits = result_of(*searcher, query, scene.meshes()->meshes.front(), neighbours_too);
+            hits = result_of(*searcher, search, scene.meshes()->meshes.front(), neighbours_too);
             result.query_ms.push_back(searching.ms());
         } catch (const aabb::input_error& error) {
             throw aabb::input_error(
@@ -253,13 +263,13 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
         }
         if (frame >= poses) continue;
         if (query.self && query.self != self_pairs::intersecting) result.neighbours = hits.neighbours;
-        if (!query.self && query.ask != query_kind::count) {
+        if (!query.self && search.ask != query_kind::count) {
             for (const aabb::contact& c : searcher->sorted_contacts())
                 hits.pairs.push_back({c.triangle_a, c.triangle_b});
             hits.count = hits.pairs.size();
         }
         result.counts.push_back(hits.count);
-        if (query.ask != query_kind::count) record.add(frame, std::move(hits), neighbours_too);
+        if (search.ask != query_kind::count) record.add(frame, std::move(hits), neighbours_too);
     }
     if (query.self && query.ask != query_kind::first)
         result.degenerate = count_degenerate(scene.meshes()->meshes.front());

@@ -12,43 +12,59 @@ import aabblab.trials;
 
 export namespace aabblab {
 
-/// The triangle test of a command with --geometry.
-/// @throws aabb::input_error if it is unknown or does not construct intersections; the message lists the tests that do.
-/// @param composed whether only strategies are allowed, as parts of a composition
-[[nodiscard]] std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choice& choice,
-                                                                     bool composed);
-
-/// Constructs the intersections of triangles of two posed meshes in the coordinate system of the first mesh, in which
-/// they are tested (`relative_pose`), and transforms them to world coordinates.
+/// The intersections of triangles of two posed meshes, exact as they are given, in world coordinates.
 class hit_geometry {
 public:
-    /// @throws aabb::input_error as `constructing_test`.
-    explicit hit_geometry(const aabb::strategy_choice& triangle) : test_(constructing_test(triangle, true)) {}
+    /// @param a,b must outlive this object
+    hit_geometry(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b)
+        : a_(a), b_(b), poses_{pose_a, pose_b} {}
 
-    /// Sets the meshes of the following hits, which must outlive them.
-    void set_meshes(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b);
+    [[nodiscard]] aabb::intersection_kind kind(aabb::index_pair triangles) const;
     [[nodiscard]] aabb::triangle_intersection operator()(aabb::index_pair triangles) const;
 
 private:
-    std::unique_ptr<aabb::triangle_test> test_;
-    const aabb::mesh* a_ = nullptr;
-    const aabb::mesh* b_ = nullptr;
-    aabb::pose pose_a_;
-    std::optional<aabb::relative_pose> to_a_;
+    const aabb::mesh& a_;
+    const aabb::mesh& b_;
+    aabb::pose_pair poses_;
+};
+
+/// The hits of each `intersection_kind`; those of an inexact method may have `none`.
+using kind_counts = std::array<std::uint64_t, aabb::intersection_kind_names.size()>;
+/// For JSON, by the kind's name; without `none` if no hit has it.
+[[nodiscard]] std::map<std::string, std::uint64_t> by_name(const kind_counts& counts);
+/// "12 touch in a point, 10 pass through each other"; a line without the kinds that no hit has, or nothing.
+[[nodiscard]] std::string to_text(const kind_counts& counts);
+
+/// Which hits a query reports, and with what.
+struct hit_choice {
+    bool touching = true;   ///< whether those count that only touch, in a point or along a segment
+    bool geometry = false;  ///< whether rows have the intersection
+};
+
+/// Counts hits by kind, and removes those that only touch, unless these are wanted.
+class hit_filter {
+public:
+    explicit hit_filter(bool touching) : touching_(touching) {}
+
+    /// Whether the hit is kept; then it is counted.
+    [[nodiscard]] bool keeps(aabb::intersection_kind kind);
+    [[nodiscard]] const kind_counts& counts() const { return counts_; }
+
+private:
+    bool touching_;
+    kind_counts counts_{};
 };
 
 struct search_choice {
     std::vector<aabb::stage> stages;  ///< one or both of the two
     aabb::named_strategies named;
     std::optional<std::string> engine;  ///< replaces the last of these stages
-    bool geometry = false;              ///< whether to construct the intersections of triangles
 };
 
 struct search_method {
     std::string name;
     bool exact = true;
     stages run_stages;
-    std::optional<hit_geometry> geometry;
 
     /// "cgal", "fcl (inexact)".
     [[nodiscard]] std::string text() const { return exact ? name : name + " (inexact)"; }
@@ -62,6 +78,7 @@ struct frames_result {
     std::uint64_t pairs = 0;         ///< overlapping boxes, summed over the frames, as are the next two
     std::uint64_t object_pairs = 0;  ///< objects in contact
     std::uint64_t contacts = 0;      ///< intersecting triangles; 0 for boxes
+    kind_counts kinds{};             ///< the contacts by kind
     std::string digest;              ///< of contacts for meshes, of pairs for boxes
     double build_ms = 0;
     std::vector<double> ms;  ///< by frame
@@ -73,7 +90,8 @@ struct frames_result {
 /// Searches every frame of a scene.
 /// @param rows receives frame and pair, or frame, objects and triangles, and is committed; may be null
 /// @throws defect if a result is found twice.
-[[nodiscard]] frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows);
+[[nodiscard]] frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows,
+                                          const hit_choice& hits = {});
 
 /// The pairs of triangles that a query of one mesh with itself reports.
 enum class self_pairs {
@@ -86,6 +104,7 @@ enum class self_pairs {
 struct mesh_query {
     query_kind ask = query_kind::pairs;
     std::optional<self_pairs> self = {};
+    hit_choice hits = {};
     bool by_pose = false;      ///< whether rows include the pose
     std::size_t repeats = 1;   ///< each runs all poses
     std::string between = {};  ///< "a.off against b.off", for messages
@@ -93,13 +112,14 @@ struct mesh_query {
 
 struct intersecting_pair {
     aabb::index_pair triangles;
-    std::optional<aabb::triangle_intersection> common;  ///< if the method constructs it
+    std::optional<aabb::triangle_intersection> common;  ///< if the query asks for it
 };
 
 struct mesh_result {
     search_method method;                     ///< the method that searched
     std::vector<std::uint32_t> triangles;     ///< their number, by mesh
     std::vector<std::uint64_t> counts;        ///< by pose; of `self_pairs::all`, those without a common vertex
+    std::vector<kind_counts> kinds;           ///< by pose: `counts` by kind; empty if pairs are only counted
     std::optional<std::uint64_t> neighbours;  ///< within one mesh, pairs that share a vertex and are not in `counts`
     std::optional<std::uint64_t>
         degenerate;  ///< within one mesh, unless any one pair is asked for: triangles without area

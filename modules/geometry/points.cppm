@@ -59,10 +59,11 @@ using triangle3d = triangle3<double>;
 
 /// Rotates a triangle until corner 0 is its apex: alone on its side of a plane, or alone on the plane with both other
 /// corners on one side.
+/// @param t corners, or their indices
 /// @param heights signed distances of the corners from the plane, on any scale
 /// @returns whether the apex lies below the plane (the others above it), so that the other triangle must be flipped
-template <class Real, class Height>
-inline bool rotate_to_apex(triangle3<Real>& t, const std::array<Height, 3>& heights) noexcept {
+template <class Triangle, class Height>
+inline bool rotate_to_apex(Triangle& t, const std::array<Height, 3>& heights) noexcept {
     const auto is_apex = [&](int i, Height up) {
         const Height own = up * heights[static_cast<std::size_t>(i)];
         const Height p = up * heights[static_cast<std::size_t>((i + 1) % 3)];

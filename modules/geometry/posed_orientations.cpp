@@ -84,9 +84,41 @@ bool are_below(const Corners& corners, std::size_t first, std::size_t second, in
     return true;
 }
 
+/// det(b - a, c - a, d - a) of four corners.
+template <class Corners>
+auto volume_of(const Corners& corners, int a, int b, int c, int d) noexcept {
+    const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
+    const auto p = at(b) - at(a), q = at(c) - at(a), r = at(d) - at(a);
+    const auto along = [&](int x, int y, int z) { return (p[x] * q[y] - p[y] * q[x]) * r[z]; };
+    return along(0, 1, 2) + along(1, 2, 0) + along(2, 0, 1);
+}
+
+/// The component of (b - a) × (c - a) along an axis.
+template <class Corners>
+auto area_of(const Corners& corners, int a, int b, int c, int axis) noexcept {
+    const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
+    const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+    const auto p = at(b) - at(a), q = at(c) - at(a);
+    return p[x] * q[y] - p[y] * q[x];
+}
+
+/// Rounds an integer: of the leading 128 bits, at least 65 are significant, so that in effect one rounding yields 53.
+template <std::size_t Limbs>
+scaled_double rounded(const wide_integer<Limbs>& integer) noexcept {
+    const wide_integer<Limbs> magnitude = integer.magnitude();
+    std::size_t top = Limbs;
+    while (top > 0 && magnitude.limb[top - 1] == 0) --top;
+    if (top == 0) return {0, 0};
+    const unsigned_128 leading =
+        unsigned_128{magnitude.limb[top - 1]} << 64U | (top > 1 ? magnitude.limb[top - 2] : std::uint64_t{0});
+    int exponent = 0;
+    const double mantissa = std::frexp(static_cast<double>(leading), &exponent);
+    return {integer.sign() < 0 ? -mantissa : mantissa, exponent + 64 * (static_cast<int>(top) - 2)};
+}
+
 /// What `compute` returns for corners of whatever width; unlike `std::visit`, it cannot throw.
 template <class Corners, class Compute>
-int compute_in(const Corners& corners, const Compute& compute) noexcept {
+auto compute_in(const Corners& corners, const Compute& compute) noexcept {
     if (const auto* const narrow = std::get_if<0>(&corners)) return compute(*narrow);
     if (const auto* const medium = std::get_if<1>(&corners)) return compute(*medium);
     return compute(*std::get_if<2>(&corners));
@@ -109,6 +141,7 @@ exact_corners::exact_corners(const std::array<posed_point, 6>& points) noexcept 
                     end = std::max(end, t.end());
                 }
     }
+    unit_ = end < unit ? 0 : unit;
     const int bits = end < unit ? 0 : end - unit + 5;
     if (bits <= 3 * 64)
         corners_ = integers_of<3>(corners, unit);
@@ -119,12 +152,11 @@ exact_corners::exact_corners(const std::array<posed_point, 6>& points) noexcept 
 }
 
 int exact_corners::side(int a, int b, int c, int d) const noexcept {
-    return compute_in(corners_, [&](const auto& corners) {
-        const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
-        const auto p = at(b) - at(a), q = at(c) - at(a), r = at(d) - at(a);
-        const auto along = [&](int x, int y, int z) { return (p[x] * q[y] - p[y] * q[x]) * r[z]; };
-        return (along(0, 1, 2) + along(1, 2, 0) + along(2, 0, 1)).sign();
-    });
+    return compute_in(corners_, [&](const auto& corners) { return volume_of(corners, a, b, c, d).sign(); });
+}
+
+scaled_double exact_corners::volume(int a, int b, int c, int d) const noexcept {
+    return compute_in(corners_, [&](const auto& corners) { return rounded(volume_of(corners, a, b, c, d)); });
 }
 
 bool exact_corners::boxes_are_disjoint() const noexcept {
@@ -137,11 +169,27 @@ bool exact_corners::boxes_are_disjoint() const noexcept {
 }
 
 int exact_corners::turn(int a, int b, int c, int axis) const noexcept {
+    return compute_in(corners_, [&](const auto& corners) { return area_of(corners, a, b, c, axis).sign(); });
+}
+
+scaled_double exact_corners::area(int a, int b, int c, int axis) const noexcept {
+    return compute_in(corners_, [&](const auto& corners) { return rounded(area_of(corners, a, b, c, axis)); });
+}
+
+int exact_corners::order(int a, int b, int axis) const noexcept {
     return compute_in(corners_, [&](const auto& corners) {
-        const auto at = [&](int i) -> const auto& { return corners[static_cast<std::size_t>(i)]; };
-        const int x = (axis + 1) % 3, y = (axis + 2) % 3;
-        const auto p = at(b) - at(a), q = at(c) - at(a);
-        return (p[x] * q[y] - p[y] * q[x]).sign();
+        return (corners[static_cast<std::size_t>(a)][axis] - corners[static_cast<std::size_t>(b)][axis]).sign();
+    });
+}
+
+rounded_coordinate exact_corners::coordinate(int corner, int axis) const noexcept {
+    return compute_in(corners_, [&](const auto& corners) {
+        const auto& integer = corners[static_cast<std::size_t>(corner)][axis];
+        const auto [mantissa, exponent] = rounded(integer);
+        const double value = std::ldexp(mantissa, exponent + unit_);
+        // A double below the least normal one has fewer digits.
+        const int digits = std::min(53, exponent + unit_ + 1074);
+        return rounded_coordinate{value, mantissa == 0 || (std::isfinite(value) && integer.has_digits(digits))};
     });
 }
 

@@ -24,6 +24,12 @@ struct posed_point {
     const pose* at;
 };
 
+/// A number rounded to double.
+struct rounded_coordinate {
+    double value;
+    bool is_exact;
+};
+
 /// The corners of two triangles in world coordinates, as integers of a common unit: exact for all finite vertices and
 /// poses. Three widths are enough: the least for meshes of floats and common poses, the greatest for all doubles.
 class exact_corners {
@@ -36,12 +42,21 @@ public:
     [[nodiscard]] bool boxes_are_disjoint() const noexcept;
     /// The sign of `exact_turn` of three corners, by index.
     [[nodiscard]] int turn(int a, int b, int c, int axis) const noexcept;
+    /// The sign of a - b on an axis.
+    [[nodiscard]] int order(int a, int b, int axis) const noexcept;
+
+    /// The determinants of `side` and `turn` in a unit that is the same for all, within 1.001 · 2^-53 of their value.
+    [[nodiscard]] scaled_double volume(int a, int b, int c, int d) const noexcept;
+    [[nodiscard]] scaled_double area(int a, int b, int c, int axis) const noexcept;
+    /// A coordinate of a corner, with a relative error of at most 2^-52.
+    [[nodiscard]] rounded_coordinate coordinate(int corner, int axis) const noexcept;
 
 private:
     template <std::size_t Limbs>
     using corners_of = std::array<vec3<wide_integer<Limbs>>, 6>;
 
     std::variant<corners_of<3>, corners_of<8>, corners_of<68>> corners_;
+    int unit_ = 0;  // the exponent of the integers' unit
 };
 
 /// Filtered predicates, as `orientations`, for corners in world coordinates: computed in double, relative to the
@@ -153,6 +168,18 @@ public:
         return sign != 0 ? sign : exact().turn(index_of(a), index_of(b), index_of(c), axis);
     }
 
+    /// The sign of a - b on an axis.
+    [[nodiscard]] int order(const vec3d& a, const vec3d& b, int axis) noexcept {
+        const int sign = sign_beyond(a[axis] - b[axis], 3 * error_[axis]);
+        return sign != 0 ? sign : exact().order(index_of(a), index_of(b), axis);
+    }
+
+    /// The integers of all corners, computed when they are first needed.
+    [[nodiscard]] const exact_corners& exact() noexcept {
+        if (!exact_) exact_.emplace(given_);
+        return *exact_;
+    }
+
     /// As `orientations::beyond`.
     [[nodiscard]] bool beyond(const vec3d& a, const vec3d& b, int own, const triangle3d& t, int axis) noexcept {
         const int first = turn(a, b, t[0], axis);
@@ -214,12 +241,6 @@ private:
             if (int& side = sides[static_cast<std::size_t>(i)]; side == 0)
                 side = exact().side(index_of(of[0]), index_of(of[1]), index_of(of[2]), index_of(t[i]));
         return corner_sides(sides);
-    }
-
-    /// The integers of all corners, computed when they are first needed.
-    [[nodiscard]] const exact_corners& exact() noexcept {
-        if (!exact_) exact_.emplace(given_);
-        return *exact_;
     }
 
     std::array<posed_point, 6> given_;

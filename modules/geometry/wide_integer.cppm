@@ -17,12 +17,28 @@ struct wide_integer {
         return std::ranges::any_of(limb, [](std::uint64_t x) { return x != 0; }) ? 1 : 0;
     }
 
-    /// Adds or subtracts magnitude · 2^shift.
-    constexpr void add(unsigned_128 magnitude, int shift, bool is_negative) noexcept {
+    [[nodiscard]] constexpr wide_integer magnitude() const noexcept {
+        return sign() < 0 ? wide_integer{} - *this : *this;
+    }
+
+    /// Whether all bits but the leading `digits` are 0.
+    [[nodiscard]] constexpr bool has_digits(int digits) const noexcept {
+        const wide_integer positive = magnitude();
+        int first = 0, last = -1;  // the bits that are set
+        for (std::size_t i = Limbs; i-- > 0;)
+            if (positive.limb[i] != 0) {
+                first = static_cast<int>(64 * i) + std::countr_zero(positive.limb[i]);
+                if (last < 0) last = static_cast<int>(64 * i) + static_cast<int>(std::bit_width(positive.limb[i])) - 1;
+            }
+        return last - first < digits;
+    }
+
+    /// Adds or subtracts factor · 2^shift.
+    constexpr void add(unsigned_128 factor, int shift, bool is_negative) noexcept {
         const auto first = static_cast<std::size_t>(shift) / 64;
         const unsigned bits = static_cast<unsigned>(shift) % 64;
-        const auto high = static_cast<std::uint64_t>(magnitude >> 64U);
-        const unsigned_128 low = unsigned_128{static_cast<std::uint64_t>(magnitude)} << bits;
+        const auto high = static_cast<std::uint64_t>(factor >> 64U);
+        const unsigned_128 low = unsigned_128{static_cast<std::uint64_t>(factor)} << bits;
         const unsigned_128 rest = (unsigned_128{high} << bits) + (low >> 64U);
         wide_integer term;
         const std::array parts{static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(rest),

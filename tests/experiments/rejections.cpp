@@ -95,10 +95,8 @@ TEST_CASE_METHOD(with_mesh_file, "collide rejects invalid options and leaves no 
             {{mesh, "--count", "--out", folder / "x.csv"}, "--count stores no pairs"},
             {{mesh, "--geometry"}, "--geometry adds columns to the pairs, so give --out FILE, or --first for one pair"},
             {{mesh, "--geometry", "--count"}, "--count stores no pairs, so --geometry cannot be combined with it"},
-            {{mesh, "--geometry", "--first", "--engine", "cgal"}, "so --engine cannot be combined with it"},
-            {{mesh, "--geometry", "--out", folder / "x.csv", "--triangle", "moller"},
-             "--geometry: moller decides whether triangles intersect, but does not construct their intersection; give "
-             "--triangle exact\n"},
+            {{mesh, "--touching=maybe"}, "--touching is yes or no, not 'maybe'"},
+            {{"--self=all", "--touching=no"}, "--self=all is about triangles that touch"},
         });
     check_all(
         folder, {"collide", mesh, mesh, "--out", folder / "pairs.csv"},
@@ -179,10 +177,6 @@ TEST_CASE_METHOD(with_mesh_file, "contacts and scene reject meshes and options t
                    "--engine replaces --build, --tree and --triangle, so give it without them\n"},
                   {{mesh, "--tree", "compresed"}, "did you mean 'compressed'?"},
                   {{mesh, "--geometry"}, "--geometry adds columns to the contacts, so give --out FILE"},
-                  {{mesh, "--geometry", "--out", folder / "x.csv", "--engine", "cgal"},
-                   "--geometry needs a triangle test, so --engine cannot be combined with it"},
-                  {{mesh, "--geometry", "--out", folder / "x.csv", "--triangle", "separating_axes"},
-                   "--geometry: separating_axes decides whether triangles intersect"},
                   {{mesh, "--out", motion}, "m.txt would overwrite "},
                   {{mesh, "--out", mesh}, "a.off would overwrite "},
               });

@@ -4,6 +4,7 @@
 #include "support.hpp"
 
 import aabb.triangle.exact;
+import aabb.triangle.intersection;
 import aabb.triangle.interval_arithmetic;
 import aabb.triangle.orientation_test;
 import aabb.wide_tree.triangle_filter;
@@ -275,6 +276,42 @@ TEST_CASE("exact tests decide triangles of meshes at poses as two judges do, in 
         CHECK(results[0] > 0);
         CHECK(results[1] > 0);
     }
+}
+
+TEST_CASE("what triangles at poses have in common equals what CGAL constructs, within the stated error") {
+    generator g(544);
+    std::map<aabb::intersection_kind, int> kinds;
+    for (const pose_class& c : pose_classes)
+        for (const vertex_class& vertices : vertex_classes) {
+            CAPTURE(c.name, vertices.name);
+            int wrong_kinds = 0, beyond_error = 0, coarse = 0;
+            for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
+                for (int i = 0; i < 10; ++i) {
+                    const auto pair = triangle_pairs::of_type<double>(triangle_pairs::patterned(g, pattern));
+                    const triangle3d s = mapped(pair.a, vertices), t = mapped(pair.b, vertices);
+                    const pose_pair poses = c.make(g);
+                    const aabb::exact_intersection exact(poses, s, t);
+                    ++kinds[exact.kind()];
+                    wrong_kinds += aabb::intersection_kind_of(poses, s, t) != exact.kind();
+                    const aabb::triangle_intersection common = aabb::intersection_of(poses, s, t);
+                    double largest = 0;
+                    for (const aabb::posed_point& p : {aabb::posed_point{&s[0], &poses.a}, {&t[0], &poses.b}})
+                        for (std::size_t k = 0; k < 9; ++k)
+                            largest = std::max(
+                                {largest, std::abs(p.at->translation[static_cast<int>(k % 3)]),
+                                 std::abs(p.at->rotation[k]) * (std::abs((*p.vertex)[0]) + 8 * vertices.factor)});
+                    wrong_kinds += common.kind != exact.kind();
+                    if (largest > 1e300) continue;  // coordinates may leave the range of double
+                    const aabb::corner_errors errors = exact.errors_of(common);
+                    beyond_error += !errors.same || !errors.within;
+                    for (const double error : common.error.at) coarse += error > 0x1p-46 * largest + 0x1p-1060;
+                }
+            CHECK(wrong_kinds == 0);
+            CHECK(beyond_error == 0);
+            CHECK(coarse == 0);
+        }
+    for (const auto& [kind, count] : kinds) CHECK(count > 20);
+    CHECK(kinds.size() == 5);
 }
 
 TEST_CASE("two cubes at poses intersect in the pairs that rational arithmetic finds, either way round") {

@@ -26,9 +26,11 @@ using exact_hull = std::variant<point_3, segment_3, triangle_3>;
 using exact_number = kernel::FT::ET;
 using exact_point = std::array<exact_number, 3>;
 
-exact_hull exact_hull_of(const triangle3d& t) {
-    const auto point = [](const vec3d& p) { return point_3(p[0], p[1], p[2]); };
-    return with_hull<kernel>({point(t[0]), point(t[1]), point(t[2])}, [](const auto& h) { return exact_hull(h); });
+exact_hull exact_hull_of(const triangle3d& t, const pose& at) {
+    const auto world = exactly_transformed<triangle3<kernel::FT>>(t, at);
+    const auto point = [](const auto& p) { return point_3(p[0], p[1], p[2]); };
+    return with_hull<kernel>({point(world[0]), point(world[1]), point(world[2])},
+                             [](const auto& h) { return exact_hull(h); });
 }
 
 /// The corners of a shape that CGAL returns.
@@ -110,9 +112,9 @@ struct exact_intersection::construction {
 };
 
 /// Computes the corners and, since CGAL evaluates coordinates only on demand, their exact coordinates.
-exact_intersection::exact_intersection(const triangle3d& s, const triangle3d& t)
+exact_intersection::exact_intersection(const pose_pair& poses, const triangle3d& s, const triangle3d& t)
     : construction_(std::make_unique<construction>()) {
-    const exact_hull g = exact_hull_of(s), h = exact_hull_of(t);
+    const exact_hull g = exact_hull_of(s, poses.a), h = exact_hull_of(t, poses.b);
     const std::vector<point_3> corners = std::visit(common_corners{}, g, h);
     construction_->kind = kind_of(corners, g, h);
     for (const point_3& p : corners) {

@@ -22,7 +22,9 @@ struct corner_errors {
 /// The intersection of two closed triangles (segments or points if degenerate) by CGAL's kernel of exact constructions.
 class exact_intersection {
 public:
-    exact_intersection(const triangle3d& s, const triangle3d& t);
+    exact_intersection(const triangle3d& s, const triangle3d& t) : exact_intersection({}, s, t) {}
+    /// The same for triangles of meshes at poses, in world coordinates R v + t.
+    exact_intersection(const pose_pair& poses, const triangle3d& s, const triangle3d& t);
     ~exact_intersection();
 
     [[nodiscard]] intersection_kind kind() const;
