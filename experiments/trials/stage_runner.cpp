@@ -79,6 +79,7 @@ void stage_runner::search() {
     if (pipeline_) return pipeline_->search();
     pairs_.clear();
     stages_.global->search(pairs_);
+    if (const auto boxes = scene_.boxes_in_double(); !boxes.empty()) aabb::float_boxes::drop_disjoint(boxes, pairs_);
 }
 
 void stage_runner::detect() try {

@@ -65,6 +65,10 @@ public:
     /// Null for a scene of boxes.
     [[nodiscard]] const aabb::mesh_scene* meshes() const { return meshes_.get(); }
     [[nodiscard]] std::span<const aabb::box> boxes() const { return boxes_; }
+    /// The same in double; empty if the boxes are floats.
+    [[nodiscard]] std::span<const aabb::boxd> boxes_in_double() const {
+        return box_scene_ ? box_scene_->in_double() : std::span<const aabb::boxd>{};
+    }
     [[nodiscard]] std::span<const aabb::pose> poses() const { return poses_; }
     /// Objects of a scene of boxes that appear in this frame, and objects that disappear in it.
     [[nodiscard]] std::span<const std::uint32_t> arrivals() const { return arrivals_; }

@@ -183,9 +183,13 @@ scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
     for (std::size_t frame = 0; scene.next(); ++frame) {
         if (posed) scene.place(*posed);
         if (posed)
-            truth.compute({posed->boxes(), scene.poses(), /*arrivals=*/{}, /*departures=*/{}});
+            truth.compute({.boxes = posed->boxes(), .poses = scene.poses(), .arrivals = {}, .departures = {}});
         else
-            truth.compute({scene.boxes(), /*poses=*/{}, scene.arrivals(), scene.departures()});
+            truth.compute({.boxes = scene.boxes(),
+                           .poses = {},
+                           .arrivals = scene.arrivals(),
+                           .departures = scene.departures(),
+                           .boxes_in_double = scene.boxes_in_double()});
         truth_tally.add(truth.pairs(), truth.contacts());
         shown.update(++finished_runs);
         for (validated_runner& r : runners) {

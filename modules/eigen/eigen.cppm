@@ -65,6 +65,7 @@ typename Element::value_type scalar_of_element(const Element& of);
 template <class Real>
 Real scalar_of_element(const vec3<Real>& of);
 float scalar_of_element(const box& of);
+double scalar_of_element(const boxd& of);
 template <class Element>
 using scalar_of = decltype(scalar_of_element(std::declval<const Element&>()));
 
@@ -110,11 +111,11 @@ template <EigenColumns<3> Matrix>
     return detail::columns_as<vec3<typename Matrix::Scalar>>(m);
 }
 
-/// Views the boxes in a user's matrix of floats, lower ends above upper ones, without a copy.
+/// Views the boxes in a user's matrix of floats or doubles, lower ends above upper ones, without a copy.
 /// @throws input_error if they are not contiguous
 template <EigenColumns<6> Matrix>
-[[nodiscard]] inline std::span<const box> boxes_in(const Matrix& m) {
-    return detail::columns_as<box>(m);
+[[nodiscard]] inline auto boxes_in(const Matrix& m) {
+    return detail::columns_as<std::conditional_t<std::same_as<typename Matrix::Scalar, float>, box, boxd>>(m);
 }
 
 /// Copies a mesh from matrices of points and triangles, one per column, or one per row if there are three columns and

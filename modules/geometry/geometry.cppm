@@ -5,6 +5,7 @@ export import aabb.base;
 import aabb.std;
 
 export import :box;
+export import :boxd;
 export import :index_pair;
 export import :intersection;
 export import :mesh;

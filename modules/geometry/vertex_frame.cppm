@@ -27,18 +27,11 @@ struct vertex_frame {
         return {origin[0] + scale * f[0], origin[1] + scale * f[1], origin[2] + scale * f[2]};
     }
 
-    /// The frame in which these vertices become floats with small errors. The origin stays 0 unless the mesh lies so
-    /// far off that floats would lose more than four bits, and the scale 1 unless squares or cubes of floats could
-    /// leave their range.
-    [[nodiscard]] static vertex_frame around(std::span<const vec3d> vertices) noexcept {
+    /// The frame in which numbers of this range become floats with small errors. The origin stays 0 unless the range
+    /// lies so far off that floats would lose more than four bits, and the scale 1 unless squares or cubes of floats
+    /// could leave their range. `rounding` is not set.
+    [[nodiscard]] static vertex_frame around(const vec3d& low, const vec3d& high) noexcept {
         vertex_frame frame;
-        if (vertices.empty()) return frame;
-        vec3d low = vertices.front(), high = low;
-        for (const vec3d& v : vertices)
-            for (int k = 0; k < 3; ++k) {
-                low[k] = std::min(low[k], v[k]);
-                high[k] = std::max(high[k], v[k]);
-            }
         double extent = 0, magnitude = 0;  // halves, which cannot overflow
         for (int k = 0; k < 3; ++k) {
             extent = std::max(extent, high[k] / 2 - low[k] / 2);
@@ -51,6 +44,19 @@ struct vertex_frame {
         // Below 2^-960, products with the entries of a matrix would underflow.
         const int exponent = magnitude == 0 ? 0 : std::ilogb(magnitude);
         if (std::abs(exponent) > 30) frame.scale = std::ldexp(1, std::clamp(exponent, -960, 960));
+        return frame;
+    }
+
+    /// The frame of these vertices, with a bound of their errors.
+    [[nodiscard]] static vertex_frame around(std::span<const vec3d> vertices) noexcept {
+        if (vertices.empty()) return {};
+        vec3d low = vertices.front(), high = low;
+        for (const vec3d& v : vertices)
+            for (int k = 0; k < 3; ++k) {
+                low[k] = std::min(low[k], v[k]);
+                high[k] = std::max(high[k], v[k]);
+            }
+        vertex_frame frame = around(low, high);
         for (const vec3d& v : vertices) {
             const vec3d f = frame.unrounded(v);
             const vec3f rounded = frame(v);

@@ -6,6 +6,7 @@ import aabb.std;
 
 export import :basic_pipeline;
 export import :detector;
+export import :detector_in_double;
 export import :mesh_detection;
 export import :scene;
 export import :scene_parts;

@@ -177,7 +177,7 @@ TEST_CASE("glTF: buffers are read from files, data URIs and .glb chunks") {
 
 TEST_CASE("glTF: unused vertices may be non-finite") {
     const aabblab::loaded_mesh loaded =
-        load(parts{.nodes = R"({"mesh":0,"scale":[1,1,1e300]})",
+        load(parts{.nodes = R"({"mesh":0,"scale":[1,1,1e308],"translation":[0,0,1e308]})",
                    .indices = R"({"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"})"}
                  .text());
     CHECK(loaded.mesh.triangles == triangles{{0, 1, 2}});
@@ -258,7 +258,7 @@ TEST_CASE("glTF: invalid files are rejected with the place of the error") {
          "nodes[0] has a matrix whose last row is not 0 0 0 1"},
         {&parts::nodes, R"({"mesh":0,"rotation":[1,1,1,1]})",
          "nodes[0] has a rotation that is not a quaternion of length 1"},
-        {&parts::nodes, R"({"mesh":0,"scale":[1e300,1,1]})",
+        {&parts::nodes, R"({"mesh":0,"scale":[1e308,1,1],"translation":[1e308,0,0]})",
          "vertex 1 has a coordinate that is not finite, and a face uses it"},
         {&parts::nodes, "{}", "the mesh has no triangles (1 mesh outside the scene left out)"},
         {&parts::primitive, R"({"attributes":{"NORMAL":0}})", "meshes[0] has a primitive without positions"},

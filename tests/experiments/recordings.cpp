@@ -49,9 +49,10 @@ std::string box_bytes(const std::array<float, 3>& min, const std::array<float, 3
 
 const std::string unit = box_bytes({0, 0, 0}, {1, 1, 1});
 
-std::string header(std::int32_t objects, std::int32_t frames, const std::string& world = unit, std::int32_t zero = 0) {
+std::string header(std::int32_t objects, std::int32_t frames, const std::string& world = unit,
+                   std::int32_t is_double = 0) {
     const std::string name = "name" + std::string(124, '\0');
-    return name + name + raw(objects) + raw(frames) + raw(zero) + raw(0) + world;
+    return name + name + raw(objects) + raw(frames) + raw(is_double) + raw(0) + world;
 }
 
 /// The error of opening and reading a recording.
@@ -92,6 +93,42 @@ TEST_CASE_METHOD(in_folder, "a recording has Broadmark's binary format") {
     REQUIRE(bytes.substr(128, 6) == std::string("boxes\0", 6));
 }
 
+TEST_CASE_METHOD(in_folder, "a recording of doubles is read, copied and searched as doubles") {
+    const std::vector<std::vector<aabb::boxd>> frames{
+        // A gap and a touch that floats do not see, far from the origin; then boxes beyond the range of float.
+        {{{3948995, 0, 0}, {3948996.1, 1, 1}},
+         {{std::nextafter(3948996.1, 4e6), 0, 0}, {3948997, 1, 1}},
+         {{3948997, 1, 1}, {3948998, 2, 2}}},
+        {{{1e300, 0, 0}, {2e300, 1, 1}}, {{2e300, 1, 1}, {3e300, 2, 2}}, {{-1e300, -1, -1}, {0.1, 0.1, 0.1}}}};
+    std::string bytes = header(3, 1, box_bytes({-3.4028235e38F, -1, -1}, {3.4028235e38F, 2, 2}), 1);
+    for (const auto& boxes : frames)
+        for (const aabb::boxd& b : boxes) {
+            for (const double c : b.min.at) bytes += raw(c);
+            bytes += raw(0.0);
+            for (const double c : b.max.at) bytes += raw(c);
+            bytes += raw(0.0);
+        }
+    const auto file = folder.write("a.aabbs", bytes);
+    const auto copied = aabblab::open_recording(file);
+    aabblab::write_recording(*copied, "name", "name", folder / "b.aabbs", {});
+    CHECK(bytes_of_file(folder / "b.aabbs") == bytes);
+    const auto recording = aabblab::open_recording(file);
+    std::vector<aabb::box> rounded;
+    for (const auto& boxes : frames) {
+        REQUIRE(recording->next(rounded));
+        REQUIRE(std::ranges::equal(recording->in_double(), boxes));
+    }
+    for (const char* const engine : {"", "brute_force", "fcl"}) {
+        std::vector<std::string> command{"pairs", file.string(), "--out", folder / "pairs.csv"};
+        if (*engine != '\0') command.insert(command.end(), {"--engine", engine});
+        CAPTURE(engine);
+        REQUIRE(run_program(command).status == 0);
+        CHECK(bytes_of_file(folder / "pairs.csv") == "frame,a,b\n0,1,2\n1,0,1\n");
+    }
+    folder.write("c.aabbs", bytes.substr(0, bytes.size() - 16) + raw(-2.0) + raw(0.0));
+    CHECK_THAT(error_of(folder / "c.aabbs"), EndsWith("frame 1: box 2 is inverted: its minimum is above its maximum"));
+}
+
 TEST_CASE_METHOD(in_folder, "a scene that fails leaves no recording behind and an existing one untouched") {
     folder.write("a.aabbs", "older");
     given_scene scene({{small}, {small, small}});
@@ -125,8 +162,10 @@ TEST_CASE_METHOD(in_folder, "invalid recordings are rejected") {
     for (const auto& [bytes, error] : {
              malformed{"", "is empty"},
              {"short", "is not a recording: its header takes 304 bytes, but the file has 5"},
-             {header(1, 0, unit, 7) + unit, "is not a recording: its header does not hold two names and two zeros"},
-             {std::string(400, 'x'), "is not a recording: its header does not hold two names and two zeros"},
+             {header(1, 0, unit, 7) + unit,
+              "is not a recording: its header does not hold two names, 0 (floats) or 1 (doubles), and 0"},
+             {std::string(400, 'x'),
+              "is not a recording: its header does not hold two names, 0 (floats) or 1 (doubles), and 0"},
              {header(-1, 0), "its header announces -1 objects and 0 frames; neither can be negative"},
              {header(1, -1), "its header announces 1 objects and -1 frames; neither can be negative"},
              {header(1, 0, box_bytes({0, 0, 0}, {not_a_number, 1, 1})) + unit,

@@ -126,6 +126,36 @@ void check_pairs(Detector&& detector) {
     }
 }
 
+/// The same boxes in double: as floats do not see them, and far away or of any size.
+template <class Detector>
+void check_pairs_in_double(Detector&& detector) {
+    insert_all(detector, 40);
+    for (int frame = 0; frame < 6; ++frame)
+        for (const auto& [factor, offset] :
+             {std::pair{1.0, 0.0}, {0.1, 0.0}, {1.0, 3948995.7}, {1e-9, 0.3}, {1e300, 0.0}, {1e-310, 0.0}}) {
+            std::vector<boxd> boxes;
+            for (const box& b : boxes_of(frame)) {
+                boxd& in_double = boxes.emplace_back();
+                for (int k = 0; k < 3; ++k) {
+                    in_double.min[k] = b.min[k] * factor + offset;
+                    in_double.max[k] = b.max[k] * factor + offset;
+                    // Every third box ends one unit in the last place lower, so that it touches nothing.
+                    if (boxes.size() % 3 == 0) in_double.max[k] = std::nextafter(in_double.max[k], -1);
+                }
+            }
+            std::vector<index_pair> expected;
+            for (std::uint32_t a = 0; a < boxes.size(); ++a)
+                for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
+                    if (boxes[a].overlaps(boxes[b])) expected.push_back({a, b});
+            CAPTURE(factor, offset);
+            CHECK(expected.size() < overlapping(boxes_of(frame)).size());
+            CHECK(sorted(detector.pairs(boxes)) == expected);
+            std::swap(boxes[5].min, boxes[5].max);
+            CHECK_REFUSED(static_cast<void>(detector.pairs(boxes)),
+                          "box 5 is inverted: its minimum is above its maximum");
+        }
+}
+
 template <class Detector>
 void check_contacts(Detector&& detector) {
     for (int frame = 0; frame < 6; ++frame) {
@@ -154,6 +184,13 @@ std::vector<std::string> names(const std::vector<part_bytes>& parts) {
 }
 
 }  // namespace
+
+TEST_CASE("a detector of boxes in double finds the pairs that overlap in double") {
+    check_pairs_in_double(detector_in_double<detector<bare_search>>());
+    check_pairs_in_double(detector_in_double<detector<column_search>>());
+    check_pairs_in_double(detector_in_double<auto_detector>());
+    check_pairs_in_double(detector_in_double<auto_detector>(std::vector<std::string>{"prepare=neighbour_list"}));
+}
 
 TEST_CASE("a detector of boxes finds the overlapping pairs of present objects, also after a rejected frame") {
     check_pairs(detector<bare_search>());

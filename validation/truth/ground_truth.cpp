@@ -36,8 +36,14 @@ void ground_truth::compute(const scene_frame& frame) {
     contacts_.clear();
     for (const std::uint32_t object : frame.departures) boxes_->remove(object);
     for (const std::uint32_t object : frame.arrivals) boxes_->insert(object);
-    boxes_->update(frame.boxes);
-    boxes_->search(pairs_);
+    if (frame.boxes_in_double.empty()) {
+        boxes_->update(frame.boxes);
+        boxes_->search(pairs_);
+    } else {
+        for (std::uint32_t a = 0; a < frame.boxes_in_double.size(); ++a)
+            for (std::uint32_t b = a + 1; b < frame.boxes_in_double.size(); ++b)
+                if (frame.boxes_in_double[a].overlaps(frame.boxes_in_double[b])) pairs_.push_back({a, b});
+    }
     std::ranges::sort(pairs_);
     if (!triangles_) return;
     update_deformed_meshes();

@@ -1,0 +1,89 @@
+export module aabb.geometry:boxd;
+
+import aabb.base;
+import aabb.std;
+import :box;
+import :index_pair;
+import :vertex_frame;
+
+export namespace aabb {
+
+/// A `box` in double.
+struct boxd {
+    vec3d min;
+    vec3d max;
+
+    friend constexpr bool operator==(const boxd&, const boxd&) = default;
+
+    /// Boxes are closed, so touching counts as overlapping.
+    [[nodiscard]] constexpr bool overlaps(const boxd& other) const noexcept {
+        for (int k = 0; k < 3; ++k)
+            if (min[k] > other.max[k] || other.min[k] > max[k]) return false;
+        return true;
+    }
+};
+
+/// Rejects boxes with NaN, infinity or min > max.
+/// @throws input_error with the index of the first such box and its fault
+inline void require_valid(std::span<const boxd> boxes) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const std::string name = "box " + std::to_string(i);
+        if (!is_finite(boxes[i].min) || !is_finite(boxes[i].max))
+            throw input_error(name + " has a coordinate that is not finite");
+        for (int k = 0; k < 3; ++k)
+            if (boxes[i].min[k] > boxes[i].max[k])
+                throw input_error(name + " is inverted: its minimum is above its maximum");
+    }
+}
+
+/// Lets a search of boxes of floats find the pairs of boxes in double. Both bounds are rounded to floats in one frame.
+/// That is monotone, so that boxes which overlap still do as floats; pairs which overlap only as floats are dropped.
+class float_boxes {
+public:
+    /// Rounds the boxes of a frame. Its frame of floats stays until the boxes outgrow it, so that what a search keeps
+    /// from frame to frame stays valid.
+    /// @throws input_error as `require_valid`
+    [[nodiscard]] std::span<const box> round(std::span<const boxd> boxes) {
+        require_valid(boxes);
+        fit_frame(boxes);
+        rounded_.clear();
+        for (const boxd& b : boxes) rounded_.push_back({frame_(b.min), frame_(b.max)});
+        return rounded_;
+    }
+
+    /// @param boxes those of the last `round`
+    static void drop_disjoint(std::span<const boxd> boxes, std::vector<index_pair>& pairs) {
+        std::erase_if(pairs, [&](index_pair p) { return !boxes[p.a].overlaps(boxes[p.b]); });
+    }
+
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(rounded_); }
+
+private:
+    /// Makes a new frame if the boxes leave the range for which the last one was made, twice as large as they were.
+    void fit_frame(std::span<const boxd> boxes) {
+        if (boxes.empty()) return;
+        boxd all = boxes.front();
+        for (const boxd& b : boxes)
+            for (int k = 0; k < 3; ++k) {
+                all.min[k] = std::min(all.min[k], b.min[k]);
+                all.max[k] = std::max(all.max[k], b.max[k]);
+            }
+        bool fits = has_frame_;
+        for (int k = 0; k < 3; ++k) fits &= all.min[k] >= range_.min[k] && all.max[k] <= range_.max[k];
+        if (fits) return;
+        for (int k = 0; k < 3; ++k) {
+            const double margin = all.max[k] / 2 - all.min[k] / 2;
+            range_.min[k] = std::max(all.min[k] - margin, std::numeric_limits<double>::lowest());
+            range_.max[k] = std::min(all.max[k] + margin, std::numeric_limits<double>::max());
+        }
+        frame_ = vertex_frame::around(range_.min, range_.max);
+        has_frame_ = true;
+    }
+
+    vertex_frame frame_;
+    boxd range_{};
+    bool has_frame_ = false;
+    std::vector<box> rounded_;
+};
+
+}  // namespace aabb

@@ -1,0 +1,37 @@
+export module aabb.pipeline:detector_in_double;
+
+import aabb.geometry;
+import aabb.std;
+
+export namespace aabb {
+
+/// A `detector` of boxes, or an `auto_detector`, that takes boxes in double: it searches their floats, and compares the
+/// pairs in double, so that these are exact.
+template <class Detector>
+class detector_in_double {
+public:
+    /// Takes what the detector takes.
+    template <class... Arguments>
+    explicit detector_in_double(Arguments&&... arguments) : detector_(std::forward<Arguments>(arguments)...) {}
+
+    /// As those of the detector.
+    void insert(std::uint32_t id) { detector_.insert(id); }
+    void remove(std::uint32_t id) { detector_.remove(id); }
+
+    /// As `pairs` of the detector.
+    [[nodiscard]] std::span<const index_pair> pairs(std::span<const boxd> boxes) {
+        const std::span<const index_pair> candidates = detector_.pairs(floats_.round(boxes));
+        pairs_.assign(candidates.begin(), candidates.end());
+        float_boxes::drop_disjoint(boxes, pairs_);
+        return pairs_;
+    }
+
+    [[nodiscard]] const Detector& of_floats() const noexcept { return detector_; }
+
+private:
+    Detector detector_;
+    float_boxes floats_;
+    std::vector<index_pair> pairs_;
+};
+
+}  // namespace aabb
