@@ -143,6 +143,21 @@ TEST_CASE("Benchmarks report their counters") {
     counters(3, {"real_time", "box_tests/n", "pairs/n"});
 }
 
+TEST_CASE("Every stage that decides triangles at poses has a benchmark of each case, and the last decide all") {
+    std::map<std::string, double> decided;
+    for (const auto& run : reported("^posed/")) {
+        CHECK(run["pairs"] > 500);
+        decided[run["name"]] = run["decided"];
+    }
+    CHECK(decided.size() == 16);
+    for (const std::string of : {"crossing", "apart:1e-9", "flush", "gears"}) {
+        CHECK(decided.at("posed/exact/" + of) == 1);
+        CHECK(decided.at("posed/integers/" + of) == 1);
+    }
+    CHECK(decided.at("posed/filter_in_float/crossing") > 0.9);
+    CHECK(decided.at("posed/filter_in_double/flush") == 0);
+}
+
 TEST_CASE("Every build has a benchmark that reports the speedup by two threads and its upper bound") {
     std::vector<std::string> measured;
     for (const auto& benchmark : reported("^build/.*/noise_sphere")) {

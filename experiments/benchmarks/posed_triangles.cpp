@@ -1,0 +1,180 @@
+#include <benchmark/benchmark.h>
+
+#include "stages.hpp"
+
+import aabb.geometry;
+import aabb.simd;
+import aabb.std;
+import aabb.triangle.exact;
+import aabb.wide_tree.triangle_filter;
+
+namespace aabblab {
+
+namespace {
+
+using aabb::pose;
+using aabb::triangle3d;
+using aabb::vec3d;
+
+/// Two meshes at poses.
+struct posed_meshes {
+    aabb::mesh a, b;
+    aabb::pose_pair poses;
+};
+
+/// A sheet of n² parallelograms of two triangles each around the origin in the plane x + y + z = 0, which a permutation
+/// of axes keeps.
+aabb::mesh sheet(std::uint32_t n) {
+    aabb::mesh m;
+    for (std::uint32_t y = 0; y <= n; ++y)
+        for (std::uint32_t x = 0; x <= n; ++x) {
+            const float half = static_cast<float>(n) / 2, u = static_cast<float>(x) - half,
+                        v = static_cast<float>(y) - half;
+            m.vertices.push_back({u, v, -u - v});
+        }
+    for (std::uint32_t y = 0; y < n; ++y)
+        for (std::uint32_t x = 0; x < n; ++x) {
+            const std::uint32_t corner = y * (n + 1) + x;
+            m.triangles.push_back({corner, corner + 1, corner + n + 2});
+            m.triangles.push_back({corner, corner + n + 2, corner + n + 1});
+        }
+    return m;
+}
+
+/// The flanks of a gear of radius 1 with rectangular teeth of height 1/8, of 16 layers.
+aabb::mesh gear(std::uint32_t teeth) {
+    constexpr std::uint32_t layers = 16;
+    const std::uint32_t around = 4 * teeth;
+    aabb::mesh m;
+    for (std::uint32_t layer = 0; layer <= layers; ++layer)
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const double angle = 2 * std::numbers::pi * i / around;
+            const double radius = i % 4 < 2 ? 1.125 : 1;
+            m.vertices.push_back({static_cast<float>(radius * std::cos(angle)),
+                                  static_cast<float>(radius * std::sin(angle)), 0.125F * static_cast<float>(layer)});
+        }
+    for (std::uint32_t layer = 0; layer < layers; ++layer)
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const std::uint32_t p = layer * around + i, q = layer * around + (i + 1) % around;
+            m.triangles.push_back({p, q, q + around});
+            m.triangles.push_back({p, q + around, p + around});
+        }
+    return m;
+}
+
+/// A rotation by Rodrigues' formula about (1, 2, 3), in degrees, rounded as a user's is.
+pose turned(double degrees) {
+    const double angle = degrees / 180 * std::numbers::pi, c = std::cos(angle), s = std::sin(angle), d = 1 - c;
+    const double length = std::sqrt(14.0), x = 1 / length, y = 2 / length, z = 3 / length;
+    return {{c + x * x * d, x * y * d - z * s, x * z * d + y * s, y * x * d + z * s, c + y * y * d, y * z * d - x * s,
+             z * x * d - y * s, z * y * d + x * s, c + z * z * d},
+            {0, 0, 0}};
+}
+
+/// The pose p after (x, y, z) -> (y, z, x), a third of a turn about (1, 1, 1), and a translation.
+pose after_permutation(const pose& p, const vec3d& shift) {
+    pose result;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double* const row = &p.rotation[3 * i];
+        for (std::size_t j = 0; j < 3; ++j) result.rotation[3 * i + j] = row[(j + 2) % 3];
+        result.translation[static_cast<int>(i)] = row[0] * shift[0] + row[1] * shift[1] + row[2] * shift[2];
+    }
+    return result;
+}
+
+posed_meshes make(std::string_view name) {
+    const aabb::mesh sheets = sheet(64);
+    const pose r = turned(30);
+    if (name == "crossing") return {sheets, sheets, {r, turned(50)}};
+    if (name == "flush") return {sheets, sheets, {r, after_permutation(r, {0, 0, 0})}};
+    if (name == "apart:1e-9") return {sheets, sheets, {r, after_permutation(r, {1e-9, 1e-9, 1e-9})}};
+    // Gears in mesh: of one rotation, with a tooth of the first in a gap of the second, flank to flank.
+    const aabb::mesh wheel = gear(24);
+    pose beside = r;
+    for (std::size_t k = 0; k < 3; ++k)
+        beside.translation[static_cast<int>(k)] = 2.125 * r.rotation[3 * k] + 0.0625 * r.rotation[3 * k + 2];
+    return {wheel, wheel, {r, beside}};
+}
+
+/// A pair of triangles in all forms that the stages take.
+struct posed_pair {
+    triangle3d s, t;
+    aabb::triangle3f s_in_float, image_of_t;
+};
+
+/// The pairs of triangles whose boxes overlap, with the image of the second one.
+struct candidates {
+    explicit candidates(std::string_view name) : meshes(make(name)) {
+        const auto& [a, b, poses] = meshes;
+        const aabb::relative_pose to_a(poses.a, poses.b, bounds_of(b), a.frame, b.frame);
+        error = to_a.image_error();
+        for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
+            const aabb::box of_t = to_a(bounds_of(b.triangle(t)));
+            for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
+                if (overlaps(bounds_of(a.triangle(s)), of_t))
+                    pairs.push_back({a.given_triangle(s), b.given_triangle(t), a.triangle(s), to_a(b.triangle(t))});
+        }
+        // A prime stride that does not divide their number mixes them, so that their order does not predict outcomes.
+        const std::size_t stride = pairs.size() % 7919 != 0 ? 7919 : 7907;
+        const std::vector<posed_pair> ordered = std::move(pairs);
+        pairs.clear();
+        for (std::size_t i = 0; i < ordered.size(); ++i) pairs.push_back(ordered[i * stride % ordered.size()]);
+    }
+
+    posed_meshes meshes;
+    aabb::vec3f error{};
+    std::vector<posed_pair> pairs;
+};
+
+/// Times a stage on the candidates of a case, one by one.
+/// @param stage called with the candidates and a pair; returns whether it decides the pair
+template <class Stage>
+void add(const std::string& name, Stage stage) {
+    for (const std::string_view of : {"crossing", "apart:1e-9", "flush", "gears"})
+        benchmark::RegisterBenchmark(("posed/" + name + "/" + std::string(of)).c_str(), [=](benchmark::State& state) {
+            const candidates given(of);
+            std::size_t at = 0, decided = 0;
+            for ([[maybe_unused]] const auto& ignored : state) {
+                if (++at >= given.pairs.size()) at = 0;
+                benchmark::DoNotOptimize(stage(given, given.pairs[at]));
+            }
+            for (const posed_pair& p : given.pairs) decided += stage(given, p);
+            state.counters["decided"] = static_cast<double>(decided) / static_cast<double>(given.pairs.size());
+            state.counters["pairs"] = static_cast<double>(given.pairs.size());
+        });
+}
+
+/// Tests a vector of copies of the pair; whether it is decided.
+bool is_decided_in_float(const candidates& given, const posed_pair& p) {
+    std::array<std::array<std::array<float, aabb::simd::width>, 9>, 2> rows;
+    for (std::size_t row = 0; row < 9; ++row) {
+        rows[0][row].fill(p.s_in_float[static_cast<int>(row / 3)][static_cast<int>(row % 3)]);
+        rows[1][row].fill(p.image_of_t[static_cast<int>(row / 3)][static_cast<int>(row % 3)]);
+    }
+    return aabb::triangle_filter::decide(rows[0][0].data(), rows[1][0].data(), aabb::simd::width, given.error.at)
+               .undecided == 0;
+}
+
+}  // namespace
+
+void add_posed_triangle_benchmarks() {
+    add("filter_in_float", is_decided_in_float);
+    add("filter_in_double", [](const candidates& given, const posed_pair& p) {
+        return aabb::exact_triangle::intersects_if_certain(p.s_in_float, p.image_of_t, given.error).has_value();
+    });
+    add("exact", [](const candidates& given, const posed_pair& p) {
+        benchmark::DoNotOptimize(aabb::exact_triangle::intersects(given.meshes.poses, p.s, p.t));
+        return true;
+    });
+    add("integers", [](const candidates& given, const posed_pair& p) {
+        const auto& [a, b] = given.meshes.poses;
+        const aabb::exact_corners corners(
+            {{{&p.s[0], &a}, {&p.s[1], &a}, {&p.s[2], &a}, {&p.t[0], &b}, {&p.t[1], &b}, {&p.t[2], &b}}});
+        int sides = 0;
+        for (const int i : {3, 4, 5}) sides += corners.side(0, 1, 2, i);
+        benchmark::DoNotOptimize(sides);
+        return true;
+    });
+}
+
+}  // namespace aabblab
