@@ -113,6 +113,17 @@ private:
     return m;
 }
 
+/// The mesh with its coordinates times a factor, plus an offset, in double.
+[[nodiscard]] inline mesh in_double(mesh m, double factor, const vec3d& offset) {
+    std::vector<vec3d> vertices;
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) {
+        const vec3d p = m.given_vertex(v);
+        vertices.push_back({p[0] * factor + offset[0], p[1] * factor + offset[1], p[2] * factor + offset[2]});
+    }
+    set_vertices(m, std::move(vertices));
+    return m;
+}
+
 /// A sphere around the origin with `rings` rings; half of the triangles at the poles have zero area.
 [[nodiscard]] inline mesh ball(std::uint32_t rings, double radius) {
     mesh m;

@@ -112,6 +112,28 @@ std::unique_ptr<mesh_scene> balls_moved(double far) {
                               {shifted(-far, far, 0), shifted(-far, far, 0)}});
 }
 
+/// Two cubes of doubles, whose coordinates end this far apart, also after a rotation of both.
+std::unique_ptr<mesh_scene> cubes_apart(const vec3d& place, double gap) {
+    const mesh first = in_double(cube(), 0.1, place);
+    const mesh second = in_double(cube(), 0.1, {place[0] + 0.2 + gap, place[1], place[2]});
+    const pose anywhere = turned(0.7, {0.3, -0.2, 0.1});
+    return posed(std::vector{first, second},
+                 {{{}, {}}, {anywhere, anywhere}, {anywhere, turned(0.7, {0.3, -0.2, 0.1 + 1e-9})}});
+}
+
+/// Two cubes flush under rotations, whose rounding decides which of their triangles touch.
+std::unique_ptr<mesh_scene> flush_turned() {
+    draws random(54);
+    std::vector<std::vector<pose>> frames;
+    for (int i = 0; i < 8; ++i) {
+        const pose first = turned(random.between(0, 3), {0, 0, 0});
+        pose second = first;
+        for (int k = 0; k < 3; ++k) second.translation[k] = 2 * first.rotation[static_cast<std::size_t>(3 * k + i % 3)];
+        frames.push_back({first, second});
+    }
+    return posed(cube(), frames);
+}
+
 }  // namespace
 
 /// Meshes that touch, that consist of degenerate triangles, or that are small, large or far away. Coincident triangles
@@ -156,6 +178,12 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
     for (const auto& [name, radius] : {std::pair{"beside_1e-6", 1e-6}, {"beside_1e6", 1e6}, {"beside_1e-38", 1e-38}})
         scenes.push_back(scene_of_meshes(name, "a sphere of the radius in the name that intersects one of radius 1",
                                          [size = radius] { return ball_on_ball(size); }));
+    constexpr vec3d survey{388096, 3948995, 10};  // coordinates as in a map
+    scenes.push_back(scene_of_meshes("doubles_apart", "two cubes of doubles 1e-9 apart, far from the origin",
+                                     [survey] { return cubes_apart(survey, 1e-9); }));
+    scenes.push_back(scene_of_meshes("doubles_pressed", "two cubes of doubles that intersect by less than a float sees",
+                                     [] { return cubes_apart({0.1, 0.2, 0.3}, -1e-12); }));
+    scenes.push_back(scene_of_meshes("flush_turned", "two cubes flush under one rotation", flush_turned));
     for (const auto& [name, far] : {std::pair{"moved_1e6", 1e6}, {"moved_1e9", 1e9}, {"moved_1e15", 1e15}})
         scenes.push_back(scene_of_meshes(name, "two intersecting spheres as far from the origin as the name says",
                                          [distance = far] { return balls_moved(distance); }));
