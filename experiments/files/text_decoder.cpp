@@ -34,15 +34,18 @@ void append_utf8(char32_t character, std::string& text) {
     append_six_bits(0);
 }
 
-/// Whether decoding leaves the bytes unchanged, as for nearly every file: no mark, no padding, and line feeds.
+/// Whether decoding leaves the bytes unchanged, as for nearly every file: no byte order mark, no padding, and a first
+/// line that does not end in carriage returns alone. Only if it does are the line ends of the whole text converted.
 bool is_plain(std::string_view bytes) {
     for (const std::string_view mark : {"\xef\xbb\xbf"sv, "\xff\xfe"sv, "\xfe\xff"sv})
         if (bytes.starts_with(mark)) return false;
     if (bytes.find('\0') != std::string_view::npos || bytes.find(ctrl_z) != std::string_view::npos) return false;
-    const std::size_t first = bytes.find('\r');
-    if (first == std::string_view::npos || bytes.substr(0, first).find('\n') != std::string_view::npos) return true;
-    const std::size_t next = bytes.find_first_not_of('\r', first);
-    return next != std::string_view::npos && bytes[next] == '\n';
+    const std::size_t first_return = bytes.find('\r');
+    if (first_return == std::string_view::npos) return true;
+    if (bytes.substr(0, first_return).find('\n') != std::string_view::npos) return true;
+    // Carriage returns before a line feed belong to its line end: CR LF, or CR CR LF if it was converted twice.
+    const std::size_t after_returns = bytes.find_first_not_of('\r', first_return);
+    return after_returns != std::string_view::npos && bytes[after_returns] == '\n';
 }
 
 }  // namespace

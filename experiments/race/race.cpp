@@ -53,14 +53,14 @@ public:
         : scene_(scene), limits_(limits), budget_(limits.to_run()), running_(std::move(candidates)) {
         result_.objects = scene.scene().objects();
         result_.frames = scene.scene().frames();
-        result_.frames_of_all = result_.frames * running_.size();  // if no candidate were stopped early
+        result_.frames_of_all = result_.frames * running_.size();  // as if no candidate were stopped early
     }
 
-    /// Rounds reduce the candidates to so few that the final fits into its half of the time; CGAL then checks the
-    /// finalists.
+    /// Rounds drop slow candidates while there are too many for a final and more than half of the time is left. Then
+    /// the slowest are dropped until the final fits into the rest. CGAL checks the pairs of the finalists.
     race_result run() {
         std::size_t frames = std::min(result_.frames, first_frames);
-        double margin = first_margin;
+        double margin = first_margin;  // the ratio to the fastest beyond which a candidate is dropped
         run_first_round(frames, margin);
         while (frames < result_.frames && running_.size() > most_finalists && seconds_left() > budget_ / 2) {
             frames = std::min(result_.frames, 2 * frames);
@@ -68,6 +68,7 @@ public:
             if (!run_round(frames, margin)) break;
         }
         result_.final_frames = running_.front().last->frames;
+        // Each round sorts the candidates by time, so the last one is the slowest.
         for (; running_.size() > most_finalists || (running_.size() > fewest_finalists && !final_fits(result_.frames));
              running_.pop_back())
             result_.dropped.push_back(std::move(running_.back()));

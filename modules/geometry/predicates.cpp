@@ -267,15 +267,18 @@ corner_sides exact_sides(const triangle3d& s, const triangle3d& t) noexcept {
     return corner_sides(signs);
 }
 
-/// The orientation of abc projected along an axis, computed like `exact_side`.
+/// The orientation of abc projected along an axis. It is computed in integers on a grid; if truncation to the grid
+/// leaves the sign uncertain, by an exact sum of products.
 int exact_turn(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept {
     const int x = (axis + 1) % 3, y = (axis + 2) % 3;
     grid steps{&a, &b, &c};
     const vec3i origin = steps(a);
     const vec3i p = steps(b) - origin;
     const vec3i q = steps(c) - origin;
+    // The sign is certain if no coordinate was truncated, or if the area exceeds the error of truncation.
     int sign = 0;
-    return area_sign(p, q, x, y, steps.is_exact(), sign) ? sign : area_of(a, b, c, x, y).sign();
+    const bool is_certain = area_sign(p, q, x, y, steps.is_exact(), sign);
+    return is_certain ? sign : area_of(a, b, c, x, y).sign();
 }
 
 /// Whether coordinates are such small multiples of a unit on their axis that orientations in double are exact. Adding a

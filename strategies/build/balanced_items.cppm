@@ -20,8 +20,8 @@ struct alignas(32) balanced_item {
     [[nodiscard]] inline float centre(std::size_t axis) const noexcept {
         return 0.5F * lower[axis] - 0.5F * negated_upper[axis];
     }
-    /// The centres along each axis, then padding; not the triangle's index, which as a float may be a slow denormal.
-    [[nodiscard]] inline simd::eight_floats centres() const noexcept {
+    /// The centre in lanes 0 to 2, then padding; not the triangle's index, which as a float may be a slow denormal.
+    [[nodiscard]] inline simd::eight_floats centre() const noexcept {
         const auto bounds = std::bit_cast<simd::eight_floats>(*this);
         const auto half = 0.5F * __builtin_shufflevector(bounds, bounds, 0, 1, 2, 2, 4, 5, 6, 6);
         return half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
@@ -81,15 +81,17 @@ public:
     /// @param bounds the box of all items
     binned_items(std::span<const balanced_item> items, std::size_t step, const box& bounds) noexcept
         : items_(items), step_(step) {
+        // Lanes 0 to 2 are the axes; the others are padding.
         eight_floats low{};
-        eight_floats scale{};
+        eight_floats bins_per_length{};
         for (int k = 0; k < 3; ++k) {
             low[k] = bounds.min[k];
             const float edge = bounds.max[k] - bounds.min[k];
-            scale[k] = edge > 0 ? bins / edge : 0;
+            bins_per_length[k] = edge > 0 ? bins / edge : 0;
         }
         for (std::size_t i = 0; i < items.size(); i += step, ++count_) {
-            const simd::eight_bytes bin = simd::whole_bytes((items[i].centres() - low) * scale);
+            // `whole_bytes` truncates, and clamps a centre on the upper bound to the last bin.
+            const simd::eight_bytes bin = simd::whole_bytes((items[i].centre() - low) * bins_per_length);
             for (std::size_t k = 0; k < 3; ++k) {
                 bin_of_item_[k][count_] = bin[k];
                 ++count_in_bin_[k][bin[k]];

@@ -83,9 +83,11 @@ public:
             }
         }
         best.fit(seen.bounds);
+        // Groups may also be cut along the columns, but only once per mean extent, not `columns_per_extent` times.
         best.most_along = static_cast<std::uint32_t>(
             std::min(most_columns_on(seen, best.axis, /*is_cut=*/true) / columns_per_extent, double{most_columns}));
-        // A group of fewer boxes than a plan samples is not worth its own plan; there are at least two by two groups.
+        // A group of fewer boxes than a plan samples is not worth its own plan. Two by two groups are the fewest that
+        // divide the scene on both axes.
         if (!config_.group && are_clustered(seen, best, boxes.size(), least))
             best.groups = std::clamp(static_cast<double>(boxes.size()) / samples, 4.0, double{most_groups});
         return best;
@@ -115,7 +117,7 @@ private:
     struct sample {
         box bounds = empty_box();
         vec3d extent{};
-        vec3d product{};  ///< on each axis, the product of the extents on the other two
+        vec3d face_area{};  ///< on each axis, of the face perpendicular to it
         double volume = 0;
         vec3d per_width{};                                      ///< 1 / `width`, or 0 if the width is 0
         std::array<std::array<float, kept_samples>, 6> ends{};  ///< lower, then upper ends of every second box
@@ -137,7 +139,7 @@ private:
             for (int k = 0; k < 3; ++k) e[k] = std::max(0.0, double{b.max[k]} - double{b.min[k]});
             for (int k = 0; k < 3; ++k) {
                 extent[k] += e[k];
-                product[k] += e[(k + 1) % 3] * e[(k + 2) % 3];
+                face_area[k] += e[(k + 1) % 3] * e[(k + 2) % 3];
             }
             volume += e[0] * e[1] * e[2];
         }
@@ -176,7 +178,7 @@ private:
         }
         if (has_outliers) {
             // Parts of boxes outside the bounds belong to the columns at the border, however large they are.
-            seen.extent = seen.product = {};
+            seen.extent = seen.face_area = {};
             seen.volume = 0;
             for (std::size_t i = 0; i < seen.kept; ++i) seen.add_extents(clipped(seen.kept_box(i), seen.bounds));
             count = seen.kept;
@@ -184,7 +186,7 @@ private:
         const auto n = static_cast<double>(count);
         for (int k = 0; k < 3; ++k) {
             seen.extent[k] /= n;
-            seen.product[k] /= n;
+            seen.face_area[k] /= n;
         }
         seen.volume /= n;
         return seen;
@@ -239,22 +241,26 @@ private:
                                   : column_counts.back();
     }
 
-    /// The cost per box in nanoseconds: placing its entries, and testing each of them by vectors against the entries
-    /// whose intervals overlap along the column.
+    /// The cost per box in nanoseconds: placing its entries, one in each column that it overlaps, and testing each of
+    /// them by vectors against the entries of its column that it overlaps along the column.
     [[nodiscard]] static double cost_of(const sample& seen, const column_plan& p, std::size_t boxes) {
         const cost_model& ns = machine_costs();
         const int u = p.axis_across(0), v = p.axis_across(1);
         const auto cuts_per_length = [&](int k, std::uint32_t n) { return n > 1 ? n * seen.per_width[k] : 0.0; };
-        const double iu = cuts_per_length(u, p.across[0]);
-        const double iv = cuts_per_length(v, p.across[1]);
-        // Means per box: its entries, one per column that it overlaps, and the sum of their lengths along the columns.
-        const double entries = 1 + seen.extent[u] * iu + seen.extent[v] * iv + seen.product[p.axis] * iu * iv;
-        const double length = seen.extent[p.axis] + seen.product[v] * iu + seen.product[u] * iv + seen.volume * iu * iv;
+        const double cuts_u = cuts_per_length(u, p.across[0]);
+        const double cuts_v = cuts_per_length(v, p.across[1]);
+        // A box of extents eu and ev across the columns is expected to overlap (1 + eu cuts_u) (1 + ev cuts_v) of them.
+        // Here are the means over the sample of this number, and of its product with the extent along the columns.
+        const double entries =
+            1 + seen.extent[u] * cuts_u + seen.extent[v] * cuts_v + seen.face_area[p.axis] * cuts_u * cuts_v;
+        const double length = seen.extent[p.axis] + seen.face_area[v] * cuts_u + seen.face_area[u] * cuts_v +
+                              seen.volume * cuts_u * cuts_v;
         const auto columns = static_cast<double>(p.columns());
         const auto n = static_cast<double>(boxes);
-        const double per_length = seen.per_width[p.axis];
-        // An entry meets those of its column that overlap it along the column, if there is any extent.
-        const double tests = n * (per_length > 0 ? length * per_length : entries) / columns;
+        // Each pair is tested once, so the tests per entry are the number of entries that cover a point of the column.
+        // If the bounds have no width along the columns, all entries of a column overlap.
+        const double per_width = seen.per_width[p.axis];
+        const double tests = n * (per_width > 0 ? length * per_width : entries) / columns;
         return entries * (ns.column_entry + ns.column_test * (1 + tests / simd::width)) + ns.column * columns / n;
     }
 

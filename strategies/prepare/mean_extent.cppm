@@ -19,14 +19,15 @@ public:
         of.sum += extent;
     }
 
-    /// The mean extent of the boxes up to the fourth octave above the median, without outliers; 0 if no box was added.
+    /// The mean extent of the boxes in the octave of the median, in the four above it and in all below; 0 if no box was
+    /// added. Extents of 0 (octave 0) count for the mean only: if they were the median, all others would be outliers.
     [[nodiscard]] double operator()() const noexcept {
-        std::size_t longer = 0;  // number of boxes of positive extent, then of those in octaves above the median
+        std::size_t longer = 0;  // number of boxes in octaves above `median`
         for (std::size_t i = 1; i < octaves_.size(); ++i) longer += octaves_[i].boxes;
-        std::size_t median = 0;
+        std::size_t median = 0;  // becomes the first octave with at most half of the boxes above it
         for (std::size_t half = longer / 2; longer > half; longer -= octaves_[median].boxes) ++median;
         octave inliers;
-        for (std::size_t i = 0; i < std::min(median + octaves_above, octaves_.size()); ++i) {
+        for (std::size_t i = 0; i < std::min(median + octaves_from_median, octaves_.size()); ++i) {
             inliers.boxes += octaves_[i].boxes;
             inliers.sum += octaves_[i].sum;
         }
@@ -38,9 +39,9 @@ private:
         std::size_t boxes = 0;
         double sum = 0;
     };
-    static constexpr std::size_t octaves_above = 5;  // the octave of the median and four more
-    static constexpr int least_exponent = -160;      // less than that of a third of the smallest float
-    static constexpr std::size_t count = 160 + 130;  // covers up to twice the greatest float
+    static constexpr std::size_t octaves_from_median = 5;  // that of the median and four above
+    static constexpr int least_exponent = -160;            // less than that of a third of the smallest float
+    static constexpr std::size_t count = 160 + 130;        // covers up to twice the greatest float
 
     /// The index of an extent's octave, from 1 on; index 0 holds zero extents.
     [[nodiscard]] static std::size_t octave_of(double extent) noexcept {

@@ -101,6 +101,7 @@ public:
         require_ieee_arithmetic();
         const std::size_t before = pairs.size();
         const bool searches = is_list_pending_ || !keeps_pairs();
+        // `update` gave the search boxes grown by the margin; the pairs that it finds become the list.
         if (is_list_pending_) search_->search(list_.begin_search());
         is_list_pending_ = false;
         switch (state_) {
@@ -110,12 +111,14 @@ public:
             case state::resting: pairs.insert(pairs.end(), list_.pairs().begin(), list_.pairs().end()); break;
             case state::listing:
                 append_guard guard(pairs);
+                // Until boxes have moved too far, pairs that overlapped deeply still overlap and need no test.
                 count_tests(list_.append_to(pairs, boxes_, certain_pairs_hold()));
                 guard.keep();
                 break;
         }
         estimate_.pairs = pairs.size() - before;
-        // In the frame that makes a list the share also covers the list's first tests, which take far less time.
+        // The share of the time taken here that belongs to the update, as the search defers sorting. In a frame that
+        // makes a list, it is applied to the tests of the list as well, which take far less time than the search.
         share_of_update_ = searches ? search_->share_of_update() : 0;
     }
 

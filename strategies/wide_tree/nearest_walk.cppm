@@ -137,6 +137,7 @@ private:
     template <class Counters>
     [[nodiscard]] inline bool descend_to_nearest(const Tree& a, const Tree& b, std::size_t step, node_pair& nodes,
                                                  Counters& counters) {
+        // Steps have heights: a node whose children are leaves has height 1, and is at level 0.
         const wide_node& node_a = a.level(steps_[step].a - 1)[nodes.a];
         const wide_node& node_b = b.level(steps_[step].b - 1)[nodes.b];
         counters.add(work::box_tests, std::uint64_t{node_a.children} * node_b.children);
@@ -146,11 +147,14 @@ private:
         const auto [first, second] = find_two_nearest(mask, node_a, boxes);
         const bool opens_a = steps_.opens_a(step);
         const bool opens_b = steps_.opens_b(step);
-        // Of a node that is not opened, the pair 8 j + i keeps only the other node's child.
+        // A step opens the higher node, or both. All pairs 8 j + i of children are tested, but a node that is not
+        // opened stays in place of its children: its bits, i or j, are cleared, so that several pairs become one.
         const std::uint32_t opened_bits = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
         const node_pair first_children{opens_a ? children * nodes.a : nodes.a, opens_b ? children * nodes.b : nodes.b};
-        nodes = pair_of(first_children, first & opened_bits);
-        const std::uint64_t others = steps_.pairs_to_open(step, mask) & ~bit(first & opened_bits);
+        const std::uint32_t nearest = first & opened_bits;
+        nodes = pair_of(first_children, nearest);
+        const std::uint64_t others = steps_.pairs_to_open(step, mask) & ~bit(nearest);
+        // If the second nearest has become the same pair, it is not among the others, and `postpone` picks another.
         if (others != 0) postpone(step + 1, first_children, others, second & opened_bits);
         return true;
     }
