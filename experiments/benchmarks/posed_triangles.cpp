@@ -22,8 +22,8 @@ struct posed_meshes {
     aabb::pose_pair poses;
 };
 
-/// A sheet of n² parallelograms of two triangles each around the origin in the plane x + y + z = 0, which a permutation
-/// of axes keeps.
+/// A sheet around the origin, of n² parallelograms of two triangles each. It lies in the plane x + y + z = 0, which a
+/// permutation of the axes maps to itself.
 aabb::mesh sheet(std::uint32_t n) {
     aabb::mesh m;
     for (std::uint32_t y = 0; y <= n; ++y)
@@ -41,7 +41,7 @@ aabb::mesh sheet(std::uint32_t n) {
     return m;
 }
 
-/// The flanks of a gear of radius 1 with rectangular teeth of height 1/8, of 16 layers.
+/// The lateral surface, in 16 layers, of a gear of radius 1 with rectangular teeth of height 1/8.
 aabb::mesh gear(std::uint32_t teeth) {
     constexpr std::uint32_t layers = 16;
     const std::uint32_t around = 4 * teeth;
@@ -62,7 +62,7 @@ aabb::mesh gear(std::uint32_t teeth) {
     return m;
 }
 
-/// A rotation by Rodrigues' formula about (1, 2, 3), in degrees, rounded as a user's is.
+/// The rotation about (1, 2, 3) by Rodrigues' formula, rounded like that of a user.
 pose turned(double degrees) {
     const double angle = degrees / 180 * std::numbers::pi, c = std::cos(angle), s = std::sin(angle), d = 1 - c;
     const double length = std::sqrt(14.0), x = 1 / length, y = 2 / length, z = 3 / length;
@@ -88,7 +88,7 @@ posed_meshes make(std::string_view name) {
     if (name == "crossing") return {sheets, sheets, {r, turned(50)}};
     if (name == "flush") return {sheets, sheets, {r, after_permutation(r, {0, 0, 0})}};
     if (name == "apart:1e-9") return {sheets, sheets, {r, after_permutation(r, {1e-9, 1e-9, 1e-9})}};
-    // Gears in mesh: of one rotation, with a tooth of the first in a gap of the second, flank to flank.
+    // Gears in mesh under one rotation: a tooth of the first lies in a gap of the second, flank to flank.
     const aabb::mesh wheel = gear(24);
     pose beside = r;
     for (std::size_t k = 0; k < 3; ++k)
@@ -102,7 +102,7 @@ struct posed_pair {
     aabb::triangle3f s_in_float, image_of_t;
 };
 
-/// The pairs of triangles whose boxes overlap, with the image of the second one.
+/// The pairs of triangles whose boxes overlap, with the image of the second triangle.
 struct candidates {
     explicit candidates(std::string_view name) : meshes(make(name)) {
         const auto& [a, b, poses] = meshes;
@@ -114,7 +114,7 @@ struct candidates {
                 if (overlaps(bounds_of(a.triangle(s)), of_t))
                     pairs.push_back({a.given_triangle(s), b.given_triangle(t), a.triangle(s), to_a(b.triangle(t))});
         }
-        // A prime stride that does not divide their number mixes them, so that their order does not predict outcomes.
+        // A prime stride that does not divide their number shuffles them, so that order does not predict branches.
         const std::size_t stride = pairs.size() % 7919 != 0 ? 7919 : 7907;
         const std::vector<posed_pair> ordered = std::move(pairs);
         pairs.clear();
@@ -144,7 +144,7 @@ void add(const std::string& name, Stage stage) {
         });
 }
 
-/// Tests a vector of copies of the pair; whether it is decided.
+/// Whether the filter decides the pair, of which a vector holds copies.
 bool is_decided_in_float(const candidates& given, const posed_pair& p) {
     std::array<std::array<std::array<float, aabb::simd::width>, 9>, 2> rows;
     for (std::size_t row = 0; row < 9; ++row) {

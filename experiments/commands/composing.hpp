@@ -26,7 +26,7 @@ private:
     std::optional<std::string> engine_;
 };
 
-/// What exact answers about moving meshes are exact for.
+/// The numbers for which results on moving meshes are exact.
 inline constexpr const char* exact_for_meshes = "vertices and poses in double";
 
 /// The option --touching.

@@ -36,12 +36,13 @@ inline void require_valid(std::span<const boxd> boxes) {
     }
 }
 
-/// Lets a search of boxes of floats find the pairs of boxes in double. Both bounds are rounded to floats in one frame.
-/// That is monotone, so that boxes which overlap still do as floats; pairs which overlap only as floats are dropped.
+/// Lets a search of boxes of floats find the pairs of boxes in double. Bounds are rounded to floats in a coordinate
+/// frame that all boxes share. This is monotone, so boxes that overlap still overlap as floats; pairs that overlap only
+/// as floats are dropped.
 class float_boxes {
 public:
-    /// Rounds the boxes of a frame. Its frame of floats stays until the boxes outgrow it, so that what a search keeps
-    /// from frame to frame stays valid.
+    /// Rounds the boxes of the next frame. Their coordinate frame stays the same until boxes leave its range, so that
+    /// what a search keeps between frames stays valid.
     /// @throws input_error as `require_valid`
     [[nodiscard]] std::span<const box> round(std::span<const boxd> boxes) {
         require_valid(boxes);
@@ -59,7 +60,7 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(rounded_); }
 
 private:
-    /// Makes a new frame if the boxes leave the range for which the last one was made, twice as large as they were.
+    /// Makes a new coordinate frame, for a range twice as large as the boxes, if these leave the range of the last.
     void fit_frame(std::span<const boxd> boxes) {
         if (boxes.empty()) return;
         boxd all = boxes.front();

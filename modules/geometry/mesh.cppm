@@ -7,11 +7,11 @@ import :vertex_frame;
 export namespace aabb {
 
 /// A triangle mesh: vertices, and triangles of three vertex indices, both in file order. Trees, boxes and inexact tests
-/// see floats. Exact tests decide on `given` where there are vertices that are no floats (`set_vertices`).
+/// see floats. Exact tests decide on `given` if any vertex is not a float (`set_vertices`).
 struct mesh {
     std::vector<vec3f> vertices;  ///< in `frame`
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<vec3d> given = {};  ///< the vertices as given, if these are no floats; else empty
+    std::vector<vec3d> given = {};  ///< the vertices as given, if any is not a float; else empty
     vertex_frame frame = {};
 
     [[nodiscard]] inline std::uint32_t triangle_count() const noexcept {
@@ -34,7 +34,8 @@ struct mesh {
     }
 };
 
-/// Sets the vertices of a mesh with its triangles. If all that triangles use are floats, only these are stored.
+/// Sets the vertices of a mesh that has its triangles. If all vertices that these use are floats, only floats are
+/// stored.
 /// @param vertices finite where a triangle uses them
 inline void set_vertices(mesh& m, std::vector<vec3d> vertices) {
     std::vector<bool> is_used(vertices.size());
@@ -53,7 +54,7 @@ inline void set_vertices(mesh& m, std::vector<vec3d> vertices) {
     constexpr float greatest = std::numeric_limits<float>::max();
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         m.vertices[v] = m.frame(vertices[v]);
-        // One that no triangle uses may lie anywhere.
+        // A vertex that no triangle uses may lie anywhere.
         for (int k = 0; k < 3; ++k)
             if (std::isfinite(vertices[v][k])) m.vertices[v][k] = std::clamp(m.vertices[v][k], -greatest, greatest);
     }
@@ -70,8 +71,8 @@ inline void set_vertices(mesh& m, std::vector<vec3d> vertices) {
 /// Trees mark leaves with the top bit of an index, so a mesh has fewer than 2^31 triangles.
 inline constexpr std::size_t most_triangles = 0x7fffffff;
 
-/// Rejects a mesh with no triangles or too many, an index out of range, or a coordinate that is not finite, or whose
-/// floats are not those of its given vertices.
+/// Rejects a mesh with no triangles or too many, with an index out of range, with a coordinate that is not finite, or
+/// with floats that are not those of its given vertices.
 /// @throws input_error with the first faulty triangle or vertex
 inline void require_valid(const mesh& m) {
     if (m.triangles.empty()) throw input_error("the mesh has no triangles");

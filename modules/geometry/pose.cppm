@@ -115,8 +115,8 @@ public:
     /// Whether lengths are kept, within 2^-18 of their size.
     [[nodiscard]] inline bool is_rigid() const noexcept { return is_rigid_; }
 
-    /// A bound on the distance, along each axis, between a vertex's image and its true image, and as far as a vertex of
-    /// A may lie from its float; zero without motion if all vertices are floats.
+    /// A bound on the distance, along each axis, between a vertex's image and its true image, plus that between a
+    /// vertex of A and its float. Zero without motion if all vertices are floats.
     [[nodiscard]] inline const vec3f& image_error() const noexcept { return image_error_; }
 
     /// The image of a vertex of B, as defined above.
@@ -251,7 +251,7 @@ private:
             // before the vertices.
             margin_[i] =
                 32 * unit * image_sum[i] + 2 * inverse_error * greatest + 0x1p-1070 * (inverse_sum[i] + extent);
-            // What the floats of both meshes are off by.
+            // The rounding errors of the floats of both meshes.
             double error_of_floats = frame_a.rounding[i] + inverse_sum[i] * between_error;
             for (int j = 0; j < 3; ++j) error_of_floats += absolute_turn_[j][i] * double{frame_b.rounding[j]};
             margin_[i] += error_of_floats * (1 + 0x1p-20);
@@ -270,7 +270,7 @@ private:
     /// tᴮ + Rᴮ oᴮ - tᴬ - Rᴬ oᴬ. Around origins other than 0, the sum is computed as if in twice the precision (Ogita,
     /// Rump and Oishi, "Accurate sum and dot product", 2005): then its error is u of the result, as without origins,
     /// and at most γ²₁₆ of the terms' magnitudes.
-    /// @param error set to a bound of the latter
+    /// @param error set to a bound on the latter
     [[nodiscard]] static lanes translation_between(const pose& a, const vec3d& origin_a, const pose& b,
                                                    const vec3d& origin_b, double& error) noexcept {
         lanes between{};
@@ -303,7 +303,7 @@ private:
     }
 
     /// Sets `inverse_a_` to X ≈ Rᴬ⁻¹, the adjugate over the determinant.
-    /// @returns ρ, a bound of the greatest sum of magnitudes in a row of I - X Rᴬ
+    /// @returns ρ, a bound on the greatest sum of magnitudes in a row of I - X Rᴬ
     [[nodiscard]] double invert(const pose& a) {
         if (!turns_a_) {
             for (int k = 0; k < 3; ++k) inverse_a_[k][k] = 1;

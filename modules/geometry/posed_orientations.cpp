@@ -102,7 +102,8 @@ auto area_of(const Corners& corners, int a, int b, int c, int axis) noexcept {
     return p[x] * q[y] - p[y] * q[x];
 }
 
-/// Rounds an integer: of the leading 128 bits, at least 65 are significant, so that in effect one rounding yields 53.
+/// Rounds an integer. At least 65 of its leading 128 bits are significant, so rounding these to 53 is in effect the
+/// only rounding.
 template <std::size_t Limbs>
 scaled_double rounded(const wide_integer<Limbs>& integer) noexcept {
     const wide_integer<Limbs> magnitude = integer.magnitude();
@@ -187,7 +188,7 @@ rounded_coordinate exact_corners::coordinate(int corner, int axis) const noexcep
         const auto& integer = corners[static_cast<std::size_t>(corner)][axis];
         const auto [mantissa, exponent] = rounded(integer);
         const double value = std::ldexp(mantissa, exponent + unit_);
-        // A double below the least normal one has fewer digits.
+        // A denormal double has fewer digits.
         const int digits = std::min(53, exponent + unit_ + 1074);
         return rounded_coordinate{value, mantissa == 0 || (std::isfinite(value) && integer.has_digits(digits))};
     });

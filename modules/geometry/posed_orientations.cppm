@@ -45,7 +45,7 @@ public:
     /// The sign of a - b on an axis.
     [[nodiscard]] int order(int a, int b, int axis) const noexcept;
 
-    /// The determinants of `side` and `turn` in a unit that is the same for all, within 1.001 · 2^-53 of their value.
+    /// The determinants of `side` and `turn` in one common unit, within 1.001 · 2^-53 of their value.
     [[nodiscard]] scaled_double volume(int a, int b, int c, int d) const noexcept;
     [[nodiscard]] scaled_double area(int a, int b, int c, int axis) const noexcept;
     /// A coordinate of a corner, with a relative error of at most 2^-52.

@@ -11,7 +11,7 @@ export namespace aabb {
 struct vertex_frame {
     vec3d origin{};
     double scale = 1;  ///< a power of two
-    vec3f rounding{};  ///< a bound of the error on each axis, in units of `scale`; 0 if the floats are exact
+    vec3f rounding{};  ///< a bound on the error on each axis, in units of `scale`; 0 if the floats are exact
 
     friend bool operator==(const vertex_frame&, const vertex_frame&) = default;
 
@@ -27,9 +27,9 @@ struct vertex_frame {
         return {origin[0] + scale * f[0], origin[1] + scale * f[1], origin[2] + scale * f[2]};
     }
 
-    /// The frame in which numbers of this range become floats with small errors. The origin stays 0 unless the range
-    /// lies so far off that floats would lose more than four bits, and the scale 1 unless squares or cubes of floats
-    /// could leave their range. `rounding` is not set.
+    /// The frame in which numbers of this range become floats with small errors. The origin is 0 unless the range lies
+    /// so far from 0 that floats would lose more than four bits, and the scale is 1 unless squares or cubes of floats
+    /// could leave the range of float. `rounding` is not set.
     [[nodiscard]] static vertex_frame around(const vec3d& low, const vec3d& high) noexcept {
         vertex_frame frame;
         double extent = 0, magnitude = 0;  // halves, which cannot overflow
@@ -47,7 +47,7 @@ struct vertex_frame {
         return frame;
     }
 
-    /// The frame of these vertices, with a bound of their errors.
+    /// The frame of these vertices, with a bound on their errors.
     [[nodiscard]] static vertex_frame around(std::span<const vec3d> vertices) noexcept {
         if (vertices.empty()) return {};
         vec3d low = vertices.front(), high = low;
@@ -62,7 +62,7 @@ struct vertex_frame {
             const vec3f rounded = frame(v);
             for (int k = 0; k < 3; ++k) {
                 double error = std::abs(f[k] - rounded[k]);
-                // The difference from the origin is rounded, too, and what the scale makes smaller may underflow.
+                // The difference from the origin is rounded, too, and a quotient by a scale above 1 may underflow.
                 if (frame.origin[k] != 0) error += std::abs(f[k]) * 0x1p-52;
                 if (frame.scale > 1) error += std::numeric_limits<double>::denorm_min();
                 if (error > 0)

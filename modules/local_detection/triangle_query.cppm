@@ -5,8 +5,8 @@ import :model;
 
 export namespace aabb {
 
-/// The triangle test of one query. An exact test decides on the triangles as they are given, and at their poses if the
-/// meshes move against each other (`PosedTrianglePolicy`); all others decide on floats in A's frame.
+/// The triangle test of one query. An exact test decides on the triangles as they are given, at their poses if these
+/// differ (`PosedTrianglePolicy`); all others decide on floats in A's frame.
 template <TreePolicy Tree, TrianglePolicy Triangle>
 class triangle_query {
 public:

@@ -5,20 +5,20 @@ import aabb.std;
 
 export namespace aabb {
 
-/// A `detector` of boxes, or an `auto_detector`, that takes boxes in double: it searches their floats, and compares the
-/// pairs in double, so that these are exact.
+/// A `detector` of boxes, or an `auto_detector`, that takes boxes in double. It searches the boxes rounded to floats,
+/// and tests the pairs found in double, so that the result is exact.
 template <class Detector>
 class detector_in_double {
 public:
-    /// Takes what the detector takes.
+    /// Takes the arguments of the detector.
     template <class... Arguments>
     explicit detector_in_double(Arguments&&... arguments) : detector_(std::forward<Arguments>(arguments)...) {}
 
-    /// As those of the detector.
+    /// Like those of the detector.
     void insert(std::uint32_t id) { detector_.insert(id); }
     void remove(std::uint32_t id) { detector_.remove(id); }
 
-    /// As `pairs` of the detector.
+    /// Like `pairs` of the detector.
     [[nodiscard]] std::span<const index_pair> pairs(std::span<const boxd> boxes) {
         const std::span<const index_pair> candidates = detector_.pairs(floats_.round(boxes));
         pairs_.assign(candidates.begin(), candidates.end());

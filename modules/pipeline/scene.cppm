@@ -17,8 +17,8 @@ public:
     /// Generates the boxes of the next frame; returns false after the last.
     /// @throws input_error on a recording that is truncated or contains an invalid box
     virtual bool next(std::vector<box>& boxes) = 0;
-    /// The boxes of the current frame in double, which decide what overlaps; empty if they are floats. Then those of
-    /// `next` are their floats (`float_boxes`).
+    /// The boxes of the current frame in double, which decide what overlaps; those of `next` are then the same rounded
+    /// to floats (`float_boxes`). Empty if the scene has floats.
     [[nodiscard]] virtual std::span<const boxd> in_double() const { return {}; }
     /// Whether each object is present in the current frame, by id, 0 or 1; empty if all are. The box of an absent
     /// object is valid and overlaps no other, so that a search which ignores this finds the same pairs.

@@ -22,7 +22,7 @@ public:
         : s_(s), t_(t), signs_(s_, t_, extreme(std::ranges::min), extreme(std::ranges::max)) {}
 
     [[nodiscard]] const vec3d& operator[](corner i) const noexcept { return i < 3 ? s_[i] : t_[i - 3]; }
-    /// A bound of the errors of coordinates.
+    /// A bound on the errors of coordinates.
     [[nodiscard]] static vec3d error() noexcept { return {}; }
 
     [[nodiscard]] int side(corner a, corner b, corner c, corner d) noexcept {
@@ -98,8 +98,8 @@ private:
     vec3d error_{};
 };
 
-/// A corner of an intersection: a corner of a triangle (`from` is `to`), or where the edge between two crosses a plane,
-/// or the line of an edge in the projection along an axis.
+/// A corner of an intersection: a corner of a triangle (`from` is `to`), or the point where the edge between two
+/// corners crosses a plane or, in the projection along an axis, the line of an edge.
 struct crossing {
     corner from, to;
     corner_triple other;  // corners of the plane, or of the line
@@ -111,7 +111,7 @@ class common_part {
 public:
     void add_corner(corner p) { crossings_[size_++] = {p, p, {}, 0}; }
     void add_crossing(const crossing& c) { crossings_[size_++] = c; }
-    /// Adds where the edge from a to b crosses a plane, on whose sides they lie.
+    /// Adds the point where the edge from a to b crosses a plane, on different sides of which a and b lie.
     void add_cut(corner a, corner b, int side_of_a, int side_of_b, const corner_triple& plane) {
         if (side_of_a == 0) return add_corner(a);
         if (side_of_b == 0) return add_corner(b);
@@ -155,7 +155,8 @@ public:
     }
 
 private:
-    /// Adds where the edge from a to b crosses what they lie at the signed distances p and q from.
+    /// Adds the point where the edge from a to b crosses a plane or line, at signed distances p of a and q of b from
+    /// it.
     static void add_crossing(triangle_intersection& result, const auto& corners, corner from, corner to,
                              scaled_double p, scaled_double q) {
         vec3d a = corners[from], b = corners[to];
@@ -408,7 +409,7 @@ triangle_intersection intersection_of(const pose_pair& poses, const triangle3d& 
 
 intersection_kind intersection_kind_of(const pose_pair& poses, const triangle3d& s, const triangle3d& t) {
     require_ieee_arithmetic();
-    if (poses.a == poses.b) {  // one map of full rank changes no kind
+    if (poses.a == poses.b) {  // a common map of full rank changes no kind
         if (!orientation_test<orientations>::intersects(s, t)) return intersection_kind::none;
         given_corners corners(s, t);
         return construction(corners).common().kind();

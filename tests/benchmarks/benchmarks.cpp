@@ -143,7 +143,7 @@ TEST_CASE("Benchmarks report their counters") {
     counters(3, {"real_time", "box_tests/n", "pairs/n"});
 }
 
-TEST_CASE("Every stage that decides triangles at poses has a benchmark of each case, and the last decide all") {
+TEST_CASE("Every stage that decides triangles at poses has a benchmark of each case, and exact ones decide all") {
     std::map<std::string, double> decided;
     for (const auto& run : reported("^posed/")) {
         CHECK(run["pairs"] > 500);

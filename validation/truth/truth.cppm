@@ -57,7 +57,7 @@ struct scene_frame {
     /// of meshes all objects are always present.
     std::span<const std::uint32_t> arrivals;
     std::span<const std::uint32_t> departures;
-    std::span<const boxd> boxes_in_double = {};  ///< `boxes`, if they are no floats; all objects are present
+    std::span<const boxd> boxes_in_double = {};  ///< `boxes` as given, if in double; all objects are present
 };
 
 /// The ground truth of a scene, frame by frame. Pairs of boxes: brute force up to 20,000 objects, CGAL above. Contacts:
