@@ -70,6 +70,7 @@ public:
         observations_.add_frame(boxes, scene_->present());
         return true;
     }
+    [[nodiscard]] std::span<const aabb::boxd> in_double() const override { return scene_->in_double(); }
     [[nodiscard]] std::span<const std::uint8_t> present() const override { return scene_->present(); }
     [[nodiscard]] const picture_data& observations() const { return observations_; }
 

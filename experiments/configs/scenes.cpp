@@ -121,8 +121,14 @@ std::vector<std::optional<std::uint64_t>> seeds_of(const document& doc, const no
 template <class Placed>
 void add_frames(aabb::digest& digest, auto& scene, std::size_t objects) {
     digest.add(std::array{static_cast<std::uint32_t>(objects), static_cast<std::uint32_t>(scene.frames())});
-    for (std::vector<Placed> frame; scene.next(frame);)
-        for (const Placed& p : frame) digest.add(std::bit_cast<std::array<std::uint32_t, sizeof(Placed) / 4>>(p));
+    const auto add_all = [&](const auto& placed) {
+        using state = std::remove_cvref_t<decltype(placed[0])>;
+        for (const state& p : placed) digest.add(std::bit_cast<std::array<std::uint32_t, sizeof(state) / 4>>(p));
+    };
+    for (std::vector<Placed> frame; scene.next(frame);) {
+        add_all(frame);
+        if constexpr (std::same_as<Placed, aabb::box>) add_all(scene.in_double());
+    }
 }
 
 /// Generates the scene once and digests its meshes and file, which may change before a run is resumed.

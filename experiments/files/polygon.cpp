@@ -91,8 +91,8 @@ int polygon_cutter::project() {
     double greatest = 0;
     for (const corner& c : corners_)
         for (const double x : c.p.at) greatest = std::max(greatest, std::abs(x));
-    // Scaled by a power of two, so that products neither overflow nor, unless they are negligible, underflow.
-    const int exponent = greatest == 0 ? 0 : -std::ilogb(greatest);
+    // Scaled to 2^500, so that sums of products do not overflow, and products of numbers 2^-900 as great not underflow.
+    const int exponent = greatest == 0 ? 0 : 500 - std::ilogb(greatest);
     const auto scaled = [&](const vec3d& v) {
         return vec3d{std::ldexp(v[0], exponent), std::ldexp(v[1], exponent), std::ldexp(v[2], exponent)};
     };

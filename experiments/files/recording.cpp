@@ -43,6 +43,7 @@ public:
         : name_(std::move(name)),
           file_(std::move(file)),
           records_(static_cast<std::size_t>(h.objects)),
+          floats_(world_of(h)),
           frames_(static_cast<std::size_t>(h.last_frame) + 1) {}
 
     [[nodiscard]] std::size_t objects() const override { return records_.size(); }
@@ -73,6 +74,16 @@ public:
     [[nodiscard]] std::span<const aabb::boxd> in_double() const override { return in_double_; }
 
 private:
+    [[nodiscard]] static aabb::boxd world_of(const header& h) {
+        const auto world = unpacked<aabb::box>(h.world);
+        aabb::boxd range{aabb::in_double(world.min), aabb::in_double(world.max)};
+        for (int k = 0; k < 3; ++k) {  // floats may be rounded inward
+            range.min[k] -= 0x1p-22 * std::abs(range.min[k]);
+            range.max[k] += 0x1p-22 * std::abs(range.max[k]);
+        }
+        return range;
+    }
+
     std::string name_;
     input_file file_;
     std::vector<box_record<Real>> records_;

@@ -69,7 +69,12 @@ namespace aabblab {
 
 /// Replaces each vertex by the image of its given one, rounded to float once.
 inline void set_floats(aabb::mesh& m, const auto& image_of) {
-    for (std::size_t v = 0; v < m.vertices.size(); ++v) m.vertices[v] = in_float(image_of(in_eigen(m.given_vertex(v))));
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) {
+        Eigen::Vector3d image = image_of(in_eigen(m.given_vertex(v)));
+        // A vertex that no triangle uses may lie anywhere, but must stay finite.
+        for (double& x : image) x = std::fmin(std::fmax(x, -0x1p127), 0x1p127);
+        m.vertices[v] = in_float(image);
+    }
     m.given.clear();
     m.frame = {};
 }
@@ -79,12 +84,7 @@ inline void normalise(aabb::mesh& m, double wanted_extent = 1) {
     const Eigen::Vector3d centre = centre_of(m);
     const double extent = longest_extent(m);
     if (extent == 0) return;
-    set_floats(m, [&](const Eigen::Vector3d& v) {
-        Eigen::Vector3d scaled = (v - centre) / extent * wanted_extent;
-        // A vertex that no triangle uses may lie anywhere, but must stay finite.
-        for (double& x : scaled) x = std::fmin(std::fmax(x, -0x1p100), 0x1p100);
-        return scaled;
-    });
+    set_floats(m, [&](const Eigen::Vector3d& v) -> Eigen::Vector3d { return (v - centre) / extent * wanted_extent; });
 }
 
 /// A scene of meshes whose poses are generated frame by frame.

@@ -111,6 +111,9 @@ public:
         frames_ = scene->frames();
         const std::filesystem::path file = std::filesystem::path(name) / "scene.aabbs";
         write_recording(*scene, scene_.kind, parameters_text(scene_), file, /*progress=*/{});
+        if (!scene->in_double().empty())
+            throw aabb::input_error("external engines read boxes of floats, but those of " + scene_.kind +
+                                    " are doubles");
         return recording_ = file;
     }
     [[nodiscard]] std::size_t objects() const { return objects_; }

@@ -86,8 +86,8 @@ template <class Element, class Matrix>
 export namespace aabb {
 
 /// An Eigen view of points, triangles or boxes, one per column:
-/// `map_over<Eigen::Map<Eigen::Matrix3Xf>>(mesh.vertices)`. The column of a box contains its lower ends, then its upper
-/// ones.
+/// `map_over<Eigen::Map<Eigen::Matrix3Xf>>(mesh.vertices)`, which are floats in the mesh's frame. The column of a box
+/// contains its lower ends, then its upper ones.
 /// @tparam Map map of a matrix of the elements' numbers, const if the elements are const
 template <class Map, class Elements>
 [[nodiscard]] inline Map map_over(Elements& elements) {

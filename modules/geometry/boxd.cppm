@@ -41,6 +41,12 @@ inline void require_valid(std::span<const boxd> boxes) {
 /// as floats are dropped.
 class float_boxes {
 public:
+    float_boxes() = default;
+    /// @param range of the boxes of all frames, which then have one frame of floats
+    explicit float_boxes(const boxd& range) : frame_(vertex_frame::around(range.min, range.max)), range_(range) {
+        has_frame_ = keeps_frame_ = true;
+    }
+
     /// Rounds the boxes of the next frame. Their coordinate frame stays the same until boxes leave its range, so that
     /// what a search keeps between frames stays valid.
     /// @throws input_error as `require_valid`
@@ -71,7 +77,13 @@ private:
             }
         bool fits = has_frame_;
         for (int k = 0; k < 3; ++k) fits &= all.min[k] >= range_.min[k] && all.max[k] <= range_.max[k];
-        if (fits) return;
+        // What has shrunk to a small part of the range would be coarse in its floats.
+        double extent = 0, extent_of_range = 0;
+        for (int k = 0; k < 3; ++k) {
+            extent = std::max(extent, all.max[k] / 2 - all.min[k] / 2);
+            extent_of_range = std::max(extent_of_range, range_.max[k] / 2 - range_.min[k] / 2);
+        }
+        if (fits && (keeps_frame_ || 16 * extent >= extent_of_range)) return;
         for (int k = 0; k < 3; ++k) {
             const double margin = all.max[k] / 2 - all.min[k] / 2;
             range_.min[k] = std::max(all.min[k] - margin, std::numeric_limits<double>::lowest());
@@ -84,6 +96,7 @@ private:
     vertex_frame frame_;
     boxd range_{};
     bool has_frame_ = false;
+    bool keeps_frame_ = false;  // as long as the boxes fit
     std::vector<box> rounded_;
 };
 

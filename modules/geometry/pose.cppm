@@ -90,8 +90,8 @@ struct box_motion {
 ///
 /// Exact tests decide on the true images, in real arithmetic; here these are rounded, with bounds of the error. Other
 /// tests get the images as they are: in double, each sum left to right without fused multiply-add, rounded to float
-/// once. Translations are subtracted first, so that two meshes moved together keep their images bit for bit, as long as
-/// tᴮ - tᴬ does not change. Under equal poses and frames, the images are the vertices.
+/// once. Translations are subtracted first, so that two meshes of floats moved together keep their images bit for bit,
+/// as long as tᴮ - tᴬ does not change. Under equal poses and frames, the images are the vertices.
 ///
 /// With floats x of a vertex frame, a vertex is o + s x: R becomes s R, and t becomes t + R o.
 class relative_pose {
@@ -217,13 +217,13 @@ private:
     void set(pose a, pose b, const box& bounds, const vertex_frame& frame_a, const vertex_frame& frame_b) {
         double between_error = 0;
         between_ = translation_between(a, frame_a.origin, b, frame_b.origin, between_error);
+        is_rigid_ = frame_a.scale == frame_b.scale && is_near_rotation(a) && is_near_rotation(b);
         for (double& r : a.rotation) r *= frame_a.scale;
         for (double& r : b.rotation) r *= frame_b.scale;
         for (std::size_t k = 0; k < 3; ++k) columns_b_[k] = lanes{b.rotation[k], b.rotation[3 + k], b.rotation[6 + k]};
         turns_a_ = turns(a);
         turns_b_ = turns(b);
         moves_ = turns_a_ || turns_b_ || a.translation != b.translation || frame_a.origin != frame_b.origin;
-        is_rigid_ = (!turns_a_ || orthonormality_error(a) <= 1e-6) && (!turns_b_ || orthonormality_error(b) <= 1e-6);
         const double inverse_error = invert(a);
         // The magnitudes of the terms of an image add up to these sums, before and after the map into A's frame.
         lanes world_sum = magnitudes(between_);
@@ -274,6 +274,7 @@ private:
     [[nodiscard]] static lanes translation_between(const pose& a, const vec3d& origin_a, const pose& b,
                                                    const vec3d& origin_b, double& error) noexcept {
         lanes between{};
+        if (a == b && origin_a == origin_b) return between;
         for (int i = 0; i < 3; ++i) {
             between[i] = b.translation[i] - a.translation[i];
             if (origin_a == vec3d{} && origin_b == vec3d{}) continue;
@@ -346,6 +347,9 @@ private:
     }
 
     [[nodiscard]] static bool turns(const pose& p) noexcept { return p.rotation != pose{}.rotation; }
+    [[nodiscard]] static bool is_near_rotation(const pose& p) noexcept {
+        return !turns(p) || orthonormality_error(p) <= 1e-6;
+    }
 
     // Identity rotations are skipped, since multiplying by 1 and 0 would change nothing.
     bool turns_a_ = false;

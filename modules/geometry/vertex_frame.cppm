@@ -27,22 +27,26 @@ struct vertex_frame {
         return {origin[0] + scale * f[0], origin[1] + scale * f[1], origin[2] + scale * f[2]};
     }
 
-    /// The frame in which numbers of this range become floats with small errors. The origin is 0 unless the range lies
-    /// so far from 0 that floats would lose more than four bits, and the scale is 1 unless squares or cubes of floats
-    /// could leave the range of float. `rounding` is not set.
+    /// The frame in which numbers of this range become floats with small errors. The origin stays 0 on axes on which
+    /// the range does not lie so far off that floats would lose more than four bits, and the scale 1 unless squares or
+    /// cubes of floats could leave their range. `rounding` is not set.
     [[nodiscard]] static vertex_frame around(const vec3d& low, const vec3d& high) noexcept {
         vertex_frame frame;
-        double extent = 0, magnitude = 0;  // halves, which cannot overflow
+        double greatest = 0, farthest = 0;  // of the floats, and of the numbers
         for (int k = 0; k < 3; ++k) {
-            extent = std::max(extent, high[k] / 2 - low[k] / 2);
-            magnitude = std::max({magnitude, std::abs(low[k]) / 2, std::abs(high[k]) / 2});
+            const double half_extent = high[k] / 2 - low[k] / 2;  // halves cannot overflow
+            double magnitude = std::max(std::abs(low[k]), std::abs(high[k]));
+            farthest = std::max(farthest, magnitude);
+            if (magnitude > 32 * half_extent) {
+                frame.origin[k] = low[k] == high[k] ? low[k] : low[k] / 2 + high[k] / 2;
+                magnitude = half_extent;
+            }
+            greatest = std::max(greatest, magnitude);
         }
-        if (magnitude > 16 * extent) {
-            for (int k = 0; k < 3; ++k) frame.origin[k] = low[k] / 2 + high[k] / 2;
-            magnitude = extent / 2;
-        }
+        // All in one place: what lies a unit in the last place away should not leave the range of float.
+        if (greatest == 0) greatest = farthest * 0x1p-53;
+        const int exponent = greatest == 0 ? 0 : std::ilogb(greatest);
         // Below 2^-960, products with the entries of a matrix would underflow.
-        const int exponent = magnitude == 0 ? 0 : std::ilogb(magnitude);
         if (std::abs(exponent) > 30) frame.scale = std::ldexp(1, std::clamp(exponent, -960, 960));
         return frame;
     }

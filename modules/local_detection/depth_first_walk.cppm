@@ -169,8 +169,11 @@ private:
     /// twice the error.
     [[nodiscard]] box grown(box b) const noexcept {
         for (int k = 0; k < 3; ++k) {
-            b.min[k] -= 2 * image_error_[k];
-            b.max[k] += 2 * image_error_[k];
+            if (image_error_[k] == 0) continue;
+            // So much beyond the error that rounding the sum cannot undo it.
+            const auto margin = [&](float bound) { return 2 * image_error_[k] + 0x1p-22F * std::abs(bound); };
+            b.min[k] -= margin(b.min[k]);
+            b.max[k] += margin(b.max[k]);
         }
         return b;
     }

@@ -96,9 +96,30 @@ private:
     template <class Emit>
     void walk(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, walk_goal goal,
               Emit emit) {
-        const relative_pose to_a = pose_relative_to(a, pose_a, b, pose_b);
+        std::optional<relative_pose> to_a;
+        try {
+            to_a.emplace(pose_relative_to(a, pose_a, b, pose_b));
+        } catch (const input_error&) {
+            return walk_in_frame_of_b(a, pose_a, b, pose_b, goal, emit);
+        }
         const pose_pair poses{pose_a, pose_b};
-        walk_.find_pairs(triangle_query<Tree, Triangle>(triangle_, a, b, poses, to_a), a, b, to_a, goal, emit);
+        walk_.find_pairs(triangle_query<Tree, Triangle>(triangle_, a, b, poses, *to_a), a, b, *to_a, goal, emit);
+    }
+
+    /// The same with the meshes swapped: a huge mesh can leave the range of float in the frame of a tiny one, but not
+    /// the other way round. So whether a query is refused does not depend on their order.
+    template <class Emit>
+    void walk_in_frame_of_b(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
+                            walk_goal goal, Emit emit) {
+        const relative_pose to_b = pose_relative_to(b, pose_b, a, pose_a);
+        const pose_pair poses{pose_b, pose_a};
+        std::vector<index_pair> swapped;
+        walk_.find_pairs(triangle_query<Tree, Triangle>(triangle_, b, a, poses, to_b), b, a, to_b, goal,
+                         [&](std::span<const index_pair> batch) {
+                             swapped.clear();
+                             for (const auto& [of_b, of_a] : batch) swapped.push_back({of_a, of_b});
+                             return emit(std::span<const index_pair>(swapped));
+                         });
     }
 
     [[no_unique_address]] Triangle triangle_;

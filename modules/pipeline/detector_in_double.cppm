@@ -12,6 +12,7 @@ class detector_in_double {
 public:
     /// Takes the arguments of the detector.
     template <class... Arguments>
+        requires std::constructible_from<Detector, Arguments...>
     explicit detector_in_double(Arguments&&... arguments) : detector_(std::forward<Arguments>(arguments)...) {}
 
     /// Like those of the detector.

@@ -71,11 +71,11 @@ public:
         if (objects == 0) return nullptr;
         double sum_of_extents = 0;
         for (const std::uint32_t m : scene.mesh_of)
-            for (int k = 0; k < 3; ++k) sum_of_extents += extent_of(bounds[m], k);
+            for (int k = 0; k < 3; ++k) sum_of_extents += scene.meshes[m].frame.scale * extent_of(bounds[m], k);
         const double longest = size_ * sum_of_extents / (3 * static_cast<double>(objects));
         mesh_division division;
         for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-            division.push_back(parts_of(scene.meshes[m], bounds[m], longest));
+            division.push_back(parts_of(scene.meshes[m], bounds[m], longest / scene.meshes[m].frame.scale));
         for (const std::uint32_t m : scene.mesh_of) pieces_ += division[m].size();
         require_few_pieces(split_mesh_prepare::name, pieces_, objects);
         if (std::ranges::all_of(division, [](const auto& parts) { return parts.empty(); })) return nullptr;

@@ -568,3 +568,32 @@ TEST_CASE("a mesh of doubles intersects itself in the pairs that a judge finds")
         }
     }
 }
+
+TEST_CASE("an oblique triangle meets the box of one whose doubles lie beyond its floats") {
+    // Near 2^20, where floats have steps of 1/8, a leaf's box and triangle differ from the true ones by 0.005.
+    aabb::mesh a{{}, {{0, 1, 2}}};
+    set_vertices(a, {{1048584, 1048576, 0}, {1048576, 1048583.875, 0}, {1048576, 1048583.875, 8}});
+    aabb::mesh b{{}, {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
+    set_vertices(b, {{1048576.13, 1048583.755, 3},
+                     {1048572, 1048578, 3},
+                     {1048572, 1048578, 3.5},
+                     {1048572, 1048579, 3.25},
+                     {786432, 786432, 0},
+                     {786432, 786431, 0},
+                     {786431, 786432, 0},
+                     {786430, 786432, 1}});
+    check_meshes(a, {}, b, {});
+}
+
+TEST_CASE("meshes of one point, and a tiny mesh and a huge one, are searched in either order") {
+    const auto at = [](double x) {
+        aabb::mesh m{{}, {{0, 1, 2}}};
+        set_vertices(m, {{x, x, x}, {x, x, x}, {x, x, x}});
+        return m;
+    };
+    for (const double x : {1e70, 1e-320, 3948995.7}) check_meshes(at(x), {}, at(x), {});
+    const aabb::mesh huge = mapped(aabb::sphere(4), [](double x, int) { return x * 1e28; });
+    const aabb::mesh tiny = mapped(aabb::sphere(4), [](double x, int k) { return x * 1.1e-12 + (k == 2 ? 1e28 : 0); });
+    check_meshes(huge, {}, mapped(aabb::sphere(4), [](double x, int) { return x * 1.1e-12; }), {}, /*intersect=*/false);
+    check_meshes(huge, {}, tiny, {});
+}
