@@ -111,7 +111,8 @@ std::string line_of(const observation& seen, double seconds) {
     return text.str();
 }
 
-/// Parses the lines of `send_run`. A killed child may have written only a part of its last line, which is ignored.
+/// Parses the lines of `send_run`: one per frame, with the times of all frames so far, and a last one. A killed child
+/// may have written only a part of its last line, which is ignored.
 attempt attempt_from(const child_result& work) {
     attempt result{.end = work.end, .seen = {}, .reason = work.reason, .seconds = work.seconds};
     observation& seen = result.seen;
@@ -125,7 +126,8 @@ attempt attempt_from(const child_result& work) {
             seen.digests.push_back(seen.digest);
         } else {
             text >> seen.bytes;
-            for (int absence = 0; text >> absence;) seen.left_out.push_back({static_cast<aabb::absence>(absence)});
+            // What the composition leaves out, as numbers of `absence`.
+            for (int part = 0; text >> part;) seen.left_out.push_back({static_cast<aabb::absence>(part)});
         }
     }
     return result;

@@ -83,15 +83,16 @@ struct wide_integer {
             }
             product.limb[i + Others] = carry;
         }
-        product.subtract_from_limb(Limbs, q, p.sign() < 0);
-        product.subtract_from_limb(Others, p, q.sign() < 0);
+        if (p.sign() < 0) product.subtract_from_top(q);
+        if (q.sign() < 0) product.subtract_from_top(p);
         return product;
     }
 
-    /// If `applies`, subtracts q · 2^(64 first), for q as an unsigned number that ends with this one's last limb.
+    /// Subtracts q, as an unsigned number, from the upper limbs of a product, which takes back the 2^64n that is too
+    /// much in a negative factor.
     template <std::size_t Others>
-    constexpr void subtract_from_limb(std::size_t first, const wide_integer<Others>& q, bool applies) noexcept {
-        if (!applies) return;
+    constexpr void subtract_from_top(const wide_integer<Others>& q) noexcept {
+        constexpr std::size_t first = Limbs - Others;
         unsigned_128 carry = 1;
         for (std::size_t i = 0; i < Others; ++i) {
             carry += unsigned_128{limb[first + i]} + ~q.limb[i];

@@ -78,7 +78,8 @@ table table_of(const test_times& times) {
     return t;
 }
 
-/// Median times of all tests: of B's leaves, carried into A's frame of reference, and of A's, without a transformation.
+/// Median times of all tests. A leaf of one tree is tested against a node of the other, in A's frame of reference: a
+/// leaf of B is transformed into it first, a leaf of A (`frame_a_suffix`) need not be.
 figure figure_of(const test_times& times) {
     figure f{"c6",
              "Time of one elementary test, on the pairs that a traversal of two trees visits; medians and quartiles.",

@@ -251,7 +251,7 @@ private:
 
     /// Plans the cheapest list from the observed displacement, or repeats the last plan if its list lasted as planned.
     /// Returns nullopt if no list is worth its cost, or if boxes moved much farther than estimated and must be watched.
-    /// @param is_motion_known as in `plan`
+    /// @param is_motion_known whether the motion since the boxes were kept is known, and has ended what was kept
     [[nodiscard]] std::optional<next_list> planned_list(std::span<const box> boxes, bool is_motion_known) {
         const bool had_list = state_ == state::listing;
         const std::size_t frames_served = age_ - age_when_made_;
@@ -259,6 +259,8 @@ private:
         // After a list that served half of its planned frames, or boxes at rest, the next back-off is short again.
         if (had_list ? !ended_early : has_rested_) backoff_.shorten();
         if (ended_early) return std::nullopt;
+        // A list around boxes that had been kept before (age_when_made_ > 0) is not repeated: this one would be around
+        // the boxes of this frame.
         const bool ended_as_planned = is_motion_known && had_list && age_when_made_ == 0 &&
                                       planned_frames_ <= frames_served && frames_served < 2 * planned_frames_;
         if (ended_as_planned && repeated_ < longest_repetition && !is_far_too_long(boxes, margin_)) {

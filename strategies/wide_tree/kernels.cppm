@@ -252,7 +252,8 @@ export namespace aabb::simd {
                                                                          const std::int16_t* b) noexcept {
     using eight_halves = std::int16_t __attribute__((vector_size(16)));
     using four_rows = std::int16_t __attribute__((vector_size(64)));
-    // Rows of pairs with even j and with odd j hold differences; one is negative where two boxes are disjoint.
+    // Rows of pairs with even j and with odd j hold differences; one is negative where two boxes are disjoint. AVX-512
+    // packs the signs of two vectors by taking eight of each in turn, so rows that alternate end up in their order.
     four_rows even{};
     four_rows odd{};
     const auto indices = std::make_index_sequence<32>{};

@@ -141,7 +141,7 @@ TEST_CASE_METHOD(in_folder, "An experiment whose output pipe is closed runs to i
     CHECK(unread.err.empty());
     CHECK(std::ranges::count(bytes_of_file(folder / "r/results.csv"), '\n') == 1 + 2 * 2);
     // The second scene cannot be run, which the exit status must report.
-    folder.write("a.off", "OFF\n3 1 0\n0 0 0\n3e38 0 0\n0 3e38 0\n3 0 1 2\n");
+    folder.write("a.off", "OFF\n3 1 0\n0 0 0\n3e300 0 0\n0 3e300 0\n3 0 1 2\n");
     const std::string failing =
         folder.write("f.toml",
                      "name = \"f\"\n[[scene]]\nkind = \"still\"\nobjects = 20\nframes = 1\n[[scene]]\nkind = "

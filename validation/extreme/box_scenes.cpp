@@ -176,7 +176,7 @@ extreme_scene population(std::string name, std::string summary, IsPresent is_pre
         for (std::size_t frame = 0; frame < frames.size(); ++frame)
             for (std::uint32_t i = 0; i < population_size; ++i) {
                 present[frame][i] = static_cast<std::uint8_t>(is_present(frame, i));
-                // Absent objects are placed far away.
+                // An absent box must overlap no other (`box_scene::present`), so that engines without presence agree.
                 if (!present[frame][i]) frames[frame][i] = bounds_of(vec3f{1000 + static_cast<float>(i), 0, 0});
             }
         return std::make_unique<known_boxes>(std::move(frames), std::move(present));

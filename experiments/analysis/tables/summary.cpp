@@ -132,7 +132,8 @@ struct rows_of_scene {
         candidates[index->second].push_back(&r);
         if (r.scene.seed && std::ranges::find(scene.seeds, *r.scene.seed) == scene.seeds.end())
             scene.seeds.push_back(*r.scene.seed);
-        if (r.status == "exact") scene.digest = r.digest;  // exact rows of a seed agree, or they are rejected
+        // Exact rows of a seed have one digest, or they are rejected. Of several seeds, the last one's is shown.
+        if (r.status == "exact") scene.digest = r.digest;
     }
 };
 
