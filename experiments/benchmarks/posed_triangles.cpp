@@ -3,10 +3,8 @@
 #include "stages.hpp"
 
 import aabb.geometry;
-import aabb.simd;
 import aabb.std;
 import aabb.triangle.exact;
-import aabb.wide_tree.triangle_filter;
 
 namespace aabblab {
 
@@ -144,21 +142,9 @@ void add(const std::string& name, Stage stage) {
         });
 }
 
-/// Whether the filter decides the pair, of which a vector holds copies.
-bool is_decided_in_float(const candidates& given, const posed_pair& p) {
-    std::array<std::array<std::array<float, aabb::simd::width>, 9>, 2> rows;
-    for (std::size_t row = 0; row < 9; ++row) {
-        rows[0][row].fill(p.s_in_float[static_cast<int>(row / 3)][static_cast<int>(row % 3)]);
-        rows[1][row].fill(p.image_of_t[static_cast<int>(row / 3)][static_cast<int>(row % 3)]);
-    }
-    return aabb::triangle_filter::decide(rows[0][0].data(), rows[1][0].data(), aabb::simd::width, given.error.at)
-               .undecided == 0;
-}
-
 }  // namespace
 
 void add_posed_triangle_benchmarks() {
-    add("filter_in_float", is_decided_in_float);
     add("filter_in_double", [](const candidates& given, const posed_pair& p) {
         return aabb::exact_triangle::intersects_if_certain(p.s_in_float, p.image_of_t, given.error).has_value();
     });

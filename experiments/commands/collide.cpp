@@ -195,7 +195,9 @@ void add_collide(const command_parser& program) {
     command.argument(
         "A", &request.a,
         "Mesh file (OFF, OBJ, PLY, STL, glTF), or a shape as in torus_knot:triangles=20000; :order=sah after a file, "
-        "or ,order=sah after the parameters of a shape, sorts its triangles by the leaves of a tree");
+        "or ,order=sah after the parameters of a shape, sorts its triangles by the leaves of a tree, so that pairs "
+        "have their new "
+        "numbers");
     command.optional_argument("B", &request.b, "The other mesh");
     command.option("--pose-a M", &request.poses[0],
                    "Pose of A: 12 numbers, the rows of [R t], separated by commas (default: the identity)");

@@ -67,8 +67,11 @@ void add_touching(const command_parser& command, bool* touching, const std::stri
             throw aabb::input_error(fmt::format("--touching is yes or no, not '{}'", text));
         *touching = text == "yes";
     };
-    command.option("--touching V", take,
-                   "no: leave out " + hits + " that only touch, in a point or along a segment (default yes)");
+    command.option(
+        "--touching V", take,
+        "no: leave out " + hits +
+            " that only touch, in a point or along a segment; those that cross, or overlap in a plane, stay (default "
+            "yes)");
 }
 
 }  // namespace aabblab

@@ -54,7 +54,8 @@ void add_order(const command_parser& program) {
     command.footer(
         "For such a mesh, the build file_order with the tree implicit:vertices=fetched stores boxes only, the smallest "
         "of eight triangles, in 1.2 bytes per triangle. collide, contacts and configs also accept FILE:order=BUILD and "
-        "SHAPE:triangles=N,order=BUILD, which need no file. Sorting again changes the order: builds depend on it.");
+        "SHAPE:triangles=N,order=BUILD, which need no file. Sorting twice gives another order, as builds depend on "
+        "it.");
 }
 
 }  // namespace aabblab

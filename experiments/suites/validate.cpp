@@ -145,10 +145,10 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     if (shown) {
         print(
             "exact: the same pairs as the ground truth; rejected: invalid input, rejected as\n"
-            "it must be; 91 exact: each of 91 methods is; -: not run, or no error;\n"
+            "it must be; 91 exact: each of 91 methods is; -: not run, or not wrong;\n"
             "flushed_, upward_: in a thread that flushes denormals to zero or rounds upward;\n"
-            "beyond_float exact: no pairs, as engines that compute in double may report;\n"
-            "near: a displacement of a millionth changes the result; other: no such reason;\n"
+            "beyond_float: engines in double may find no pairs instead, and count as exact;\n"
+            "wrong results: near: a displacement of a millionth changes them; other: it does\nnot;\n"
             "aabblab list engines explains engines\n\n");
         for (const named_table& t : report.tables)
             print(wrapped(t.caption) + "\n\n" + to_text(t.content, output_width()) + "\n");

@@ -143,7 +143,8 @@ draft c6_claim(const measurements& m) {
              std::string(frame_a_suffix));
     const std::pair<std::string, const char*> queries[] = {
         {"triangle_box", "whole queries that test a leaf's triangle, compared with those that test its stored box"},
-        {"triangle_aabb", "whole queries that compute a leaf's box and test that, compared with the same"},
+        {"triangle_aabb",
+         "whole queries that compute a leaf's box and test that, compared with those that test a stored box"},
         {"none", "whole queries that test only its parent's box, compared with the same"}};
     for (const condition& c : m.conditions_of("figure2"))
         for (const auto& [test, subject] : queries) {

@@ -252,8 +252,10 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
     out.paragraph(
         fmt::format(
             "\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and {} claims. C13 "
-            "is one of the method that it builds on (Li, Feng and Owen, \"SMB: collision detection based on temporal "
-            "coherence\", 2006). Only primary ratios decide verdicts. Broad phase means the paper's global search, "
+            "is of the method that the paper builds on (Li, Feng and Owen, \"SMB: collision detection based on "
+            "temporal "
+            "coherence\", 2006). Only primary ratios, listed below, decide verdicts. Broad phase means the paper's "
+            "global search, "
             "narrow phase its local detection; the scene brownian has drifting cubes; extents are edges of boxes. {}, "
             "{} size. Commit {}, {}, {}. {} rows of {} scenes, each with up to {} seeds; per composition and seed up "
             "to "

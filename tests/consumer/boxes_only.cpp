@@ -1,4 +1,4 @@
-// Boxes, composed at compile time: what it does not use is not in it.
+// Boxes, composed at compile time: unused parts are not compiled in.
 #include <cstdio>
 #include <vector>
 

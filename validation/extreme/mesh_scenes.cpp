@@ -183,7 +183,7 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
                                      [survey] { return cubes_apart(survey, 1e-9); }));
     scenes.push_back(scene_of_meshes("doubles_pressed", "two cubes of doubles that intersect by less than a float sees",
                                      [] { return cubes_apart({0.1, 0.2, 0.3}, -1e-12); }));
-    scenes.push_back(scene_of_meshes("flush_turned", "two cubes flush under one rotation", flush_turned));
+    scenes.push_back(scene_of_meshes("flush_turned", "two cubes face to face, at poses of one rotation", flush_turned));
     for (const auto& [name, far] : {std::pair{"moved_1e6", 1e6}, {"moved_1e9", 1e9}, {"moved_1e15", 1e15}})
         scenes.push_back(scene_of_meshes(name, "two intersecting spheres as far from the origin as the name says",
                                          [distance = far] { return balls_moved(distance); }));

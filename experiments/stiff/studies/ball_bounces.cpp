@@ -104,7 +104,8 @@ stiff_study ball_bounces_study() {
             "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring: without a dashpot for the errors, "
             "which are relative to the greatest depth and speed; with one, at dt·ω = 0.05 and k = 1e4 to 1e10 N/m, for "
             "the restitution, 0.5, and the contact time, from touching the floor to leaving it. Neither is measured "
-            "with symplectic_euler, whose error may be a step. adaptive_dormand_prince equals dormand_prince where one "
+            "with symplectic_euler, whose contact may end a step late. adaptive_dormand_prince equals dormand_prince "
+            "where one "
             "step meets its tolerance",
             "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²)), with "
             "ω = √(k/m) and the damping ratio ζ",
