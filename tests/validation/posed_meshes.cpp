@@ -31,25 +31,6 @@ void append(mesh& m, const mesh& other, const aabb::vec3f& at) {
     for (const auto& [p, q, r] : other.triangles) m.triangles.push_back({first + p, first + q, first + r});
 }
 
-mesh cube() {
-    mesh m{{},
-           {{0, 1, 3},
-            {0, 3, 2},
-            {4, 6, 7},
-            {4, 7, 5},
-            {0, 4, 5},
-            {0, 5, 1},
-            {2, 3, 7},
-            {2, 7, 6},
-            {0, 2, 6},
-            {0, 6, 4},
-            {1, 5, 7},
-            {1, 7, 3}}};
-    for (int i = 0; i < 8; ++i)
-        m.vertices.push_back({static_cast<float>(i >> 2), static_cast<float>(i >> 1 & 1), static_cast<float>(i & 1)});
-    return m;
-}
-
 /// Cubes that touch at edges, as in a chessboard of three layers.
 mesh lattice() {
     mesh m;
@@ -57,7 +38,7 @@ mesh lattice() {
         for (int y = 0; y < 3; ++y)
             for (int z = 0; z < 3; ++z)
                 if ((x + y + z) % 2 == 0)
-                    append(m, cube(), {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+                    append(m, aabb::unit_cube(), {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
     return m;
 }
 
@@ -94,7 +75,7 @@ mesh in_double(mesh m, double factor, double offset) {
 }
 
 const std::array<mesh, 10>& meshes() {
-    static const std::array<mesh, 10> all{cube(),
+    static const std::array<mesh, 10> all{aabb::unit_cube(),
                                           lattice(),
                                           gear(12),
                                           aabb::sphere(6),
@@ -102,7 +83,7 @@ const std::array<mesh, 10>& meshes() {
                                           ripples(6),
                                           tetrahedron(1),
                                           in_double(aabb::sphere(5), 0.1, 0),
-                                          in_double(cube(), 1, 3948995.7),
+                                          in_double(aabb::unit_cube(), 1, 3948995.7),
                                           in_double(gear(7), 1.0 / 3, 1e-3)};
     return all;
 }

@@ -315,22 +315,7 @@ TEST_CASE("what triangles at poses have in common equals what CGAL constructs, w
 }
 
 TEST_CASE("two cubes at poses intersect in the pairs that rational arithmetic finds, either way round") {
-    aabb::mesh cube{{},
-                    {{0, 1, 3},
-                     {0, 3, 2},
-                     {4, 6, 7},
-                     {4, 7, 5},
-                     {0, 4, 5},
-                     {0, 5, 1},
-                     {2, 3, 7},
-                     {2, 7, 6},
-                     {0, 2, 6},
-                     {0, 6, 4},
-                     {1, 5, 7},
-                     {1, 7, 3}}};
-    for (int i = 0; i < 8; ++i)
-        cube.vertices.push_back(
-            {static_cast<float>(i >> 2), static_cast<float>(i >> 1 & 1), static_cast<float>(i & 1)});
+    const aabb::mesh cube = aabb::unit_cube();
     std::ifstream file(AABBLAB_POSED_CUBES);
     int lines = 0;
     for (std::string line; std::getline(file, line);) {

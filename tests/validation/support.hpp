@@ -77,6 +77,26 @@ inline mesh sphere(std::uint32_t rings) {
     return m;
 }
 
+/// The cube from 0 to 1.
+inline mesh unit_cube() {
+    mesh m{{},
+           {{0, 1, 3},
+            {0, 3, 2},
+            {4, 6, 7},
+            {4, 7, 5},
+            {0, 4, 5},
+            {0, 5, 1},
+            {2, 3, 7},
+            {2, 7, 6},
+            {0, 2, 6},
+            {0, 6, 4},
+            {1, 5, 7},
+            {1, 7, 3}}};
+    for (int i = 0; i < 8; ++i)
+        m.vertices.push_back({static_cast<float>(i >> 2), static_cast<float>(i >> 1 & 1), static_cast<float>(i & 1)});
+    return m;
+}
+
 struct mesh_case {
     const char* name;
     mesh a;
