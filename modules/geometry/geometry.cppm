@@ -6,6 +6,7 @@ import aabb.std;
 
 export import :box;
 export import :boxd;
+export import :float_boxes;
 export import :index_pair;
 export import :intersection;
 export import :mesh;

@@ -165,8 +165,7 @@ private:
     }
 
     /// The box grown by the error of images: a box of images is rounded to nearest, which keeps overlaps with boxes of
-    /// floats only, not with triangles; and a true image may lie that far from its rounded one. Sums are rounded, so
-    /// twice the error.
+    /// floats only, not with triangles; and a true image may lie that far from its rounded one.
     [[nodiscard]] box grown(box b) const noexcept {
         for (int k = 0; k < 3; ++k) {
             if (image_error_[k] == 0) continue;

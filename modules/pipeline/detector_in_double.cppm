@@ -27,8 +27,6 @@ public:
         return pairs_;
     }
 
-    [[nodiscard]] const Detector& of_floats() const noexcept { return detector_; }
-
 private:
     Detector detector_;
     float_boxes floats_;
