@@ -5,6 +5,7 @@ module aabblab.errors;
 
 import aabb.pipeline;
 import aabb.registry;
+import aabb.truth;
 import aabblab.fmt;
 import aabblab.numbers;
 import aabblab.progress;
@@ -80,7 +81,8 @@ public:
     void run_batch(std::span<const aabb::triangle_pair<Real>> batch) {
         truth_.resize(batch.size());
         for (std::size_t i = 0; i < batch.size(); ++i)
-            truth_[i] = static_cast<std::uint8_t>(aabb::exactly_intersect(batch[i].a, batch[i].b));
+            truth_[i] =
+                static_cast<std::uint8_t>(aabb::judge_intersection({}, in_double(batch[i].a), in_double(batch[i].b)));
         results_.resize(batch.size());
         methods_.run_batch(
             batch.size(), [&](aabb::triangle_test& test) { test.intersect(batch, results_); },
@@ -245,7 +247,7 @@ std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint6
         aabb::triangle_pair<Real> p{};
         source.next({&p, 1});
         ++tried;
-        if (!aabb::exactly_intersect(p.a, p.b)) continue;
+        if (!aabb::judge_intersection({}, in_double(p.a), in_double(p.b))) continue;
         ++hits;
         batch.push_back({in_double(p.a), in_double(p.b)});
         if (batch.size() == hits_in_batch) flush();

@@ -34,8 +34,8 @@ struct method {
           "triangle moller:epsilon=scaled", "triangle moller_double"})
         methods.push_back(composed_with(test));
     for (const aabb::engine_info& engine : aabb::engines())
-        // brute_force uses the same triangle predicate as cgal, but is slower.
-        if (engine.collides_meshes && engine.name != "brute_force")
+        // These are slower, and decide as cgal does.
+        if (engine.collides_meshes && engine.name != "brute_force" && engine.name != "boost_integers")
             if (std::optional<candidate> tested = candidate_of(engine, /*meshes=*/true))
                 methods.push_back({engine.name, *std::move(tested)});
     return methods;

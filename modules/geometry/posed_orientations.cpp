@@ -122,7 +122,8 @@ template <class Corners, class Compute>
 auto compute_in(const Corners& corners, const Compute& compute) noexcept {
     if (const auto* const narrow = std::get_if<0>(&corners)) return compute(*narrow);
     if (const auto* const medium = std::get_if<1>(&corners)) return compute(*medium);
-    return compute(*std::get_if<2>(&corners));
+    if (const auto* const wide = std::get_if<2>(&corners)) return compute(*wide);
+    return compute(*std::get_if<3>(&corners));
 }
 
 }  // namespace
@@ -148,6 +149,8 @@ exact_corners::exact_corners(const std::array<posed_point, 6>& points) noexcept 
         corners_ = integers_of<3>(corners, unit);
     else if (bits <= 8 * 64)
         corners_ = integers_of<8>(corners, unit);
+    else if (bits <= 20 * 64)
+        corners_ = integers_of<20>(corners, unit);
     else
         corners_ = integers_of<68>(corners, unit);
 }

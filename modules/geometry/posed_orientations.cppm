@@ -31,7 +31,8 @@ struct rounded_coordinate {
 };
 
 /// The corners of two triangles in world coordinates, as integers of a common unit: exact for all finite vertices and
-/// poses. Three widths are enough: the least for meshes of floats and common poses, the greatest for all doubles.
+/// poses. Four widths are enough: the least for meshes of floats and common poses, the third if vertices or poses span
+/// the whole range of double, the greatest if both do.
 class exact_corners {
 public:
     explicit exact_corners(const std::array<posed_point, 6>& points) noexcept;
@@ -55,7 +56,7 @@ private:
     template <std::size_t Limbs>
     using corners_of = std::array<vec3<wide_integer<Limbs>>, 6>;
 
-    std::variant<corners_of<3>, corners_of<8>, corners_of<68>> corners_;
+    std::variant<corners_of<3>, corners_of<8>, corners_of<20>, corners_of<68>> corners_;
     int unit_ = 0;  // the exponent of the integers' unit
 };
 

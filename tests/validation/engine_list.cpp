@@ -29,7 +29,7 @@ TEST_CASE("engines are listed with what they can do") {
         REQUIRE(is_exact_engine(info.name) == info.exact);
     }
     REQUIRE(names == declared_names());
-    for (const char* always : {"brute_force", "cgal", "cgal_tree"})
+    for (const char* always : {"brute_force", "cgal", "cgal_tree", "boost_integers"})
         REQUIRE(std::ranges::find(names, always) != names.end());
 }
 

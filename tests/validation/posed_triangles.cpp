@@ -249,32 +249,32 @@ std::array<std::optional<bool>, 2> filtered(const pose_pair& poses, const aabb::
 
 }  // namespace
 
+// With RC_PARAMS=max_success=10000 in the environment, 10^6 pairs.
 TEST_CASE("exact tests decide triangles of meshes at poses as two judges do, in either order") {
     generator g(54);
     const aabb::exact_triangle exact;
     const aabb::interval_arithmetic_triangle intervals;
-    for (const pose_class& c : pose_classes) {
-        CAPTURE(c.name);
-        std::array<int, 2> results{};
-        int wrong = 0, wrong_intervals = 0, contradicted = 0;
-        for (std::size_t pattern = 0; pattern < triangle_pairs::patterns.size(); ++pattern)
-            for (int i = 0; i < 200; ++i) {
-                auto pair = triangle_pairs::of_type<double>(triangle_pairs::patterned(g, pattern));
-                const vertex_class& vertices = vertex_classes[static_cast<std::size_t>(i) % vertex_classes.size()];
-                pair = {mapped(pair.a, vertices), mapped(pair.b, vertices)};
-                const pose_pair poses = c.make(g);
-                const bool truth = aabb::intersect_in_integers(poses, pair.a, pair.b);
-                ++results[truth ? 1 : 0];
-                wrong += exact.intersects(poses, pair.a, pair.b) != truth;
-                wrong += exact.intersects({poses.b, poses.a}, pair.b, pair.a) != truth;
-                wrong_intervals += intervals.intersects(poses, pair.a, pair.b) != truth;
-                if (i % 10 == 0) contradicted += aabb::exactly_intersect(poses, pair.a, pair.b) != truth;
-            }
-        CHECK(wrong == 0);
-        CHECK(wrong_intervals == 0);
-        CHECK(contradicted == 0);
-        CHECK(results[0] > 0);
-        CHECK(results[1] > 0);
+    std::map<std::string_view, std::array<int, 2>> results;
+    REQUIRE(rc::check([&] {
+        const pose_class& c = pose_classes[*rc::gen::inRange<std::size_t>(0, pose_classes.size())];
+        const vertex_class& vertices = vertex_classes[*rc::gen::inRange<std::size_t>(0, vertex_classes.size())];
+        for (int i = 0; i < 100; ++i) {
+            const auto pattern = static_cast<std::size_t>(i) % triangle_pairs::patterns.size();
+            const auto pair = triangle_pairs::of_type<double>(triangle_pairs::patterned(g, pattern));
+            const triangle3d s = mapped(pair.a, vertices), t = mapped(pair.b, vertices);
+            const pose_pair poses = c.make(g);
+            const bool truth = aabb::intersect_in_integers(poses, s, t);
+            ++results[c.name].at(truth ? 1 : 0);
+            RC_ASSERT(aabb::exactly_intersect(poses, s, t) == truth);
+            RC_ASSERT(exact.intersects(poses, s, t) == truth);
+            RC_ASSERT(exact.intersects({poses.b, poses.a}, t, s) == truth);
+            RC_ASSERT(intervals.intersects(poses, s, t) == truth);
+        }
+    }));
+    CHECK(results.size() == pose_classes.size());
+    for (const auto& [name, decisions] : results) {
+        CAPTURE(name);
+        CHECK(std::ranges::min(decisions) > 0);
     }
 }
 
@@ -374,34 +374,55 @@ TEST_CASE("no filter at poses contradicts integers") {
     CHECK(std::ranges::min(decided) > 100);
 }
 
-TEST_CASE("around degenerate pairs, unit by unit in the last place, filters at poses agree with integers") {
+namespace {
+
+/// Moves a corner of degenerate pairs over a grid of 2n × 2n units of 2^-50: no stage contradicts integers.
+void check_around_degenerate_pairs(int n) {
     generator g(542);
-    std::array<std::uint64_t, 2> results{};
+    std::array<std::uint64_t, 4> decided{};  // by the filter in float, then that in double, then neither; hits
     for (const pose_class& c : pose_classes) {
         CAPTURE(c.name);
         std::uint64_t wrong = 0;
         for (std::size_t pattern = 1; pattern < triangle_pairs::patterns.size(); ++pattern) {
             const auto pair = triangle_pairs::of_type<double>(triangle_pairs::patterned(g, pattern));
             const pose_pair poses = c.make(g);
+            const aabb::mesh fixed = mesh_of(pair.a);
             triangle3d moved = pair.b;
             vec3d& corner = moved[triangle_pairs::integer(g, 0, 2)];
             const int x = triangle_pairs::integer(g, 0, 2), y = (x + 1) % 3;
-            // Coordinates are below 8, so that doubles hold these sums.
-            const auto step = [](double from, int units) { return from + units * 0x1p-50; };
             const double from_x = corner[x], from_y = corner[y];
-            for (int i = -32; i < 32; ++i)
-                for (int j = -32; j < 32; ++j) {
-                    corner[x] = step(from_x, i);
-                    corner[y] = step(from_y, j);
+            for (int i = -n; i < n; ++i)
+                for (int j = -n; j < n; ++j) {
+                    // Coordinates are below 8, so that doubles hold these sums.
+                    corner[x] = from_x + i * 0x1p-50;
+                    corner[y] = from_y + j * 0x1p-50;
                     const bool truth = intersect_by_integers(poses, pair.a, moved);
+                    const auto [in_float, in_double] = filtered(poses, fixed, mesh_of(moved));
+                    wrong += in_float.value_or(truth) != truth;
+                    wrong += in_double.value_or(truth) != truth;
                     wrong += aabb::exact_triangle::intersects(poses, pair.a, moved) != truth;
-                    ++results[truth ? 1 : 0];
+                    ++decided[in_float ? 0 : in_double ? 1 : 2];
+                    decided[3] += truth;
                 }
         }
         CHECK(wrong == 0);
     }
-    CHECK(results[0] > 10'000);
-    CHECK(results[1] > 10'000);
+    const auto pairs = static_cast<std::uint64_t>(4) * static_cast<std::uint64_t>(n * n) * pose_classes.size() *
+                       (triangle_pairs::patterns.size() - 1);
+    CAPTURE(decided, pairs);
+    CHECK(decided[2] > pairs / 10);
+    CHECK(decided[3] > pairs / 40);
+    CHECK(decided[3] < pairs - pairs / 40);
+}
+
+}  // namespace
+
+TEST_CASE("around degenerate pairs, unit by unit in the last place, no stage at poses contradicts integers") {
+    check_around_degenerate_pairs(16);
+}
+
+TEST_CASE("the same on grids of 256 by 256 units", "[.]") {
+    check_around_degenerate_pairs(128);
 }
 
 namespace {

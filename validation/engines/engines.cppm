@@ -62,5 +62,8 @@ struct library_test_info {
 }
 /// The same for triangles of meshes at poses: in world coordinates R v + t, computed exactly.
 [[nodiscard]] bool exactly_intersect(const pose_pair& poses, const triangle3d& s, const triangle3d& t);
+/// The same by a judge that shares no code with CGAL or a strategy: separating axes in integers of any size.
+/// @param s,t finite, as are the poses, whose matrices have full rank
+[[nodiscard]] bool intersect_in_integers(const pose_pair& poses, const triangle3d& s, const triangle3d& t);
 
 }  // namespace aabb

@@ -1,7 +1,5 @@
 module aabb.extreme;
 
-import aabb.engines;
-
 namespace aabb {
 
 namespace {
@@ -29,7 +27,7 @@ template <class Visit>
 void for_each_true_pair(const mesh& a, const mesh& b, const pose_pair& poses, Visit visit) {
     for (std::uint32_t t = 0; t < b.triangle_count(); ++t)
         for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
-            if (exactly_intersect(poses, a.given_triangle(s), b.given_triangle(t)) && visit(index_pair{s, t})) return;
+            if (judge_intersection(poses, a.given_triangle(s), b.given_triangle(t)) && visit(index_pair{s, t})) return;
 }
 
 /// The ground truth for two objects, by a double loop over their triangles.
@@ -79,7 +77,7 @@ exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query query) {
     const mesh& m = scene.meshes[0];
     for (std::uint32_t a = 0; a < m.triangle_count(); ++a)
         for (std::uint32_t b = a + 1; b < m.triangle_count(); ++b)
-            if (exactly_intersect(m.given_triangle(a), m.given_triangle(b))) truth.self_pairs.push_back({a, b});
+            if (judge_intersection({}, m.given_triangle(a), m.given_triangle(b))) truth.self_pairs.push_back({a, b});
     return truth;
 }
 
@@ -88,8 +86,8 @@ bool is_true_pair(const mesh_scene& scene, const exact_mesh_frame& frame, const 
     const mesh& a = scene.meshes[scene.mesh_of[objects.a]];
     const mesh& b = scene.meshes[scene.mesh_of[objects.b]];
     if (pair.a >= a.triangle_count() || pair.b >= b.triangle_count()) return false;
-    return exactly_intersect({frame.poses[objects.a], frame.poses[objects.b]}, a.given_triangle(pair.a),
-                             b.given_triangle(pair.b));
+    return judge_intersection({frame.poses[objects.a], frame.poses[objects.b]}, a.given_triangle(pair.a),
+                              b.given_triangle(pair.b));
 }
 
 }  // namespace aabb

@@ -12,6 +12,13 @@ double length_of(const vec3d& v) {
 
 }  // namespace
 
+bool judge_intersection(const pose_pair& poses, const triangle3d& s, const triangle3d& t) {
+    const bool intersect = exactly_intersect(poses, s, t);
+    if (intersect_in_integers(poses, s, t) != intersect)
+        throw std::logic_error("CGAL and integers disagree on a pair of triangles: one of them has a bug");
+    return intersect;
+}
+
 /// Chooses brute force for few boxes, since it has the least that can be wrong, and CGAL where that is too slow.
 ground_truth::ground_truth(std::size_t objects, const mesh_scene* meshes) : meshes_(meshes) {
     constexpr std::size_t brute_force_limit = 20000;
@@ -40,9 +47,15 @@ void ground_truth::compute(const scene_frame& frame) {
         boxes_->update(frame.boxes);
         boxes_->search(pairs_);
     } else {
-        for (std::uint32_t a = 0; a < frame.boxes_in_double.size(); ++a)
-            for (std::uint32_t b = a + 1; b < frame.boxes_in_double.size(); ++b)
-                if (frame.boxes_in_double[a].overlaps(frame.boxes_in_double[b])) pairs_.push_back({a, b});
+        // A sweep along x.
+        const std::span<const boxd> boxes = frame.boxes_in_double;
+        const auto low = [&](std::uint32_t object) { return boxes[object].min[0]; };
+        std::vector<std::uint32_t> by_low(boxes.size());
+        std::iota(by_low.begin(), by_low.end(), 0U);
+        std::ranges::sort(by_low, {}, low);
+        for (std::size_t i = 0; i < by_low.size(); ++i)
+            for (std::size_t j = i + 1; j < by_low.size() && low(by_low[j]) <= boxes[by_low[i]].max[0]; ++j)
+                if (boxes[by_low[i]].overlaps(boxes[by_low[j]])) pairs_.push_back(ordered_pair(by_low[i], by_low[j]));
     }
     std::ranges::sort(pairs_);
     if (!triangles_) return;

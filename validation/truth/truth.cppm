@@ -45,10 +45,10 @@ struct differences {
                                                  std::span<const index_pair> reported, const mesh& a,
                                                  const pose& pose_a, const mesh& b, const pose& pose_b);
 
-/// Do two triangles of meshes at poses share a point? A second judge, which shares no code with CGAL or a strategy: by
-/// separating axes, in integers of any size.
-/// @param s,t finite, as are the poses, whose matrices have full rank
-[[nodiscard]] bool intersect_in_integers(const pose_pair& poses, const triangle3d& s, const triangle3d& t);
+/// Do two triangles of meshes at poses share a point? By two judges that share no code: CGAL's exact kernel, and
+/// separating axes in integers.
+/// @throws std::logic_error if they disagree
+[[nodiscard]] bool judge_intersection(const pose_pair& poses, const triangle3d& s, const triangle3d& t);
 
 struct scene_frame {
     std::span<const box> boxes;   ///< of the objects, in world coordinates
