@@ -15,7 +15,9 @@ public:
     /// Removes all subsets: the frame is not partitioned.
     void clear() noexcept { starts_.resize(1); }
 
-    /// Copies the entries of sorted lists to all subsets that their boxes overlap, by a counting sort.
+    /// Copies the entries of sorted lists to all subsets that their boxes overlap, by a counting sort. With each copy
+    /// go the axes on which the box begins in the subset, so that only one subset reports a pair
+    /// (`partition_subset::owns`).
     /// @param axes axes whose lists are distributed; at least one
     /// @throws input_error if the partition makes more than 2^24 + 64 n copies of n objects
     template <CuttingPartition Partition, CounterPolicy Counters>
@@ -30,8 +32,8 @@ public:
             entries_[k].resize(starts_.back());
             next_.assign(starts_.begin(), starts_.end() - 1);
             for (const projection& p : scene.lists[k])
-                partition.for_each_subset(p.id, scene.boxes[p.id], [&](std::uint32_t s, axis_set owned) {
-                    entries_[k][next_[s]++] = {p.id, owned};
+                partition.for_each_subset(p.id, scene.boxes[p.id], [&](std::uint32_t s, axis_set begins_here) {
+                    entries_[k][next_[s]++] = {.id = p.id, .owned = begins_here};
                 });
             // The partition must return the same subsets of every box as when they were counted.
             assert(std::ranges::equal(next_, std::span(starts_).subspan(1)));

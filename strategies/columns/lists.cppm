@@ -211,12 +211,13 @@ private:
         }
     }
 
-    /// Sorts each column by exact keys with the sort policy. Each entry gets a bucket of its own, whose end is the
-    /// first entry that begins after it ends: a sweep stops there, as it does at the end of a shared bucket.
+    /// Sorts each column by exact keys with the sort policy. A sweep tests an entry against those after it, up to the
+    /// end of the bucket in which its box ends: `ends_[end_bucket]`. Before, a column is one bucket; now each entry
+    /// becomes its own bucket, which ends at the first entry that begins after the box ends.
     template <class Sort, CounterPolicy Counters>
     void sort_columns(Sort& sort, Counters& counters) {
         column_ends_.assign(ends_.begin(), ends_.begin() + plan_.columns());
-        ends_.resize(entries_.size() + width);
+        ends_.resize(entries_.size() + width);  // from here on by entry
         std::uint32_t begin = 0;
         for (const std::uint32_t end : column_ends_) {
             list_.clear();
@@ -234,7 +235,7 @@ private:
             for (std::uint32_t i = end; i < begin; ++i)
                 entries_[i].end_bucket = static_cast<std::uint32_t>(entries_.size());
         }
-        ends_[entries_.size()] = 0;  // of padding
+        ends_[entries_.size()] = 0;  // padding ends before every entry, so it overlaps none
     }
 
     [[nodiscard]] const box& box_of(const column_entry& e) const noexcept {

@@ -319,7 +319,8 @@ inline std::uint32_t kd_tree_partition::place_box(const box& b, std::uint32_t fr
     }
 }
 
-/// Compares the number of copies below each node with that at its construction, and collects the stale nodes.
+/// Compares the number of copies below each node with that at its construction, and collects the roots of the subtrees
+/// to rebuild.
 void kd_tree_partition::find_stale_nodes() {
     copies_below_.resize(nodes_.size());
     for (std::size_t at = nodes_.size(); at-- > 0;) {
@@ -328,10 +329,12 @@ void kd_tree_partition::find_stale_nodes() {
                                               : copies_below_[n.children[0]] + copies_below_[n.children[1]];
         if (n.initial_copies == unknown) n.initial_copies = copies_below_[at];
     }
+    // The cost of searching the leaves grows with this sum: if it has doubled, `fit` does not wait for the next frame.
     pairs_ = 0;
     for (const std::uint32_t copies : copies_in_leaf_) pairs_ += static_cast<double>(copies) * copies;
-    if (initial_pairs_ == 0) initial_pairs_ = pairs_;
+    if (initial_pairs_ == 0) initial_pairs_ = pairs_;  // the tree was just built
     stale_roots_.clear();
+    // A stale node is rebuilt from its parent, but the root has none.
     if (is_stale(0))
         stale_roots_.push_back(0);
     else

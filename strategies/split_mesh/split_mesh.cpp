@@ -10,20 +10,21 @@ namespace {
 constexpr std::uint32_t no_part = 0xffffffff;
 
 struct part {
-    mesh own_mesh;
+    mesh own_mesh;                         // with vertices of its own, as a model of the narrow phase
     std::vector<std::uint32_t> vertices;   // of the scene's mesh, by vertex of the part
     std::vector<std::uint32_t> triangles;  // the same for triangles
 };
 
-/// Copies the vertices of a part from the scene's mesh.
+/// Copies the vertices of a part from the scene's mesh: the floats, in the frame to which they are rounded, and the
+/// doubles that the user gave, which a mesh has only if they are not floats.
 void copy_vertices(const mesh& m, part& to) {
     to.own_mesh.frame = m.frame;
-    to.own_mesh.vertices.resize(to.vertices.size());
-    to.own_mesh.given.resize(m.given.empty() ? 0 : to.vertices.size());
-    for (std::size_t v = 0; v < to.vertices.size(); ++v) {
-        to.own_mesh.vertices[v] = m.vertices[to.vertices[v]];
-        if (!m.given.empty()) to.own_mesh.given[v] = m.given[to.vertices[v]];
-    }
+    const auto copy = [&to](const auto& of_mesh, auto& of_part) {
+        of_part.resize(of_mesh.empty() ? 0 : to.vertices.size());
+        for (std::size_t v = 0; v < of_part.size(); ++v) of_part[v] = of_mesh[to.vertices[v]];
+    };
+    copy(m.vertices, to.own_mesh.vertices);
+    copy(m.given, to.own_mesh.given);
 }
 
 /// Copies triangles of a mesh, with the vertices that they use in the same order, to a mesh of their own.

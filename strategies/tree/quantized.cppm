@@ -78,8 +78,9 @@ public:
         const auto bounds_at = [&](const child& c) {
             return c.is_leaf ? bounds_of(m.triangle(c.index)) : boxes[box_index(c.index)];
         };
-        // The reverse pass is bottom-up, but cannot see where nodes of different sizes begin: a node's box holds the
-        // offset of its first byte until it is computed.
+        // The reverse pass is bottom-up, but cannot see where nodes begin, since a node above two leaves takes fewer
+        // bytes than others. None takes fewer than `pair_bytes`, so at most one begins in each such block: the block's
+        // number is that of the node's box, which holds the offset of its first byte in the block until it is computed.
         boxes.assign(box_index(bytes_.size()) + 1, empty_box());
         for (std::size_t at = 0; at < bytes_.size(); at += size_at(at))
             boxes[box_index(at)].min[0] = static_cast<float>(at % pair_bytes);
@@ -91,7 +92,7 @@ public:
         root_ = bytes_.empty() ? bounds_of(m.triangle(0)) : boxes[0];
         // The forward pass decodes parents before their children and replaces exact boxes by decoded ones.
         for (std::size_t at = 0; at < bytes_.size(); at += size_at(at)) {
-            if (is_pair(at)) continue;
+            if (is_above_two_leaves(at)) continue;  // it stores no planes, only triangles
             const auto [left, right] = children_at(at);
             const auto decoded = encode(at, boxes[box_index(at)], bounds_at(left), bounds_at(right));
             if (!left.is_leaf) boxes[box_index(left.index)] = decoded[0];
@@ -136,9 +137,9 @@ private:
         return value;
     }
     void set_word(std::size_t at, std::uint32_t value) noexcept { std::memcpy(&bytes_[at], &value, sizeof value); }
-    [[nodiscard]] inline bool is_pair(std::size_t at) const noexcept { return word(at) & pair_bit; }
+    [[nodiscard]] inline bool is_above_two_leaves(std::size_t at) const noexcept { return word(at) & pair_bit; }
     [[nodiscard]] inline std::size_t size_at(std::size_t at) const noexcept {
-        return is_pair(at) ? pair_bytes : record_bytes();
+        return is_above_two_leaves(at) ? pair_bytes : record_bytes();
     }
     [[nodiscard]] inline unsigned symbol_at(std::size_t at) const noexcept {
         return std::to_integer<unsigned>(bytes_[at + symbol_offset]);

@@ -40,6 +40,7 @@ public:
         const lanes<double> beyond = coordinates(error) * (1 + 0x1p-50);
         if (bits((s_low - t_high > beyond) | (t_low - s_high > beyond)) != 0) return false;
         Signs signs(s_in_double, t_in_double, lesser(s_low, t_low), greater(s_high, t_high), error);
+        // A sign that the error could change counts as a hit, so only hits may be uncertain.
         if (!near_intersects(s_in_double, t_in_double, signs)) return false;
         return signs.unsure() ? std::nullopt : std::optional(true);
     }
