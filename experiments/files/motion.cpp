@@ -41,11 +41,11 @@ public:
             const auto frame = in_.integer<std::uint32_t>("the number of a frame");
             const auto object = in_.integer<std::uint32_t>("the number of an object");
             advance_to_frame(frame);
-            require_first_pose(object);
+            note_pose_in_frame(object);
             steps_.push_back({frame, object, read_pose(in_)});
         }
         if (steps_.empty()) in_.fail_at_end("before the first pose");
-        if (frame_ == 0) require_all_objects();
+        if (frame_ == 0) require_all_objects();  // later frames have required them when frame 0 ended
         return std::move(steps_);
     }
 
@@ -69,8 +69,8 @@ private:
         objects_ = placed_.size();
     }
 
-    /// Notes that an object has a pose in the current frame, which must be its first one there.
-    void require_first_pose(std::uint32_t object) {
+    /// Notes that an object has a pose in the current frame, which must not have another, and must be in frame 0.
+    void note_pose_in_frame(std::uint32_t object) {
         if (object >= most) in_.fail(fmt::format("an object is a number below {}, not {}", most, object));
         if (frame_ == 0 && object >= placed_.size()) placed_.resize(object + 1, 0);
         if (object >= placed_.size()) in_.fail("frame 0 has no pose of object " + std::to_string(object));

@@ -135,10 +135,13 @@ experiment open_experiment(const std::string& config, bool quick) {
     return e;
 }
 
+/// On a scene of meshes, every engine runs: one that only searches boxes or only collides meshes gets the default
+/// composition for the other stage. External engines read recordings of boxes.
 std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& scene_name) {
     std::vector<std::string> sentences;
     for (const aabb::engine_info& engine : aabb::engines())
-        if (std::ranges::find(e.engines, engine.name) != e.engines.end() && !candidate_of(engine, has_meshes(scene)))
+        if (std::ranges::find(e.engines, engine.name) != e.engines.end() && !has_meshes(scene) &&
+            !engine.searches_boxes)
             sentences.push_back(engine.name + " does not run on " + scene_name + ": it does not search boxes");
     for (const external_engine& engine : e.externals)
         if (has_meshes(scene))

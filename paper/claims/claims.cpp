@@ -8,12 +8,14 @@ namespace aabblab {
 namespace {
 
 /// Decides a family of endpoints by Holm's correction (1979); outcomes on which machines disagree are undecided.
+/// @param band as in `tails_of`: ratios from 1 / (1 + band) to 1 + band count as no difference
 void decide_family(std::span<endpoint* const> endpoints, double band) {
     if (endpoints.empty()) return;
     for (std::size_t machine = 0; machine < endpoints.front()->log_ratios.size(); ++machine) {
         std::vector<tested> evidence;
         for (const endpoint* e : endpoints)
-            evidence.push_back({e->expected.value_or(expectation::less), tails_of(e->log_ratios[machine], band)});
+            // `drafts_of` has set what each endpoint expects: its own expectation, or else its claim's.
+            evidence.push_back({e->expected.value(), tails_of(e->log_ratios[machine], band)});
         const std::vector<double> levels = levels_together(evidence);
         for (std::size_t i = 0; i < endpoints.size(); ++i) {
             endpoint& e = *endpoints[i];

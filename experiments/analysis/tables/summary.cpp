@@ -21,7 +21,7 @@ void add(std::optional<Number>& sum, const std::optional<Number>& value) {
 
 /// Adds what does not vary between the repeats of a seed: pairs and errors to sums, bytes to maxima, counts to means.
 /// @param share the weight of the seed in means over the seeds
-void add_seed(const row& r, double share, candidate_summary& summary) {
+void add_untimed(const row& r, double share, candidate_summary& summary) {
     summary.pairs += r.candidates;
     add(summary.contacts, r.contacts);
     add(summary.false_negatives, r.false_negatives);
@@ -47,9 +47,10 @@ candidate_summary summary_of(std::span<const row* const> repeats) {
     candidate_summary summary;
     summary.name = repeats[0]->name;
     summary.repeats = repeats.size();
-    std::map<std::optional<std::uint64_t>, const row*> seeds;  // each with its first row: repeats differ in times only
-    for (const row* r : repeats) seeds.emplace(r->scene.seed, r);
-    for (const auto& [seed, r] : seeds) add_seed(*r, 1 / static_cast<double>(seeds.size()), summary);
+    // Repeats of a seed differ only in times: its first row has its pairs, errors, bytes and counts.
+    std::map<std::optional<std::uint64_t>, const row*> first_rows;  // by seed
+    for (const row* r : repeats) first_rows.emplace(r->scene.seed, r);
+    for (const auto& [seed, r] : first_rows) add_untimed(*r, 1 / static_cast<double>(first_rows.size()), summary);
     std::vector<double> times, builds;
     for (const row* r : repeats)
         if (const std::optional<double> ms = ms_per_frame(*r)) {
