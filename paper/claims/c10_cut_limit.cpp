@@ -23,17 +23,18 @@ draft c10_claim(const measurements& m) {
         .claim = {.claim = "More than one cut through a box on an axis is not worth its cost",
                   .measured =
                       "time per frame of axial_cut with its limit over that without, where the limit changes the cut",
-                  .lead = "With segments widened until none lies inside a box, compared with all segments requested",
+                  .lead = "With segments widened until none lies inside a box, compared with segments not widened",
                   .experiments = {"c10"}},
         .primary = {{{"span", "0.5"}, {"huge", "10"}}}};
     for (const condition& c : m.conditions_of("c10"))
         for (const std::string segments : {"auto", "32"}) {
             if (!limit_changes_cut(c, segments)) continue;
             const bool is_mixed = value_of(c.scene(), "scene") == "mixed_sizes";
-            c10.add(endpoint_of(c, with_limit("on", segments), with_limit("off", segments), "frame_cpu_ms",
-                                {{"segments", segments}}),
-                    std::string(is_mixed ? "boxes of mixed sizes" : "huge boxes") +
-                        (segments == "auto" ? ", automatic number of segments" : ", 32 segments requested"));
+            c10.add(
+                endpoint_of(c, with_limit("on", segments), with_limit("off", segments), "frame_cpu_ms",
+                            {{"segments", segments}}),
+                std::string(is_mixed ? "on boxes of mixed sizes" : "on huge boxes") +
+                    (segments == "auto" ? " with the automatic number of segments" : " with 32 segments requested"));
         }
     c10.claim.figures.push_back(log_log(
         "c10",

@@ -44,7 +44,8 @@ draft c1_claim(const measurements& m) {
     const std::vector<const condition*> large = matching(conditions, {{"scene", "brownian"}, {"objects", "10000"}});
     for (const condition* c : of_all_sizes) add(*c, "on drifting boxes", "objects");
     for (const condition* c : large)
-        if (!matches(c->scene(), drifting)) add(*c, "on 10,000 drifting boxes at other displacements", "displacement");
+        if (!matches(c->scene(), drifting))
+            add(*c, "on 10,000 drifting boxes at displacements other than 0.1", "displacement");
     // Both compositions with the paper's three lists, each sorted and swept.
     for (const condition& c : m.conditions_of("three_lists"))
         c1.add(endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),

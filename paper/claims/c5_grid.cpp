@@ -115,14 +115,15 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
     for (const auto& [label, size, text] : {std::tuple{"cells of 2", "2", "cells of two box edges"},
                                             {"cells chosen anew", "auto", "the automatic cell size"}}) {
         const selection tested = grid(size);
-        const std::string subject = fmt::format("a grid with {}, the smallest world compared with the largest", text);
+        const std::string subject =
+            fmt::format("a grid with {}, in the smallest world compared with the largest", text);
         add(std::string("time of a grid over that of axial_cut, ") + label + ", small world over large", subject,
             small.log_ratios(tested, cut, measured("frame_cpu_ms")),
             large.log_ratios(tested, cut, measured("frame_cpu_ms")), quantity::relative_time, expectation::less);
         add(std::string("bytes of a grid, ") + label + ", small world over large", subject, small.logs(tested, bytes),
             large.logs(tested, bytes), quantity::bytes, expectation::less);
     }
-    add("bytes of axial_cut, large world over small", "the cut, the largest world compared with the smallest",
+    add("bytes of axial_cut, large world over small", "the cut, in the largest world compared with the smallest",
         large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 

@@ -145,7 +145,7 @@ draft c6_claim(const measurements& m) {
         {"triangle_box", "whole queries that test a leaf's triangle, compared with those that test its stored box"},
         {"triangle_aabb",
          "whole queries that compute a leaf's box and test that, compared with those that test a stored box"},
-        {"none", "whole queries that test only its parent's box, compared with the same"}};
+        {"none", "whole queries that test only the box of a leaf's parent, compared with those that test the leaf's"}};
     for (const condition& c : m.conditions_of("figure2"))
         for (const auto& [test, subject] : queries) {
             endpoint ratio = endpoint_of(c, {{kind::tree, "leafless:leaf_test=" + test}}, {{kind::tree, "canonical"}},

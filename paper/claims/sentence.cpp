@@ -14,7 +14,7 @@ constexpr double equality_threshold = 1.1;
 
 /// In the order of `quantity`; empty where labels name the quantity.
 std::string noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "ratio of its time to the cut's"};
+    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "ratio of the grid's time to the cut's"};
     return nouns[static_cast<std::size_t>(compared)];
 }
 
