@@ -28,12 +28,17 @@ std::string option_names(aabb::stage stage) {
 }  // namespace
 
 void method_options::add_to(const command_parser& command, const std::string& replaced) {
+    const bool has_meshes = std::ranges::find(stages_, aabb::stage::local_detection) != stages_.end();
     for (const aabb::stage stage : stages_)
-        for (const aabb::strategy_kind kind : kinds_of(stage))
+        for (const aabb::strategy_kind kind : kinds_of(stage)) {
+            std::vector<std::string> names;
+            for (const aabb::strategy_info& strategy : aabb::strategies(kind))
+                if (has_meshes || strategy.needs_meshes.empty()) names.push_back(strategy.name);
             command.option(fmt::format("--{} S", name_of(kind)), &values_[kind],
-                           fmt::format("One of {} (default: {}); parameters: NAME:parameter=value", listed_names(kind),
-                                       default_text(kind)));
-    command.option("--engine E", &engine_, "Reference engine instead of " + replaced);
+                           fmt::format("One of {} (default: {}); parameters: NAME:parameter=value",
+                                       fmt::join(names, ", "), default_text(kind)));
+        }
+    command.option("--engine E", &engine_, "Engine such as cgal instead of " + replaced);
     command.footer("aabblab list shows every strategy with its parameters.");
 }
 

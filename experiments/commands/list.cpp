@@ -176,7 +176,7 @@ void add_list(const command_parser& program) {
     command.flag("--json", &request.json, "Print the list as JSON");
     command.footer(
         "prepare … sweep: strategies of the broad phase\nbuild … triangle: strategies of the narrow phase\n"
-        "engines: reference systems\nlibrary_tests: triangle tests of engines, for classify and errors\n"
+        "engines: other libraries, and brute force\nlibrary_tests: triangle tests of engines, for classify and errors\n"
         "integrators: time integration methods of validate stiff\nscenes: generated or recorded scenes\n"
         "shapes: generated meshes\npairs: classes of generated triangle pairs, for errors\n"
         "recorded: groups of columns that a run records\nmetrics: quantities computed from these columns");

@@ -185,9 +185,9 @@ table measures_table(const scene_measures& m) {
     table measured = empty_table({"measured", ""});
     const auto add = [&](const char* name, const std::string& value) { measured.rows.push_back({name, value}); };
     add("objects", grouped(m.objects));
-    add("frames", m.frames > frames_measured
-                      ? fmt::format("{}; this table is measured in the first {}", grouped(m.frames), frames_measured)
-                      : grouped(m.frames));
+    add("frames", m.frames > frames_measured ? fmt::format("{}; this table is measured in frames 0 to {}",
+                                                           grouped(m.frames), frames_measured - 1)
+                                             : grouped(m.frames));
     if (m.present != m.objects) add("present", grouped(m.present) + " of them in the first frame");
     if (m.triangles) add("triangles", grouped(*m.triangles) + " in the meshes");
     const auto& o = m.boxes.overlaps;

@@ -95,7 +95,8 @@ std::vector<std::string> faster_at_other_lengths(const race_result& race) {
             parts.push_back(fmt::format("{} about {:.0f} frames, {} would be faster", is_fewer ? "below" : "above",
                                         is_fewer ? low : high, faster->name));
     }
-    if (parts.empty()) parts.emplace_back("no other candidate is shown to be faster with fewer or more frames");
+    if (parts.empty())
+        parts.emplace_back("by these times, no other candidate is shown to be faster for fewer or more frames");
     return parts;
 }
 

@@ -177,7 +177,7 @@ std::string heading_of(const scene_summary& scene) {
         text += "ms/frame: the mean wall time per frame after frame 0, the median over repeats\n";
     if (any_has(scene, &candidate_summary::bytes)) text += "KiB: memory after the last frame, without meshes\n";
     if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
-        text += "95 %: - if there are too few repeats, seeds or processes for an interval\n";
+        text += "95 %: - if repeats, seeds or processes are too few; the baseline needs two\n";
     return text;
 }
 
