@@ -25,7 +25,7 @@ class balanced_order_builder {
 public:
     balanced_order_builder(const mesh& m, axis_rule rule) : mesh_(m), rule_(rule) {
         const std::size_t n = m.triangles.size();
-        memory_.resize(2 * n);
+        memory_.resize(2 * n);  // for two arrays: each split moves items from one to the other
         items_ = {std::span(memory_).first(n), std::span(memory_).last(n)};
         bin_of_item_.resize(n);
         order_.triangles.resize(n);

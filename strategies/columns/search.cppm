@@ -192,7 +192,8 @@ public:
         collect_counters(counters);
     }
 
-    /// Appends the overlapping pairs, by the way that `update` chose.
+    /// Appends the overlapping pairs: those of an earlier frame if nothing has moved since, or else by brute force, in
+    /// columns over the whole scene, or in groups of columns, as `update` chose.
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         for (worker& w : workers_) w.own.times.clear();
         if (is_static_) {
@@ -207,7 +208,7 @@ public:
         else
             search_groups(pairs);
         collect_counters(counters);
-        static_frame_.keep(boxes_, std::span(pairs).subspan(before));
+        static_frame_.keep(boxes_, std::span(pairs).subspan(before));  // for a next frame in which nothing moves
     }
 
     /// The plan of the last frame that was cut: the grid of groups if there are groups, else the columns.
@@ -317,8 +318,10 @@ private:
 
     /// Puts the boxes into groups, cache-sized regions of the scene that `search` cuts into columns one after the
     /// other. If groups are not worthwhile, as for few boxes, cuts all boxes into columns at once.
+    /// @param needs_plan whether the plan kept from earlier frames no longer suits the scene
     /// @returns whether all boxes are valid.
     [[nodiscard]] bool cut_boxes(bool needs_plan, Counters& counters) {
+        // `put_into_groups` calls it, too, if the kept groups have become too full.
         const auto make_plan = [&] {
             plan_age_ = 0;
             kept_plan planned = workers_.front().own.make_plan(partition_, present_, everywhere);

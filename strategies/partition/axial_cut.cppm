@@ -186,8 +186,9 @@ private:
         }
     }
 
-    /// Axes in descending variance of centres, with a bonus for axes that are cut already. The only swept axis comes
-    /// last, except for axes without variance.
+    /// Axes in descending variance of centres, with a bonus for axes that are cut already, so that nearly equal ones do
+    /// not alternate from frame to frame. If only one axis is swept, it comes last but for axes without variance: the
+    /// sweep separates boxes along it anyway.
     [[nodiscard]] std::array<int, 3> axes_by_variance(const spread& along, axis_set swept) const {
         std::array<int, 3> order{0, 1, 2};
         const auto varies = [&](int k) { return along.variance[k] > 0; };

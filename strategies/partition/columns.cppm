@@ -278,6 +278,7 @@ private:
             const simd::words across = simd::broadcast(plan.across[0] | plan.across[1] << 16);
             lower = plan.quantized(ends[u], u) | plan.quantized(ends[v], v) << 16;
             upper = plan.quantized(ends[3 + u], u) | plan.quantized(ends[3 + v], v) << 16;
+            // A column's number is the coordinate, a fraction of 2^16, times the number of columns across.
             first = simd::high_products(lower, across);
             last = simd::high_products(upper, across);
             begin = plan.quantized(ends[plan.axis], plan.axis) >> (16 - bucket_bits);

@@ -169,7 +169,10 @@ inline constexpr double worth_a_list = 0.9;
     return certain * frames_left > 2 * static_cast<double>(listed);
 }
 
-/// The plan with the least cost per frame, or the longest within 1% of it, since motion may be underestimated.
+/// The plan of a Verlet list with the least cost per frame, or the longest within 1% of it, since motion may be
+/// underestimated. A list that serves more frames is made less often, but needs a greater margin, so that it has more
+/// pairs to test in each.
+/// @param worth a list must cost less than this share of a search per frame
 [[nodiscard]] inline list_plan plan_list(const list_estimate& estimate, double worth = worth_a_list,
                                          const cost_model& cost = machine_costs()) {
     constexpr double as_little = 1.01;
@@ -177,7 +180,7 @@ inline constexpr double worth_a_list = 0.9;
     const auto n = static_cast<double>(estimate.boxes);
     list_plan best;
     const std::size_t frames_left = estimate.horizon.frames_left;
-    if (estimate.law.age() == 0 || frames_left < 2) return best;
+    if (estimate.law.age() == 0 || frames_left < 2) return best;  // no motion is known, or there is no frame to serve
     const double search = cost_of_search(n, estimate.listed_pairs(0), cost);
     const double exponent = estimate.law.exponent();
     // Numbers of served frames after the one that makes the list: 1, 2, 3, 4, 6, 8, 12, …, up to all remaining frames.

@@ -92,7 +92,8 @@ struct plane_motion {
     return (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2;
 }
 
-/// The margins by which the earlier boxes must grow to contain the later ones, apart from a common shift.
+/// The margins by which the earlier boxes must grow to contain the later ones, apart from a common shift. If planes
+/// move between `least` and `most`, a shift by the middle of this range leaves half of it as margin.
 [[nodiscard]] inline relative_motion motion_of(const plane_motion& motion) noexcept {
     relative_motion moved{};
     for (int k = 0; k < 3; ++k) {

@@ -181,7 +181,8 @@ private:
         splits_.clear();
     }
 
-    /// Cuts the boxes of divided objects: the first piece takes the place of its object, the others their slots.
+    /// Cuts the boxes of divided objects into grids of pieces, the boxes of the inner search: the first piece takes the
+    /// place of its object, the others their slots, which follow the objects.
     void make_pieces(std::span<const box> boxes, double longest) {
         pieces_.assign(boxes.begin(), boxes.end());
         pieces_.resize(boxes.size() + object_of_slot_.size(), box{});

@@ -10,8 +10,9 @@ struct fitting {
     scene_fit fit;
 };
 
-/// Finds the first strategy of a kind that states to serve the scene. Of kinds that are compiled together, considers
-/// only the strategy in the composition, since another might be rejected beside the others.
+/// Finds the first strategy of a kind whose rule (`fit`) says that it serves the scene. Of kinds that are compiled
+/// together, considers only the strategy in the composition, since another might be rejected beside the others.
+/// @returns its name and reason; if none serves the scene, no name, and the reason of the last that was considered
 fitting fitting_of(strategy_kind kind, const composition& completed, const scene_traits& scene) {
     fitting last;
     for (const strategy_info& info : strategies(kind)) {
@@ -73,6 +74,7 @@ composition complete_composition(const named_strategies& named) {
 }
 
 /// Selects, for each kind that depends on the scene and is not named, the strategy that serves it, or the default.
+/// @param completed has a strategy of every kind, by which the selected ones are judged
 void select_for_scene(composition& completed, const named_strategies& named, const scene_traits& scene) {
     scene_traits traits = scene;
     for (const strategy_kind kind : strategy_kinds) {

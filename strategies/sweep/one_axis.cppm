@@ -30,7 +30,8 @@ public:
         return axis_set{1} << axis_;
     }
 
-    /// Copies the boxes of a sorted list with permuted axes, and tests those that overlap on the swept axis.
+    /// Copies the boxes of a sorted list with permuted axes, and tests those that overlap on the swept axis. Lower ends
+    /// on the other axes are negated, so that one comparison of vectors, a <= b, tests both axes.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         const auto& list = subset.lists[static_cast<std::size_t>(axis_)];

@@ -40,11 +40,12 @@ public:
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         const auto& list = subset.lists[static_cast<std::size_t>(swept_axis_)];
         if (list.size() < 2) return;
-        rank_boxes(subset, subset.lists[static_cast<std::size_t>(kept_axis_)]);
+        rank_boxes(subset, subset.lists[static_cast<std::size_t>(kept_axis_)]);  // a rank is the place in this list
         std::uint64_t tests = 0;
         for (const auto& e : list) {
             tests += test_and_activate<Subset>(rank_[e.id]);
-            if (pair_count_ > pairs_per_append) append_pairs(pairs);
+            if (pair_count_ > pairs_per_append)
+                append_pairs(pairs);  // pairs are buffered, to be written without branches
         }
         append_pairs(pairs);
         counters.add(work::box_tests, tests);

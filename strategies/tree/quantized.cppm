@@ -166,7 +166,8 @@ private:
         return decode_siblings(parent, planes_.decode(parent, &bytes_[at + codes_offset]), symbol_at(at));
     }
 
-    /// Writes the planes of a node's children and the symbol, except its leaf flags. @returns their decoded boxes.
+    /// Writes the six planes that only one of a node's two children has, as codes relative to the node's box, and the
+    /// symbol, which says which child has each; its leaf flags stay. @returns the children's decoded boxes.
     std::array<box, 2> encode(std::size_t at, const box& parent, const box& left, const box& right) noexcept {
         sibling_planes planes{};
         auto symbol = static_cast<std::uint8_t>(symbol_at(at));

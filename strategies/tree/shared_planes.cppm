@@ -43,7 +43,8 @@ public:
         root_ = nodes[0].bounds;
     }
 
-    /// Recomputes all boxes bottom-up, and encodes their planes anew.
+    /// Recomputes all boxes bottom-up, and encodes the planes of each two siblings anew. A node's symbol says which
+    /// child has which of these planes (the other child inherits its parent's), and which children are leaves.
     void refit(const mesh& m, std::vector<box>& boxes) {
         boxes.resize(nodes_.size());
         const auto bounds_at = [&](std::size_t parent, std::size_t side) {

@@ -236,7 +236,7 @@ export namespace aabb::simd {
 #else
     std::uint64_t met = 0;
     for (std::size_t j = 0; j < 8; ++j) {
-        auto row = load_eight<eight_floats>(a) <= b[24 + j];
+        auto row = load_eight<eight_floats>(a) <= b[24 + j];  // repeated for k = 0, but gives the flags their type
         for (std::size_t k = 0; k < 3; ++k)
             row &= (load_eight<eight_floats>(a + 8 * k) <= b[24 + 8 * k + j]) &
                    (load_eight<eight_floats>(a + 24 + 8 * k) >= b[8 * k + j]);

@@ -133,6 +133,8 @@ private:
     }
 
     /// Descends to the pair of children with the nearest centres, and postpones the other overlapping pairs.
+    /// @param step the number of steps from the roots, which determines the heights of both nodes
+    /// @param nodes the indices of both nodes within their levels; changed to those of the nearest pair
     /// @returns whether any pair overlaps
     template <class Counters>
     [[nodiscard]] inline bool descend_to_nearest(const Tree& a, const Tree& b, std::size_t step, node_pair& nodes,
@@ -141,14 +143,15 @@ private:
         const wide_node& node_a = a.level(steps_[step].a - 1)[nodes.a];
         const wide_node& node_b = b.level(steps_[step].b - 1)[nodes.b];
         counters.add(work::box_tests, std::uint64_t{node_a.children} * node_b.children);
-        const eight_boxes& boxes = images_.of(node_b);
+        const eight_boxes& boxes = images_.of(node_b);  // of B's children, in A's frame
         const std::uint64_t mask = node_a.planes.overlaps(node_a.grid(), boxes);
         if (mask == 0) return false;
         const auto [first, second] = find_two_nearest(mask, node_a, boxes);
         const bool opens_a = steps_.opens_a(step);
         const bool opens_b = steps_.opens_b(step);
-        // A step opens the higher node, or both. All pairs 8 j + i of children are tested, but a node that is not
-        // opened stays in place of its children: its bits, i or j, are cleared, so that several pairs become one.
+        // A step opens the higher node, or both. The masks have pairs 8 j + i: child i of A's node, child j of B's. All
+        // are tested, but a node that is not opened stays in place of its children: its bits, i or j, are cleared, so
+        // that several pairs become one.
         const std::uint32_t opened_bits = (opens_a ? 7U : 0U) | (opens_b ? 7U << 3U : 0U);
         const node_pair first_children{opens_a ? children * nodes.a : nodes.a, opens_b ? children * nodes.b : nodes.b};
         const std::uint32_t nearest = first & opened_bits;
@@ -176,7 +179,8 @@ private:
         postponed_steps_ |= bit(step);
     }
 
-    /// Pops the next pair of the step's most recent entry, and drops the entry if it has no other.
+    /// Pops a pair of nodes from the step's most recent entry, the pairs (bits of a mask) of children of two nodes.
+    /// Drops the entry if it has no other pair.
     [[nodiscard]] inline node_pair pop(std::size_t step) noexcept {
         postponed_stack& stack = stacks_[step];
         postponed_children& entry = stack.entries[stack.size - 1];

@@ -101,6 +101,7 @@ private:
             std::copy_n(&a_[row][done], simd::width, a_[row].data());
             std::copy_n(&b_[row][done], simd::width, b_[row].data());
         }
+        // Origins refer to pairs of leaves by index: those before the first one that is still needed are dropped, too.
         const std::uint32_t first = origin_[done] >> pair_bits;
         simd::store(origin_.data(), simd::load(&origin_[done]) - (first << pair_bits));
         leaf_pairs_ -= first;
