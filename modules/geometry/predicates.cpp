@@ -158,7 +158,7 @@ public:
     [[nodiscard]] vec3i operator()(const vec3d& p) noexcept {
         vec3i truncated;
         for (int k = 0; k < 3; ++k) {
-            const double steps = p[k] * factor_[k] * second_factor_[k];
+            const double steps = p[k] * factor_[k] * second_factor_[k];  // one factor might overflow
             truncated[k] = static_cast<std::int64_t>(steps);
             is_exact_ &= static_cast<double>(truncated[k]) == steps;
             // A coordinate that underflows to zero steps is inexact.
@@ -254,7 +254,8 @@ int exact_side(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) n
     return volume_sign(normal, p, steps.is_exact(), sign) ? sign : volume_of(a, b, c, d).sign();
 }
 
-/// The `exact_side` of each corner of `s`, with the grid and the normal of `t` computed only once.
+/// The `exact_side` of each corner of `s`, with the grid and the normal of `t` computed only once: in integers, or by
+/// an exact sum of products if truncation to the grid leaves a sign uncertain.
 corner_sides exact_sides(const triangle3d& s, const triangle3d& t) noexcept {
     grid steps{&s[0], &s[1], &s[2], &t[0], &t[1], &t[2]};
     const vec3i origin = steps(t[0]);

@@ -182,7 +182,8 @@ public:
     void insert(std::uint32_t id) { objects_.insert(id); }
     void remove(std::uint32_t id) { objects_.remove(id); }
 
-    /// Passes the boxes of a frame to the partition's search, which also validates them.
+    /// Passes the boxes of a frame to the partition's search, which also validates them. After an exception the frame
+    /// does not count as taken, so that `search` rejects it.
     void update(std::span<const box> boxes) {
         frame_.begin();
         require_ieee_arithmetic();

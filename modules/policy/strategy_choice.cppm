@@ -30,7 +30,7 @@ struct strategy_choice {
     return text;
 }
 
-/// The inverse of `to_text`.
+/// The inverse of `to_text`: parses "name" or "name:parameter=value,parameter=value".
 /// @throws input_error on a setting without "=".
 [[nodiscard]] inline strategy_choice parse_strategy(std::string_view text) {
     const std::size_t colon = text.find(':');

@@ -97,18 +97,19 @@ private:
         return pairs.front();
     }
 
-    /// Collides A's scene with that of B in A's frame, and tests the triangles whose boxes overlap.
+    /// Collides A's scene with that of B in A's frame, which is kept while neither pose changes, and tests the
+    /// triangles whose boxes overlap.
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
             q.b.transformed.build(quality_, *q.b.source,
                                   transformed_vertices(*q.a.source, q.pose_a, *q.b.source, q.pose_b, q.b.bounds),
                                   embree_bytes_);
         });
-        const std::size_t known = pairs.size();
+        const std::size_t known = pairs.size();  // pairs of earlier queries
         pair_collector collected{pairs};
         rtcCollide(q.a.local.get(), q.b.transformed.get(), collect, &collected);
         require_success(embree_device());
-        collected.require_memory();
+        collected.require_memory();  // the callback must not throw within Embree, so it only records that it failed
         // Tested only after the search, during which Embree may flush denormals.
         const devillers_guigue_triangle test;
         const std::span<const triangle3f> of_a = q.a.local.triangles();
