@@ -118,6 +118,7 @@ void add_maps(std::vector<figure>& figures, const std::vector<atlas_scene>& atla
 std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas) {
     std::vector<figure> figures;
     add_maps(figures, atlas, /*among=*/"");
+    // Columns win nearly everywhere: a second set of maps compares the others.
     if (const auto others = without_columns(atlas); !others.empty())
         add_maps(figures, others, " of the candidates without columns");
     figures.push_back(regret_figure(atlas));

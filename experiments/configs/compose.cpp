@@ -195,7 +195,7 @@ std::string label_of(const node& methods, const error_curve& curve) {
 /// Reads one [compose], several [[compose]], each of which multiplies separately, or "auto".
 /// @param compose null if the config has none
 void read_compositions(const document& doc, const node* compose, experiment& e) {
-    static const node nothing{};
+    static const node nothing{};  // an empty table composes the defaults
     unique_list<aabb::composition> list;
     const auto add = [&](const node& table) {
         doc.require_table("compose", table);

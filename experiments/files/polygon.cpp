@@ -197,13 +197,17 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
     const vec3d& t2 = corners_[b.next].p;
     const auto [low_x, high_x] = std::minmax({t0[x], t1[x], t2[x]});
     const auto [low_y, high_y] = std::minmax({t0[y], t1[y], t2[y]});
+    // The edge pq has a point inside the triangle: no side has both of its ends beyond it, and its line separates
+    // corners.
     const auto enters = [&](const vec3d& p, const vec3d& q) {
         const auto is_beyond = [&](const vec3d& s, const vec3d& t) { return turn(s, t, p) <= 0 && turn(s, t, q) <= 0; };
         if (is_beyond(t0, t1) || is_beyond(t1, t2) || is_beyond(t2, t0)) return false;
         const std::array<int, 3> sides = {turn(p, q, t0), turn(p, q, t1), turn(p, q, t2)};
         return std::ranges::min(sides) < 0 && std::ranges::max(sides) > 0;
     };
-    // The winding number at a point of the triangle next to t1, on the edge to t0: signed crossings of the ray.
+    // The winding number at a point of the triangle next to t1, on the edge to t0: signed crossings of the ray. An edge
+    // crosses the ray if it lies below the point and, half-open, spans its place in the order of `precedes`. If it
+    // passes through t1, the other corners tell on which side of it the point lies.
     const bool is_right_of_corner = precedes(t1, t0);
     int winding = 0;
     const auto count_below = [&](const vec3d& p, const vec3d& q) {

@@ -220,11 +220,12 @@ std::size_t compare_numbers(const shared_scene& scene, const rows_by_scene& a, c
         for (const scene_key& seed : scene.seeds) {
             const rows_by_scene::repeats& of_a = a.of(seed, scene.names[i]);
             const rows_by_scene::repeats& of_b = b.of(seed, scene.names[i]);
+            // All repeats of a seed have the same counts and bytes.
             if (!of_a.empty() && !of_b.empty())
                 by_seed.emplace_back(numbers_of(*of_a.front()), numbers_of(*of_b.front()));
         }
         for (std::size_t k = 0; !by_seed.empty() && k < by_seed[0].first.size(); ++k) {
-            changed_number sums{labels[i], by_seed[0].first[k].first};
+            changed_number sums{labels[i], by_seed[0].first[k].first};  // over the seeds that both have
             bool is_compared = false, differs = false;
             for (const auto& [of_a, of_b] : by_seed) {
                 const std::optional<std::uint64_t>& before = of_a[k].second;

@@ -290,6 +290,7 @@ private:
             if (drawing_.labels[i].text.empty()) continue;
             const shown_series& s = drawing_.panels.front().lines[i];
             const auto last = std::ranges::max_element(s.points, {}, &figure_point::x);
+            // A level is a horizontal line across the whole figure.
             if (!s.is(series_style::level) && (!s.is_joined() || drawing_.x.place(last->x) < near_edge)) return {};
             ends.push_back({&drawing_.labels[i], lines_of(drawing_.labels[i].text, end_label_length),
                             drawing_.y.place(last->y) * plot_height_});

@@ -108,6 +108,7 @@ void set_labels(scene_summary& scene) {
     std::vector<candidate_name> names;
     for (const candidate_summary& summary : scene.candidates) names.push_back(summary.name);
     scene.differing = differing_kinds(names);
+    // Any composition will do: they all share what does not differ. Only engines have a name in `engine`.
     const auto composition = std::ranges::find(names, "", &candidate_name::engine);
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         if (composition == names.end() || std::ranges::find(scene.differing, kind) != scene.differing.end()) continue;

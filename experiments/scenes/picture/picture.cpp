@@ -225,7 +225,7 @@ frame_drawing drawing_of(const picture_data::frame& frame) {
     drawing.overlapping_pairs = overlapping_pairs.size();
     drawing.overlapping.resize(frame.boxes.size());
     for (const auto [a, b] : overlapping_pairs) drawing.overlapping[a] = drawing.overlapping[b] = 1;
-    drawing.huge = sort_by_size(drawing.drawn_objects, frame.boxes);
+    drawing.huge = sort_by_size(drawing.drawn_objects, frame.boxes);  // the number of huge ones, which come first
     sample(drawing.drawn_objects, drawing.huge);
     if (drawing.huge > most_outlined) drawing.huge = 0;  // more outlines would hide the rest
     return drawing;
