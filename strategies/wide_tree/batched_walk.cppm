@@ -61,6 +61,7 @@ public:
         queue_.clear();
         const auto test_pair = [&](const front_pair& p, const triangle_block& block_a, const triangle_block& block_b) {
             queue_pairs(a.tree(), b.tree(), p, block_a, block_b);
+            // If any pair will do, waiting for a full queue would read more leaves than necessary.
             return (any_pair || queue_.is_full()) && queue_.test_queued(test, any_pair, triangles_at, emit);
         };
         if (!leaves.for_each_pair(a, b, to_a, pairs, leaf_pairs_.reader(), test_pair))
@@ -202,7 +203,7 @@ private:
             to.make_room();
             const std::uint32_t node_a = batch_a[pair];
             const std::uint32_t node_b = batch_b[pair];
-            if (kind == query_kind::one_mesh && node_a == node_b) mask &= each_pair_once;
+            if (kind == query_kind::one_mesh && node_a == node_b) mask &= each_pair_once;  // children i <= j
             const std::uint64_t to_open = steps_.pairs_to_open(step, mask);
             const std::uint32_t first_a = opens_a ? children * node_a : node_a;
             const std::uint32_t first_b = opens_b ? children * node_b : node_b;

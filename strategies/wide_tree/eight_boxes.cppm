@@ -56,7 +56,7 @@ struct quantized_aabbs {
         const auto on_grid = [&](std::size_t k, const eight_boxes::row& x) {
             return simd::load_eight<simd::eight_floats>(x.data()) * grid.scale[k] - grid.offset[k];
         };
-        std::uint64_t mask = ~std::uint64_t{0} >> (64U - 8U * others.count);
+        std::uint64_t mask = ~std::uint64_t{0} >> (64U - 8U * others.count);  // the rows of boxes that exist
         for (std::size_t k = 0; k < 3; ++k)
             mask &= simd::pairs_no_greater(lower[k].data(), simd::whole_bytes(on_grid(k, others.upper[k]))) &
                     simd::pairs_no_greater(upper[k].data(), simd::whole_bytes(255 - on_grid(k, others.lower[k])));

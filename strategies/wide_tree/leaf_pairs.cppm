@@ -40,8 +40,9 @@ public:
     }
 
     /// Passes on, in order, the pairs of leaves whose triangles may intersect: their boxes overlap, and triangles of A
-    /// enter the slab of B's leaf. Each test runs over many pairs before the next one starts, which avoids branch
-    /// mispredictions, and writes to its own list, which avoids store-to-load stalls.
+    /// enter the slab of B's leaf, the space between two planes around its triangles. Each test runs over many pairs
+    /// before the next one starts, which avoids branch mispredictions, and writes to its own list, which avoids
+    /// store-to-load stalls.
     /// @param take called with the index of a pair, its leaves, and a mask of pairs of triangles (bit 8 j + i for
     /// triangle i of A's leaf and j of B's); returns whether to stop
     template <class Counters, class Take>
@@ -68,7 +69,8 @@ public:
     }
 
     /// Passes on, in order, the pairs of leaves whose triangles may lie within the margin of each other: by their boxes
-    /// and by the slabs of both leaves. `take` gets the index of a pair and a mask (bit 8 j + i).
+    /// and by the slabs of both leaves, each the space between two planes around a leaf's triangles. `take` gets the
+    /// index of a pair and a mask (bit 8 j + i for triangle i of A's leaf and j of B's).
     template <class Counters, class Take>
     [[nodiscard]] bool for_each_within_margin(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                               std::span<const std::uint32_t> leaves_a,
@@ -144,8 +146,9 @@ private:
         std::uint64_t mask;
     };
 
-    /// Reads the leaves of one group of pairs at a time, keeps the pairs with overlapping triangle boxes, filters them
-    /// by `filter` and passes on the rest. The vertex lists of the next group are prefetched meanwhile.
+    /// Reads the leaves of one group of pairs at a time, which all fit into the caches, keeps the pairs with
+    /// overlapping triangle boxes, filters them by `filter` and passes on the rest. The vertex lists of the next group
+    /// are prefetched meanwhile.
     /// @returns whether `take` stopped the loop
     template <class Counters, class Filter, class Take>
     [[nodiscard]] inline bool for_each_group(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
@@ -184,6 +187,7 @@ private:
             const read_leaf& leaf_b = cache_b_[leaves_b[begin]];
             counters.add(work::box_tests, std::uint64_t{leaf_a.block.triangles} * leaf_b.block.triangles);
             std::uint64_t mask = leaf_a.boxes.overlaps(leaf_b.boxes);
+            // With many overlaps, the grid may be too coarse for these leaves.
             if (options_.rejects_by_exact_boxes || std::popcount(mask) > many_overlaps)
                 mask &= float_overlaps(leaf_a, leaf_b);
             overlapping_[count] = {begin, mask};

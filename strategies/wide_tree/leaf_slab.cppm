@@ -11,7 +11,8 @@ export namespace aabb {
 /// it is much thinner than their boxes. A triangle outside intersects none of them.
 class leaf_slab {
 public:
-    /// Fits the slab to a leaf, inflated by the errors of all heights; it stays infinite if arithmetic could overflow.
+    /// Fits the slab to a leaf: the range of its corners' heights along the mean normal, inflated by the errors of all
+    /// heights. It stays infinite if arithmetic could overflow.
     /// @param edges extents of a box around the leaf's vertices and all that are compared with the slab
     /// @param margin by which the slab is inflated along each axis
     void fit(const triangle_block& block, const std::array<float, 3>& edges, float margin = 0) noexcept {

@@ -88,6 +88,7 @@ public:
                 step = below == 0 ? leaves : step + static_cast<std::size_t>(std::countr_zero(below));
             }
             if (postponed_steps_ == 0) return;
+            // If this step has no postponed pairs, the walk goes on with those of the deepest step that has some.
             if ((postponed_steps_ & bit(step)) == 0)
                 step = static_cast<std::size_t>(std::bit_width(postponed_steps_)) - 1;
             nodes = pop(step);

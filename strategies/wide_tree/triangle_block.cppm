@@ -54,7 +54,7 @@ private:
     inline void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
                      Change change) noexcept {
         triangles = static_cast<std::uint32_t>(std::min(width, m.triangles.size() - width * leaf));
-        if (list.count == 0) return load_from_mesh(m, tree, leaf, change);
+        if (list.count == 0) return load_from_mesh(m, tree, leaf, change);  // it has more vertices than a list takes
         const auto eight_from = [&](std::size_t first) __attribute__((always_inline)) {
             std::array<const float*, width> from;
             for (std::size_t i = 0; i < width; ++i) from[i] = m.vertices[list.vertices[first + i]].at;

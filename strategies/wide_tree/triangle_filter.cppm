@@ -37,7 +37,8 @@ public:
         const simd::floats x = extent_of(s, t, 0) + 2 * e;
         const simd::floats y = extent_of(s, t, 1) + 2 * f;
         const simd::floats z = extent_of(s, t, 2) + 2 * g;
-        // 2^-18 XYZ is 64 u XYZ, which exceeds 46 u XYZ; the last term exceeds what underflow adds.
+        // The error of a determinant of differences is at most 46 u XYZ, u = 2^-24, which 2^-18 XYZ exceeds; the second
+        // term bounds what errors of B's corners add, and the last one what underflow adds.
         const error_bound error(0x1p-18F * (x * y * z) + 12.5F * (e * (y * z) + f * (x * z) + g * (x * y)) +
                                 0x1p-140F * (x + y + z + 1));
 
