@@ -58,7 +58,8 @@ private:
         std::uint32_t buckets;  ///< offset to the bucket in the first column
     };
 
-    /// Quantizes the boxes, counts them by bucket and lists copies, in blocks that stay in the L1 cache meanwhile.
+    /// Quantizes the boxes, counts them by bucket and lists copies, in blocks that stay in the L1 cache meanwhile. The
+    /// counts are in `ends_`; `allocate_columns` turns them into start indices, and `write_entries` these into ends.
     [[nodiscard]] fill_result count_boxes(std::size_t most_copies) {
         quantized_.resize(block_.boxes.size() + width);
         copies_.clear();
@@ -131,7 +132,7 @@ private:
             const auto add = [&](std::uint32_t u, std::uint32_t v, std::uint32_t times) {
                 const std::uint32_t buckets = u * buckets_of_column + v * buckets_of_row;
                 buffer[n] = {i | (u ? begins_earlier[0] : 0) | (v ? begins_earlier[1] : 0), buckets};
-                n += times;
+                n += times;  // 0 or 1: if 0, the next copy overwrites this one
                 ends_[b.bucket + buckets * times] += times;
             };
             if (nu <= 1 && nv <= 1) {
@@ -195,6 +196,7 @@ private:
         else
             write_entries([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_mask; });
     }
+    /// Until its entries are written, `ends_` has the index of each bucket's next entry.
     /// @param group_bits returns the bits of `begins_earlier` that box i has in its group
     template <class GroupBits>
     void write_entries(GroupBits group_bits) {

@@ -166,7 +166,7 @@ private:
                 ends[static_cast<std::size_t>(k)][count] = b.min[k];
                 ends[static_cast<std::size_t>(3 + k)][count] = b.max[k];
             }
-            if (count % 2 == 0) seen.keep(b);
+            if (count % 2 == 0) seen.keep(b);  // half of them, for estimates from pairs of boxes
             seen.add_extents(b);
             ++count;
         }

@@ -32,7 +32,7 @@ public:
                        std::uint32_t& ids_drawn) {
         --left_;
         const unsigned age = motion_sample::longest - std::min(left_, motion_sample::longest);  // of the sample, or 0
-        if (std::has_single_bit(age) && !move_too_far_) {
+        if (std::has_single_bit(age) && !move_too_far_) {                                       // at ages 1, 2, 4 and 8
             estimate.law.observe(age, sample_.least_motion(boxes, objects));
             const list_plan plan = plan_list(estimate);
             if (plan.frames > 1) {

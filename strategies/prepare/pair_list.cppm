@@ -81,7 +81,8 @@ public:
         return uncertain_;
     }
 
-    /// Moves the certain pairs, which overlap by more than two margins, out of those that each frame tests.
+    /// Moves the certain pairs out of those that each frame tests: they overlap by more than two margins, so that they
+    /// still do while no box has moved by more than the margin.
     /// @param kept the boxes from which the list was made
     void mark_certain_pairs(std::span<const box> kept, double margin) {
         const float depth = certain_depth(margin);

@@ -42,7 +42,7 @@ public:
         find_splits(boxes, longest);
         boxes_ = boxes;
         frame_.change([&] {
-            if (first_slot_ != boxes.size()) drop_pieces();
+            if (first_slot_ != boxes.size()) drop_pieces();  // ids of pieces follow those of objects
             first_slot_ = static_cast<std::uint32_t>(boxes.size());
             assign_slots();
         });

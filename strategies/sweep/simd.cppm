@@ -22,6 +22,7 @@ public:
         return axis_set{1} << longest_.choose(boxes, objects);
     }
 
+    /// Sweeps the sorted list as a single column.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         const auto& list = subset.lists[static_cast<std::size_t>(longest_.axis())];
@@ -32,7 +33,9 @@ public:
         sweep(block, pairs, /*most_tests=*/std::numeric_limits<std::uint64_t>::max(), counters);
     }
 
-    /// Sweeps columns, a vector of entries at a time.
+    /// Sweeps columns, a vector of entries at a time: tests it against the active entries, which begin before it and
+    /// have not ended, and against itself. Pairs whose quantized boxes overlap are candidates, which are tested exactly
+    /// later.
     /// @param most_tests the sweep stops early after this many vector tests
     /// @returns the number of vector tests
     template <CounterPolicy Counters>
@@ -116,7 +119,9 @@ private:
         candidate_count_ += simd::compress_store(&met_[candidate_count_], overlapped | vector << width, any);
     }
 
-    /// Tests the active entries against the vector, and updates the active entries.
+    /// Tests the active entries against the vector, and updates the active entries. Of the lanes that an entry
+    /// overlaps, only those before the entry's end count.
+    /// @param number the number of the vector, and `first` the index of its first entry
     /// @returns the number of entries that stay active beyond the vector
     [[nodiscard]] std::size_t test_active(const column_block& block, const vector_of_entries& vector,
                                           std::uint32_t number, std::size_t first, std::size_t active) noexcept {

@@ -35,7 +35,7 @@ public:
     explicit subdivided_sweep(const config& c) : config_(c) {}
 
     /// Updates the lists and pairs to a frame. Restarts with a new grid if more than half of the objects are new, or
-    /// their number has doubled or halved, or no steps are left.
+    /// their number has doubled or halved, or the update has taken as many steps as a restart, so that none are left.
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         if (boxes.size() > most_interval_objects)
@@ -91,6 +91,7 @@ private:
         const double along = (double{x} - origin_[k]) * per_unit_[k];
         return static_cast<std::uint16_t>(std::clamp(along, 0.0, static_cast<double>(count_[k] - 1)));
     }
+    /// The regions that a box overlaps, along the two axes that the grid cuts.
     [[nodiscard]] region_range range_of(const box& b) const noexcept {
         region_range range;
         for (std::size_t k = 0; k < 2; ++k) {
@@ -134,7 +135,8 @@ private:
         touched_.clear();
     }
 
-    /// Updates lists and pairs to the frame, and stops early when no steps are left.
+    /// Updates lists and pairs to the frame: moves objects into and out of the lists of regions, then sorts those of
+    /// all regions with moved objects. Stops early when no steps are left, of which `spend` takes some.
     template <class Sort, CounterPolicy Counters>
     void update_lists(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         moved_.assign(boxes.size(), 0);
@@ -157,7 +159,8 @@ private:
         touched_.clear();
     }
 
-    /// Removes an object from a region. No swap reports pairs that end because of this, so they are tested here.
+    /// Removes an object from a region's lists. Pairs normally end when two ends swap in a list, but here the object's
+    /// ends are gone: those of its pairs that overlapped in the last frame (`before_`) are tested.
     template <CounterPolicy Counters>
     void leave_region(std::uint32_t r, std::uint32_t id, std::span<const box> boxes, Counters& counters) {
         spend(regions_[r].ends[0].size());
