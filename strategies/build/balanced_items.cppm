@@ -165,7 +165,7 @@ public:
 
     /// The surface-area cost of a split into the items in the mask and the others: the sum of area times number.
     [[nodiscard]] inline double cost_of(std::uint64_t mask) const noexcept {
-        // Padding goes to the side of the last item.
+        // Padding repeats the last item, so that it enlarges no box on that item's side.
         const std::uint64_t fill = count_ < most && (mask >> (count_ - 1) & 1) != 0 ? ~std::uint64_t{0} << count_ : 0;
         std::array<std::array<eight_floats, 6>, 2> sides;
         for (auto& side : sides) side.fill(eight_floats{} + std::numeric_limits<float>::infinity());
@@ -216,7 +216,8 @@ private:
         }
     }
 
-    /// Counts the items before each and moves none. `Vectors`, enough for all, is constant to keep them in registers.
+    /// Sets the bits of items with fewer than `number` items before them: counts these and moves none. `Vectors`,
+    /// enough for all, is constant to keep them in registers.
     template <std::size_t Vectors>
     [[nodiscard]] inline std::uint64_t mask_by_vectors(std::int16_t number, std::size_t axis) const noexcept {
         if constexpr (Vectors * lanes < most)

@@ -19,7 +19,7 @@ public:
 
     /// Lays out internal nodes and leaves in two arrays, and encodes the planes of each two siblings.
     void pack(std::span<const build_node> nodes) {
-        const std::size_t internals = nodes.size() / 2;
+        const std::size_t internals = nodes.size() / 2;  // a binary tree of n leaves has n - 1
         nodes_.assign(internals, {});
         symbols_.assign(internals, 0);
         leaves_.clear();
@@ -32,7 +32,7 @@ public:
         }
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             if (nodes[i].is_leaf()) continue;
-            const std::array children{i + 1, std::size_t{nodes[i].right}};
+            const std::array children{i + 1, std::size_t{nodes[i].right}};  // nodes are in preorder
             for (std::size_t side = 0; side < 2; ++side) {
                 nodes_[packed[i]].child[side] = packed[children[side]];
                 if (nodes[children[side]].is_leaf()) symbols_[packed[i]] |= leaf_flag(side);

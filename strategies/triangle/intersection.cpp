@@ -135,7 +135,9 @@ public:
 
     [[nodiscard]] intersection_kind kind() const { return kind_; }
 
-    /// Computes the coordinates, with the error bound that is derived at `intersection_of`.
+    /// Computes the coordinates, with the error bound that is derived at `intersection_of`. A crossing from a corner to
+    /// itself is that corner; one without an axis is that of an edge with a plane; any other is that of two coplanar
+    /// edges, in the projection along the axis.
     [[nodiscard]] triangle_intersection in_coordinates(auto& corners) const {
         triangle_intersection result;
         result.kind = kind_;
@@ -402,7 +404,7 @@ triangle_intersection intersection_of(const pose_pair& poses, const triangle3d& 
     require_ieee_arithmetic();
     if (!orientation_test<posed_orientations>::intersects(poses, s, t)) return {};
     world_corners corners(poses, s, t);
-    const common_part common = construction(corners).common();
+    const common_part common = construction(corners).common();  // decided by exact signs, without coordinates
     corners.round();
     return common.in_coordinates(corners);
 }

@@ -86,7 +86,8 @@ private:
         return epsilon * extent * std::sqrt(double{dot(normal, normal)});
     }
 
-    /// Signed distances of the corners from a plane, times the length of its normal.
+    /// Signed distances of the corners from a plane, times the length of its normal; those below the limit become 0.
+    /// @param on_plane a point of the plane
     [[nodiscard]] static std::array<Real, 3> distances(const triangle3<Real>& s, const vec3<Real>& on_plane,
                                                        const vec3<Real>& normal, double zero_below) noexcept {
         const Real offset = -dot(normal, on_plane);

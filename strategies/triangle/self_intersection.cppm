@@ -142,6 +142,7 @@ private:
         return own.size == 1 || has_area(s) || segment_meets(first, first, t) || segment_meets(last, last, t);
     }
 
+    /// Whether the segment, or the point if both ends are equal, has a point in common with the triangle.
     [[nodiscard]] static bool segment_meets(const vec3d& p, const vec3d& q, const triangle3d& t) noexcept {
         const triangle3d edge{{p, q, q}};
         signs_of signs(edge, t);
