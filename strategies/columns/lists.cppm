@@ -196,7 +196,7 @@ private:
         else
             write_entries([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_mask; });
     }
-    /// Until its entries are written, `ends_` has the index of each bucket's next entry.
+    /// `ends_` has the index of each bucket's next entry, and in the end that behind its last.
     /// @param group_bits returns the bits of `begins_earlier` that box i has in its group
     template <class GroupBits>
     void write_entries(GroupBits group_bits) {

@@ -27,8 +27,8 @@ public:
     static constexpr std::string_view summary =
         "keeps the overlapping pairs between frames and follows the swaps of insertion sort";
 
-    /// Updates the lists and pairs to a frame: by the swaps of insertion sort, each of which may begin or end an
-    /// overlap. Once these have taken as many steps as a restart would (`steps_left_`), sorts and sweeps from scratch.
+    /// Updates the lists and pairs to a frame: by the swaps of insertion sort, which begin and end overlaps. Once these
+    /// have taken as many steps as a restart would (`steps_left_`), sorts and sweeps from scratch.
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         if (boxes.size() > most_interval_objects)

@@ -136,7 +136,7 @@ private:
     }
 
     /// Updates lists and pairs to the frame: moves objects into and out of the lists of regions, then sorts those of
-    /// all regions with moved objects. Stops early when no steps are left, of which `spend` takes some.
+    /// all regions with moved objects. Stops early when `spend` has taken the last step.
     template <class Sort, CounterPolicy Counters>
     void update_lists(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         moved_.assign(boxes.size(), 0);

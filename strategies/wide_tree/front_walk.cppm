@@ -37,10 +37,10 @@ public:
     }
 
 private:
-    /// Tests only the pairs of the front, the pairs of leaves within a margin at an earlier pose. They include all that
-    /// meet now while B has moved by no more than the margin; a new front is made if that is worth its cost. Otherwise
-    /// walks from the roots. A query for any one pair tries the last hit first, and builds a front only if none is
-    /// found.
+    /// Tests only the pairs of the front, the pairs of leaves within a margin at an earlier pose. They include every
+    /// pair that meets now while B has moved by no more than the margin; a new front is made if that is worth its cost.
+    /// Otherwise walks from the roots. A query for any one pair tries the last hit first, and builds a front only if
+    /// none is found.
     template <class Emit>
     void find_pairs_with_front(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                walk_goal goal, const Emit& emit) {
