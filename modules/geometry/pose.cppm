@@ -214,6 +214,8 @@ private:
     using lanes = double __attribute__((vector_size(32)));  // x, y, z and an unused lane
     static constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
 
+    /// Sets the map of images, x -> Rᴬ⁻¹ (Rᴮ x + between), as its factors and as their product, turn x + shift, for
+    /// vertices and boxes, and bounds the rounding errors of both. The scales of frames are put into the matrices.
     void set(pose a, pose b, const box& bounds, const vertex_frame& frame_a, const vertex_frame& frame_b) {
         double between_error = 0;
         between_ = translation_between(a, frame_a.origin, b, frame_b.origin, between_error);

@@ -54,6 +54,7 @@ public:
         require_valid(boxes);
         boxes_ = boxes;
         axis_set swept = 0;
+        // An exception in here leaves lists half updated, so that the search takes no more frames.
         frame_.change([&] {
             lists_.settle(objects_);
             objects_.settle();
@@ -88,6 +89,7 @@ public:
         if constexpr (cuts)
             for (std::uint32_t s = 0; s < subsets_.size(); ++s)
                 sweep_.sweep(subsets_.subset(s, boxes_), pairs, counters_);
+        // Without a partition, or if it made a single subset, the whole scene is swept.
         if (subsets_.size() == 0) sweep_.sweep(lists_.all(boxes_), pairs, counters_);
         guard.keep();
     }
@@ -138,6 +140,7 @@ public:
         require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());
         require_valid(boxes);
+        // An exception in here leaves lists half updated, so that the search takes no more frames.
         frame_.change([&] {
             sweep_.update(boxes, objects_, sort_, counters_);
             objects_.settle();

@@ -88,7 +88,9 @@ protected:
 /// Sweeps a list of ends for all pairs with at least one new object.
 class interval_sweep {
 public:
-    /// Inserts the overlapping pairs of a sorted list of ends, except those of two known objects.
+    /// Inserts the overlapping pairs of a sorted list of ends, except those of two known objects: sweeps the list and
+    /// tests each object that begins against the active ones, which have begun and not ended. `active_[0]` has the
+    /// known ones, `active_[1]` the new ones, in any order.
     /// @returns the number of tested pairs
     std::uint64_t find(std::span<const interval_end> list, std::span<const box> boxes, pair_set& pairs, auto is_new) {
         std::uint64_t tests = 0;

@@ -123,7 +123,8 @@ private:
         return image_;
     }
 
-    /// The box of a child of B's node in A's frame. A leaf without a box uses its parent's or its triangle's.
+    /// The box of a child of B's node in A's frame. A leaf without a box uses its parent's, or its triangle's, grown by
+    /// the error of the triangle's image.
     template <class Frame>
     [[nodiscard]] box bounds_in_a(const model<Tree>& b, const Frame& to_a, const cursor& child, const box& parent) {
         if constexpr (!Tree::has_leaf_boxes)

@@ -93,6 +93,7 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return walk_.bytes(); }
 
 private:
+    /// Walks in A's frame, or in B's if B leaves the range of float in A's.
     template <class Emit>
     void walk(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, walk_goal goal,
               Emit emit) {

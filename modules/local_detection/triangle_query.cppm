@@ -29,7 +29,9 @@ public:
         return intersects_unfiltered(pair_of, s, t);
     }
 
-    /// The same for pairs that a filter has left undecided.
+    /// Tests a pair that a filter has left undecided: with the vertices and poses as given, if the floats in A's frame
+    /// are rounded and the test can.
+    /// @param pair_of returns the indices of the triangles
     template <class PairOf>
     [[nodiscard]] inline bool intersects_unfiltered(const PairOf& pair_of, const triangle3f& s,
                                                     const triangle3f& t) const {

@@ -23,7 +23,7 @@ public:
                 if (is_present(id)) ids_.push_back(id);
             objects_.settle();
         }
-        frame_.change([&] { take_boxes(boxes, ids_); });
+        frame_.change([&] { take_boxes(boxes, ids_); });  // after an exception the engine takes no more frames
         frame_.taken();
     }
 

@@ -137,6 +137,7 @@ private:
 /// Oriented boxes. FCL uses the raw poses, so that no vertex is rounded to float. It requires rotations; at other
 /// poses, it gets B's vertices in A's frame.
 class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
+    /// FCL takes only rigid transforms: at other poses, B's tree is transformed first.
     void collide(const model_query& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
         if (is_rigid(q.pose_a) && is_rigid(q.pose_b)) {
             fcl::collide(&q.a.local.get(), transform(q.pose_a), &q.b.local.get(), transform(q.pose_b), request, result);

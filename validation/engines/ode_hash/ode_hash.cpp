@@ -93,7 +93,7 @@ private:
         prepare(space_.get(), boxes_);
     }
 
-    /// Collides the space with itself, after the last search may have leaked it.
+    /// Collides the space with itself. A search that ran out of memory has given up its space, so a new one is made.
     void find_pairs(std::vector<index_pair>& pairs) final {
         if (!space_) update_space();
         if (boxes_.size() < 2) return;
