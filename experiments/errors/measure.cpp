@@ -191,6 +191,7 @@ public:
     explicit hit_run(const pair_set& set) {
         const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);
         for (const std::string& name : constructing_tests()) {
+            // Tests of libraries are slower, so that they skip batches.
             const bool of_library = std::ranges::find(strategies, name) == strategies.end();
             tests_.add({.point = {.pairs = set.pair_class, .in_double = set.in_double, .triangle = name},
                         .test = triangle_test_named({name, {}}),

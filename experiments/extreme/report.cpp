@@ -191,6 +191,7 @@ table class_table(std::span<const extreme_row> rows) {
     return t;
 }
 
+/// A sentence for each scene that limits memory: the most that a composition took, and the limit.
 std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto limited = filtered(

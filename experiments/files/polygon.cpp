@@ -99,7 +99,7 @@ int polygon_cutter::project() {
     const auto add_product = [](exact_sum& sum, double x, double y) {
         const double product = x * y;
         sum.add(product);
-        sum.add(__builtin_fma(x, y, -product));
+        sum.add(__builtin_fma(x, y, -product));  // its rounding error, exactly
     };
     vec3d p = scaled(corners_.back().p);
     for (const corner& c : corners_) {
@@ -207,7 +207,7 @@ polygon_cutter::ear polygon_cutter::kind_of(const corner& b) const noexcept {
     };
     // The winding number at a point of the triangle next to t1, on the edge to t0: signed crossings of the ray. An edge
     // crosses the ray if it lies below the point and, half-open, spans its place in the order of `precedes`. If it
-    // passes through t1, the other corners tell on which side of it the point lies.
+    // passes through t1, the other corners decide on which side of it the point lies.
     const bool is_right_of_corner = precedes(t1, t0);
     int winding = 0;
     const auto count_below = [&](const vec3d& p, const vec3d& q) {

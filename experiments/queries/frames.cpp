@@ -46,6 +46,8 @@ std::map<std::string, std::uint64_t> by_name(const kind_counts& counts) {
     return named;
 }
 
+/// A line with the number of pairs of each kind that occurs, in the order of `intersection_kind`; empty if there is
+/// none.
 std::string to_text(const kind_counts& counts) {
     constexpr std::array<std::string_view, std::tuple_size_v<kind_counts>> what{
         "do not intersect", "touch in a point", "touch along a segment", "pass through each other",

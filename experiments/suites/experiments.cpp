@@ -135,7 +135,7 @@ experiment open_experiment(const std::string& config, bool quick) {
     return e;
 }
 
-/// On a scene of meshes, every engine runs: one that only searches boxes or only collides meshes gets the default
+/// Every engine runs on a scene of meshes: one that only searches boxes or only collides meshes gets the default
 /// composition for the other stage. External engines read recordings of boxes.
 std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& scene_name) {
     std::vector<std::string> sentences;

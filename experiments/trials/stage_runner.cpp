@@ -66,6 +66,7 @@ stage_runner::stage_runner(stages given, const scene_frames& scene) : scene_(sce
         pipeline_.emplace(*scene.meshes(), *stages_.local);
 }
 
+/// Meshes go to the pipeline with their poses; boxes go to the broad phase, after the changes of the objects present.
 void stage_runner::update() try {
     if (pipeline_) return pipeline_->update(scene_.poses());
     for (const std::uint32_t object : scene_.departures()) stages_.global->remove(object);

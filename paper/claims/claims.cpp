@@ -124,6 +124,7 @@ endpoint decided_alone(endpoint e, double band) {
     const tails p = tails_of(log_ratio, band);
     e.ratio = std::exp(log_ratio.value);
     e.range = {std::exp(range.low), std::exp(range.high)};
+    // Ratios outside claims (of open choices, in tables) expect nothing; below 1 they count as favourable.
     e.corrected = e.uncorrected = support_of(e.expected.value_or(expectation::less), p);
     e.direction = direction_of(p);
     return e;

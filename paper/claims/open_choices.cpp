@@ -138,6 +138,7 @@ open_choice judge(const std::string& question, const std::string& ours, const st
     if (measured.alternatives.empty() || measured.alternatives.front().label != measured.ours) return result;
     std::vector<tested> others;
     for (const alternative& a : measured.alternatives) {
+        // Without an expectation, a ratio below 1 counts as favourable, as in `decided_alone`.
         if (!result.alternatives.empty())
             others.push_back({a.measured.expected.value_or(expectation::less), tails_of(a.measured.log_ratio())});
         result.alternatives.push_back({a.label, decided_alone(a.measured)});

@@ -29,7 +29,7 @@ std::string csv_of(const figure& f) {
     std::string text = csv_line(header);
     for (const numbered_series& s : numbered_series_of(f))
         for (const figure_point& p : points_of(*s.source)) {
-            const bool level = s.source->style == series_style::level;
+            const bool level = s.source->style == series_style::level;  // a horizontal line, so without x
             std::vector<std::string> fields{fmt::format("{}", s.number), level ? "" : fifteen_digits(p.x)};
             for (const double value : {p.y, p.low, p.high}) fields.push_back(fifteen_digits(value));
             fields.push_back(one_line(s.source->label));

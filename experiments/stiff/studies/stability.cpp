@@ -40,7 +40,8 @@ private:
     simulation ball_;
 };
 
-/// The energy drift as the study describes it, which ignores bounded oscillations of the energy.
+/// The energy drift, without bounded oscillations: the greatest energy in the last tenth of the steps over that in the
+/// first tenth, minus 1.
 double drift_of(const candidate& tested, const integrator_info& stepping, double scaled_step, std::size_t periods,
                 double tolerance) {
     oscillating_ball ball(tested, stepping, /*amplitude=*/at_rest / 100, tolerance);
