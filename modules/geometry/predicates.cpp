@@ -158,7 +158,7 @@ public:
     [[nodiscard]] vec3i operator()(const vec3d& p) noexcept {
         vec3i truncated;
         for (int k = 0; k < 3; ++k) {
-            const double steps = p[k] * factor_[k] * second_factor_[k];  // one factor might overflow
+            const double steps = p[k] * factor_[k] * second_factor_[k];  // their product might overflow
             truncated[k] = static_cast<std::int64_t>(steps);
             is_exact_ &= static_cast<double>(truncated[k]) == steps;
             // A coordinate that underflows to zero steps is inexact.

@@ -32,7 +32,8 @@ public:
                        std::uint32_t& ids_drawn) {
         --left_;
         const unsigned age = motion_sample::longest - std::min(left_, motion_sample::longest);  // of the sample, or 0
-        if (std::has_single_bit(age) && !move_too_far_) {                                       // at ages 1, 2, 4 and 8
+        // At the ages 1, 2, 4 and 8 the motion is measured, which suffices to fit its growth.
+        if (std::has_single_bit(age) && !move_too_far_) {
             estimate.law.observe(age, sample_.least_motion(boxes, objects));
             const list_plan plan = plan_list(estimate);
             if (plan.frames > 1) {
