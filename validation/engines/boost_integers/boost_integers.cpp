@@ -11,7 +11,21 @@ namespace aabb {
 namespace {
 
 using integer = boost::multiprecision::cpp_int;
-using point = vec3<integer>;
+
+/// A point or vector; unlike those of vec3, its operations may run out of memory.
+struct point {
+    std::array<integer, 3> at;
+
+    integer& operator[](int k) { return at[static_cast<std::size_t>(k)]; }
+    const integer& operator[](int k) const { return at[static_cast<std::size_t>(k)]; }
+
+    friend point operator-(const point& p, const point& q) { return {{p[0] - q[0], p[1] - q[1], p[2] - q[2]}}; }
+    friend integer dot(const point& p, const point& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
+    friend point cross(const point& p, const point& q) {
+        const auto along = [&](int x, int y) { return integer(p[x] * q[y] - p[y] * q[x]); };
+        return {{along(1, 2), along(2, 0), along(0, 1)}};
+    }
+};
 
 /// x / 2^unit, for a unit that divides x.
 integer in_units(double x, int unit) {
@@ -155,13 +169,19 @@ class integer_engine final : public model_engine<given_model> {
         for (std::uint32_t t = 0; t < changed.count; ++t)
             changed.triangles.push_back(changed.source->given_triangle(t));
     }
+    /// Rejects what a composed stage rejects, though integers need no frame.
+    static void require_valid_poses(const model_query& q) {
+        (void)relative_pose(q.pose_a, q.pose_b, q.b.bounds, q.a.source->frame, q.b.source->frame);
+    }
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
+        require_valid_poses(q);
         for_each_pair({q.pose_a, q.pose_b}, q.a.triangles, q.b.triangles, [&](index_pair pair) {
             pairs.push_back(pair);
             return false;
         });
     }
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
+        require_valid_poses(q);
         std::optional<index_pair> first;
         for_each_pair({q.pose_a, q.pose_b}, q.a.triangles, q.b.triangles, [&](index_pair pair) {
             first = pair;
