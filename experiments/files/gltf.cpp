@@ -15,7 +15,8 @@ namespace {
 /// The topology of a primitive, by its code in the format.
 enum class gltf_mode : std::uint8_t { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
 
-/// The product of two affine transforms, which applies `child` first.
+/// The product of two affine transforms of three rows: it applies `child` first. The first three columns are the
+/// linear part, the last one is the translation.
 gltf_matrix combined(const gltf_matrix& parent, const gltf_matrix& child) {
     gltf_matrix transform;
     for (int column = 0; column < 4; ++column)
@@ -52,7 +53,9 @@ private:
         return gltf_element(file_, asset_.accessors, "accessors", index);
     }
 
-    /// Computes the world transform of each node of the scene. Returns the nodes in preorder, children in file order.
+    /// Computes the world transform of each node of the scene by a depth-first walk, and rejects nodes that occur
+    /// twice, as in a cycle.
+    /// @returns the indices of the nodes in preorder, children in file order
     [[nodiscard]] std::vector<std::size_t> placed_nodes() {
         struct waiting_node {
             std::size_t node;
@@ -60,6 +63,7 @@ private:
         };
         std::vector<waiting_node> stack;
         const auto push = [&](const std::vector<std::size_t>& nodes, const gltf_matrix& parent) {
+            // In reverse, as the last one that is pushed is visited first.
             for (std::size_t i = nodes.size(); i-- > 0;) stack.push_back({nodes[i], parent});
         };
         std::vector<std::size_t> nodes;
@@ -67,15 +71,15 @@ private:
         while (!stack.empty()) {
             const waiting_node top = stack.back();
             stack.pop_back();
-            const gltf_node& next = node(top.node);
+            const gltf_node& visited = node(top.node);
             std::optional<gltf_matrix>& transform = world_transforms_[top.node];
             if (transform) file_.fail(gltf_path("nodes", top.node) + " occurs more than once in the scene");
-            if (!next.extension.empty())
+            if (!visited.extension.empty())
                 file_.fail(fmt::format("{} has the extension {}, which is not supported", gltf_path("nodes", top.node),
-                                       in_quotes(next.extension)));
-            transform = combined(top.parent, next.transform);
+                                       in_quotes(visited.extension)));
+            transform = combined(top.parent, visited.transform);
             nodes.push_back(top.node);
-            push(next.children, *transform);
+            push(visited.children, *transform);
         }
         return nodes;
     }
@@ -96,7 +100,7 @@ private:
         return numbers(index, no_view_means_zeros);
     }
 
-    /// The vertex indices of a primitive; the format allows only unsigned integers.
+    /// Reads the vertex indices of a primitive from an accessor; the format allows only unsigned integers.
     [[nodiscard]] std::vector<std::uint32_t> indices(std::size_t index) const {
         const gltf_accessor& a = accessor(index);
         if (a.type != "SCALAR" || (a.component != gltf_component::u8 && a.component != gltf_component::u16 &&
@@ -106,7 +110,8 @@ private:
         return {values.begin(), values.end()};
     }
 
-    /// The skinning matrices: each maps a vertex from the bind pose to the current pose of a joint.
+    /// The skinning matrices of a skin, one per joint: the joint's world transform times its inverse bind matrix. Each
+    /// moves a vertex from the bind pose, in which the skin was attached to the joints, to the joint's current pose.
     [[nodiscard]] std::vector<gltf_matrix> joint_matrices(std::size_t index) const {
         const gltf_skin& skin = gltf_element(file_, asset_.skins, "skins", index);
         const std::string name = gltf_path("skins", index);
@@ -138,7 +143,8 @@ private:
         return matrices;
     }
 
-    /// Adds the weighted offsets of the morph targets to the positions.
+    /// Adds the offsets of each morph target, times its weight, to the positions (x, y, z of each vertex in turn).
+    /// @param mesh its path in the file, for messages
     void morph(std::vector<double>& points, const gltf_primitive& primitive, const std::vector<double>& weights,
                const std::string& mesh) const {
         const auto is_zero = [](double weight) { return weight == 0; };
@@ -147,7 +153,9 @@ private:
                                    counted(primitive.targets.size(), "morph target"),
                                    counted(weights.size(), "weight")));
         for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
+            // A target without positions changes only attributes that are not read, such as normals.
             if (!primitive.targets[t] || weights[t] == 0) continue;
+            // The format allows offsets without data, which are all zero.
             const std::vector<double> offsets = positions(*primitive.targets[t], /*no_view_means_zeros=*/true);
             if (offsets.size() != points.size())
                 file_.fail(fmt::format("{} has a morph target for a number of vertices other than its own: {}, not {}",
@@ -161,7 +169,9 @@ private:
         std::vector<double> joints;
         std::vector<double> weights;
     };
-    /// Which joints move each vertex of a primitive, by which weights: four in each set, JOINTS_n with WEIGHTS_n.
+    /// Which joints move each vertex of a primitive, by which weights. The format has them in sets of four per vertex:
+    /// the accessor JOINTS_n with joint numbers, and WEIGHTS_n with a weight for each.
+    /// @param vertices the number of positions, which both accessors must match
     [[nodiscard]] std::vector<bindings> bindings_of(const gltf_primitive& primitive, std::size_t vertices,
                                                     const std::string& mesh) const {
         if (primitive.joints.empty() || primitive.joints.size() != primitive.weights.size())
@@ -187,7 +197,8 @@ private:
         return sets;
     }
 
-    /// Linear blend skinning: the weighted mean of the point's images under its joints.
+    /// Linear blend skinning: moves the point p of a vertex by the matrix of each of its joints, and returns the mean
+    /// of these positions by the vertex's weights.
     [[nodiscard]] Eigen::Vector3d skinned(const Eigen::Vector3d& p, std::size_t vertex,
                                           const std::vector<bindings>& sets, const std::vector<gltf_matrix>& joints,
                                           const std::string& mesh) const {
@@ -212,6 +223,7 @@ private:
     }
 
     /// Adds the vertices of a primitive in world coordinates, after morphing and skinning. Returns their number.
+    /// @param joints the skinning matrices of the node; empty if it has no skin
     std::size_t add_vertices(const gltf_primitive& primitive, const gltf_node& node,
                              const std::vector<gltf_matrix>& joints, const std::string& mesh_name) {
         std::vector<double> points = positions(*primitive.positions, /*no_view_means_zeros=*/false);
@@ -225,7 +237,8 @@ private:
         const gltf_mesh& mesh = asset_.meshes[*node.mesh];
         morph(points, primitive, node.weights.value_or(mesh.weights.value_or(std::vector<double>())), mesh_name);
         const auto sets = node.skin ? bindings_of(primitive, count, mesh_name) : std::vector<bindings>();
-        const gltf_matrix& transform = *world_transforms_[static_cast<std::size_t>(&node - asset_.nodes.data())];
+        const auto index_of_node = static_cast<std::size_t>(&node - asset_.nodes.data());
+        const gltf_matrix& transform = *world_transforms_[index_of_node];
         for (std::size_t v = 0; v < count; ++v) {
             const Eigen::Vector3d p(&points[3 * v]);
             // Joints place a skinned mesh; the format ignores the transform of its node.
@@ -246,8 +259,9 @@ private:
             if (!primitive.positions) file_.fail(mesh + " has a primitive without positions");
             if (primitive.mode > static_cast<std::size_t>(gltf_mode::triangle_fan))
                 file_.fail(mesh + " has a primitive of mode " + std::to_string(primitive.mode) + "; modes are 0 to 6");
-            const std::size_t first = mesh_.vertices();
+            const std::size_t first = mesh_.vertices();  // the index in the result of the primitive's vertex 0
             const std::size_t count = add_vertices(primitive, node, joints, mesh);
+            // Without indices, the vertices themselves are the corners in order.
             std::vector<std::uint32_t> corners(count);
             std::iota(corners.begin(), corners.end(), 0U);
             if (primitive.indices) corners = indices(*primitive.indices);
@@ -262,7 +276,9 @@ private:
         }
     }
 
-    /// Adds the triangles of a primitive; points, lines and incomplete triangles count as dropped faces.
+    /// Adds the triangles of a primitive. Points, lines and one or two corners that remain at the end count as dropped
+    /// faces, which the report names.
+    /// @param corners vertex indices, whose meaning depends on the mode: three per triangle, a strip or a fan
     void add_faces(gltf_mode mode, const std::vector<std::uint32_t>& corners) {
         const std::size_t count = corners.size();
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
@@ -277,9 +293,12 @@ private:
                 for (std::size_t i = 2; i < count; i += 3) add(i - 2, i - 1, i);
                 mesh_.drop_faces(count % 3 == 0 ? 0 : 1);
                 break;
-            case gltf_mode::triangle_strip:  // every other one is reversed for consistent winding
-                for (std::size_t i = 2; i < count; ++i)
-                    mesh_.add_strip_triangle({corners[i - 2], corners[i - (i + 1) % 2], corners[i - i % 2]}, faces_++);
+            case gltf_mode::triangle_strip:
+                for (std::size_t i = 2; i < count; ++i) {
+                    std::array<std::uint32_t, 3> triangle{corners[i - 2], corners[i - 1], corners[i]};
+                    if (i % 2 == 1) std::swap(triangle[1], triangle[2]);  // for consistent winding
+                    mesh_.add_strip_triangle(triangle, faces_++);
+                }
                 mesh_.drop_faces(count == 1 || count == 2 ? 1 : 0);
                 break;
             case gltf_mode::triangle_fan:

@@ -42,7 +42,7 @@ int digit_of(char c) {
     return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-/// Decodes base64, in which each character holds six bits; nullopt if the text is malformed.
+/// Decodes base64, in which each character holds six bits and '=' pads the end; nullopt if the text is malformed.
 std::optional<std::string> decoded_base64(std::string_view text) {
     for (int i = 0; i < 2 && text.ends_with('='); ++i) text.remove_suffix(1);
     std::string bytes;
@@ -58,7 +58,7 @@ std::optional<std::string> decoded_base64(std::string_view text) {
         pending -= 8;
         bytes += static_cast<char>(bits >> static_cast<unsigned>(pending) & 0xffU);
     }
-    // With six bits left, the last character is in no byte.
+    // Up to four bits left are padding. Six would be a whole character that belongs to no byte.
     return pending < 6 ? std::optional(bytes) : std::nullopt;
 }
 
@@ -84,8 +84,9 @@ std::string bytes_of_data_uri(std::string_view uri) {
     return *std::move(bytes);
 }
 
-/// The bytes of a buffer: in the binary chunk of the .glb file, in a data: URI or in a file in the folder of this one.
-/// @param loaded total bytes of the previous buffers, for the memory limit, as many buffers may name one file
+/// The bytes of a buffer: from the binary chunk of the .glb file, a data: URI or a file in the folder of this one.
+/// @param binary the binary chunk, for the only buffer that may refer to it
+/// @param loaded total bytes of the previous buffers: the memory limit is for all of them, as many may name one file
 std::string bytes_of_buffer(const gltf_buffer& buffer, const file_text& file, std::optional<std::string_view> binary,
                             std::size_t loaded) {
     if (!buffer.uri) {
@@ -122,12 +123,15 @@ public:
           name_(gltf_path("accessors", accessor)),
           accessor_(gltf_element(file, asset.accessors, "accessors", accessor)) {}
 
-    /// Reads the accessor: its elements in a buffer view, or zeros, some of which sparse elements then replace.
+    /// Reads all numbers of the accessor. It has elements in a buffer view, or else zeros; a sparse accessor then
+    /// replaces some of them.
+    /// @param no_view_means_zeros whether an accessor with neither is all zeros; otherwise it is rejected, as its data
+    /// may be where only an extension finds it
     [[nodiscard]] std::vector<double> read(bool no_view_means_zeros) const {
         const gltf_accessor& a = accessor_;
         if (!a.view && !a.sparse && !no_view_means_zeros)
             file_.fail(name_ + " has no bufferView, so its numbers are not in the file");
-        const std::size_t width = width_of(a.type);
+        const std::size_t width = width_of(a.type);  // numbers per element
         const scalar type = scalar_of(a.component);
         const std::size_t bytes = width * bytes_of(type);
         const elements dense = a.view ? elements_of(*a.view, a.offset, a.count, bytes) : elements{};
@@ -153,7 +157,9 @@ private:
         file_.fail(fmt::format("{} has the unknown componentType {}", name_, static_cast<std::size_t>(component)));
     }
 
-    /// The elements at an offset of a buffer view, if they lie within the view and the view within its buffer.
+    /// The elements at an offset of buffer view `index`. Rejects elements beyond the view, and a view beyond its
+    /// buffer.
+    /// @param bytes of one element; the view's stride, from one element to the next, may be greater
     [[nodiscard]] elements elements_of(std::size_t index, std::size_t offset, std::size_t count,
                                        std::size_t bytes) const {
         const std::string view_name = gltf_path("bufferViews", index);
@@ -164,6 +170,7 @@ private:
         const std::size_t stride = view.stride.value_or(bytes);
         if (stride < bytes)
             file_.fail(view_name + " has a byteStride below the " + std::to_string(bytes) + " bytes of one");
+        // The last element begins (count - 1) * stride bytes after the first. The product could overflow.
         if (count > 0 && (offset > view.length || view.length - offset < bytes ||
                           (view.length - offset - bytes) / stride < count - 1))
             file_.fail(name_ + " reaches beyond the end of " + view_name);
@@ -180,6 +187,7 @@ private:
     }
 
     /// Replaces elements by those of a sparse accessor, which lists their indices and values.
+    /// @param width numbers per element, each of `type` in the file
     void replace(const gltf_sparse& sparse, scalar type, std::size_t width, std::vector<double>& numbers) const {
         if (sparse.index_component == gltf_component::f32)
             file_.fail(name_ + ".sparse.indices must be of whole numbers, as it has indices");

@@ -23,18 +23,18 @@ void require_no_extension(const object& root) {
     }
 }
 
-/// The transform of a node relative to its parent: a matrix, or translation, rotation and scale.
+/// The transform of a node relative to its parent: its matrix, or else [R S | t] of rotation, scale and translation.
 gltf_matrix transform_of(const object& node) {
     gltf_matrix transform;
     if (!node.has("matrix")) {
         const auto rotation = node.numbers<4>("rotation", {0, 0, 0, 1});
-        const double square = std::inner_product(rotation.begin(), rotation.end(), rotation.begin(), 0.0);
+        const double squared_length = std::inner_product(rotation.begin(), rotation.end(), rotation.begin(), 0.0);
         // As exporters round, the tolerance is generous.
-        if (!(std::abs(square - 1) < 1e-3)) node.fail("has a rotation that is not a quaternion of length 1");
+        if (!(std::abs(squared_length - 1) < 1e-3)) node.fail("has a rotation that is not a quaternion of length 1");
         const auto translation = node.numbers<3>("translation", {});
         const auto scale = node.numbers<3>("scale", {1, 1, 1});
-        const Eigen::Matrix3d turned = Eigen::Quaterniond(rotation.data()).toRotationMatrix();
-        transform << turned * Eigen::Vector3d(scale.data()).asDiagonal(), Eigen::Vector3d(translation.data());
+        const Eigen::Matrix3d rotation_matrix = Eigen::Quaterniond(rotation.data()).toRotationMatrix();
+        transform << rotation_matrix * Eigen::Vector3d(scale.data()).asDiagonal(), Eigen::Vector3d(translation.data());
         return transform;
     }
     const auto m = node.numbers<16>("matrix", {});  // by columns
@@ -46,7 +46,8 @@ gltf_sparse::part part_of(const object& part) {
     return {part.needed_index("bufferView"), part.index("byteOffset").value_or(0)};
 }
 
-/// Parses an accessor, which describes numbers in a buffer; a sparse one also lists elements that it replaces.
+/// Parses an accessor, which says where numbers are in a buffer view, of which type and how many; a sparse one also
+/// lists elements that it replaces.
 gltf_accessor accessor_of(const object& accessor) {
     gltf_accessor parsed{.view = accessor.index("bufferView"),
                          .offset = accessor.index("byteOffset").value_or(0),
@@ -71,7 +72,8 @@ std::vector<std::size_t> numbered_attributes(const object& attributes, const std
     return accessors;
 }
 
-/// Parses a primitive, the part of a mesh with one material: what determines its surface, as indices of accessors.
+/// Parses a primitive, the part of a mesh with one material. Reads only what determines its surface: the indices of the
+/// accessors of positions, skinning and corners, and its mode.
 gltf_primitive primitive_of(const object& primitive) {
     gltf_primitive parsed;
     if (const auto attributes = primitive.member("attributes")) {
