@@ -54,6 +54,7 @@ public:
 
     /// Appends the available bytes, at most `most`, and waits until a pipe has some. Returns false at the end.
     bool read(std::size_t most, std::string& bytes) {
+        // First the byte that `wait_for_writer` has read.
         if (!ahead_.empty()) {
             bytes += ahead_;
             ahead_.clear();
@@ -110,7 +111,8 @@ struct line_stream::state {
     state() = default;
     state(const std::filesystem::path& file, const std::string& name) : source(file, name) {}
 
-    /// Reads another block and appends it to the text, and detects the end. What is not text ends the stream too.
+    /// Reads another block of bytes and appends it to `text`, decoded. Sets `has_ended` at the end of the input, or if
+    /// the bytes are not text.
     void read_block() {
         block.clear();
         has_ended = !source.read(most_at_once, block);
@@ -129,13 +131,14 @@ line_stream::line_stream(const std::filesystem::path& file, const std::string& n
 line_stream::~line_stream() = default;
 line_stream::line_stream(line_stream&&) noexcept = default;
 
-/// Advances to the next line, and reads blocks until the text has its end. Earlier text is discarded to bound memory.
+/// Advances to the next line; false after the last. The line begins at offset `next_line` of the decoded text. Blocks
+/// are read until the text has the line's end, and earlier lines are discarded to bound memory.
 bool line_stream::next() {
     state& s = *state_;
     ++s.line_number;
     const std::uintmax_t read_before = s.bytes_read;
     std::size_t end = 0;
-    std::size_t searched = s.next_line;
+    std::size_t searched = s.next_line;  // no line feed before this offset
     while ((end = s.text.find('\n', searched)) == std::string::npos && !s.has_ended) {
         if (s.bytes_read - read_before > longest_line)
             fail("the line is longer than " + std::to_string(longest_line) + " bytes; expected text of short lines");

@@ -50,24 +50,26 @@ bool is_plain(std::string_view bytes) {
 
 }  // namespace
 
-/// Detects the encoding by the byte order mark, or UTF-16 without a mark by zeros in every other one of four bytes.
+/// Detects the encoding by the byte order mark. UTF-16 without a mark is detected by zeros in every other one of the
+/// first four bytes, as ASCII characters have there. Anything else is taken for UTF-8.
 text_encoding text_encoding_of(std::string_view bytes) noexcept {
     if (bytes.starts_with("\xff\xfe\0\0"sv) || bytes.starts_with("\0\0\xfe\xff"sv)) return text_encoding::utf32;
     if (bytes.starts_with("\xff\xfe")) return text_encoding::utf16_little;
     if (bytes.starts_with("\xfe\xff")) return text_encoding::utf16_big;
     const auto is_nul = [&](std::size_t i) { return i < bytes.size() && bytes[i] == 0; };
-    const bool by_twos = bytes.size() >= 4 && is_nul(0) == is_nul(2) && is_nul(1) == is_nul(3);
-    return by_twos && is_nul(0) != is_nul(1) ? text_encoding::utf16_unmarked : text_encoding::utf8;
+    const bool alternates = bytes.size() >= 4 && is_nul(0) == is_nul(2) && is_nul(1) == is_nul(3);
+    return alternates && is_nul(0) != is_nul(1) ? text_encoding::utf16_unmarked : text_encoding::utf8;
 }
 
-/// Decodes the next bytes of a file. They are kept until there are enough of them to detect the encoding.
+/// Decodes the next bytes of a file and appends them to the text. Bytes wait in `undetected_` until there are enough of
+/// them to detect the encoding.
 void text_decoder::add(std::string_view bytes, std::string& text) {
-    std::string kept;
+    std::string first_bytes;
     if (!encoding_) {
         undetected_ += bytes;
         detect_encoding(/*is_at_end=*/false);
-        kept = encoding_ ? std::exchange(undetected_, {}) : "";
-        bytes = kept;
+        first_bytes = encoding_ ? std::exchange(undetected_, {}) : "";
+        bytes = first_bytes;
     }
     if (!encoding_ || !problem_.empty()) return;
     // Only UTF-8 and UTF-16 with a mark are left: `detect_encoding` sets a problem for others.
@@ -77,7 +79,8 @@ void text_decoder::add(std::string_view bytes, std::string& text) {
         append_utf16(bytes, text);
 }
 
-/// Appends what waited for more bytes: a short text, an incomplete character as U+FFFD, carriage returns.
+/// Ends the file, and appends what waited for more bytes: a text too short to detect its encoding, an incomplete
+/// character (as U+FFFD, the replacement character), carriage returns.
 void text_decoder::finish(std::string& text) {
     if (!encoding_) {
         detect_encoding(/*is_at_end=*/true);
@@ -91,12 +94,15 @@ void text_decoder::finish(std::string& text) {
     text.append(std::exchange(pending_returns_, 0), '\n');
 }
 
-/// Detects the encoding and drops the byte order mark, unless more bytes are needed.
+/// Detects the encoding of the first bytes, `undetected_`, and drops their byte order mark. Waits if more bytes are
+/// needed and the file has them. Encodings that are not read set `problem_`.
 void text_decoder::detect_encoding(bool is_at_end) {
     constexpr std::string_view mark = "\xef\xbb\xbf";
     const std::string_view start = undetected_;
-    const bool is_plain = start.size() >= 2 && start.substr(0, 2).find_first_of("\xef\xfe\xff\0"sv) == start.npos;
-    if (!is_at_end && !is_plain && start.size() < 4) return;
+    // Two bytes suffice for UTF-8 without a mark: neither is zero or belongs to a mark.
+    const bool is_unmarked_utf8 =
+        start.size() >= 2 && start.substr(0, 2).find_first_of("\xef\xfe\xff\0"sv) == start.npos;
+    if (!is_at_end && !is_unmarked_utf8 && start.size() < 4) return;
     encoding_ = text_encoding_of(start);
     if (*encoding_ == text_encoding::utf32) problem_ = "is text in UTF-32; expected UTF-8";
     if (*encoding_ == text_encoding::utf16_unmarked)
@@ -107,7 +113,9 @@ void text_decoder::detect_encoding(bool is_at_end) {
         undetected_.erase(0, mark.size());
 }
 
-/// Converts UTF-16, of which a call may end within a unit or a surrogate pair. An unpaired surrogate becomes U+FFFD.
+/// Converts UTF-16, in units of two bytes; two surrogate units encode a character beyond U+FFFF. As a call may end
+/// within a unit or a pair, the first byte and the high surrogate are kept for the next. An unpaired surrogate becomes
+/// U+FFFD.
 void text_decoder::append_utf16(std::string_view bytes, std::string& text) {
     for (const char c : bytes) {
         const auto second = static_cast<unsigned char>(c);
@@ -154,8 +162,9 @@ void text_decoder::append_with_line_feeds(std::string_view utf8, std::string& te
     }
 }
 
-/// Appends a byte. Padding is dropped, and an error before more text. Carriage returns after the first line wait for
-/// the next byte, which shows whether lines end in them alone.
+/// Appends a byte of UTF-8. Padding (NUL or Ctrl-Z) is dropped, and is an error if more text follows. Carriage returns
+/// at the end of the first line wait for the byte after them: if that is no line feed, lines end in carriage returns
+/// alone, and these become line feeds.
 void text_decoder::append_byte(char c, std::string& text) {
     if (is_padding(c)) {
         if (padding_ == ' ') padding_ = c;  // the first one; a blank stands for none
@@ -176,19 +185,21 @@ void text_decoder::append_byte(char c, std::string& text) {
             line_end_ = line_end::feed;
         else if (pending_returns_ > 0)
             line_end_ = line_end::carriage_return;
+        // Appends the carriage returns that waited.
         const char end = line_end_ == line_end::feed ? '\r' : '\n';
         line_ += end == '\n' ? pending_returns_ : 0;
         text.append(std::exchange(pending_returns_, 0), end);
     }
-    // If lines end in carriage returns, both characters are swapped.
+    // If lines end in carriage returns, both characters are swapped, so that readers still see a mixture of line ends.
     if (line_end_ == line_end::carriage_return && (c == '\r' || c == '\n')) c = c == '\r' ? '\n' : '\r';
     line_ += c == '\n';
     text += c;
 }
 
-/// Decodes a whole file; piece by piece, as most pieces need no conversion and are copied at once.
+/// Decodes a whole file. It does so piece by piece, as most pieces need no conversion and are copied at once.
+/// @returns the text, and the reason if it is not text
 decoded_text decoded(std::string bytes) {
-    if (is_plain(bytes)) return {std::move(bytes), {}};
+    if (is_plain(bytes)) return {std::move(bytes), /*problem=*/{}};
     constexpr std::size_t piece = 65'536;
     text_decoder decoder;
     decoded_text result;

@@ -9,14 +9,15 @@ namespace aabblab {
 
 template <class Number>
 struct read_number {
-    /// Parses the text by std::from_chars, which takes no plus sign.
+    /// Parses the whole text by std::from_chars. That takes no plus sign, so one before a floating-point number is
+    /// skipped.
     explicit read_number(std::string_view text) {
         const bool has_plus = std::floating_point<Number> && text.starts_with('+') && !text.starts_with("+-");
         const char* const end = text.data() + text.size();
         const auto [stopped, error] = std::from_chars(text.data() + has_plus, end, value);
         is_number = stopped == end && error != std::errc::invalid_argument;
         out_of_range = error == std::errc::result_out_of_range;
-        // from_chars does not distinguish underflow, which rounds to zero, from overflow; strtod does.
+        // from_chars gives no value for underflow and overflow; strtod gives zero (or a subnormal) and infinity.
         if constexpr (std::same_as<Number, double>)
             if (out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
     }
