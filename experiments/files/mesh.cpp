@@ -66,7 +66,8 @@ std::string mesh_report::text() const {
     return line;
 }
 
-/// Reads a mesh in the format that the file's extension names; only text is decoded, whatever program wrote it.
+/// Reads a mesh in the format that the file's extension names. The bytes tell whether the file is text or binary; text
+/// is converted to UTF-8 with line feeds before it is parsed.
 loaded_mesh read_mesh(const std::filesystem::path& file) {
     const std::size_t size = require_file(file);
     const std::string ending = mesh_ending_of(file);
@@ -74,13 +75,14 @@ loaded_mesh read_mesh(const std::filesystem::path& file) {
     if (reader == std::end(formats)) reject(file, aabb::unknown_name("mesh format", ending, mesh_endings()));
     if (ending == ".stl")
         if (std::optional<loaded_mesh> binary = read_binary_stl(file, size)) return *std::move(binary);
-    // The mesh takes about as much memory as its text.
+    // The limit on memory is for the text and the mesh, which takes about as much again.
     file_text content = read_file(file, size, /*memory_factor=*/2);
     if (reader->is_text(content.text)) content = as_text(std::move(content));
     return reader->read(content);
 }
 
-/// Writes OFF in blocks, as the text of a large mesh need not be in memory at once.
+/// Writes a mesh in the format OFF: the numbers of vertices, triangles and edges (0: not counted), then the coordinates
+/// of each vertex, then each triangle as "3 a b c". Writes in blocks, so that the text is never in memory as a whole.
 void write_off(const aabb::mesh& mesh, const std::filesystem::path& file) {
     output_file out(file);
     std::string text =

@@ -61,7 +61,9 @@ public:
             add_face(corners, location);
     }
 
-    /// Counts statements or elements that are not read, as they may describe surface. The report names only a few.
+    /// Counts statements or elements that are not read, by name, as the user may miss the surface that they describe.
+    /// The report names only the first few, so that a strange file does not fill it.
+    /// @param kind "statement" or "element"
     void report_skipped(std::string_view kind, std::string_view name, std::size_t count) {
         constexpr std::size_t most_names = 8;
         auto& skipped = loaded_.report.skipped;
@@ -76,9 +78,10 @@ public:
 
     /// Validates the mesh, now that all vertices are known, triangulates its polygons and returns it.
     /// @param location_prefix "FILE:" or "FILE: face ", which precedes a face's location in messages
-    /// @param first_index of a vertex in this format: 0 or 1
+    /// @param first_index the index of the first vertex in this format, 0 or 1, by which messages count
     [[nodiscard]] loaded_mesh finish(std::string_view location_prefix, std::size_t first_index = 0) {
         aabb::mesh& m = loaded_.mesh;
+        // `needed_vertices_` is one more than the greatest index in a face, which is at `needed_at_` in the file.
         if (needed_vertices_ > vertices_.size())
             reject(std::string(location_prefix) + std::to_string(needed_at_),
                    "a face uses vertex " + std::to_string(needed_vertices_ - 1 + first_index) + ", but there are " +
@@ -105,7 +108,8 @@ private:
         std::size_t location;
     };
 
-    /// Triangulates the polygons: `add_face` made fans before vertices were known, which fit only convex ones.
+    /// Triangulates the polygons of more than three corners. `add_face` has stored each as a fan of triangles before
+    /// its vertices were known; the fan of a concave polygon is replaced here.
     void cut_polygons(std::string_view location_prefix) {
         polygon_cutter cutter;
         for (const polygon& p : polygons_) {
@@ -127,7 +131,9 @@ private:
         std::size_t line;
     };
 
-    /// Moves unused vertices that are not finite onto a used one, as removing them would change the indices of others.
+    /// Moves vertices that are not finite, and that no face uses, onto a used one, as removing them would change the
+    /// indices of others. Rejects the mesh if a face uses one.
+    /// @param first_index as in `finish`
     void move_unused_vertices(std::size_t first_index) {
         if (not_finite_.empty()) return;
         aabb::mesh& m = loaded_.mesh;

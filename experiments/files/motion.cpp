@@ -35,7 +35,8 @@ class motion_reader {
 public:
     explicit motion_reader(const file_text& file) : in_(file, /*comment=*/'#') {}
 
-    /// Reads all lines, "frame object" and a pose each, in the order of the file, which is that of frames.
+    /// Reads all lines, "frame object" and a pose each, which must be in the order of frames. Frame 0 must have all
+    /// objects; later frames have those that move.
     [[nodiscard]] std::vector<step> read() {
         while (in_.next_line()) {
             const auto frame = in_.integer<std::uint32_t>("the number of a frame");
@@ -45,7 +46,7 @@ public:
             steps_.push_back({frame, object, read_pose(in_)});
         }
         if (steps_.empty()) in_.fail_at_end("before the first pose");
-        if (frame_ == 0) require_all_objects();  // later frames have required them when frame 0 ended
+        if (frame_ == 0) require_all_objects();  // otherwise this was checked at the end of frame 0
         return std::move(steps_);
     }
 
@@ -89,8 +90,9 @@ private:
 
 class motion_scene final : public aabb::mesh_scene {
 public:
-    /// Reads the whole file; object i has mesh i modulo their number.
+    /// Reads the whole file of poses. Object i has the mesh of index i modulo the number of meshes.
     motion_scene(const std::filesystem::path& file, std::vector<aabb::mesh> scene_meshes) {
+        // The text and the poses together take at most eight times the file's size.
         const file_text text = as_text(read_file(file, require_file(file), /*memory_factor=*/8));
         motion_reader reader(text);
         steps_ = reader.read();

@@ -12,7 +12,8 @@ class statement_words {
 public:
     explicit statement_words(text_scanner& in) : in_(in) {}
 
-    /// The next word of the statement, which a backslash at the end of a line continues; empty after the last one.
+    /// The next word of the statement; empty after the last one. If its line ends in a backslash, which is not part of
+    /// the word, the statement continues on the next line.
     [[nodiscard]] std::string_view next() {
         for (;;) {
             if (is_continued_ && !in_.next_line()) in_.fail_at_end("after a backslash");
@@ -53,7 +54,8 @@ constexpr std::string_view without_surface[] = {
 
 }  // namespace
 
-/// Reads the vertices and faces of OBJ. The report names other statements, unless they describe no surface.
+/// Reads the vertices ("v") and faces ("f") of OBJ. Other statements are skipped, and the mesh's report names those
+/// that may describe surface.
 loaded_mesh read_obj(const file_text& file) {
     text_scanner in(file, /*comment=*/'#');
     mesh_builder mesh(file.name);

@@ -125,7 +125,8 @@ struct read_attempt {
     bool has_vertex = false;
     bool reached_end = false;
 };
-/// Reads the file as if its numbers had this arrangement in lines. A rejection is returned, as another may fit.
+/// Reads the file as if its numbers had this arrangement in lines. If they do not fit it, the message is returned, not
+/// thrown, as another arrangement may fit.
 read_attempt read_as(const file_text& file, arrangement tried) {
     off_reader reader(file, tried);
     try {
@@ -141,7 +142,7 @@ read_attempt read_as(const file_text& file, arrangement tried) {
 }  // namespace
 
 /// Reads OFF. The format ignores line ends (Geomview's manual, "OFF Files"), but writers nearly always put each vertex
-/// and face on its own line. Other arrangements are tried if that fails; a message is of one that reached the end.
+/// and face on its own line, which is tried first. If that fails, faces that begin a line are tried, then any words.
 loaded_mesh read_off(const file_text& file) {
     read_attempt lines = read_as(file, arrangement::lines);
     if (lines.loaded) return *std::move(lines.loaded);
@@ -153,8 +154,10 @@ loaded_mesh read_off(const file_text& file) {
             "vertex and each face on a line of its own");
     for (read_attempt* other : {&face_lines, &words})
         if (other->loaded) return *std::move(other->loaded);
+    // The file fits none. The message comes from an attempt that reached the end, as its error is not about line ends.
     for (const read_attempt* failed : {&lines, &face_lines, &words})
         if (failed->reached_end) throw aabb::input_error(failed->rejection);
+    // If even the first line was no vertex, the file is not arranged in lines.
     throw aabb::input_error(lines.has_vertex ? lines.rejection : words.rejection);
 }
 

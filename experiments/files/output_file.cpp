@@ -30,8 +30,9 @@ struct output_file::state {
         return target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
     }
 
-    /// Makes a temporary file: calls `make`, which must fail with EEXIST on an existing file, with names unique to this
-    /// process until it succeeds. They are short, as the target's name may have the maximum length.
+    /// Makes a file of a temporary name, `part`: calls `make` with names unique to this process until it succeeds. It
+    /// must fail with EEXIST on an existing file. The names are short, as the target's may have the maximum length.
+    /// @returns false if it fails otherwise, for which errno has the reason
     [[nodiscard]] bool make_part(auto make) {
         for (int attempt = 0; attempt < 100; ++attempt) {
             part = ".aabblab." + std::to_string(getpid()) + "." + std::to_string(attempt) + ".part";
@@ -49,10 +50,27 @@ struct output_file::state {
         if (!file) close(descriptor);
     }
 
+    /// Opens an unnamed file in the target's folder, which vanishes with its process, however that ends. Where the file
+    /// system has no unnamed files, it opens one of a temporary name.
+    void open_in_folder() {
+        folder = open(folder_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+        if (folder < 0) fail();
+        open_stream(openat(folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
+        // An unnamed file can be named only through /proc.
+        if (file && access(link_to(fileno(file.get())).c_str(), F_OK) != 0) file.reset();
+        if (file) return;
+        const auto open_part = [&](const char* name) {
+            open_stream(openat(folder, name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+            return file != nullptr;
+        };
+        if (!make_part(open_part)) fail();
+    }
+
     [[nodiscard]] static std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
 };
 
-/// Opens an unnamed or temporary file in the target's folder, to be renamed on `commit`; or the pipe or device itself.
+/// Opens an unnamed or temporary file in the target's folder, which `commit` names, so that a failure leaves no partial
+/// file. A pipe or device is opened itself.
 output_file::output_file(const std::filesystem::path& file) : state_(std::make_unique<state>()) {
     if (file.empty()) throw aabb::input_error("the file to write has no name");
     state_->target = file;
@@ -64,24 +82,14 @@ output_file::output_file(const std::filesystem::path& file) : state_(std::make_u
     if (exists(status) && !is_regular_file(status)) {
         state_->in_place = true;
         state_->file.reset(std::fopen(file.c_str(), "wb"));
-    } else {
-        if (std::filesystem::is_symlink(file, error)) {
-            if (!exists(status)) state_->reject("it is a symbolic link to a file that does not exist");
-            state_->target = std::filesystem::canonical(file);  // the link itself is preserved
-        }
-        state_->folder = open(state_->folder_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
-        if (state_->folder < 0) state_->fail();
-        // An unnamed file vanishes with its process, however that ends. It can be named only through /proc.
-        state_->open_stream(openat(state_->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666));
-        if (state_->file && access(state::link_to(fileno(state_->file.get())).c_str(), F_OK) != 0) state_->file.reset();
-        // Not every file system supports unnamed files.
-        if (!state_->file && !state_->make_part([&](const char* part) {
-                state_->open_stream(openat(state_->folder, part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-                return state_->file != nullptr;
-            }))
-            state_->fail();
+        if (!state_->file) state_->fail();
+        return;
     }
-    if (!state_->file) state_->fail();
+    if (std::filesystem::is_symlink(file, error)) {
+        if (!exists(status)) state_->reject("it is a symbolic link to a file that does not exist");
+        state_->target = std::filesystem::canonical(file);  // the link itself is preserved
+    }
+    state_->open_in_folder();
 }
 
 output_file::~output_file() = default;
@@ -108,12 +116,13 @@ void output_file::overwrite(std::uint64_t offset, const void* data, std::size_t 
     if (fseeko(file, 0, SEEK_END) != 0) state_->fail();
 }
 
-/// Gives the file its name, in one step that replaces an existing target, so that no reader sees a partial file.
+/// Gives the complete file its name, in one step that replaces an existing target, so that no reader sees a partial
+/// file. A pipe or device (`in_place`) is only flushed and closed.
 void output_file::commit() {
     std::FILE* const file = state_->file.get();
     if (std::fflush(file) != 0) state_->fail();
     if (!state_->in_place) {
-        // linkat() cannot replace an existing file, but renameat() can.
+        // An unnamed file first gets a temporary name, as linkat() cannot replace an existing file, but renameat() can.
         const std::string unnamed = state::link_to(fileno(file));
         if (state_->part.empty() && !state_->make_part([&](const char* part) {
                 return linkat(AT_FDCWD, unnamed.c_str(), state_->folder, part, AT_SYMLINK_FOLLOW) == 0;

@@ -94,8 +94,8 @@ void require_properties(const text_scanner& in, const element& e) {
     if (e.properties.empty()) in.fail("the element " + in_quotes(e.name) + " has no properties");
 }
 
-/// The offset of the first value after the header; npos if there is no header in a single-byte encoding. If the lines
-/// of the header end in carriage returns alone, a following line feed already belongs to the binary values.
+/// The offset of the first value, which follows the line "end_header"; npos if there is no such line, as in UTF-16. If
+/// the lines of the header end in carriage returns alone, a following line feed already belongs to the binary values.
 std::size_t end_of_header(std::string_view bytes) {
     constexpr std::string_view last = "end_header";
     const auto is_line_end = [&](std::size_t i) { return bytes[i] == '\n' || bytes[i] == '\r'; };
@@ -237,7 +237,8 @@ class strip_triangles {
 public:
     strip_triangles(mesh_builder& mesh, std::size_t location) : mesh_(mesh), location_(location) {}
 
-    /// Adds the triangle of this corner and the two before it, reversed at every other corner; -1 ends the part.
+    /// Adds the triangle of this corner and the two before it. Every other triangle is reversed for consistent winding.
+    /// -1 ends the current part of the strip.
     void add(std::int64_t corner) {
         if (corner < 0) return end_part();
         const auto c = static_cast<std::uint32_t>(corner);
@@ -260,7 +261,8 @@ private:
     std::uint64_t corners_ = 0;  // of the current part
 };
 
-/// Reads all elements in the order of the header, from text or binary values, and skips those without surface.
+/// Reads all elements in the order of the header and adds vertices, faces and strips to the mesh; others are skipped.
+/// @tparam Values `text_values` or `binary_values`: each call takes the next value of the file, of a given type
 template <class Values>
 loaded_mesh read_elements(const file_text& file, const header& h, Values values) {
     mesh_builder mesh(file.name);
@@ -299,8 +301,9 @@ loaded_mesh read_elements(const file_text& file, const header& h, Values values)
 
 }  // namespace
 
-/// Reads PLY. Only the header of a binary file is decoded as text, as its values must stay as they are. The header of a
-/// text file is read again, so that the numbers of the lines that follow are right.
+/// Reads PLY. The header says whether the values after it are text or binary. Only the header of a binary file is
+/// decoded as text, as its values must stay as they are. Of a text file the header is read again, so that line numbers
+/// in messages count from the start of the file.
 loaded_mesh read_ply(const file_text& file) {
     const std::size_t end = std::min(end_of_header(file.text), file.text.size());
     const file_text header_text = as_text({file.name, file.text.substr(0, end)});
@@ -314,7 +317,8 @@ loaded_mesh read_ply(const file_text& file) {
     return read_elements(file, h, text_values(in));
 }
 
-/// Whether the values are text too: unless the header says binary. Without a header the file may be text in UTF-16.
+/// Whether all of the file is text: unless the line "format" of its header says binary. Without a header that can be
+/// read as bytes, the file may be text in UTF-16.
 bool is_text_ply(std::string_view bytes) {
     const std::size_t end = end_of_header(bytes);
     if (end == std::string_view::npos) return true;

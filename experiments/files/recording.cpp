@@ -49,7 +49,8 @@ public:
     [[nodiscard]] std::size_t objects() const override { return records_.size(); }
     [[nodiscard]] std::size_t frames() const override { return frames_; }
 
-    /// Reads and validates the boxes of the next frame; false after the last.
+    /// Reads and validates the boxes of the next frame; false after the last. Boxes in double are kept in `in_double_`,
+    /// and `boxes` receives them rounded to floats for the search (`float_boxes`).
     bool next(std::vector<aabb::box>& boxes) override {
         if (frame_ == frames_) return false;
         const std::string place = "frame " + std::to_string(frame_);
@@ -74,10 +75,11 @@ public:
     [[nodiscard]] std::span<const aabb::boxd> in_double() const override { return in_double_; }
 
 private:
+    /// The range of all boxes of the recording, from its header. It is widened by more than the rounding of its floats.
     [[nodiscard]] static aabb::boxd world_of(const header& h) {
         const auto world = unpacked<aabb::box>(h.world);
         aabb::boxd range{aabb::in_double(world.min), aabb::in_double(world.max)};
-        for (int k = 0; k < 3; ++k) {  // floats may be rounded inward
+        for (int k = 0; k < 3; ++k) {  // the floats may be rounded inward
             range.min[k] -= 0x1p-22 * std::abs(range.min[k]);
             range.max[k] += 0x1p-22 * std::abs(range.max[k]);
         }
@@ -93,8 +95,8 @@ private:
     std::size_t frame_ = 0;
 };
 
-/// Writes the boxes of a frame.
-/// @param world grown to contain them, as floats
+/// Writes the boxes of a frame, in float or double.
+/// @param world grown to contain them; its bounds are floats, and clamped to their range
 template <class Real, class Box>
 void write_boxes(output_file& out, std::span<const Box> boxes, aabb::box& world) {
     constexpr double most = std::numeric_limits<float>::max();
@@ -143,7 +145,7 @@ std::unique_ptr<aabb::box_scene> open_recording(const std::filesystem::path& fil
                                  h.last_frame));
     if (!aabb::is_valid(unpacked<aabb::box>(h.world)))
         reject(file, "the world box in its header is inverted or not finite");
-    // Counts boxes, as the announced size in bytes may overflow.
+    // Compares numbers of boxes, as the announced size in bytes may overflow.
     const std::uint64_t boxes = static_cast<std::uint64_t>(h.objects) * (static_cast<std::uint64_t>(h.last_frame) + 1);
     const std::size_t bytes_of_box = h.is_double != 0 ? sizeof(box_record<double>) : sizeof(box_record<float>);
     const std::uint64_t stored = (size - sizeof(header)) / bytes_of_box;

@@ -24,7 +24,8 @@ public:
         __builtin_prefetch(&slots_[hash & (slots_.size() - 1)]);
         return hash;
     }
-    /// The index of the vertex with these coordinates, which is added if the mesh has none yet.
+    /// The index of the vertex with these coordinates, which is added if the mesh has none yet. A slot of the hash
+    /// table has a vertex index or `none`; the search goes on from slot to slot up to a free one (open addressing).
     [[nodiscard]] std::uint32_t index_of(const aabb::vec3d& p, std::size_t hash) {
         const auto bits = bits_of(p);
         std::size_t slot = hash & (slots_.size() - 1);
@@ -45,7 +46,8 @@ private:
     [[nodiscard]] static bits_of_vertex bits_of(const aabb::vec3d& p) noexcept {
         return std::bit_cast<bits_of_vertex>(p);
     }
-    /// Multiplications mix bits upwards; shifts bring the upper bits down to those that select the slot.
+    /// A hash of a vertex, whose lower bits select its slot. Multiplications mix bits upwards, so a shift brings the
+    /// upper bits down.
     [[nodiscard]] static std::size_t hash_of(const bits_of_vertex& bits) noexcept {
         constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;  // 2^64 over the golden ratio (Knuth, volume 3, 6.4)
         std::uint64_t hash = 0;
@@ -57,7 +59,8 @@ private:
     }
     [[nodiscard]] std::size_t next_slot(std::size_t slot) const noexcept { return (slot + 1) & (slots_.size() - 1); }
 
-    /// Doubles the hash table and inserts all vertices again: once it is more than half full, probing takes long.
+    /// Doubles the hash table and inserts all vertices again: in a table that is more than half full, a search passes
+    /// many slots.
     void double_slots() {
         slots_.assign(2 * slots_.size(), none);
         for (std::uint32_t vertex = 0; vertex < mesh_.vertices(); ++vertex) {
@@ -114,7 +117,7 @@ loaded_mesh read_text(const file_text& file) {
             in_facet = false;
             require_end_of_line();
         } else if (is_keyword(word, "solid") && !in_solid) {
-            in_solid = true;
+            in_solid = true;  // its name in the rest of the line is skipped
         } else if (is_keyword(word, "endsolid") && in_solid && !in_facet) {
             in_solid = false;
         } else if (in_facet && (is_keyword(word, "outer") || is_keyword(word, "endloop"))) {
@@ -137,8 +140,9 @@ constexpr auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r
 
 }  // namespace
 
-/// Reads binary STL; nullopt if the size contradicts the header, as for text: binary files may begin with "solid" too.
-/// The file is several times as large as its mesh and is read in blocks, as touching fresh memory takes most time.
+/// Reads binary STL; nullopt if the file's size contradicts the number of triangles in its header, as for text. The
+/// first word does not decide, as binary files may begin with "solid" too. The file is several times as large as its
+/// mesh and is read in blocks, since touching fresh memory would take most of the time.
 std::optional<loaded_mesh> read_binary_stl(const std::filesystem::path& file, std::size_t size) {
     if (size < header_bytes) return {};
     input_file opened(file, size);

@@ -22,7 +22,9 @@ std::filesystem::path make_temporary_folder() {
     return name;
 }
 
-/// The path of an entry relative to the folder `top`. Rejects absolute paths and "..", which could leave the folder.
+/// The path of an entry `name` relative to the folder `top`, in which every entry must be. Rejects absolute paths and
+/// "..", as unpacking them could write outside the target.
+/// @param archive its file name, for the message
 std::filesystem::path path_below(const std::string& top, const std::string& name, const std::string& archive) {
     const std::filesystem::path path(name);
     const bool has_detour = std::ranges::any_of(
@@ -51,7 +53,8 @@ public:
             fail_reading();
     }
 
-    /// Unpacks the files below the folder `top`. Anyone may have made the archive, so it is not trusted.
+    /// Unpacks the archive's folder `top` as the folder `into`. Anyone may have made the archive, so it is not trusted:
+    /// links, duplicates and more files or bytes than the limits are rejected.
     void unpack(const std::string& top, const std::filesystem::path& into) {
         std::set<std::filesystem::path> paths;
         std::size_t folders = 0;
@@ -87,7 +90,7 @@ private:
         return true;
     }
 
-    /// Writes the contents of the current entry to a file.
+    /// Writes the contents of the current entry to a file. `bytes_` counts those of all entries.
     void write_entry(const std::filesystem::path& file) {
         std::error_code error;
         std::filesystem::create_directories(file.parent_path(), error);

@@ -28,9 +28,10 @@ void sort_rows(std::span<aabb::index_pair> pairs) {
     sort_by(pairs, objects_of);
 }
 
+/// Sorts contacts by objects a, b, then by triangles of a, b. The radix sort takes keys of 64 bits, which hold only one
+/// of the two pairs: the contacts of each pair of objects are then sorted by their triangles.
 void sort_rows(std::span<aabb::contact> contacts) {
     sort_by(contacts, objects_of);
-    // Radix keys have 64 bits: contacts of the same objects are sorted by their triangles on their own.
     for (auto first = contacts.begin(); first != contacts.end();) {
         const auto is_of_others = [&](const aabb::contact& c) { return objects_of(c) != objects_of(*first); };
         const auto last = std::find_if(first, contacts.end(), is_of_others);
