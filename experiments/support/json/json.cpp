@@ -19,7 +19,8 @@ namespace {
 /// The nesting limit of lists and objects, since visitors recurse. Valid inputs stay far below it.
 constexpr int most_nested = 64;
 
-/// Whether brackets outside strings are nested beyond `most_nested`; works on malformed JSON, too.
+/// Whether brackets outside strings are nested deeper than `most_nested`, so that a parser would need much memory or
+/// stack. Works on malformed JSON, too.
 bool is_nested_too_deeply(std::string_view text) {
     int depth = 0;
     bool in_string = false;
@@ -37,7 +38,9 @@ bool is_nested_too_deeply(std::string_view text) {
     return false;
 }
 
-/// Parses untrusted JSON; the message on a syntax error has its line, or its byte in formats without lines.
+/// Parses untrusted JSON, which may be malformed in any way.
+/// @param message what a file with a syntax error is not: "is not a manifest of results"
+/// @param where whether messages locate the error by its line, or by its byte as in formats without lines
 json parse(const std::string& file, std::string_view text, const std::string& message, json_value::position where) {
     const auto reject = [&](const std::string& place, const std::string& why) {
         throw aabb::input_error(file + place + ": " + message + why);
@@ -148,6 +151,7 @@ std::vector<std::string> json_value::texts(const std::string& key) const {
     return value ? value->texts() : std::vector<std::string>();
 }
 
+/// The member of this name, which must be a list of whole numbers; empty if there is none.
 std::vector<std::size_t> json_value::indices(const std::string& key) const {
     const std::optional<json_value> value = member(key);
     if (!value) return {};

@@ -29,7 +29,7 @@ std::optional<std::string> line_of(const std::filesystem::path& file) {
     return std::getline(in, line) ? std::optional(line) : std::nullopt;
 }
 
-/// Parses a size such as "32K".
+/// Parses the size of a cache, in bytes: "32K" means 32 KiB; nullopt if it begins with no number.
 std::optional<std::uint64_t> bytes_of(const std::string& size) {
     std::uint64_t number = 0;
     const char* end = size.data() + size.size();
@@ -39,7 +39,8 @@ std::optional<std::uint64_t> bytes_of(const std::string& size) {
     return *unit == 'K' ? number << 10U : *unit == 'M' ? number << 20U : *unit == 'G' ? number << 30U : number;
 }
 
-/// The bytes of each cache of a processor: "L1d", "L1i", "L2". Its folder has a folder index0, index1, … for each.
+/// The bytes of each cache of a processor: "L1d" (data), "L1i" (instructions), "L2". In the processor's folder, Linux
+/// has a folder index0, index1, … for each cache, with the files level, size and type.
 std::map<std::string, std::uint64_t> caches_in(const std::filesystem::path& folder) {
     std::map<std::string, std::uint64_t> caches;
     for (int i = 0;; ++i) {
@@ -53,7 +54,8 @@ std::map<std::string, std::uint64_t> caches_in(const std::filesystem::path& fold
     }
 }
 
-/// Reads the number and model of the processors, and whether they report a hypervisor: this is a virtual machine.
+/// Reads from /proc/cpuinfo, with lines "name : value": the number and model of the processors, and whether they report
+/// a hypervisor, as in a virtual machine.
 void read_cpuinfo(const std::filesystem::path& file, machine& m) {
     std::ifstream in(file);
     for (std::string line; std::getline(in, line);) {

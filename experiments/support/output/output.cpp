@@ -24,7 +24,8 @@ void handle_write_error(int error) {
     reader_has_gone = true;
 }
 
-/// The length in bytes of the first character; 0 for a control character or invalid UTF-8.
+/// The length in bytes of the first character of UTF-8; 0 if it is a control character or invalid. Its first byte has
+/// as many leading ones as it has bytes, each further byte begins with 10 and holds six bits.
 std::size_t printable_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     if (byte(0) < 0x80) return byte(0) >= ' ' && byte(0) != 0x7f ? 1 : 0;
@@ -49,6 +50,7 @@ std::optional<std::size_t> width_of_terminal(int stream) {
 }
 
 /// Replaces control characters and invalid UTF-8 by hexadecimal escapes, so that text cannot control a terminal.
+/// @param keep_lines whether line feeds stay
 std::string escaped(std::string_view text, bool keep_lines) {
     std::string shown;
     while (!text.empty()) {
@@ -92,7 +94,8 @@ std::size_t paragraph_width() {
     return std::min<std::size_t>(output_width(), 80);
 }
 
-/// Fills lines greedily; every blank is kept, unless a line is broken there.
+/// Breaks text into lines of at most `most` characters at blanks: a word begins a new line if the current one has no
+/// space for it. Every blank is kept, unless a line is broken there.
 std::string wrapped(std::string_view text, std::size_t most) {
     std::string lines;
     std::size_t width = 0;
@@ -113,7 +116,8 @@ void print_paragraph(std::string_view text) {
     print(wrapped(text) + "\n");
 }
 
-/// Breaks text after a prefix; further lines are indented by its width. `most` is the width of a whole line.
+/// A hanging indent: the prefix `before`, then the text, broken into lines of at most `most` characters in all. Further
+/// lines are indented by the width of the prefix.
 std::string hanging(std::string_view before, std::string_view text, std::size_t most) {
     const std::size_t indent = characters(before);
     std::string result(before);

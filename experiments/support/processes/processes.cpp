@@ -53,7 +53,9 @@ void request_signal_at_end_of(pid_t parent, int signal) {
     if (getppid() != parent) _exit(127);  // the parent has already ended
 }
 
-/// Starts the program, with signals handled by default, which this process may change; returns only if that fails.
+/// Becomes the program, with its streams and folder as in the options; returns only if that fails, with errno. Signals
+/// that this program handles itself get their default handling back.
+/// @param output the descriptor that receives what the program prints
 void exec_program(char* const* arguments, const process_options& options, int output) {
     if (dup2(output, STDOUT_FILENO) < 0 || !redirect(options.input.c_str(), O_RDONLY, STDIN_FILENO) ||
         !redirect(options.errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO) ||
@@ -64,7 +66,9 @@ void exec_program(char* const* arguments, const process_options& options, int ou
     execvp(*arguments, arguments);
 }
 
-/// Kills all descendants: orphans become children of this process, the subreaper, and are killed in turn.
+/// Kills all descendants: kills all children, whose own children then become children of this process, as it is their
+/// subreaper, and repeats that until none is left. The kernel lists the children as numbers, each with a blank after
+/// it.
 void kill_descendants() {
     std::array<char, 4096> list{};
     for (;;) {
@@ -78,7 +82,6 @@ void kill_descendants() {
             if (c >= '0' && c <= '9') {
                 child = 10 * child + (c - '0');
             } else {
-                // The number is complete.
                 kill(child, SIGKILL);
                 child = 0;
             }
@@ -87,12 +90,37 @@ void kill_descendants() {
     }
 }
 
-/// Forks a process that will become the program. The keeper, this process, waits until that one ends, or until SIGTERM,
-/// which the end of the parent also causes. It then kills all descendants, in any session, and ends like the program.
-/// @returns true in the new process; false if fork fails
-[[nodiscard]] bool fork_under_keeper(int output, int start_errors, pid_t parent) {
-    sigset_t awaited, before, none;
+/// Waits until the program, a child, ends, or until this process gets SIGTERM.
+/// @param awaited all signals, which must be blocked
+/// @returns the status of the program as from waitpid
+int wait_for_program(pid_t program, const sigset_t& awaited) {
+    int status = 0;
+    for (pid_t ended = 0; ended != program;) {
+        if (sigwaitinfo(&awaited, nullptr) == SIGTERM) return SIGTERM;  // as if this signal had ended the program
+        while (ended != program && (ended = waitpid(-1, &status, WNOHANG)) > 0) continue;
+    }
+    return status;
+}
+
+/// Ends this process in the way that a status from waitpid describes: with an exit status, or by a signal.
+[[noreturn]] void end_like(int status) {
+    if (!WIFSIGNALED(status)) _exit(WEXITSTATUS(status));
+    prctl(PR_SET_DUMPABLE, 0);  // avoid a core dump of this process
+    std::signal(WTERMSIG(status), SIG_DFL);
+    sigset_t none;
     sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    kill(getpid(), WTERMSIG(status));
+    _exit(127);  // not reached
+}
+
+/// Forks a process that will become the program, and makes this process its keeper: it waits until the program ends, or
+/// until SIGTERM, which the end of the parent also causes. It then kills all descendants, in any session, so that none
+/// outlives a timeout, and ends like the program.
+/// @param output and `start_errors` are pipes to the parent, which the keeper closes
+/// @returns true in the new process; false if fork fails; the keeper never returns
+[[nodiscard]] bool fork_under_keeper(int output, int start_errors, pid_t parent) {
+    sigset_t awaited, before;
     sigfillset(&awaited);
     sigprocmask(SIG_SETMASK, &awaited, &before);
     request_signal_at_end_of(parent, SIGTERM);
@@ -109,21 +137,9 @@ void kill_descendants() {
     }
     close(output);
     close(start_errors);
-    int status = 0;
-    for (pid_t ended = 0; ended != program;) {
-        if (sigwaitinfo(&awaited, nullptr) == SIGTERM) {
-            status = SIGTERM;  // as if this signal had ended the program
-            break;
-        }
-        while (ended != program && (ended = waitpid(-1, &status, WNOHANG)) > 0) continue;
-    }
+    const int status = wait_for_program(program, awaited);
     kill_descendants();
-    if (!WIFSIGNALED(status)) _exit(WEXITSTATUS(status));
-    prctl(PR_SET_DUMPABLE, 0);  // avoid a core dump of the keeper
-    std::signal(WTERMSIG(status), SIG_DFL);
-    sigprocmask(SIG_SETMASK, &none, nullptr);
-    kill(keeper, WTERMSIG(status));
-    _exit(127);  // not reached
+    end_like(status);
 }
 
 /// Ends at the end of its standard input, which all keepers hold open, too.
@@ -140,9 +156,10 @@ constexpr const char* guard_script = "trap '' HUP INT TERM; read -r end; rm -rf 
 
 using clock = std::chrono::steady_clock;
 
-/// True if input, or the end of input, arrives before that time. Without a time it does not wait: the next read blocks.
+/// Waits until input, or the end of input, arrives; false if the time `end` comes first. Without a time it returns true
+/// at once: the next read then waits.
 bool becomes_readable(int input, const std::optional<clock::time_point>& end) {
-    pollfd request{input, POLLIN, 0};
+    pollfd request{input, POLLIN, /*revents=*/0};
     while (end) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(*end - clock::now()).count();
         if (left <= 0) return false;
@@ -152,7 +169,7 @@ bool becomes_readable(int input, const std::optional<clock::time_point>& end) {
     return true;
 }
 
-/// Reads until the other end closes, or until that time.
+/// Reads from a pipe until its other end closes, or until that time; without a time as long as it takes.
 std::string read_all(int input, const std::optional<clock::time_point>& end = {}) {
     std::string text;
     std::array<char, 4096> part{};
@@ -178,7 +195,8 @@ bool ends_before(pid_t child, clock::time_point end) {
 
 }  // namespace
 
-/// Forks a child and collects what it prints. Through a second pipe it reports why the program could not be started.
+/// Runs a program in a child process, until it ends or the timeout of the options, and collects what it prints. Through
+/// a second pipe the child reports the errno if the program could not be started.
 program_result run_child(const std::string& program, const std::vector<std::string>& arguments,
                          const process_options& options) {
     std::vector<std::string> texts{program};
@@ -215,7 +233,9 @@ program_result run_child(const std::string& program, const std::vector<std::stri
     return result;
 }
 
-/// Runs a program whose exit status 1 is a result, such as a failed check; any other but 0 is an error.
+/// Runs a program and returns its exit status, 0 or 1 (a failed check), and the lines that it prints.
+/// @param log file for its standard error
+/// @throws aabb::input_error on any other status, or if the program cannot be started
 ended_process run_to_end(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                          const std::filesystem::path& log) {
     flush_output();
@@ -235,9 +255,10 @@ ended_process run_to_end(const std::filesystem::path& program, const std::vector
     return result;
 }
 
-/// Runs this program in a new process and returns what it prints: one failure per line.
+/// Runs this program with other arguments in a new process and returns what it prints: one failure per line.
+/// @throws aabb::input_error if it fails without saying why
 std::vector<std::string> lines_of_own_process(const std::vector<std::string>& arguments) {
-    // By this link, because the file of that name may be another build by now.
+    // This link leads to the running program, even if its file has been replaced by another build.
     ended_process ended = run_to_end("/proc/self/exe", arguments, {});
     if (ended.status != 0 && ended.lines.empty())
         throw aabb::input_error("a process of " + arguments[1] +
@@ -249,7 +270,8 @@ std::filesystem::path own_folder() {
     return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
-/// Forks a guard that removes the folder as soon as the pipe closes: when this process has ended, in whatever way.
+/// Forks a guard process that removes the folder as soon as a pipe from this process closes, which the kernel does
+/// however this process ends. `held_` is the end of the pipe that keeps it open.
 folder_guard::folder_guard(std::filesystem::path folder) : folder_(std::move(folder)) {
     pipe_ends life;
     if (!life.open()) return;

@@ -9,7 +9,8 @@ namespace aabblab {
 
 namespace {
 
-/// The busy ticks of each processor, by number; empty if /proc/stat is unavailable.
+/// The ticks (hundredths of a second) for which each processor has been busy, by its number, from lines "cpu3 user nice
+/// system …"; empty if /proc/stat is unavailable.
 std::map<std::size_t, double> busy_ticks() {
     std::map<std::size_t, double> busy;
     std::ifstream in("/proc/stat");
@@ -27,8 +28,7 @@ std::map<std::size_t, double> busy_ticks() {
 
 /// Pins this thread to the processor that was idlest during a short sample, where other load disturbs times least.
 idlest_processor::idlest_processor() {
-    // A tick is a hundredth of a second.
-    constexpr auto sample_time = std::chrono::milliseconds(60);
+    constexpr auto sample_time = std::chrono::milliseconds(60);  // six ticks
     if (sched_getaffinity(0, sizeof before_, &before_) != 0 || CPU_COUNT(&before_) < 2) return;
     const std::map<std::size_t, double> busy_before = busy_ticks();
     std::this_thread::sleep_for(sample_time);

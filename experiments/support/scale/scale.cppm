@@ -43,9 +43,9 @@ export [[nodiscard]] double round_step(double span, double most) {
     return 10 * power;
 }
 
-/// The multiples of the step in a range; ends that are multiples up to rounding are included.
+/// The multiples of the step from `from` to `to`; ends that are multiples up to rounding are included.
 export [[nodiscard]] std::vector<double> round_values(double from, double to, double step) {
-    const double first = std::ceil(from / step - 1e-6);
+    const double first = std::ceil(from / step - 1e-6);  // as a multiple
     std::vector<double> values;
     // Counted by an integer, because far from 0 adding a small step may have no effect.
     for (int i = 0; i <= std::floor(to / step + 1e-6) - first; ++i)
@@ -63,14 +63,15 @@ export [[nodiscard]] std::vector<double> round_values(double from, double to, do
     return {at, mantissa == 1 ? "10" : number_text(mantissa, decimals) + "\u00d710", number_text(exponent, 0)};
 }
 
-/// Ticks at the multiples of a step; very large and very small ones are labelled with one common power of ten.
+/// Ticks at the multiples of a step, labelled with numbers. If these are very large or very small (`has_power`), all
+/// have one power of ten, that of the largest: 0.5 x 10^7, 1 x 10^7.
 [[nodiscard]] std::vector<tick> linear_ticks(double from, double to, double step) {
     const std::vector<double> values = round_values(from, to, step);
     double largest = 0;
     for (const double at : values) largest = std::max(largest, std::abs(at));
     const bool has_power = largest >= 1e7 || step < 1e-5;
     const int exponent = has_power ? exponent_of(largest) : 0;
-    const int decimals = std::max(0, exponent - exponent_of(step));
+    const int decimals = std::max(0, exponent - exponent_of(step));  // enough to distinguish neighbouring ticks
     std::vector<tick> ticks;
     for (const double at : values)
         ticks.push_back(has_power && at != 0 ? power_tick(at, at * std::pow(10, -exponent), exponent, decimals)
@@ -78,7 +79,8 @@ export [[nodiscard]] std::vector<double> round_values(double from, double to, do
     return ticks;
 }
 
-/// Ticks at all multiples of powers of ten; only the given multiples of every `decades`-th power have labels.
+/// Ticks of a logarithmic axis: at 1, 2, … 9 times each power of ten. Those at the given multiples have labels, but
+/// only at every `decades`-th power; then the other powers have no ticks but their first.
 [[nodiscard]] std::vector<tick> decade_ticks(double from, double to, std::span<const int> multiples, int decades) {
     const bool has_power = from < 0.9e-4 || to > 1.1e6;  // 1e-4 and 1e6, with some room for wider ends
     std::vector<tick> ticks;
@@ -97,7 +99,8 @@ export [[nodiscard]] std::vector<double> round_values(double from, double to, do
     return ticks;
 }
 
-/// Labels powers of ten; in short ranges also 2 and 5 times these, or else round values, to get at least three labels.
+/// Ticks of a logarithmic axis, with at least three labels: at powers of ten (not all, in long ranges), or else also at
+/// 2 and 5 times these, or else at the multiples of a round step, as in a range within one decade.
 [[nodiscard]] std::vector<tick> log_ticks(double from, double to) {
     constexpr std::array<int, 3> multiples{1, 2, 5};
     const auto has_three_labels = [](const std::vector<tick>& ticks) {
@@ -110,8 +113,9 @@ export [[nodiscard]] std::vector<double> round_values(double from, double to, do
     return linear_ticks(from, to, round_step(to - from, /*most=*/6));
 }
 
-/// The scale of an axis that shows `least` to `greatest`, which may be equal, and must be positive if logarithmic: it
-/// is somewhat wider.
+/// The scale of an axis that shows the values from `least` to `greatest`. It is somewhat wider, so that no value lies
+/// on the border. The values may be equal; on a logarithmic axis they must be positive.
+/// @param end where a linear axis ends: on ticks, or near the values
 export [[nodiscard]] scale scale_of(double least, double greatest, bool logarithmic, scale_end end) {
     scale s{.from = least, .to = greatest, .logarithmic = logarithmic};
     if (logarithmic) {
@@ -127,14 +131,15 @@ export [[nodiscard]] scale scale_of(double least, double greatest, bool logarith
         s.to += beyond;
     }
     if (end == scale_end::on_ticks) {
-        if (s.from > 0 && s.from <= s.to / 2) s.from = 0;  // zero shows proportions, if values fill half of the axis
+        // From zero the axis shows proportions. It begins there if the values still fill half of it.
+        if (s.from > 0 && s.from <= s.to / 2) s.from = 0;
         const double step = round_step(s.to - s.from, /*most=*/5);
         s.from = std::floor(s.from / step + 1e-6) * step;
         s.to = std::ceil(s.to / step - 1e-6) * step;
         s.ticks = linear_ticks(s.from, s.to, step);
     } else {
         const double beyond = 0.03 * (s.to - s.from);
-        s.from = s.from >= 0 && s.from <= 3 * beyond ? 0 : s.from - beyond;
+        s.from = s.from >= 0 && s.from <= 3 * beyond ? 0 : s.from - beyond;  // not slightly above or below zero
         s.to += beyond;
         s.ticks = linear_ticks(s.from, s.to, round_step(s.to - s.from, /*most=*/6));
     }

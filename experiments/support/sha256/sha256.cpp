@@ -5,6 +5,7 @@ module aabblab.sha256;
 
 namespace aabblab {
 
+/// The SHA-256 of the bytes, in hexadecimal.
 std::string sha256_of(std::string_view bytes) {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned size = 0;

@@ -17,7 +17,9 @@ double wall_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The step of a clock: the minimum of a few, because interrupts hide steps; stops at the first that is fine enough.
+/// The step of a clock, in milliseconds: the time between two different readings. It is the minimum of up to ten,
+/// because an interrupt may hide steps. A step of at most `longest_step_ms`, which is fine enough, ends the
+/// measurement.
 double step_of(double (*clock)()) {
     double step = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 10 && step > longest_step_ms; ++i) {
@@ -73,8 +75,8 @@ struct elapsed {
     }
 };
 
-/// The measured time of no work, subtracted from all measurements, since reading the clock takes as long as a frame
-/// with a few dozen boxes: the minimum, because disturbances only add time.
+/// The processor time that a stopwatch measures around no work. It is subtracted from all measurements, as reading the
+/// clocks takes as long as a frame with a few dozen boxes. The minimum is taken, because disturbances only add time.
 [[nodiscard]] double empty_cpu_ms() {
     static const double least = [] {
         double minimum = std::numeric_limits<double>::infinity();
@@ -104,7 +106,7 @@ private:
     wall_stopwatch wall_;
 };
 
-/// "2026-01-31T12:00:00Z"
+/// The time now, in UTC: "2026-01-31T12:00:00Z"
 [[nodiscard]] std::string date_now() {
     const std::time_t now = std::time(nullptr);
     std::tm utc{};

@@ -29,7 +29,8 @@ export namespace aabblab {
 /// break.
 [[nodiscard]] std::string with_breaks(std::string_view text, std::size_t length) {
     std::string result;
-    std::size_t word_begin = 0, break_at = 0;  // in `result`: of the word, and its last possible break if greater
+    std::size_t word_begin = 0;  // the offset in `result` of the current word
+    std::size_t break_at = 0;    // that after the word's last comma or colon, if it is greater than `word_begin`
     for (const char c : text) {
         if (begins_character(c) && c != ' ' && characters(std::string_view(result).substr(word_begin)) == length) {
             if (break_at <= word_begin) break_at = result.size();
