@@ -79,8 +79,8 @@ export [[nodiscard]] std::vector<double> round_values(double from, double to, do
     return ticks;
 }
 
-/// Ticks of a logarithmic axis: at 1, 2, … 9 times each power of ten. Those at the given multiples have labels, but
-/// only at every `decades`-th power; then the other powers have no ticks but their first.
+/// Ticks of a logarithmic axis: at 1, 2, … 9 times each power of ten, or only at the powers if `decades` is above 1.
+/// Those at the given multiples of every `decades`-th power have labels.
 [[nodiscard]] std::vector<tick> decade_ticks(double from, double to, std::span<const int> multiples, int decades) {
     const bool has_power = from < 0.9e-4 || to > 1.1e6;  // 1e-4 and 1e6, with some room for wider ends
     std::vector<tick> ticks;
