@@ -6,7 +6,8 @@ import aabblab.output;
 
 namespace aabblab {
 
-/// Parses a finite number. A float is parsed as such, since rounding a double again may miss the nearest float.
+/// Parses a finite number, rounded to the nearest Real. A float is not parsed as a double first, since two roundings
+/// may miss the nearest float.
 template <class Real>
 Real parse_number(const std::string& text) {
     char* end = nullptr;
@@ -21,7 +22,7 @@ Real parse_number(const std::string& text) {
     throw aabb::input_error("'" + text + "' is " + (too_large ? "too large" : "not finite"));
 }
 
-/// Parses word i of a line of numbers, which a message counts from 1.
+/// Parses word i of a line of numbers; a message has its place in the line, counted from 1.
 template <class Real>
 Real parse_number_of(const std::vector<std::string>& words, std::size_t i) {
     try {

@@ -37,13 +37,15 @@ void add_motion(scene_measures& m, recorded_frame before, recorded_frame after, 
     for (const auto member : motion_members) *m.motion.*member += motion.*member;
 }
 
-/// Counts overlapping pairs of intervals, as the complement of the pairs in which one ends before the other begins.
+/// Counts overlapping pairs of n intervals in O(n log n): all n (n - 1) / 2 pairs but those in which one interval ends
+/// before the other begins.
+/// @param lower their lower ends, `upper` their upper ends, each in any order
 double overlapping_pairs(std::vector<float> lower, std::vector<float> upper) {
     std::ranges::sort(lower);
     std::ranges::sort(upper);
     const auto n = static_cast<double>(lower.size());
     double disjoint = 0;
-    std::size_t ended = 0;
+    std::size_t ended = 0;  // intervals that end before `begin`
     for (const float begin : lower) {
         while (ended < upper.size() && upper[ended] < begin) ++ended;
         disjoint += static_cast<double>(ended);
@@ -66,7 +68,8 @@ std::optional<double> size_ratio_of(std::span<const aabb::box> boxes) {
     return *median > 0 ? std::optional(longest / *median) : std::nullopt;
 }
 
-/// Inversions per object: pairs whose order along the axis differs from that of the previous frame.
+/// Inversions per object: pairs of boxes whose order along the axis, by lower bound, differs from that of the previous
+/// frame. Insertion sort, starting from the previous order, takes as many swaps.
 double inversions_of(std::span<const aabb::box> before, std::span<const aabb::box> after, int axis) {
     std::vector<std::uint32_t> order(before.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -79,8 +82,9 @@ double inversions_of(std::span<const aabb::box> before, std::span<const aabb::bo
 
 }  // namespace
 
-/// On an axis, two intervals of mean length e, uniformly spread over a range of width w, overlap with probability of
-/// about 2 e / w. The expected number of pairs of n boxes is n (n - 1) / 2 times the product over the axes.
+/// Measures the sizes and overlaps of boxes, and the number of overlapping pairs that uniformly distributed boxes would
+/// have: on an axis, two intervals of mean length e in a range of width w overlap with a probability of about 2 e / w,
+/// so n boxes have n (n - 1) / 2 pairs times the product of these probabilities.
 box_measures measure_boxes(std::span<const aabb::box> boxes) {
     box_measures m;
     if (boxes.empty()) return m;
@@ -92,7 +96,7 @@ box_measures measure_boxes(std::span<const aabb::box> boxes) {
     m.typical_extent = extents_of_boxes();
     for (int k = 0; k < 3; ++k) {
         std::vector<float> lower, upper;
-        double extents = 0;
+        double extents = 0;  // their sum over the boxes
         for (const aabb::box& b : boxes) {
             lower.push_back(b.min[k]);
             upper.push_back(b.max[k]);
@@ -105,13 +109,15 @@ box_measures measure_boxes(std::span<const aabb::box> boxes) {
     return m;
 }
 
-/// The common motion along an axis is the middle of all displacements, so half of their range remains as relative.
+/// Measures the motion of the same boxes from one frame to the next. The relative displacement is without the common
+/// motion, which is the middle of all displacements along an axis: half of their range remains.
+/// @param axis along which inversions are counted
 motion_measures measure_motion(std::span<const aabb::box> before, std::span<const aabb::box> after, std::size_t axis) {
     motion_measures m;
     if (before.empty()) return m;
     const auto n = static_cast<double>(before.size());
     double displacements = 0, moved = 0;
-    std::vector<double> squares(before.size());
+    std::vector<double> squares(before.size());  // of the displacement of each centre
     for (int k = 0; k < 3; ++k) {
         double least = std::numeric_limits<double>::infinity();
         double most = -least;
@@ -139,7 +145,8 @@ scene_measures measure_scene(const scene_choice& choice) {
     return measure_scene(scene);
 }
 
-/// Searches with the default composition, since the number of overlapping pairs is a measure, too.
+/// Measures the boxes of the first frame, and the mean motion over the first frames. Runs a search with the default
+/// strategies in these frames, since the number of overlapping pairs is a measure, too.
 scene_measures measure_scene(scene_frames& scene) {
     scene_measures m;
     m.objects = scene.objects();
@@ -154,6 +161,7 @@ scene_measures measure_scene(scene_frames& scene) {
     run_frames(
         scene, runner,
         [&](const searched_frame& frame) {
+            // Objects are present from their arrival to their departure; those of meshes from the beginning.
             recorded_frame current{{runner.boxes().begin(), runner.boxes().end()}, before.present};
             current.present.resize(current.boxes.size(), scene.meshes() != nullptr);
             for (const std::uint32_t id : scene.arrivals()) current.present[id] = true;
@@ -181,6 +189,8 @@ scene_measures measure_scene(scene_frames& scene) {
     return m;
 }
 
+/// The measures as rows to print: a name, and its value with a unit and explanation. Lengths are in typical extents
+/// (the mean edge of a box), so that scenes of any scale can be compared.
 table measures_table(const scene_measures& m) {
     table measured = empty_table({"measured", ""});
     const auto add = [&](const char* name, const std::string& value) { measured.rows.push_back({name, value}); };

@@ -10,7 +10,7 @@ namespace aabblab {
 
 namespace {
 
-/// A data: URI, which embeds the picture in the page without a script.
+/// A data: URI that holds the SVG, percent-encoded, so that the page has its pictures in its own file.
 std::string address_of(const std::string& svg) {
     constexpr std::string_view digits = "0123456789ABCDEF";
     std::string address = "data:image/svg+xml,";
@@ -26,6 +26,8 @@ std::string address_of(const std::string& svg) {
 
 }  // namespace
 
+/// The table in HTML, in an element that scrolls if it is wider than the page. Columns of numbers are of a class of
+/// their own, for their alignment.
 std::string to_html(const table& t) {
     const auto cell = [&](const std::string& tag, std::size_t k, const std::string& text) {
         return element(tag, {{"class", t.columns[k].is_number ? "number" : ""}}, markup_text(text));
