@@ -22,9 +22,23 @@ struct atlas_request {
     }
 };
 
-/// Measures the atlas, or with --judge reads existing results, and then writes and prints its maps and ratios.
+/// Reads the measured scenes of an atlas from results, which may also be those of a reproduction: they have the atlas
+/// in the folder of their report. Notes which parts of the atlas are unfinished.
+std::vector<atlas_scene> existing_atlas(const results_source& source) {
+    verify_record(source.folder);
+    std::filesystem::path parts = source.folder;
+    std::vector<atlas_scene> atlas = measured_atlas(parts);
+    if (atlas.empty()) atlas = measured_atlas(parts = folder_of_atlas(source.folder));
+    if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + source.name);
+    for (const std::string& missing : unfinished_parts(parts)) note(missing);
+    return atlas;
+}
+
+/// Measures the atlas: the times of all candidates (compositions and engines) in many scenes. With --judge it
+/// reads existing results instead. Then writes its maps, and prints which candidate is the fastest where.
+/// @returns the exit status: 1 if a check failed
 int run(const atlas_request& request) {
-    outlive_reader();
+    outlive_reader();  // a closed pipe does not stop the measurement
     if (request.source && !request.judge)
         throw aabb::input_error(*request.source + " is given, but only --judge reads existing results");
     const std::filesystem::path out = request.folder();
@@ -35,14 +49,9 @@ int run(const atlas_request& request) {
     if (names.empty()) sources.add(out);
     const results_source& source = sources.list().front();
     std::vector<atlas_scene> atlas;
+    // An archive is read from an unpacked copy, but messages have the archive's name.
     (void)sources.run_with_source_names([&] {
-        verify_record(source.folder);
-        std::filesystem::path parts = source.folder;
-        atlas = measured_atlas(parts);
-        // The results of a reproduction have the atlas in the folder of their report.
-        if (atlas.empty()) atlas = measured_atlas(parts = folder_of_atlas(source.folder));
-        if (atlas.empty()) throw aabb::input_error("there are no results of an atlas in " + source.name);
-        for (const std::string& missing : unfinished_parts(parts)) note(missing);
+        atlas = existing_atlas(source);
         return 0;
     });
     write_atlas(out, atlas);

@@ -17,7 +17,8 @@ struct calibrate_request {
     bool quick = false, reset = false;
 };
 
-/// The fitted costs ("here", on this machine) beside the shipped ones, with 95 % confidence intervals.
+/// The fitted costs of operations ("here", on this machine) beside those that the program ships with (the defaults of
+/// `cost_model`), and the 95 % confidence interval of each fit.
 table table_of(const calibration& fit) {
     table t = empty_table({"cost", "unit"}, {"shipped", "here", "95 %"});
     for (std::size_t k = 0; k < aabb::cost_infos.size(); ++k) {
@@ -39,7 +40,8 @@ table checks_of(const calibration& fit) {
     return t;
 }
 
-/// Measures the costs on the idlest processor and stores them where commands look for them, or in the file of --out.
+/// Measures the costs of elementary operations, which decide what is fast on this machine, and stores them where
+/// commands look for them, or in the file of --out. With --reset it removes the stored costs instead.
 void calibrate(const calibrate_request& request) {
     const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : calibrated_costs_file();
     if (file.empty())

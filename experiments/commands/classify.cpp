@@ -20,8 +20,9 @@ struct classify_request {
     bool keep_doubles = false, geometry = false;
 };
 
-/// The triangle test for --geometry.
-/// @throws aabb::input_error if it does not construct intersections, with the names of those that do
+/// The triangle test of this name, for --geometry, which asks for the intersection of two triangles: a point, segment
+/// or polygon. Many tests only decide whether there is one.
+/// @throws aabb::input_error if the test does not construct intersections, with the names of those that do
 std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choice& choice) {
     auto test = triangle_test_named(choice);
     if (test->constructs()) return test;
@@ -31,7 +32,8 @@ std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choi
                     choice.name, fmt::join(constructing_tests(), " or ")));
 }
 
-/// Tests two triangles: 0 or 1, or their intersection. `words` are the corners of the first, then of the second.
+/// Tests two triangles and returns the line to print: 0 or 1, or with `geometry` their intersection. `words` are 18
+/// numbers: the corners of the first triangle, then of the second.
 template <class Real>
 std::string result_of(const aabb::triangle_test& test, const std::vector<std::string>& words, bool geometry) {
     if (words.size() != 18)
@@ -43,7 +45,8 @@ std::string result_of(const aabb::triangle_test& test, const std::vector<std::st
     return test.intersects(triangles[0], triangles[1]) ? "1\n" : "0\n";
 }
 
-/// Tests a pair per line. Results before a malformed line are still printed: the program flushes them before errors.
+/// Tests the pair of triangles of each line and prints its result. A malformed line ends the input with an error; the
+/// results before it are still printed, as the program flushes its output before errors.
 void classify_lines(line_stream lines, const aabb::triangle_test& test, const classify_request& request) {
     std::optional<progress> shown;  // results on a terminal show the progress themselves
     if (isatty(STDOUT_FILENO) == 0) shown.emplace("bytes classified", lines.size());

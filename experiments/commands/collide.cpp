@@ -31,6 +31,8 @@ struct collide_request {
     bool touching = true, first = false, count = false, geometry = false, exit_code = false, json = false;
 
     [[nodiscard]] std::vector<std::string> meshes() const { return b ? std::vector{a, *b} : std::vector{a}; }
+    /// What the options ask for: all pairs, the first or their number, of A and B or of A with itself, at one pose or
+    /// many.
     [[nodiscard]] mesh_query query() const {
         const query_kind ask = count ? query_kind::count : first ? query_kind::first : query_kind::pairs;
         return {.ask = ask,
@@ -50,9 +52,10 @@ nlohmann::ordered_json geometry_of(const intersecting_pair& pair) {
     return geometry;
 }
 
-/// Prints one object, in which --poses makes results lists by pose.
+/// Prints the result as one JSON object. With --poses, each result is an array with a value per pose, else one value.
+/// Values that were not asked for are null or absent.
 void print_json(const collide_request& request, const mesh_result& result) {
-    /// An array with a value per pose, or the only value.
+    // `several` values stay an array even without --poses, such as the times of repeats.
     const auto by_pose = [&](nlohmann::ordered_json values, bool several = false) {
         return request.poses_of_b || several ? values : nlohmann::ordered_json(values.front());
     };
@@ -91,7 +94,8 @@ std::string text_of(const intersecting_pair& pair) {
                        pair.common ? ": " + to_text(*pair.common) : "");
 }
 
-/// Prints the result in one line; with --first and --poses, a line per pose with a hit precedes it.
+/// Prints the number of pairs and the digest in one line, then the numbers by kind of intersection. Plain --first
+/// prints only the pair; with --poses too, a line per pose at which the meshes intersect precedes the others.
 void print_results(const collide_request& request, const mesh_result& result) {
     if (request.first && !request.poses_of_b && result.first[0]) return print(text_of(*result.first[0]));
     if (request.poses_of_b)
@@ -111,6 +115,7 @@ void print_results(const collide_request& request, const mesh_result& result) {
     if (result.degenerate.value_or(0) > 0) print(counted(*result.degenerate, "triangle") + " without area\n");
 }
 
+/// Prints the result for reading: the meshes, what was found, the median of the query times, memory.
 void print_text(const collide_request& request, const mesh_result& result) {
     const auto description_of = [&](const std::string& mesh, std::size_t i) {
         return visible(mesh) + " (" + counted(result.triangles[i], "triangle") + ")";
@@ -128,7 +133,8 @@ void print_text(const collide_request& request, const mesh_result& result) {
     print_paragraph("bytes:" + bytes);
 }
 
-/// Rejects options that exclude each other or would have no effect, before any file is read. Plain --self is "true".
+/// Rejects options that exclude each other or would have no effect, before any file is read. `request.self` is empty
+/// without --self, "true" for --self alone, and else the value in --self=all or --self=no-adjacent.
 void reject_contradictions(const collide_request& request) {
     const auto reject_if = [](bool condition, const char* sentence) {
         if (condition) throw aabb::input_error(sentence);
@@ -167,7 +173,9 @@ std::optional<number_table> open_rows(const collide_request& request) {
     return std::optional<number_table>(std::in_place, *request.out, columns);
 }
 
-/// Rejects bad options, poses and outputs first, since reading and searching large meshes takes long.
+/// Finds the intersecting triangles of two meshes, or of one with itself, and prints them. Bad options, poses and
+/// outputs are rejected first, since reading and searching large meshes takes long.
+/// @returns the exit status: 1 with --exit-code if any triangles intersect
 int collide(const collide_request& request) {
     reject_contradictions(request);
     const search_choice choice = request.method.choice();

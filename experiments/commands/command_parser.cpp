@@ -43,7 +43,7 @@ public:
         std::string text;
         for (std::string line; std::getline(lines, line);) {
             std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
-            // An indented name and its text: further lines begin below the text.
+            // An indented line has a name, two blanks or more, and its text: further lines begin below the text.
             if (indent > 0) indent = std::min(line.find_first_not_of(' ', line.find("  ", indent)), line.size());
             text += hanging(line.substr(0, indent), line.substr(indent)) + "\n";
         }
@@ -58,8 +58,10 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-/// How to set a parameter of this name, "--partition axial_cut:axes=…", for users who write it as an option of its own.
-/// @returns empty if no strategy that the command accepts has such a parameter
+/// How to set a parameter of a strategy, "--partition axial_cut:axes=…", for users who write it as an option of its
+/// own.
+/// @param options those of the command, in which each kind of strategy has one
+/// @returns empty if no strategy that the command accepts has a parameter of this name
 std::string option_of_parameter(const std::string& parameter, const std::vector<std::string>& options) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         const std::string option = "--" + std::string(name_of(kind));
@@ -139,8 +141,9 @@ parsed_option parsed_option::hidden() const {
     return *this;
 }
 
-/// Adds a command. If its parent is a command, too, as in `validate extreme`, that takes at most one; options between
-/// the two names are rejected, which the parser would accept and the subcommand ignore.
+/// Adds a command, or a subcommand if this is a command, as in `validate extreme`. A command takes at most one
+/// subcommand. Options between the two names are rejected, as the parser would accept them and the subcommand would
+/// ignore them.
 command_parser command_parser::add_command(const std::string& name, const std::string& help) const {
     CLI::App* const subcommand = command_->add_subcommand(name, help);
     if (command_->get_parent() != nullptr) {
@@ -155,7 +158,8 @@ command_parser command_parser::command(const std::string& name) const {
     return {*command_->get_subcommand(name), *action_};
 }
 
-/// Adds an option whose value is stored in a variable or passed to a function.
+/// Adds an option whose value is stored in a variable or passed to a function. `names` is "--out FILE" or, for an
+/// argument, "FILE".
 parsed_option command_parser::option(const std::string& names, const option_value& value,
                                      const std::string& help) const {
     const std::pair<std::string, std::string> parts = split_value_name(names);
@@ -182,9 +186,10 @@ void command_parser::footer(const std::variant<std::string, std::function<std::s
 
 void command_parser::callback(const std::function<int()>& act) const {
     // If a subcommand is given, only that runs.
-    command_->callback([command = command_, action = action_, act] {
+    const auto set_own_action = [command = command_, action = action_, act] {
         if (command->get_subcommands().empty()) *action = act;
-    });
+    };
+    command_->callback(set_own_action);
 }
 
 void wrap_help(CLI::App& program) {

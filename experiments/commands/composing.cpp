@@ -27,6 +27,8 @@ std::string option_names(aabb::stage stage) {
 
 }  // namespace
 
+/// Adds an option for each kind of strategy of the stages, such as --sort, and --engine. A command without meshes does
+/// not offer strategies that need them.
 void method_options::add_to(const command_parser& command, const std::string& replaced) {
     const bool has_meshes = std::ranges::find(stages_, aabb::stage::local_detection) != stages_.end();
     for (const aabb::stage stage : stages_)
@@ -42,8 +44,8 @@ void method_options::add_to(const command_parser& command, const std::string& re
     command.footer("aabblab list shows every strategy with its parameters.");
 }
 
-/// Reads the options: what to search with. An engine replaces the last stage, so it excludes strategies of that stage.
-/// Compositions that are invalid for every input are rejected here, before any file is read.
+/// Returns what the options say to search with: a strategy per kind, or an engine, which replaces the last stage and so
+/// excludes strategies of that stage. Strategies that cannot be combined are rejected here, before any file is read.
 search_choice method_options::choice() const {
     const auto is_set = [&](aabb::strategy_kind kind) { return values_[kind].has_value(); };
     const aabb::stage replaced_by_engine = stages_.back();

@@ -21,6 +21,7 @@ struct contacts_request {
     bool touching = true, geometry = false, json = false;
 };
 
+/// The result of --json: totals over all frames, and the time of each frame.
 std::string json_of(const search_method& method, const frames_result& result) {
     nlohmann::ordered_json summary = {{"objects", result.objects},
                                       {"frames", result.ms.size()},
@@ -38,6 +39,7 @@ std::string json_of(const search_method& method, const frames_result& result) {
     return summary.dump() + "\n";
 }
 
+/// The result for reading: totals over all frames, and the mean time per frame.
 std::string text_of(const contacts_request& request, const search_method& method, const frames_result& result) {
     return fmt::format("{}: {}, {}\n", visible(request.motion), counted(result.objects, "object"),
                        counted(result.ms.size(), "frame")) +
@@ -49,6 +51,8 @@ std::string text_of(const contacts_request& request, const search_method& method
                        result.build_ms, result.mean_ms());
 }
 
+/// Finds the intersecting triangles of moving meshes in each frame, writes them to the file of --out, and prints
+/// totals.
 void find_contacts(const contacts_request& request) {
     if (request.geometry && !request.out)
         throw aabb::input_error("--geometry adds columns to the contacts, so give --out FILE");

@@ -13,8 +13,11 @@ struct errors_request {
     bool quick = false;
 };
 
+/// Runs a study of errors: measures how often each method is wrong, and how fast it is, prints the tables and says
+/// where the numbers and plots are.
+/// @returns the exit status: 1 if a check failed
 int run(const errors_request& request) {
-    outlive_reader();
+    outlive_reader();  // a closed pipe does not stop the study
     const error_study study =
         read_error_study(request.config, request.quick ? experiment_size::quick : experiment_size::full);
     for (const std::string& sentence : study.notes) note(sentence);

@@ -34,6 +34,7 @@ struct section {
     std::vector<list_item> left_out = {};  ///< items that this build lacks
 };
 
+/// The parameters of a strategy, scene or shape; one that must be given has the default null.
 json json_of(std::span<const aabb::parameter_info> parameters) {
     json array = json::array();
     for (const aabb::parameter_info& p : parameters) {
@@ -58,7 +59,8 @@ std::string summary_of(const metric& m) {
     return fmt::format("{} ({}{})", m.summary, m.unit.empty() ? "" : m.unit + ", ", group_of(m));
 }
 
-/// An item with those properties of its kind that scripts may need.
+/// An item of the list from the description of a strategy, engine, scene, metric and so on. Its JSON has those
+/// properties that the type of the description has.
 list_item item_of(const auto& info) {
     list_item item{
         std::string(info.name), summary_of(info), /*parameters=*/{}, {{"name", info.name}, {"summary", info.summary}}};
@@ -123,6 +125,7 @@ std::vector<std::string> section_names() {
     return names;
 }
 
+/// Prints a part of the list: a line per item, and below it a line per parameter, "name=default".
 void print_text(const section& part) {
     print(part.name + part.heading + "\n");
     for (const std::vector<list_item>& items : {part.entries, part.left_out})
@@ -153,6 +156,7 @@ json json_of(const std::vector<section>& sections) {
     return root;
 }
 
+/// Prints the whole list, or the part of one kind, as text or JSON.
 void list(const list_request& request) {
     std::vector<section> shown = sections();
     if (request.kind) {

@@ -20,6 +20,7 @@ struct pairs_request {
     bool json = false;
 };
 
+/// The result of --json: totals over all frames, and the time of each frame.
 std::string json_of(const search_method& method, const frames_result& result) {
     nlohmann::ordered_json summary = {
         {"objects", result.objects}, {"frames", result.ms.size()}, {"pairs", result.pairs}, {"digest", result.digest},
@@ -29,6 +30,7 @@ std::string json_of(const search_method& method, const frames_result& result) {
     return summary.dump() + "\n";
 }
 
+/// The result for reading: totals over all frames, and the mean time per frame.
 std::string text_of(const pairs_request& request, const search_method& method, const frames_result& result) {
     std::string text =
         fmt::format("{}: {}, {}\n{}, digest {}\n", visible(request.recording), counted(result.objects, "object"),
@@ -39,6 +41,7 @@ std::string text_of(const pairs_request& request, const search_method& method, c
     return text;
 }
 
+/// Finds the overlapping boxes of a recording in each frame, writes them to the file of --out, and prints totals.
 void find_pairs(const pairs_request& request) {
     const search_choice choice = request.method.choice();
     scene_frames scene(open_recording(request.recording));

@@ -15,9 +15,11 @@ struct run_request {
     bool quick = false, resume = false, counts = false;
 };
 
-/// Runs an experiment, or, if it was started by a run with --process, one of its processes.
+/// Runs the experiment of a config and says where its results are. An experiment may run in several processes, each of
+/// which this program starts with the hidden option --process.
+/// @returns the exit status: 1 if a check failed
 int run(const run_request& request) {
-    outlive_reader();
+    outlive_reader();  // a closed pipe does not stop the experiment
     const experiment e = request.process ? read_experiment(request.config, request.quick ? experiment_size::quick
                                                                                          : experiment_size::full)
                                          : open_experiment(request.config, request.quick);

@@ -24,9 +24,8 @@ struct scene_request {
 /// A mesh scene as input of the broad phase: the world boxes of its objects. Optionally writes their poses.
 class world_boxes final : public aabb::box_scene {
 public:
-    /// @param motion receives the poses; null if they are not written
-    world_boxes(const scene_choice& choice, motion_file* motion)
-        : scene_(choice), motion_(motion), world_(*scene_.meshes()) {
+    /// @param out receives the poses; null if they are not written
+    world_boxes(const scene_choice& scene, motion_file* out) : scene_(scene), motion_(out), world_(*scene_.meshes()) {
         if (scene_.meshes()->reacts())
             finder_.emplace(candidate_of(aabb::composition(), /*meshes=*/true), scene_, aabb::instrumentation::none);
     }
@@ -86,7 +85,7 @@ std::optional<std::uint64_t> seed_of(const scene_request& request, const scene_i
                        "--seed must be a whole number from 0 to 18446744073709551615");
 }
 
-/// Rejects scenes that poses alone do not describe.
+/// Rejects scenes that poses alone do not describe: their meshes deform, or the parameter `normalise` scales them.
 void require_poses_suffice(const scene_info& kind, const scene_choice& choice, const aabb::mesh_scene& scene) {
     for (std::uint32_t m = 0; m < scene.meshes.size(); ++m)
         if (scene.deforms(m))
@@ -98,7 +97,8 @@ void require_poses_suffice(const scene_info& kind, const scene_choice& choice, c
         throw aabb::input_error("--motion writes poses of unscaled meshes, so give --normalise no with it");
 }
 
-/// Creates a scene of boxes, or the world boxes of a scene of meshes, whose poses are also written to `motion`.
+/// Creates a scene of boxes, or the world boxes of a scene of meshes.
+/// @param motion receives the poses of the meshes; null if they are not written
 std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_choice& choice, motion_file* motion) {
     if (!kind.has_meshes && motion)
         throw aabb::input_error(kind.name + " is a scene of boxes, which have no poses to write with --motion");
@@ -108,7 +108,7 @@ std::unique_ptr<aabb::box_scene> make_scene(const scene_info& kind, const scene_
     return scene;
 }
 
-/// Every parameter with its value, including defaults.
+/// Every parameter of the scene with its value, chosen or default, for the heading of the picture.
 std::string all_parameters(const scene_info& kind, const scene_choice& choice) {
     scene_choice whole = choice;
     whole.settings.clear();
@@ -130,7 +130,7 @@ void require_extension(const std::string& option, const std::optional<std::strin
 
 /// Rejects requests without outputs, outputs that would overwrite an input or each other, and wrong extensions.
 void require_outputs(const scene_request& request) {
-    std::vector<std::pair<std::string, std::string>> outputs;  // by option
+    std::vector<std::pair<std::string, std::string>> outputs;  // an option and its file
     if (request.out) outputs.emplace_back("--out", *request.out);
     if (request.motion) outputs.emplace_back("--motion", *request.motion);
     if (request.picture) outputs.emplace_back("--picture", *request.picture);
@@ -148,7 +148,8 @@ void require_outputs(const scene_request& request) {
     require_extension("--picture", request.picture, ".svg", "a picture");
 }
 
-/// Plays a scene once and writes all requested outputs from it.
+/// Runs a scene once and writes all requested outputs from it: a recording of its boxes, the poses of its meshes, a
+/// picture.
 void write_scene(const scene_request& request) {
     require_outputs(request);
     const scene_info& kind = scene_named(request.kind);
