@@ -212,7 +212,8 @@ std::string rejection_of(const CLI::App& program, const CLI::ParseError& error) 
     if (const auto rest = program.remaining(); !rest.empty())
         return rejection_of_argument(program, program, rest.front());
     const std::string message = error.what();
-    // Replaces the parser's count of values, as each option takes one, and names hidden options, which it omits.
+    // On a repeated option, the parser's message has a count of values, and no name if the option is hidden. Each
+    // option takes one value, so the message says that, with the name.
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
         std::string name = message.substr(0, message.find(':'));
         for (const CLI::Option* option : command.get_options())

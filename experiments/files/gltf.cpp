@@ -20,7 +20,7 @@ enum class gltf_mode : std::uint8_t { points, lines, line_loop, line_strip, tria
 gltf_matrix combined(const gltf_matrix& parent, const gltf_matrix& child) {
     gltf_matrix transform;
     for (int column = 0; column < 4; ++column)
-        // Adding zero turns a negative zero into a positive one.
+        // Adding zero turns -0 into 0, so that equal transforms have equal bits.
         transform.col(column) = product(parent, child.col(column)) + Eigen::Vector3d::Zero();
     transform.col(3) += parent.col(3);
     return transform;

@@ -50,6 +50,7 @@ public:
         const auto vertices = in_.integer<std::uint64_t>("the number of vertices");
         if (arrangement_ != arrangement::lines) advance_to_word(before_counts);
         const auto faces = in_.integer<std::uint64_t>("the number of faces");
+        // In lines, the number of edges is skipped with the rest of its line.
         if (arrangement_ != arrangement::lines) {
             advance_to_word([] { return std::string("before the number of edges"); });
             static_cast<void>(in_.integer<std::uint64_t>("the number of edges"));

@@ -39,7 +39,7 @@ void add_motion(scene_measures& m, recorded_frame before, recorded_frame after, 
 
 /// Counts overlapping pairs of n intervals in O(n log n): all n (n - 1) / 2 pairs but those in which one interval ends
 /// before the other begins.
-/// @param lower their lower ends, `upper` their upper ends, each in any order
+/// @param lower, upper the ends of the intervals, each list in any order
 double overlapping_pairs(std::vector<float> lower, std::vector<float> upper) {
     std::ranges::sort(lower);
     std::ranges::sort(upper);

@@ -117,7 +117,7 @@ int wait_for_program(pid_t program, const sigset_t& awaited) {
 /// Forks a process that will become the program, and makes this process its keeper: it waits until the program ends, or
 /// until SIGTERM, which the end of the parent also causes. It then kills all descendants, in any session, so that none
 /// outlives a timeout, and ends like the program.
-/// @param output and `start_errors` are pipes to the parent, which the keeper closes
+/// @param output, start_errors pipes to the parent, which the keeper closes, as only the program writes to them
 /// @returns true in the new process; false if fork fails; the keeper never returns
 [[nodiscard]] bool fork_under_keeper(int output, int start_errors, pid_t parent) {
     sigset_t awaited, before;
