@@ -302,7 +302,7 @@ bool polygon_cutter::cut_ears(std::span<std::array<std::uint32_t, 3>> triangles)
         corner& b = corners_[at];
         // If no clear ear is left, the second round also cuts touched ears and corners in the middle of an edge.
         const bool is_second_round = passed >= remaining;
-        const int turned = turn_at(b);
+        const int turned = turn_at(b);  // a corner that turns right is never cut
         if (turned > 0 && (b.kind == ear::unknown || (is_second_round && b.kind == ear::touched))) b.kind = kind_of(b);
         const bool is_ready = turned == 0  ? is_second_round || is_needle(b)
                               : turned > 0 ? b.kind == ear::clear || (is_second_round && b.kind == ear::touched)
