@@ -117,10 +117,11 @@ template <class Value>
 }
 
 /// The names of a table's columns, except those in `without`.
+/// @param columns defines the table: `columns(row, field)` calls `field(name, member)` for each column
 template <class Row, class Columns>
 [[nodiscard]] std::vector<std::string> names_of(Columns columns, std::span<const std::string> without = {}) {
     std::vector<std::string> names;
-    Row any{};
+    Row any{};  // its values do not matter
     columns(any, [&](const std::string& name, const auto&) {
         if (std::ranges::find(without, name) == without.end()) names.push_back(name);
     });
@@ -145,7 +146,8 @@ template <class Row, class Columns>
 /// Rejects tables whose header differs from the names of the columns.
 void require_header(const std::string& file, const csv_record& header, const std::vector<std::string>& expected);
 
-/// Reads the rows of a table from its records, by a function that names the columns and the member that each fills.
+/// Reads the rows of a table from its records, of which the first is the header.
+/// @param columns defines the table: `columns(row, field)` calls `field(name, member)` for each column
 /// @param later columns that may be absent, since files of earlier versions lack them
 /// @param on_row is called with each row and the line at which it begins
 /// @throws aabb::input_error with file and line if the records are not valid rows.
@@ -161,7 +163,7 @@ template <class Row, class Columns, class OnRow>
     require_header(file, records[0], names_of<Row>(columns, absent));
     for (const auto& [fields, line] : records.subspan(1)) {
         const std::string place = file + ":" + std::to_string(line) + ": ";
-        std::size_t next = 0;
+        std::size_t next = 0;  // index of the field
         columns(rows.emplace_back(), [&](const std::string& name, auto&& value) {
             if (std::ranges::find(absent, name) != absent.end()) return;
             if (next >= fields.size()) throw aabb::input_error(place + "the column " + name + " is missing");

@@ -11,7 +11,8 @@ class csv_reader {
 public:
     csv_reader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
-    /// Reads the next record; false if the text ends before it does, as after a crash while it was written.
+    /// Reads the record at the position `at_`: a line, or several if a quoted field has line breaks.
+    /// @returns false if the text ends before the record does, as after a crash while it was written
     bool read(csv_record& record) {
         record.line = line_;
         do {
@@ -38,12 +39,14 @@ private:
         const std::size_t end = text_.find_first_not_of('\r', at_);
         return end != std::string_view::npos && text_[end] == '\n';
     }
+    /// Advances over `text` if it comes next, and returns whether it did.
     bool skip(std::string_view text) {
         const bool is_next = next_is(text);
         if (is_next) at_ += text.size();
         return is_next;
     }
 
+    /// Reads a field without quotes, which ends before a comma or at the end of the line.
     void read_plain(std::string& field) {
         while (at_ < text_.size() && !next_is(",") && !is_at_line_end()) {
             if (next_is("\"")) fail("a quote is in a field that does not begin with one");
@@ -69,12 +72,13 @@ private:
 
     std::string_view text_;
     const std::string& file_;
-    std::size_t at_ = 0;
-    std::size_t line_ = 1;
+    std::size_t at_ = 0;    // the position of the next character
+    std::size_t line_ = 1;  // its line
 };
 
 }  // namespace
 
+/// A record in the syntax of RFC 4180, in which a quote within quotes is doubled.
 std::string csv_line(std::span<const std::string> fields) {
     std::string line;
     for (const std::string& field : fields) {
@@ -87,7 +91,7 @@ std::string csv_line(std::span<const std::string> fields) {
     return line + '\n';
 }
 
-/// Parses records, without a last one that was only partly written, and says how much of the text they are.
+/// Parses records, without a last one that was only partly written; `bytes` is the length of the text before that.
 csv_text read_csv(std::string_view text, const std::string& file) {
     csv_text table;
     csv_reader reader(text, file);

@@ -29,6 +29,28 @@ void make_folder(const std::filesystem::path& folder) {
     if (error) throw aabb::input_error("the folder " + folder.string() + " cannot be created: " + error.message());
 }
 
+/// Renames results that cannot be resumed. They are not deleted, as they may have taken hours.
+/// @returns why they cannot be resumed; empty if they can, or if there are none
+std::string set_aside_outdated(const std::filesystem::path& folder, const experiment_record& e) {
+    const std::filesystem::path manifest = folder / "manifest.json";
+    if (!std::filesystem::exists(folder / "results.csv") || !std::filesystem::exists(manifest)) return {};
+    std::string reason = rejection_to_resume(manifest, e);
+    if (reason.empty()) return reason;
+    // results.csv is last: as long as it exists, an interrupted renaming is repeated by the next run.
+    for (const char* name : {"differences.csv", "results.csv"})
+        if (std::filesystem::exists(folder / name))
+            std::filesystem::rename(folder / name, folder / (std::string(name) + ".old"));
+    return reason;
+}
+
+/// Rejects rows of scenes that the manifest, from which `known` was read, does not list.
+void require_known_scenes(std::span<const row> rows, const scene_digests& known, const std::filesystem::path& table) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (!known.contains(rows[i].scene))  // lines are counted from 1, and the first is the header
+            throw aabb::input_error(table.string() + ":" + std::to_string(i + 2) + ": manifest.json has no scene " +
+                                    rows[i].scene.kind + " with these parameters; was the row altered?");
+}
+
 }  // namespace
 
 /// Locks the folder of results, so that no two runs write to it at once.
@@ -51,20 +73,14 @@ folder_lock::~folder_lock() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
-/// Continues results of the same config and build, whose rows are not measured again, or begins new ones.
+/// Continues the results in the folder, whose rows are not measured again, or begins new ones.
+/// @param existing whether existing results are rejected, resumed, or resumed if config, build and machine are the same
+/// and otherwise replaced
 results_folder::results_folder(std::filesystem::path folder, experiment_record e, existing_results existing)
     : folder_(std::move(folder)), experiment_(std::move(e)), date_(date_now()) {
     make_folder(folder_);
     const std::filesystem::path table = folder_ / "results.csv";
-    const std::filesystem::path manifest = folder_ / "manifest.json";
-    if (existing == existing_results::replace && std::filesystem::exists(table) && std::filesystem::exists(manifest)) {
-        replaced_ = rejection_to_resume(manifest, experiment_);
-        // Renamed, not deleted: results may have taken hours. The table comes last, because its presence triggers this.
-        if (!replaced_.empty())
-            for (const char* name : {"differences.csv", "results.csv"})
-                if (std::filesystem::exists(folder_ / name))
-                    std::filesystem::rename(folder_ / name, folder_ / (std::string(name) + ".old"));
-    }
+    if (existing == existing_results::replace) replaced_ = set_aside_outdated(folder_, experiment_);
     if (std::filesystem::exists(table)) {
         rows_ = read_rows(table);
         for (const row& r : rows_) keys_.insert(r.key());
@@ -72,14 +88,11 @@ results_folder::results_folder(std::filesystem::path folder, experiment_record e
             throw aabb::input_error(
                 "results are already in " + folder_.string() +
                 "; --resume continues them; --out DIR, or another name in the config, puts new ones elsewhere");
-        drop_torn_row(table);
+        drop_torn_row(table);  // a row that was only partly written
     }
     if (!rows_.empty()) {
-        std::tie(date_, digests_) = resume_manifest(manifest, experiment_);
-        for (std::size_t i = 0; i < rows_.size(); ++i)
-            if (!digests_.contains(rows_[i].scene))  // lines are counted from 1, and the first is the header
-                throw aabb::input_error(table.string() + ":" + std::to_string(i + 2) + ": manifest.json has no scene " +
-                                        rows_[i].scene.kind + " with these parameters; was the row altered?");
+        std::tie(date_, digests_) = resume_manifest(folder_ / "manifest.json", experiment_);
+        require_known_scenes(rows_, digests_, table);
         if (std::filesystem::exists(folder_ / "differences.csv"))
             differences_ = read_differences(folder_ / "differences.csv");
     }
@@ -99,6 +112,7 @@ void results_folder::add(const row& finished) {
     keys_.insert(finished.key());
 }
 
+/// Deletes matching rows, of wrong or interrupted runs, in memory and in the file, which is rewritten.
 void results_folder::drop(const std::function<bool(const row&)>& is_dropped) {
     if (std::erase_if(rows_, is_dropped) == 0) return;
     keys_.clear();
@@ -124,7 +138,8 @@ void results_folder::set_differences(const scene_choice& scene, std::span<const 
     write_file(folder_ / "differences.csv", csv_of(differences_));
 }
 
-/// Adds checksums of the tables to the manifest of a finished run, by which missing or altered rows are found later.
+/// Adds checksums of the tables to the manifest of a finished run, by which missing or altered rows are found later,
+/// and the candidates in the order of the run, by which rows are sorted later.
 void results_folder::seal() {
     results_seal checksums{seal_of(folder_ / "results.csv"), /*differences=*/std::nullopt, /*candidates=*/{}};
     if (const std::filesystem::path table = folder_ / "differences.csv"; std::filesystem::exists(table))

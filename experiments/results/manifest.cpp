@@ -98,7 +98,8 @@ struct parsed_manifest {
     json raw;  ///< preserves the order of members, for checksums
 };
 
-/// Parses a manifest, the file that says how results were made and that seals them.
+/// Parses a manifest, the file that says how results were made, with their checksums. It is parsed twice: `content`
+/// has messages that name the place of an error, `raw` keeps the order of members, on which checksums depend.
 parsed_manifest parse_manifest(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file))
         throw aabb::input_error(file.string() + " does not exist; results without it cannot be used");
@@ -138,7 +139,8 @@ std::string parameters_json(const scene_choice& scene) {
     return text_of(parameters, -1);
 }
 
-/// Sets a scene's settings and meshes from a JSON object; false if the text is none.
+/// Sets a scene's meshes (an array of names) and settings (strings or numbers) from a JSON object.
+/// @returns false if the text is anything else
 bool set_parameters(scene_choice& scene, const std::string& text) {
     const json parameters = json::parse(text, nullptr, /*allow_exceptions=*/false);
     if (!parameters.is_object()) return false;
@@ -158,7 +160,8 @@ bool set_parameters(scene_choice& scene, const std::string& text) {
     return true;
 }
 
-/// The manifest of a run: what was measured and how. With a seal it has checksums of the tables, and of itself.
+/// The manifest of a run as JSON: what was measured and how. With a seal, after the run, it has checksums of the
+/// tables, and of itself.
 std::string manifest_text(const experiment_record& e, const std::string& date, const scene_digests& digests,
                           const std::optional<results_seal>& seal) {
     json scenes = json::array();
@@ -176,7 +179,7 @@ std::string manifest_text(const experiment_record& e, const std::string& date, c
     if (seal) {
         json& checksums = manifest["seal"] = json{{"results.csv", json_of(seal->results)}};
         if (seal->differences) checksums["differences.csv"] = json_of(*seal->differences);
-        checksums["contenders"] = json::array();
+        checksums["contenders"] = json::array();  // candidates; manifests keep this older name
         for (const candidate_name& name : seal->candidates) checksums["contenders"].push_back(json_of(name));
         checksums["manifest"] = checksum_of(manifest);
     }
@@ -234,6 +237,7 @@ std::string build_description() {
     return build_json().dump(2) + "\n";
 }
 
+/// Reads the parts of a manifest that reports show.
 manifest_summary read_manifest(const std::filesystem::path& folder) {
     const parsed_manifest manifest = parse_manifest(folder / "manifest.json");
     const json_value build = manifest.content.needed("build");
@@ -248,7 +252,7 @@ manifest_summary read_manifest(const std::filesystem::path& folder) {
                              .quick = config.flag("quick").value_or(false),
                              .finished = manifest.content.has("seal"),
                              .text = text_of(manifest.raw, /*indent=*/2) + "\n"};
-    if (build.flag("dirty").value_or(false)) summary.commit += " (changed)";
+    if (build.flag("dirty").value_or(false)) summary.commit += " (changed)";  // files differed from the commit
     return summary;
 }
 

@@ -114,10 +114,11 @@ std::string csv_of(std::span<const difference> differences) {
     return csv_of(differences, columns_of_difference);
 }
 
-/// Reads a results.csv, and rejects rows of other states and measurements that occur twice.
+/// Reads a results.csv, and rejects rows whose status is unknown and measurements that occur twice.
+/// @param on_row is called with each row and its line
 std::vector<row> read_rows(const std::filesystem::path& file,
                            const std::function<void(const row&, std::size_t)>& on_row) {
-    std::map<std::string, std::size_t> lines;  // by key
+    std::map<std::string, std::size_t> lines;  // by key: scene, candidate and repeat
     const auto checked = [&](const row& r, std::size_t line) {
         const std::string place = file.string() + ":" + std::to_string(line) + ": ";
         if (r.status != "exact" && r.status != "inexact")

@@ -8,7 +8,7 @@ namespace aabblab {
 
 namespace {
 
-/// Rejects a table whose rows are not those that the manifest stated when the run was finished.
+/// Rejects a table whose number of rows or checksum is not that which the manifest stated when the run was finished.
 void require_seal(const std::filesystem::path& table, const table_seal& stated) {
     const table_seal actual = std::filesystem::exists(table) ? seal_of(table) : table_seal{};
     if (actual.rows != stated.rows)
@@ -20,30 +20,36 @@ void require_seal(const std::filesystem::path& table, const table_seal& stated) 
                                 "states");
 }
 
-/// The positions of scenes in the manifest, with their digests.
-using known_scenes = std::map<scene_choice, std::pair<std::size_t, std::string>>;
+struct known_scene {
+    std::size_t position;  ///< in the manifest, which lists scenes in the order of the run
+    std::string digest;    ///< of the ground truth; may be empty
+};
+using known_scenes = std::map<scene_choice, known_scene>;
 
-/// Rejects a row whose scene, or whose digest of an exact result, is not that of the manifest.
-/// @param place "results.csv:17: "
+/// Rejects a row whose scene is not in the manifest, or that is exact and has another digest (hash of the pairs found)
+/// than the manifest states for the scene.
+/// @param place for messages: "results.csv:17: "
 void require_known(const known_scenes& known, const row& r, const std::string& place) {
     const auto entry = known.find(r.scene);
     if (entry == known.end())
         throw aabb::input_error(place + "manifest.json has no scene " + r.scene.kind + " with these parameters");
-    if (const std::string& digest = entry->second.second; r.status == "exact" && !digest.empty() && r.digest != digest)
+    if (const std::string& digest = entry->second.digest; r.status == "exact" && !digest.empty() && r.digest != digest)
         throw aabb::input_error(place + "the row is exact, but its digest is '" + r.digest +
                                 "'; that of the scene is " + digest + ", as manifest.json says");
 }
 
 /// Restores the order of the run, since a file may have any: by scene, repeat and candidate.
+/// @param candidates in the order of the run
 void sort_as_run(std::vector<row>& rows, const known_scenes& scenes, const std::vector<candidate_name>& candidates) {
-    std::map<candidate_name, std::size_t> turns;
-    for (const candidate_name& name : candidates) turns.emplace(name, turns.size());
+    std::map<candidate_name, std::size_t> positions;
+    for (const candidate_name& name : candidates) positions.emplace(name, positions.size());
+    // Position of the scene, repeat, position of the candidate, index of the row.
     std::vector<std::tuple<std::size_t, std::uint64_t, std::size_t, std::size_t>> order;
     for (std::size_t i = 0; i < rows.size(); ++i)
-        order.emplace_back(scenes.at(rows[i].scene).first, rows[i].repeat, turns[rows[i].name], i);
+        order.emplace_back(scenes.at(rows[i].scene).position, rows[i].repeat, positions[rows[i].name], i);
     std::ranges::sort(order);
     std::vector<row> sorted;
-    for (const auto& [scene, repeat, turn, index] : order) sorted.push_back(std::move(rows[index]));
+    for (const auto& [scene, repeat, candidate, index] : order) sorted.push_back(std::move(rows[index]));
     rows = std::move(sorted);
 }
 
@@ -66,7 +72,7 @@ std::vector<row> verified_rows(const std::filesystem::path& folder) {
     const sealed_manifest manifest = read_sealed_manifest(folder / "manifest.json");
     const std::filesystem::path table = folder / "results.csv";
     known_scenes scenes;
-    for (const auto& [scene, digest] : manifest.scenes) scenes.emplace(scene, std::pair(scenes.size(), digest));
+    for (const auto& [scene, digest] : manifest.scenes) scenes.emplace(scene, known_scene{scenes.size(), digest});
     std::vector<row> rows = read_rows(table, [&](const row& r, std::size_t line) {
         const std::string place = table.string() + ":" + std::to_string(line) + ": ";
         if (r.experiment != manifest.experiment)
