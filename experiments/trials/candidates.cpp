@@ -15,7 +15,9 @@ namespace aabblab {
 
 namespace {
 
-/// Gives a candidate one stage of the composition: the names of its strategies, its exactness and its factory.
+/// Gives a candidate the strategies of one stage: their names, the function that makes the stage, and whether its
+/// results must be exact. A strategy that needs meshes divides them, and then the broad phase finds pairs of parts,
+/// which cannot be compared with pairs of whole objects (`whole_boxes`).
 void set_stage(candidate& result, const aabb::composition& c, aabb::stage stage) {
     for (const aabb::strategy_kind kind : kinds_of(stage)) result.name[kind] = to_text(c[kind]);
     result.exact = result.exact && is_exact(c, stage);
@@ -37,9 +39,9 @@ candidate candidate_of(const aabb::composition& c, bool meshes) {
     return result;
 }
 
-/// A candidate `auto`: every run keeps the named strategies, and selects the others anew.
+/// A candidate `auto`: every run keeps the strategies that the user named, and selects the others for the scene.
 candidate candidate_of(const aabb::named_strategies& named, const scene_frames& scene) {
-    aabb::composition initial = aabb::complete_composition(named);
+    aabb::composition initial = aabb::complete_composition(named);  // with defaults for the others
     const auto selected = [named, traits = traits_of(scene)](aabb::composition& c) -> const aabb::composition& {
         select_for_scene(c, named, traits);
         return c;
@@ -53,8 +55,8 @@ candidate candidate_of(const aabb::named_strategies& named, const scene_frames& 
         result.make_local = [selected, initial](aabb::instrumentation counted) mutable {
             return aabb::compose_local_detection(selected(initial), counted);
         };
-    // The name does not depend on what is selected, so that it is the same for all scenes. Of several kinds, one
-    // strategy is called none, so the kind is named with it.
+    // The name has only the named strategies, so that it is the same for all scenes: "auto + shell". Several kinds have
+    // a strategy called none, so the kind is added: "auto + prepare none".
     result.name = {};
     result.name.engine = candidate_name::automatic;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds)
@@ -69,7 +71,9 @@ aabb::scene_traits traits_of(const scene_frames& scene) {
     return aabb::traits_of(scene.meshes()->meshes, scene.objects(), scene.frames());
 }
 
-/// An engine of one stage runs with the default composition of the other; empty if it cannot run the scene.
+/// An engine, the code of another library, of one stage runs with the default strategies for the other stage.
+/// @param meshes whether the scene has meshes, not only boxes
+/// @returns empty if the engine cannot run the scene
 std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool meshes) {
     if (!engine.searches_boxes && !(meshes && engine.collides_meshes)) return std::nullopt;
     candidate result;
@@ -78,7 +82,7 @@ std::optional<candidate> candidate_of(const aabb::engine_info& engine, bool mesh
     if (engine.searches_boxes)
         result.make_global = [name = engine.name](aabb::instrumentation) { return aabb::make_box_engine(name); };
     else
-        set_stage(result, /*c=*/{}, aabb::stage::global_search);
+        set_stage(result, /*c=*/{}, aabb::stage::global_search);  // {}: the default strategies
     if (meshes && engine.collides_meshes)
         result.make_local = [name = engine.name](aabb::instrumentation) { return aabb::make_mesh_engine(name); };
     else if (meshes)
@@ -97,7 +101,8 @@ public:
 
     /// "brownian (objects=1000 seed=1)"
     [[nodiscard]] std::string scene_text() const { return scene_.kind + " (" + parameters_text(scene_) + ")"; }
-    /// The file with all frames of the scene, which the first call writes into a temporary folder for all engines.
+    /// The file with all frames of the scene, for external programs to read. The first call writes it into a temporary
+    /// folder, which `guard_` deletes.
     [[nodiscard]] const std::filesystem::path& recording() {
         if (!recording_.empty()) return recording_;
         std::error_code error;
@@ -196,7 +201,9 @@ private:
 /// Error messages begin with the place in the config and the scene.
 class external_search final : public aabb::global_stage {
 public:
-    /// Runs the engine on all frames at once; `update` then advances through the pairs that it wrote.
+    /// Runs the engine, an external program, on all frames at once; `update` then advances through the pairs that it
+    /// wrote.
+    /// @param exchange the recorded scene, and the folder for the output
     /// @param times receives the reported times, by frame
     /// @throws engine_timeout, and aabb::input_error if the engine fails or reports malformed times
     external_search(const external_engine& engine, exchange_folder& exchange, std::vector<reported_times>& times)
@@ -243,7 +250,8 @@ private:
 
     [[noreturn]] void fail(const std::string& sentence) const { throw aabb::input_error("the " + name_ + sentence); }
 
-    /// Runs the engine on the recording of the scene; it writes its pairs and its times to two files.
+    /// Runs the engine on the recording of the scene; it writes its pairs and its times to two files. Their names are
+    /// its last arguments: COMMAND… RECORDING PAIRS TIMES.
     void run(const external_engine& engine, exchange_folder& exchange) {
         const std::filesystem::path recording = exchange.recording();
         objects_ = exchange.objects();
@@ -257,7 +265,8 @@ private:
             std::filesystem::remove(file);
             arguments.push_back(file.string());
         }
-        // Without a terminal the engine cannot wait for keyboard input.
+        // Without a terminal the engine cannot wait for keyboard input; the keeper, a process between this one and the
+        // engine, kills all processes that the engine leaves behind.
         const std::chrono::seconds timeout(engine.timeout_s);
         const program_result ended =
             run_child(engine.program, arguments, {.input = "/dev/null", .has_keeper = true, .timeout = timeout});
@@ -273,7 +282,7 @@ private:
         if (WEXITSTATUS(ended.status) != 0) fail(" ended with status " + std::to_string(WEXITSTATUS(ended.status)));
     }
 
-    /// Reads the reported times, which stand in for measured ones in every ratio.
+    /// Reads the times that the engine reports, one row per frame. They replace measured times in every ratio.
     void read_times(std::vector<reported_times>& times) const {
         times.clear();
         engine_output table("the times of the " + name_, times_file_, "frame,update_ms,search_ms");
@@ -289,7 +298,7 @@ private:
             throw aabb::input_error("the times of the " + name_ + " end before frame " + std::to_string(times.size()));
     }
 
-    /// Reads the next row, which may belong to a later frame.
+    /// Reads the next row of the pairs file, which may belong to a later frame, into `next_row_`; empty at its end.
     void read_next_row() {
         next_row_.reset();
         if (!table_->next()) return;
@@ -300,7 +309,8 @@ private:
         next_row_ = {frame, aabb::ordered_pair(a, b)};
     }
 
-    /// Collects the pairs of the next frame. Rows must be sorted by frame, so that one pass suffices, and be distinct.
+    /// Collects the pairs of the next frame, `frame_`, into `pairs_`, up to the first row of a later frame,
+    /// `next_row_`. Rows must be sorted by frame, so that one pass suffices, and be distinct.
     void take_frame() {
         pairs_.clear();
         for (; next_row_ && next_row_->frame <= frame_; read_next_row()) {
@@ -327,7 +337,9 @@ private:
     std::vector<aabb::index_pair> pairs_;
 };
 
-/// An external engine. Creating its broad phase runs it on the whole scene and fills in the times that it reports.
+/// An external engine as a candidate. Creating its broad phase (`make_global`) runs it on the whole scene and fills in
+/// the times that it reports (`reported`).
+/// @param exchange the recorded scene, shared with other external engines
 candidate candidate_of(const external_engine& engine, const std::shared_ptr<exchange_folder>& exchange) {
     candidate result;
     result.name.engine = engine.name;
@@ -342,6 +354,8 @@ candidate candidate_of(const external_engine& engine, const std::shared_ptr<exch
 
 }  // namespace
 
+/// The candidates of an experiment that can run the scene, in the order of all tables: compositions of strategies,
+/// compositions that `auto` selects, engines (other libraries), and external engines (other programs).
 std::vector<candidate> candidates_for(const experiment& e, const scene_choice& scene) {
     const bool meshes = has_meshes(scene);
     std::vector<candidate> candidates;

@@ -4,7 +4,8 @@ namespace aabblab {
 
 namespace {
 
-/// Replaces the measured times by those that the external engine reports: only its output was read while measuring.
+/// Replaces the measured times by those that an external engine reports: while measuring, only its output was read.
+/// @param times by frame; frame 0 is kept apart from the rest
 void use_reported_times(std::span<const reported_times> times, observation& result) {
     result.build = {};
     result.first = result.rest = {};
@@ -22,8 +23,8 @@ void evict_caches() {
     for (std::size_t i = 0; i < buffer.size(); i += line) ++buffer[i];
 }
 
-/// Times a query once with cold caches. With warm caches it returns the mean of several queries after an untimed one: a
-/// query may take only a microsecond, and the work since the previous frame has replaced its data in the caches.
+/// Times a query: with cold caches once; with warm caches the mean of several, as one may take only a microsecond,
+/// after an untimed one, which loads its data into the caches.
 template <class Query>
 elapsed mean_time(const Query& query, bool cold) {
     const int repeats = cold ? 1 : 16;
@@ -34,7 +35,8 @@ elapsed mean_time(const Query& query, bool cold) {
     return {sum.wall_ms / repeats, sum.cpu_ms / repeats};
 }
 
-/// Times the query, detects all contacts, and compares the result of the query with them.
+/// Times the query for all pairs of triangles, for the first contact or for their number. The results of the latter two
+/// are then compared with all contacts.
 /// @param wrong receives a sentence if they contradict each other
 elapsed time_query(stage_runner& runner, const query_settings& query, std::string& wrong) {
     if (query.cold) evict_caches();
@@ -56,12 +58,15 @@ elapsed time_query(stage_runner& runner, const query_settings& query, std::strin
 
 }  // namespace
 
-/// Runs a scene on fresh stages and sums their times: building, frame 0, and all later frames, which reuse its state.
+/// Runs a scene on fresh stages and sums their times: constructing them, frame 0, and all later frames, which reuse its
+/// state.
+/// @param tested a composition of strategies or an engine
+/// @param settings what to run and record, and a function to call after each frame
 observation observe(scene_frames& scene, const candidate& tested, const protocol& settings) {
     observation result;
     std::optional<stage_runner> runner;
     stopwatch building;
-    runner.emplace(tested, scene, settings.counted);
+    runner.emplace(tested, scene, settings.counted);  // creates the stages, and builds their trees
     result.build = building.lap();
     tally totals(scene.meshes() != nullptr);
     const auto add_frame = [&](const searched_frame& frame) {

@@ -31,7 +31,8 @@ struct round_limits {
     double expected = 0;  ///< seconds of the first round, estimated
 };
 
-/// Runs candidates in interleaved rounds, until the limits are reached or no candidate remains.
+/// Runs candidates in interleaved rounds, each candidate once per round, until no round or no candidate remains. After
+/// the `fewest` rounds, one begins only if the time left exceeds that of the previous round.
 /// @param run takes a candidate and the number of the round
 /// @param after_round takes its number; it may remove candidates
 /// @returns the first round that was not run

@@ -41,7 +41,10 @@ std::vector<row> rows_of(const scene_choice& scene, std::span<const row> rows) {
     return matching;
 }
 
-/// The candidates that took `patience` times as long as the fastest in this process's first repeat: they stop there.
+/// Early stopping: the candidates that took `e.patience` times as long as the fastest in the first repeat of this
+/// process, and are not repeated.
+/// @param share the repeats of this process
+/// @param rows of one scene
 std::set<candidate_name> stopped_early(const experiment& e, const round_limits& share, std::span<const row> rows) {
     std::set<candidate_name> names;
     if (!e.patience) return names;
@@ -49,13 +52,16 @@ std::set<candidate_name> stopped_early(const experiment& e, const round_limits& 
     double fastest = std::numeric_limits<double>::infinity();
     for (const row& r : rows)
         if (r.repeat == share.begin) fastest = std::min(fastest, whole_ms(r).value_or(fastest));
-    const double limit = stopping_rule{.ratio = static_cast<double>(*e.patience)}.hopeless_after(fastest);
+    const double limit = static_cast<double>(*e.patience) * fastest;
     for (const row& r : rows)
         if (r.repeat == share.begin && whole_ms(r).value_or(0) > limit) names.insert(r.name);
     return names;
 }
 
-/// Drops an interrupted repeat, which can only be the last, so that it runs again: ratios are formed within a repeat.
+/// Drops the rows of a repeat that was interrupted, which can only be the last, so that all candidates run it again:
+/// ratios are formed within a repeat. It is interrupted if it has fewer rows than candidates that are not stopped
+/// early.
+/// @param share the repeats of this process
 void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, const round_limits& share,
                              std::size_t candidate_count, results_folder& results) {
     if (results.rows().empty()) return;
@@ -67,7 +73,9 @@ void drop_interrupted_repeat(const experiment& e, const scene_choice& scene, con
         results.drop([&](const row& r) { return r.scene == scene && r.repeat == last.repeat; });
 }
 
-/// The candidates that still lack rows of this share, so that a resumed experiment runs only what is missing.
+/// The candidates that still lack rows of repeats, so that a resumed experiment runs only what is missing.
+/// @param share the repeats of this process
+/// @param rows of one scene
 std::vector<candidate> unfinished(const experiment& e, std::span<const candidate> candidates, const round_limits& share,
                                   std::span<const row> rows) {
     const std::set<candidate_name> stopped = stopped_early(e, share, rows);
@@ -87,7 +95,8 @@ bool may_diverge(const scene_choice& scene, const candidate& c) {
     return !(c.exact && c.exact_boxes) && has_meshes(scene) && make_mesh_scene(scene)->reacts();
 }
 
-/// Times one repeat. The digest is compared again, since code without counters is a separate template instantiation.
+/// Runs a candidate on a scene once and stores the times in its row. The digest (a hash of the pairs) was validated
+/// with work counters; it is compared again, since timed code without counters is a separate template instantiation.
 /// @returns a description of what is wrong; empty if the results agree
 std::string time_repeat(const scene_choice& scene, const query_settings& query, timed_candidate& timed) {
     row& r = timed.result;
@@ -95,7 +104,7 @@ std::string time_repeat(const scene_choice& scene, const query_settings& query, 
     const bool is_external = timed.tested->reported != nullptr;
     const auto store = [is_external](elapsed took, std::optional<double>& wall_ms, std::optional<double>& cpu_ms) {
         wall_ms = took.wall_ms;
-        if (!is_external) cpu_ms = took.cpu_ms;
+        if (!is_external) cpu_ms = took.cpu_ms;  // an external program reports only wall times
     };
     store(times.build, r.build_ms, r.build_cpu_ms);
     store({times.first.wall_ms(), times.first.cpu_ms()}, r.first_ms, r.first_cpu_ms);
@@ -161,7 +170,10 @@ experiment_record record_of(const experiment& e) {
     return {e.name, e.file, e.text, hash_of(e), e.quick, e.scenes, e.notes};
 }
 
-/// Only the first process validates. A resumed one repeats an interrupted round, and then runs what has no row yet.
+/// Times all candidates on a scene in interleaved repeats and adds a row for each run. Only the first process compares
+/// them with the ground truth. A resumed process repeats an interrupted repeat, and then runs what has no row yet.
+/// @param process from 0; each runs an equal share of the repeats
+/// @returns a sentence per failure; rows of a candidate with a wrong result are dropped
 std::vector<std::string> run_scene(const experiment& e, const scene_choice& scene,
                                    std::span<const candidate> candidates, results_folder& results,
                                    std::size_t process) {
@@ -174,7 +186,7 @@ std::vector<std::string> run_scene(const experiment& e, const scene_choice& scen
     progress shown("timing " + scene.kind, (share.end - share.begin) * timed.size());
     const std::size_t runs_per_round = timed.size();
     std::size_t finished_runs = 0;
-    std::set<candidate_name> stopped;  // not repeated any more
+    std::set<candidate_name> stopped;  // not repeated: wrong, timed out or too slow
     const auto run = [&](timed_candidate& next, std::size_t repeat) {
         shown.update(finished_runs++);
         next.result.repeat = repeat;

@@ -41,6 +41,7 @@ void scene_frames::place(aabb::posed_boxes& boxes) const try {
 }
 
 /// Compares the presence of every object with the previous frame, so that only changed objects are inserted or removed.
+/// @param present by object; empty if all are present
 void scene_frames::note_changes(std::span<const std::uint8_t> present) {
     arrivals_.clear();
     departures_.clear();
@@ -56,7 +57,8 @@ void scene_frames::note_changes(std::span<const std::uint8_t> present) {
 stage_runner::stage_runner(const candidate& tested, const scene_frames& scene, aabb::instrumentation counted)
     : stage_runner(stages{tested.make_global(counted), scene.meshes() ? tested.make_local(counted) : nullptr}, scene) {}
 
-/// Boxes go to the broad phase directly. Meshes need a pipeline, which derives their boxes from poses.
+/// Connects the stages for a scene. Boxes go to the broad phase directly. Meshes need a pipeline, which derives boxes
+/// from their poses; without a broad phase it takes every two objects to the narrow phase.
 stage_runner::stage_runner(stages given, const scene_frames& scene) : scene_(scene), stages_(std::move(given)) {
     if (stages_.global) stages_.global->expect(scene.frames());
     if (!scene.meshes()) return;
@@ -115,7 +117,7 @@ std::vector<aabb::part_bytes> stage_runner::global_bytes() const {
     return parts;
 }
 
-/// The parts of the stage, and the meshes, which it reads but does not own.
+/// The memory of the narrow phase by part, and that of the meshes, which it reads but does not own.
 std::vector<aabb::part_bytes> stage_runner::local_bytes() const {
     if (!stages_.local) return {};
     std::vector<aabb::part_bytes> parts = stages_.local->bytes();
@@ -137,6 +139,8 @@ std::size_t stage_runner::held_bytes() const {
     return sum;
 }
 
+/// The mean over the trees of their area inflation: the surface area of their boxes relative to that of tight boxes,
+/// minus 1. Empty without a narrow phase or without trees.
 std::optional<double> stage_runner::box_inflation() const {
     if (!stages_.local) return std::nullopt;
     double sum = 0;
@@ -156,6 +160,8 @@ elapsed time_detection(stage_runner& runner) {
 }
 
 /// Times the phases of each frame and passes its results to the scene, whose bodies may react to their contacts.
+/// @param on_frame receives the times and results of each frame
+/// @param detect runs the narrow phase and returns its time
 void run_frames(scene_frames& scene, stage_runner& runner, const std::function<void(const searched_frame&)>& on_frame,
                 std::size_t most_frames, const timed_detection& detect) {
     for (std::uint32_t frame = 0; frame < most_frames && scene.next(); ++frame) {

@@ -23,7 +23,8 @@ enum : int { is_done = 0, has_failed = 1, is_rejected = 2, has_no_memory = 3 };
 /// Precedes the message of an input_error.
 constexpr char rejection_mark = 0;
 
-/// Sends text to the parent; ends the process if that does not read any more.
+/// Sends text to the parent process, in several writes if the pipe is full; ends this process if the parent does not
+/// read any more.
 void write_all(int pipe, std::string_view text) {
     while (!text.empty()) {
         const ssize_t n = write(pipe, text.data(), text.size());
@@ -41,7 +42,8 @@ void raise_oom_score() {
     close(file);
 }
 
-/// Does the work in the child, with its output and the message of an input_error to the pipe; exits with how it ended.
+/// Does the work in the child process. Its output, and the message of an input_error after `rejection_mark`, go to the
+/// pipe; the exit status says how it ended.
 [[noreturn]] void work_and_exit(int pipe, const std::function<void(const output_sender&)>& work) {
     raise_oom_score();
     int status = has_failed;
@@ -148,10 +150,12 @@ void send_run(scene_frames& scene, const candidate& tested, std::size_t frames, 
 
 }  // namespace
 
+/// Forks a process that does the work, so that it can be killed after `seconds` or when memory runs out. Returns how it
+/// ended, with the output that it sent until then.
 child_result run_in_child(const std::function<void(const output_sender&)>& work, double seconds) {
     child_result result;
     if (!(seconds > 0)) return result;
-    result.end = ending::failed;
+    result.end = ending::failed;  // unless it ends otherwise
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) return result;
     const auto begin = clock::now();
@@ -202,6 +206,7 @@ attempt staged_scene::run(const candidate& tested, std::size_t frames, double se
     return result;
 }
 
+/// How a run ended: "stopped after 2.1 s, in frame 3"
 std::string text_of(const attempt& run) {
     const std::string where = run.seen.frames > 0 ? fmt::format(", in frame {}", run.seen.frames) : "";
     const std::string after = fmt::format("after {:.2g} s{}", run.seconds, where);

@@ -25,8 +25,9 @@ attempt run_baseline(staged_scene& scene, const candidate& baseline, std::size_t
 
 }  // namespace
 
-/// The first run of the baseline, alone, sets the frames of all runs (those that it finishes in time) and the limit of
-/// each further run. Candidates are dropped when such a run exceeds its limit or shows that they are hopeless.
+/// Runs candidates in interleaved rounds until time is over. The first run of the baseline, `candidates[0]`, decides
+/// how many frames all runs have (those that it finishes in time) and how long another run may take. A candidate is
+/// dropped when a run does not finish within that limit, or takes `hopeless_ratio` times as long as the baseline.
 interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate> candidates, std::size_t frames,
                                  std::size_t rounds, const time_limits& limits) {
     progress shown("runs", rounds * candidates.size());
@@ -44,7 +45,7 @@ interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate>
     result.times[0].push_back(std::move(baseline.seen));
     std::vector<std::size_t> running(candidates.size());
     std::iota(running.begin(), running.end(), std::size_t{0});
-    std::size_t finished_runs = 0;
+    std::size_t finished_runs = 0;  // for the progress bar
     const auto run = [&](std::size_t index, std::size_t round) {
         shown.update(finished_runs++);
         if (index == 0 && round == 0) return;  // the baseline's first run is done already
@@ -52,6 +53,7 @@ interleaved_runs run_interleaved(staged_scene& scene, std::span<const candidate>
         const stopping_rule rule{.grace = hopeless_ms / 1000, .share = greatest_share * remaining, .margin = 2};
         const double limit = rule.longest(baseline_seconds);
         attempt outcome = scene.run(candidates[index], result.frames, limit, remaining);
+        // The limit may be too short to show that a candidate is hopeless, since it is a share of the remaining time.
         if (outcome.end == ending::stopped && !outcome.is_out_of_time)
             result.hopeless[index] = limit >= rule.hopeless_after(baseline_seconds);
         if (outcome.end == ending::done)

@@ -33,7 +33,9 @@ public:
           runner_(tested, scene, aabb::instrumentation::counters),
           tally_(scene.meshes() != nullptr) {}
 
-    /// Runs a frame with work counters, and compares its results with the ground truth.
+    /// Runs a frame with work counters, and compares its pairs of boxes, and of triangles (contacts), with the ground
+    /// truth. A difference is a failure if the candidate must be exact; otherwise it is counted. Pairs of boxes are not
+    /// comparable if the candidate divides objects into parts (`whole_boxes` is false).
     void compare_frame(std::size_t frame, const aabb::ground_truth& truth) {
         runner_.update();
         runner_.search();
@@ -54,7 +56,8 @@ public:
         classify(contacts);
     }
 
-    /// The row of all frames, without times.
+    /// The row of results.csv for all frames, without times: numbers of pairs, digest, errors, work counts and bytes.
+    /// Errors are those of contacts in a scene of meshes, those of boxes otherwise.
     [[nodiscard]] validated_row result() const {
         validated_row v;
         v.scene = choice_;
@@ -129,7 +132,10 @@ private:
                 scene_.poses()[objects.a], meshes.meshes[meshes.mesh_of[objects.b]], scene_.poses()[objects.b]);
     }
 
-    /// Appends rows of differences.csv, one for each class that is not 0. `what` is "missing" or "invented".
+    /// Appends rows of differences.csv, one for each number that is not 0.
+    /// @param what "missing" (false negatives) or "invented" (false positives)
+    /// @param boxes the number of differing pairs of boxes
+    /// @param classes the numbers of differing pairs of triangles, by geometric class (coplanar, touching, …)
     void add_differences(std::vector<difference>& differences, std::string_view what, std::uint64_t boxes,
                          std::span<const std::size_t> classes) const {
         const auto add = [&](std::string_view kind, std::uint64_t count) {
@@ -159,7 +165,9 @@ scene_validation validate_scene(const scene_choice& choice, std::span<const cand
     return validate_scene(choice, scene, candidates);
 }
 
-/// All candidates advance with the ground truth, to which a scene may react. One whose engine times out fails alone.
+/// Compares candidates with the ground truth, frame by frame. All see the same frames: a scene whose bodies react to
+/// contacts reacts to those of the ground truth. A candidate whose external engine times out fails alone.
+/// @param choice the description of the scene, for messages
 scene_validation validate_scene(const scene_choice& choice, scene_frames& scene,
                                 std::span<const candidate> candidates) {
     aabb::ground_truth truth(scene.objects(), scene.meshes());
