@@ -9,7 +9,8 @@ namespace aabblab {
 
 namespace {
 
-/// How much slower a finalist is than the winner: "takes 1.31 times as long (1.25-1.36)"
+/// How much slower a finalist is than the winner, with the 95 % confidence interval: "takes 1.31 times as long
+/// (1.25-1.36)". An interval that contains 1 does not show that it is slower.
 std::string ratio_text(const racer& r) {
     if (!r.has_range())
         return fmt::format("takes {:.2f} times as long, in {}, too few for a confidence interval", r.ratio(),
@@ -20,7 +21,8 @@ std::string ratio_text(const racer& r) {
                    : fmt::format("is as fast within the noise of {} repeats {}", r.times.size(), range);
 }
 
-/// How `auto` did, since it is what users get without a recommendation; empty if it is first or second, so described.
+/// A sentence about the time of `auto`, the default, which users get without a recommendation. Empty if it is first or
+/// second, as other sentences then describe it.
 std::string sentence_about_auto(const race_result& race) {
     const auto is_automatic = [](const racer& r) { return r.tested.name.is_automatic(); };
     if (const auto ended = std::ranges::find_if(race.finalists, is_automatic); ended != race.finalists.end())
@@ -75,13 +77,16 @@ std::string frames_text(const race_result& race) {
                        counted(race.frames, "frame"));
 }
 
-/// For fewer and for more frames than the final has: the nearest number from which on another candidate is faster.
+/// Which candidate would be faster than the winner if the scene had fewer frames than were timed, or more: "below about
+/// 12 frames, NAME would be faster". Names the candidate whose break-even with the winner (the number of frames for
+/// which both take equally long) is the nearest.
 std::vector<std::string> faster_at_other_lengths(const race_result& race) {
     const racer& winner = race.finalists.front();
     if (race.final_frames < 2 || race.finalists.size() < 2 || !winner.has_range()) return {};  // nothing to compare
     std::vector<std::string> parts;
     for (const bool is_fewer : {true, false}) {
         const auto frames = static_cast<double>(race.final_frames);
+        // The interval in which a break-even is searched; each that is found shortens it.
         double low = is_fewer ? 1.5 : frames;   // fewer than 2 frames would be a single one
         double high = is_fewer ? frames : 1e6;  // an estimate that far ahead is of no use
         const racer* faster = nullptr;
@@ -100,7 +105,8 @@ std::vector<std::string> faster_at_other_lengths(const race_result& race) {
     return parts;
 }
 
-/// Caveats: what did not run for lack of time, or was not compared with the ground truth.
+/// Sentences that limit the recommendation: candidates that did not run for lack of time, and results that were not
+/// compared with the ground truth, or differ between finalists.
 std::vector<std::string> caveats_of(const race_result& race) {
     std::vector<std::string> sentences;
     const auto not_run =
@@ -124,6 +130,8 @@ std::vector<std::string> caveats_of(const race_result& race) {
 
 }  // namespace
 
+/// The recommendation, a sentence each: the winner and its lead, for which numbers of frames another candidate would be
+/// faster, `auto`, options that select the winner, wrong results, caveats.
 std::vector<std::string> advice_of(const race_result& race) {
     const racer& winner = race.finalists.front();
     std::string use = fmt::format("Use {}: {:.4g} ms for {}", winner.name, winner.last->whole_ms(), frames_text(race));

@@ -50,15 +50,15 @@ observation median_of(std::vector<observation> times) {
 class race {
 public:
     race(staged_scene& scene, std::vector<racer> candidates, const time_limits& limits)
-        : scene_(scene), limits_(limits), budget_(limits.to_run()), running_(std::move(candidates)) {
-        result_.objects = scene.scene().objects();
-        result_.frames = scene.scene().frames();
-        result_.frames_of_all = result_.frames * running_.size();  // as if no candidate were stopped early
-    }
+        : scene_(scene), limits_(limits), budget_(limits.to_run()), running_(std::move(candidates)) {}
 
-    /// Rounds drop slow candidates while there are too many for a final and more than half of the time is left. Then
-    /// the slowest are dropped until the final fits into the rest. CGAL checks the pairs of the finalists.
+    /// Finds the fastest of the candidates `running_`. Rounds drop slow ones while there are too many for a final and
+    /// more than half of the time is left. Then the slowest are dropped until the final, in which runs are repeated,
+    /// fits into the rest. The pairs that the finalists find are compared with those of CGAL.
     race_result run() {
+        result_.objects = scene_.scene().objects();
+        result_.frames = scene_.scene().frames();
+        result_.frames_of_all = result_.frames * running_.size();  // as if no candidate were stopped early
         std::size_t frames = std::min(result_.frames, first_frames);
         double margin = first_margin;  // the ratio to the fastest beyond which a candidate is dropped
         run_first_round(frames, margin);
@@ -85,13 +85,18 @@ public:
 private:
     [[nodiscard]] double seconds_left() const { return limits_.to_run(); }
 
-    /// The time limit of a run, given the seconds `least` of the fastest so far; the very first run gets more.
+    /// The time limit of a run in seconds. The very first run of the race gets more.
+    /// @param least the seconds of the fastest run so far; infinite before any
+    /// @param margin a run that takes `margin` times as long is still permitted
     [[nodiscard]] double time_limit(double least, double margin) const {
         const stopping_rule rule{.grace = std::min(1.0, budget_ / 20), .share = budget_ / 16, .margin = margin};
         return std::isfinite(least) ? rule.longest(least) : rule.grace + budget_ / 4;
     }
 
-    /// Runs a candidate on the first frames and records the outcome.
+    /// Runs a candidate on the first frames of the scene and records its times (`last`), or that it did not finish
+    /// (`broken_off`).
+    /// @param seconds the time limit of this run
+    /// @param time_left the time for all runs together
     /// @returns whether it finished
     bool run_candidate(racer& r, std::size_t frames, double seconds, double time_left) {
         attempt outcome = scene_.run(r.tested, frames, seconds, time_left);
@@ -106,13 +111,15 @@ private:
         return true;
     }
 
-    /// Runs all candidates on the first frames, with early stopping relative to the fastest so far. If the first round
-    /// has too many frames, it continues with the number that the first successful candidate finished.
+    /// Runs all candidates on the first frames, and stops those that take much longer than the fastest so far (by more
+    /// than the factor `margin`).
+    /// @param frames the number of frames. If it is too large for the first round, it becomes the number that a stopped
+    /// candidate finished, before any candidate finished all; that one then counts as finished
     /// @returns whether any candidate finished
     bool run_all(std::size_t& frames, double margin, bool is_first_round) {
         progress shown("candidates over " + counted(frames, "frame"), running_.size());
-        const double reserved = is_first_round ? (1 - share_of_first_round) * budget_ : 0;
-        double least = std::numeric_limits<double>::infinity();
+        const double reserved = is_first_round ? (1 - share_of_first_round) * budget_ : 0;  // for later rounds
+        double least = std::numeric_limits<double>::infinity();                             // seconds of the fastest
         std::size_t done = 0;
         for (racer& r : running_) {
             bool is_done = run_candidate(r, frames, time_limit(least, margin), seconds_left() - reserved);
@@ -142,7 +149,8 @@ private:
         finish_round(frames, margin);
     }
 
-    /// Reports that no candidate finished any frame.
+    /// Reports that no candidate finished any frame: with the message of one that rejected the scene as invalid, or how
+    /// the first one ended.
     [[noreturn]] void reject_all() const {
         for (const racer& r : running_)
             if (r.broken_off->end == ending::rejected) throw aabb::input_error(r.broken_off->reason);
@@ -152,7 +160,9 @@ private:
                                             first.broken_off->end == ending::stopped ? "; increase --seconds" : ""));
     }
 
-    /// Discards the round if time is over before all candidates have run, or if none finishes.
+    /// Runs all candidates on the first frames and drops those slower than the fastest by more than the factor
+    /// `margin`. If time is over before all have run, or if none finishes, their previous runs are restored, and none
+    /// is dropped.
     /// @returns whether the round counts
     bool run_round(std::size_t frames, double margin) {
         const std::vector<racer> before = running_;
@@ -183,9 +193,10 @@ private:
         for (racer& r : running_) r.slowdown = r.last ? total_ms(r) / least : 0;
     }
 
-    /// Repeats runs that were slightly too slow, as they may have been disturbed; half of the time is for the final.
+    /// Runs candidates again that were slightly too slow (`slowdown`, the ratio to the fastest, exceeds the margin), as
+    /// they may have been disturbed; the faster run counts. Half of the time is kept for the final.
     void rerun_close_candidates(std::size_t frames, double margin) {
-        constexpr double far_behind = 2;
+        constexpr double far_behind = 2;  // times the margin: a disturbance alone hardly costs that much
         for (racer& r : running_) {
             if (r.broken_off || r.slowdown <= margin || r.slowdown > far_behind * margin ||
                 seconds_left() < budget_ / 2)
@@ -196,7 +207,8 @@ private:
         update_ratios();
     }
 
-    /// Drops candidates that did not finish, or are behind both in total and per frame.
+    /// Drops candidates that did not finish, or are slower than the fastest by more than the factor `margin` both in
+    /// total time (`slowdown`) and per frame after frame 0 (`steady_ms`). Sorts the others from the fastest.
     void drop_slow(double margin) {
         double least_steady = std::numeric_limits<double>::infinity();
         for (const racer& r : running_)
@@ -232,12 +244,19 @@ private:
         return fewest_repeats * seconds_of_repeat(frames) <= seconds_left();
     }
 
-    /// Repeats interleaved runs of the finalists on as many frames, and as often, as time allows. Finalists that fail
-    /// or far exceed their estimate are dropped. Without any finished repeat, the last round counts as one.
-    void run_final() {
+    /// The number of frames of the final: all, or as many as fit into the time left, but not fewer than those of the
+    /// last round, `final_frames`. Each step reduces the difference to these by an eighth.
+    [[nodiscard]] std::size_t frames_of_final() const {
         std::size_t frames = result_.frames;
         while (frames > result_.final_frames && !final_fits(frames))
-            frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);  // towards those of the last round
+            frames -= std::max<std::size_t>(1, (frames - result_.final_frames) / 8);
+        return frames;
+    }
+
+    /// Repeats interleaved runs of the finalists, the candidates `running_`, as often as time allows. Finalists that
+    /// fail or far exceed their estimated time are dropped. If no repeat is finished, the last round counts as one.
+    void run_final() {
+        const std::size_t frames = frames_of_final();
         progress shown("repeats of the final", most_repeats);
         const std::vector<racer> before = running_;
         bool is_out_of_time = false;  // time is over within a repeat, which is discarded
@@ -287,7 +306,9 @@ private:
             throw aabb::input_error(running_.front().broken_off->reason);
     }
 
-    /// Removes finalists whose results differ from those of CGAL, on the first frames if CGAL does not finish in time.
+    /// Moves finalists whose results differ from those of CGAL, the ground truth, to `wrong`. If CGAL does not finish
+    /// in time, the results of the frames that it finished are compared: `digests[i]` is a hash of all pairs up to
+    /// frame i.
     void compare_with_cgal() {
         const auto cgal = std::ranges::find(aabb::engines(), "cgal", &aabb::engine_info::name);
         const attempt exact = scene_.run(*candidate_of(*cgal, scene_.scene().meshes() != nullptr), result_.final_frames,
@@ -313,7 +334,9 @@ private:
 
 }  // namespace
 
-/// The winner is the finalist with the greatest lead: its smallest median log-ratio to any rival is the largest.
+/// Sorts finalists from the fastest. The winner is the one with the greatest lead, where the lead of r is the minimum
+/// over its rivals s of the median over repeats of log(time of s / time of r). The others are sorted by the median of
+/// their log-ratio to the winner, with confidence intervals by bootstrap.
 void rank(std::vector<racer>& finalists) {
     if (finalists.empty()) return;
     const auto first = std::ranges::max_element(finalists, {}, [&](const racer& r) { return lead_of(r, finalists); });
@@ -328,6 +351,8 @@ void rank(std::vector<racer>& finalists) {
                      [](const racer& a, const racer& b) { return a.log_ratio->value < b.log_ratio->value; });
 }
 
+/// The candidates for a scene: `auto`, then exact engines (other libraries) and every other exact composition of
+/// strategies, for meshes those of the narrow phase.
 std::vector<racer> race_candidates(const scene_frames& scene) {
     const bool meshes = scene.meshes() != nullptr;
     std::vector<racer> candidates;

@@ -16,7 +16,7 @@ namespace aabblab {
 
 namespace {
 
-/// The ranking of the finalists.
+/// The ranking of the finalists. If the output is too narrow, columns with the greatest `spare` are left out first.
 table table_of(const race_result& race) {
     table t{{{row_number}, {"finalist", /*is_number=*/false}, {"all ms"}, {"ratio"}, {"95 %"}, {"ms/frame"}}, {}};
     t.columns.push_back({.name = "first ms", .spare = 1});
@@ -55,6 +55,7 @@ table unfinished_table_of(const race_result& race) {
     return t;
 }
 
+/// Explains the columns of the ranking.
 std::vector<std::string> legend() {
     constexpr const char* ratio_text =
         "ratio: all ms divided by that of candidate 1 in the same repeat, the median over repeats, with its 95 % "
@@ -93,7 +94,9 @@ std::string measures_page(staged_scene& scene, double seconds) {
 
 }  // namespace
 
-/// Reads the scene and opens the page before the race, so that invalid input is reported without delay.
+/// Times the compositions and engines on a scene, prints the ranking and recommends the fastest. The scene is read and
+/// the page is opened first, so that invalid input is reported without delay.
+/// @returns the exit status: 1 if results differ
 int recommend(const recommend_request& request) {
     require_fine_clock();
     time_limits limits(request.seconds);
