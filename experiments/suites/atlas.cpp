@@ -16,7 +16,10 @@ constexpr std::array<part, 3> parts{{{"atlas", false}, {"atlas_large", false}, {
 
 }  // namespace
 
-/// Runs the experiments of the atlas, which compares all compositions and engines in many scenes.
+/// Runs the experiments of the atlas, which compares all compositions and engines in many scenes. All configs are read
+/// first, so that an invalid one is reported before the long run.
+/// @param quick applies the settings of the configs for a short trial run
+/// @returns a sentence for each candidate with wrong results
 std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool quick) {
     std::vector<experiment> experiments;
     for (const part& p : parts)
@@ -32,6 +35,7 @@ std::vector<std::string> measure_atlas(const std::filesystem::path& folder, bool
     return failures;
 }
 
+/// A sentence for each experiment of the atlas whose results are missing or incomplete.
 std::vector<std::string> unfinished_parts(const std::filesystem::path& folder) {
     std::vector<std::string> sentences;
     for (const part& p : parts) {

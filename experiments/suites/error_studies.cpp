@@ -10,7 +10,7 @@ namespace aabblab {
 
 namespace {
 
-/// Prints the errors of triangle tests, all together and by set of pairs.
+/// Prints the errors of triangle tests in two tables per group of pairs: over all its pairs, and by set of pairs.
 void print_tables(std::span<const error_point> points) {
     for (const pair_group group : groups_in(points)) {
         print(wrapped(group_statement(points, group)) +

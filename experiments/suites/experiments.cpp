@@ -25,6 +25,8 @@ namespace {
 /// Prints how to resume when the program is interrupted; all finished rows are in their file by then.
 class interruption {
 public:
+    /// Handles Ctrl-C: prints how to resume, then ends the program by the default handler.
+    /// @param resume_with the command or option that continues the run
     explicit interruption(const std::string& resume_with) {
         message = "\naabblab: interrupted; what is finished is kept, and " + resume_with + " continues\n";
         std::signal(SIGINT, [](int signal) {
@@ -63,6 +65,7 @@ scene_choice visible_scene(scene_choice scene) {
     return scene;
 }
 
+/// Prints a heading and a table of times per scene, and a second one of work and memory if `shown` includes them.
 void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printed shown) {
     for (scene_summary& scene : scenes) {
         scene.scene = visible_scene(scene.scene);
@@ -74,7 +77,8 @@ void print_scenes(const experiment& e, std::vector<scene_summary> scenes, printe
     flush_output();
 }
 
-/// Prints one table over scenes per baseline, because scenes of boxes and of meshes have different ones.
+/// Prints a table over all scenes with the same baseline (the first candidate of a scene), to which its ratios are:
+/// scenes of boxes and of meshes have different ones.
 void print_overall(std::span<const scene_summary> scenes) {
     std::map<candidate_name, std::vector<scene_summary>> by_baseline;
     for (const scene_summary& scene : scenes) by_baseline[scene.candidates[0].name].push_back(scene);
@@ -97,7 +101,9 @@ bool is_multi_threaded(const experiment& e) {
     });
 }
 
-/// Runs one process's share of every scene. Timed single-threaded runs stay on the idlest processor.
+/// Runs the repeats of one of the experiment's processes in every scene. Timed single-threaded runs stay on the idlest
+/// processor.
+/// @param process its number, from 0
 /// @param report is called with a sentence per failure
 /// @param finished is called with the index of each scene at its end
 void run_scenes(
@@ -125,6 +131,8 @@ void run_shares(const experiment& e, const std::filesystem::path& folder,
 
 }  // namespace
 
+/// Reads a config, and notes on standard error which meshes are missing and how they are replaced.
+/// @param quick applies the settings of the config for a short trial run
 experiment open_experiment(const std::string& config, bool quick) {
     experiment e = read_experiment(config, quick ? experiment_size::quick : experiment_size::full);
     for (const std::string& sentence : e.notes) note(sentence);
@@ -135,8 +143,9 @@ experiment open_experiment(const std::string& config, bool quick) {
     return e;
 }
 
-/// Every engine runs on a scene of meshes: one that only searches boxes or only collides meshes gets the default
-/// composition for the other stage. External engines read recordings of boxes.
+/// A sentence for each engine that cannot run on the scene. In a scene of meshes each engine of this program can: if it
+/// has only one stage, the default strategies run the other. In a scene of boxes it must search boxes. External
+/// engines, which are other programs, take only boxes.
 std::vector<std::string> idle_engines(const experiment& e, const scene_choice& scene, const std::string& scene_name) {
     std::vector<std::string> sentences;
     for (const aabb::engine_info& engine : aabb::engines())
@@ -149,7 +158,10 @@ std::vector<std::string> idle_engines(const experiment& e, const scene_choice& s
     return sentences;
 }
 
-/// Runs an experiment, in its own process or in several one after the other, seals its results and prints tables.
+/// Runs an experiment, in this process or in several new ones one after the other, seals its results (adds checksums),
+/// writes their summary and prints tables. The folder is locked meanwhile.
+/// @param resume_with the command or option that continues the run, for the message on Ctrl-C
+/// @returns a sentence per failure
 std::vector<std::string> run_experiment(const experiment& e, const std::filesystem::path& folder,
                                         existing_results existing, const std::string& resume_with, printed shown) {
     if (e.records(metric_group::time)) require_fine_clock();
@@ -160,7 +172,7 @@ std::vector<std::string> run_experiment(const experiment& e, const std::filesyst
         note(failure);
         failures.push_back(failure);
     };
-    {
+    {  // closes the results, which other processes open below
         results_folder results(folder, record_of(e), existing);
         note_idle_engines(e);
         if (!results.replaced().empty()) note(results.replaced() + "; this run replaces them");
@@ -191,7 +203,9 @@ std::vector<std::string> run_experiment(const experiment& e, const std::filesyst
     return failures;
 }
 
-/// Runs one process's share of an experiment, and prints its failures for the process that started it.
+/// Runs the repeats of one of the experiment's processes, and prints its failures, which the process that started it
+/// reads.
+/// @returns true if there were none
 bool run_process(const experiment& e, const std::filesystem::path& folder, std::size_t process) {
     results_folder results(folder, record_of(e), existing_results::resume);
     bool succeeded = true;

@@ -35,7 +35,8 @@ suite_report report_of(std::span<const extreme_row> rows) {
     return {memory_in(rows), {}, tables_of(rows), failures_in(rows)};
 }
 
-/// The tables of a study of stiff contacts: its rows, measured and expected, sorted into one table per quantity.
+/// The tables of a study of stiff contacts, one per measured quantity: case, measured value, expectation, and whether
+/// it holds.
 std::vector<named_table> tables_of(const stiff_study& study, const stiff_result& result) {
     std::vector<named_table> tables;
     for (const stiff_row& r : result.rows) {
@@ -52,6 +53,7 @@ std::vector<named_table> tables_of(const stiff_study& study, const stiff_result&
     return tables;
 }
 
+/// Adds the description, figures, tables and failed expectations of a study to the report.
 void add_study(suite_report& report, const stiff_study& study, const stiff_result& result) {
     report.paragraphs.push_back(fmt::format("{}: {}. Expected: {}.", study.name, study.about, study.reference));
     std::ranges::move(figures_of(study, result), std::back_inserter(report.figures));
@@ -80,7 +82,8 @@ figure_axis stored_axis(const json_value& j) {
     return {j.needed("label").text(), j.needed("logarithmic").flag()};
 }
 
-/// Reads a line of a figure from a report as JSON, which earlier versions stored instead of rows.
+/// Reads a line of a figure from a report in JSON, which earlier versions stored instead of rows. A point is four
+/// numbers: x, y, and the quartiles of y.
 series stored_series(const json_value& j) {
     const json_value style = j.needed("style");
     if (style.index() > static_cast<std::size_t>(series_style::level)) style.fail("is not a style of lines");
@@ -88,12 +91,14 @@ series stored_series(const json_value& j) {
     for (const json_value& p : j.needed("points").list()) {
         const std::vector<json_value> numbers = p.list();
         if (numbers.size() != 4) p.fail("must be four numbers");
-        // Quartiles equal the value; a value that is not finite, as of a diverging trajectory, is null in JSON.
+        // Here the quartiles equal y, as nothing was repeated. In JSON a y that is not finite, as of a diverging
+        // trajectory, is null.
         if (!numbers[1].is_null()) line.points.push_back({numbers[0].number(), numbers[1].number()});
     }
     return line;
 }
 
+/// Reads a figure from a report in JSON, which earlier versions stored instead of rows.
 figure stored_figure(const json_value& j) {
     figure f{j.needed("name").text(), j.needed("caption").text(), stored_axis(j.needed("x")),
              stored_axis(j.needed("y"))};
@@ -129,7 +134,9 @@ std::string default_cases() {
     return AABBLAB_CASES;
 }
 
-/// Runs the extreme scenes and the hard pairs of triangles, stores their rows, and prints the report if `shown`.
+/// Runs all methods on scenes with extreme coordinates and shapes and on hard pairs of triangles, compares them with
+/// the ground truth, stores a row per result, and prints the report if `shown`.
+/// @param cases the file of hard pairs of triangles
 suite_report run_extreme_suite(const std::filesystem::path& folder, const std::string& cases, bool quick, bool shown) {
     const auto size = quick ? aabb::extreme_size::quick : aabb::extreme_size::full;
     const std::vector<aabb::triangle_case> hard = read_triangle_cases(cases);
@@ -193,8 +200,9 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
     return report;
 }
 
-/// The suite stored a whole report, as earlier versions did, rows of extreme scenes, or results of studies, which need
-/// not be all. An interrupted extreme suite makes no report: without its cases it might seem to pass.
+/// The report on what a suite of `validate` stored in the folder: a whole report (earlier versions), the rows of the
+/// extreme suite, or results of some or all stiff studies. Empty if there is nothing, or the extreme suite was
+/// interrupted: without its last rows it might seem to pass.
 std::optional<suite_report> stored_report(const std::filesystem::path& folder) {
     if (std::filesystem::exists(folder / "report.json")) return read_report(folder / "report.json");
     if (std::filesystem::exists(folder / "extreme.csv")) {
