@@ -47,7 +47,8 @@ void add_once(std::vector<T>& list, const T& value) {
     if (std::ranges::find(list, value) == list.end()) list.push_back(value);
 }
 
-/// The scenes of A that occur in B, too, each with the seeds and the candidates that both have.
+/// The scenes that occur in both of the compared runs, A and B, each with the seeds and the candidates (compositions
+/// and engines) that both have. Scenes that differ only in their seed are one.
 std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_scene& b) {
     std::vector<shared_scene> scenes;
     std::map<scene_key, std::size_t> indices;  // keyed without the seed
@@ -62,7 +63,8 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_sc
     return scenes;
 }
 
-/// The labels that `table_of` would give to these compositions: it summarises rows that have only names.
+/// Short labels of the candidates of a scene: the strategies that differ among them, as in the table of the scene. To
+/// get the same labels, it summarises rows that have only names.
 std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     std::vector<row> rows(names.size());
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].name = names[i];
@@ -103,7 +105,9 @@ double least_p_value(std::size_t n, std::size_t m) {
     return chance;
 }
 
-/// Logarithms of the milliseconds per frame, or, if there is a baseline, of their ratios to its in the same repeat.
+/// Logarithms of a candidate's milliseconds per frame in one run, in a cell per process and seed. With a baseline, they
+/// are of the ratios to its time in the same repeat.
+/// @param baseline null for times in milliseconds
 cells log_times(const rows_by_scene& run, const shared_scene& scene, const candidate_name& name,
                 const candidate_name* baseline) {
     std::map<std::uint64_t, std::size_t> processes;  // with their indices in the cells
@@ -121,7 +125,8 @@ cells log_times(const rows_by_scene& run, const shared_scene& scene, const candi
     return logs;
 }
 
-/// The first name that is timed in both runs; an engine is the baseline only if there is no composition.
+/// The candidate whose times are the denominator of ratios: the first composition that is timed in both runs, or else
+/// the first engine.
 std::optional<candidate_name> baseline_of(const shared_scene& scene, const rows_by_scene& a, const rows_by_scene& b) {
     for (const bool engine : {false, true})
         for (const candidate_name& name : scene.names)
@@ -139,8 +144,10 @@ struct measured_candidate {
     cells b;
 };
 
-/// Decides which candidates changed from A to B, all as one family of tests (Holm), and adds each to its scene.
-/// @param times_of_scene the list to which they are added: ratios or times
+/// Decides for each candidate whether its time changed from A to B beyond noise, and adds it to its scene. So many
+/// tests show some change by chance, so that their p-values are corrected together (Holm's rule).
+/// @param measured logarithms of ratios or times
+/// @param times_of_scene the list of a scene to which they are added: `ratios` or `times`
 void add_decided(std::span<const measured_candidate> measured,
                  std::vector<compared_time> compared_scene::* times_of_scene, std::vector<compared_scene>& scenes) {
     std::vector<compared_time> times;
@@ -148,11 +155,11 @@ void add_decided(std::span<const measured_candidate> measured,
     for (const measured_candidate& entry : measured) {
         const estimate a = bootstrap(entry.a), b = bootstrap(entry.b);
         const estimate change = difference_of(b, a);
-        // So few values cannot give a smaller p-value, however clear the difference.
+        // However clear the difference, so few values cannot give a smaller p-value.
         const double least_p = least_p_value(count_values(entry.a), count_values(entry.b));
-        evidence& entry_evidence = evidences.emplace_back(evidence_of(change));
+        evidence& entry_evidence = evidences.emplace_back(evidence_of(change));  // less, same or more, with a p-value
         entry_evidence.p = std::max(entry_evidence.p, least_p);
-        // It may not even survive the correction for all tests, whatever the direction.
+        // Even the least p-value may be insignificant after the correction; then repeats are too few for any decision.
         const outcome best = decide({outcome::more, least_p * static_cast<double>(measured.size())});
         times.push_back({.label = entry.label,
                          .in_a = std::exp(a.value),
@@ -172,7 +179,8 @@ void add_decided(std::span<const measured_candidate> measured,
 
 using number = std::pair<std::string, std::optional<std::uint64_t>>;
 
-/// The values that do not vary between repeats, by column, so that any change is one of the program.
+/// The values of a row that do not vary between repeats, with the names of their columns. A change between two runs is
+/// a change of the program.
 std::vector<number> numbers_of(const row& r) {
     std::vector<number> numbers = {{"candidates", r.candidates}, {"contacts", r.contacts}};
     for (std::size_t i = 0; i < r.counts.size(); ++i) numbers.emplace_back(aabb::work_names[i], r.counts[i]);
@@ -210,7 +218,9 @@ void compare_results(const rows_by_scene& a, const rows_by_scene& b, comparison&
     }
 }
 
-/// Compares counts and bytes, which no noise disturbs: adds those that differ for any seed.
+/// Compares counts of work and bytes, which no noise disturbs, of all candidates of a scene in the runs A and B.
+/// @param labels of the candidates
+/// @param changed receives those that differ for any seed, as sums over the seeds
 /// @returns the number of values compared
 std::size_t compare_numbers(const shared_scene& scene, const rows_by_scene& a, const rows_by_scene& b,
                             std::span<const std::string> labels, std::vector<changed_number>& changed) {
@@ -253,6 +263,9 @@ std::size_t count_only_in(const rows_by_scene& run, const rows_by_scene& other) 
 
 }  // namespace
 
+/// Compares two runs of the same experiments, of two commits or machines: the pairs that they find (by digest), times
+/// per frame relative to a baseline, counts and bytes.
+/// @param quantities whether milliseconds are compared, too; ratios always are
 comparison compare(const run_results& a, const run_results& b, compared quantities) {
     const rows_by_scene of_a(a.rows);
     const rows_by_scene of_b(b.rows);

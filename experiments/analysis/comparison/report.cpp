@@ -68,7 +68,8 @@ void print_different_results(const comparison& report) {
     print_block(fmt::format("the results differ in {} of {} scenes", t.rows.size(), report.results_compared), t);
 }
 
-/// The table of a scene's compared ratios or times: those that changed beyond noise, or all of them.
+/// The table of a scene's compared ratios or times: those that changed beyond noise from A to B, or all.
+/// @param unit the column's name: "ratio" or "ms"
 table table_of(std::span<const compared_time> times, const std::string& unit, bool list_all) {
     table t = empty_table({"composition"}, {(unit + " in A").c_str(), "in B", "B/A", "95 %"}, {"B is"});
     for (const compared_time& time : times)
@@ -133,6 +134,8 @@ void print_numbers(const comparison& report) {
 
 }  // namespace
 
+/// Reads the verified results of a folder, or of all its sub-folders with results, which must be of different
+/// experiments.
 run_results read_results(const std::filesystem::path& folder) {
     if (!std::filesystem::is_directory(folder))
         throw aabb::input_error(folder.string() +
@@ -157,6 +160,8 @@ run_results read_results(const std::filesystem::path& folder) {
     return run;
 }
 
+/// Reads the results of the runs A and B, and prints what differs: pairs, ratios of times, times if requested, counts.
+/// @returns the exit status: 1 if the pairs differ
 int print_comparison(const compare_request& request) {
     const run_results a = read_results(request.a);
     const run_results b = read_results(request.b);

@@ -6,7 +6,8 @@ namespace aabblab {
 
 namespace {
 
-/// What identifies a condition: kind, parameters and meshes, but not the number of frames, since times are per frame.
+/// The names and values that identify the condition of a measurement: kind of scene, parameters and meshes, but not the
+/// number of frames, since times are per frame.
 factors factors_of(const scene_choice& scene) {
     factors scene_factors{{"scene", scene.kind}};
     for (const aabb::setting& s : scene.settings)
@@ -64,7 +65,8 @@ std::string text_of(const selection& s) {
     return text;
 }
 
-/// Sorts the seeds and processes that occur: their indices are those of cells.
+/// Rows of one scene with any seeds. Lists the seeds and processes that occur, in order: statistics have a cell for
+/// each combination.
 condition::condition(factors scene, std::vector<const row*> rows) : factors_(std::move(scene)), rows_(std::move(rows)) {
     for (const row* r : rows_) {
         if (std::ranges::find(seeds_, r->scene.seed) == seeds_.end()) seeds_.push_back(r->scene.seed);
@@ -92,7 +94,8 @@ std::vector<const row*> condition::rows_of(const selection& composition) const {
     return rows;
 }
 
-/// Pairs the rows of two compositions by repeat and seed; values that are not positive have no logarithm.
+/// Logarithms of the ratio of a quantity of two compositions, in a cell per process and seed. Rows are paired by repeat
+/// and seed. Values that are empty or not positive have no logarithm and are left out.
 cells condition::log_ratios(const selection& composition, const selection& baseline, const row_value& quantity) const {
     cells ratios(processes(), seeds());
     const std::vector<const row*> base_rows = rows_of(baseline);
@@ -144,7 +147,8 @@ std::optional<figure_point> condition::point(double x, const selection& composit
     return figure_point{x, q->median, q->low, q->high};
 }
 
-/// Reads an experiment on first use, and groups its rows by condition; empty if it has no results.
+/// Reads an experiment on first use, and groups its rows by condition: a scene with all its seeds. Empty if it has no
+/// results.
 const measurements::experiment_results& measurements::read(const std::string& experiment) const {
     std::unique_ptr<experiment_results>& results = read_[experiment];
     if (results) return *results;
@@ -170,6 +174,7 @@ std::vector<std::string> measurements::experiments() const {
     return names;
 }
 
+/// The number of rows of an experiment, and of different compositions, scenes, processes, seeds and repeats in them.
 extent_of_results measurements::extent(const std::string& experiment) const {
     const std::vector<row>& rows = read(experiment).rows;
     const auto distinct = [&](auto value) {
