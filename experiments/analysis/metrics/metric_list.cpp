@@ -96,7 +96,8 @@ optional_number wrong_share(const row& r) {
     return (false_negatives + false_positives) / std::max(reported - false_positives + false_negatives, 1.0);
 }
 
-/// The metrics of times, bytes and errors, which do not count work; `aabblab list` prints their summaries.
+/// The metrics of times, bytes and errors, each with its name, summary (as `aabblab list` prints it) and the function
+/// that computes it from a row of results. Metrics that count work are not among them.
 std::vector<metric> row_metrics() {
     using enum metric_group;
     const std::string cpu = "processor ";
@@ -163,6 +164,7 @@ void add_work_metrics(std::vector<metric>& list) {
 
 }  // namespace
 
+/// All metrics: those of times, bytes and errors, then one per work counter.
 std::span<const metric> metrics() {
     static const std::vector<metric> registered = [] {
         std::vector<metric> list = row_metrics();
@@ -188,7 +190,7 @@ const row_value& measured(std::string_view name) {
     return metric_named(name).value;
 }
 
-/// The sum of the bytes of these parts; none if no part has any.
+/// The function that sums the bytes of these parts of a composition in a row; empty if the row has none of them.
 row_value bytes_of(std::vector<std::string> parts) {
     return [parts = std::move(parts)](const row& r) -> std::optional<double> {
         std::optional<double> sum;
@@ -199,7 +201,8 @@ row_value bytes_of(std::vector<std::string> parts) {
     };
 }
 
-/// The sum of these metrics, of which the first decides whether there is one.
+/// The function that sums these metrics of a row; empty if the row lacks the first one. Others that it lacks are not
+/// added.
 row_value sum_of(const std::vector<std::string>& names) {
     std::vector<row_value> parts;
     for (const std::string& name : names) parts.push_back(measured(name));

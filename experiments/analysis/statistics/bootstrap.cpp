@@ -37,7 +37,8 @@ double median_of(std::span<double> values) {
     return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
-/// The variance of the statistic over bootstrap resamples of one level: processes, seeds or repeats.
+/// The variance of a statistic over bootstrap resamples of one level: processes, seeds or repeats are drawn with
+/// replacement, the other two stay as measured.
 double variance_of(const sample_size& size, level drawn, const std::function<double(const resample&)>& statistic) {
     std::uint64_t state = 1;
     std::vector<double> values;
@@ -63,12 +64,13 @@ sample_size cells::size() const {
 }
 
 resample::resample(std::size_t processes, std::size_t seeds, level drawn, std::uint64_t random)
-    : drawn_(drawn), random_(random) {
-    processes_ = indices_of(processes, drawn == level::processes, random_);
-    seeds_ = indices_of(seeds, drawn == level::seeds, random_);
-}
+    : drawn_(drawn),
+      random_(random),
+      processes_(indices_of(processes, drawn == level::processes, random_)),
+      seeds_(indices_of(seeds, drawn == level::seeds, random_)) {}
 
-/// The mean over the drawn cells of the median of their repeats, which are drawn too if that is the resampled level.
+/// The mean, over the drawn processes and seeds (a cell each), of the median of the repeats in a cell. If repeats are
+/// the resampled level, they are drawn with replacement, too. NaN if all cells are empty.
 double resample::mean_of(const cells& measured) const {
     double sum = 0;
     std::size_t count = 0;
@@ -104,8 +106,10 @@ double estimate::p_if_below(double limit) const {
     return cdf(boost::math::students_t(degrees), (limit - value) / error);
 }
 
-/// Adds the variances of the levels. Each is that between resamples times n / (n - 1), as the bootstrap of n values
-/// underestimates it; the degrees of freedom of the sum follow Satterthwaite (1946).
+/// Estimates a statistic of measurements in several processes, with several seeds and repeats. Its variance is the sum
+/// of those of the levels: between processes, between seeds and between repeats (noise). Each is that over bootstrap
+/// resamples times n / (n - 1), as the bootstrap of n values underestimates it. The degrees of freedom of the sum
+/// follow Satterthwaite (1946): sum^2 / (sum of variance^2 / degrees).
 estimate bootstrap(const sample_size& size, const std::function<double(const resample&)>& statistic) {
     estimate result{.value = statistic(resample(size.processes, size.seeds, level::none, /*random=*/0))};
     const auto variance = [&](level drawn, std::size_t count) {
@@ -114,7 +118,7 @@ estimate bootstrap(const sample_size& size, const std::function<double(const res
                    : variance_of(size, drawn, statistic) * static_cast<double>(count) / static_cast<double>(count - 1);
     };
     const double noise = variance(level::repeats, size.repeats);
-    // The variance between processes, and between seeds, includes the noise of repeats.
+    // The observed variance between processes, and between seeds, includes the noise of repeats, which is subtracted.
     const double seen_of_processes = variance(level::processes, size.processes);
     const double seen_of_seeds = variance(level::seeds, size.seeds);
     const double of_processes = std::max(0.0, seen_of_processes - noise);
@@ -137,7 +141,9 @@ estimate bootstrap(const cells& measured) {
     return bootstrap(measured.size(), [&](const resample& d) { return d.mean_of(measured); });
 }
 
-/// The variance of the mean is what the errors imply (`within`) or, if greater, what the spread implies (`between`).
+/// The mean of n independent estimates. Its variance is what their errors imply (`within`, the sum of error^2 / n^2)
+/// or, if greater, what their spread implies (`between`, its sample variance / n). The degrees of freedom follow
+/// Satterthwaite (1946).
 estimate mean_of(std::span<const estimate> estimates) {
     if (estimates.size() == 1) return estimates.front();
     const auto count = static_cast<double>(estimates.size());
@@ -155,6 +161,7 @@ estimate mean_of(std::span<const estimate> estimates) {
     return {mean, std::sqrt(sum), degrees > 0 ? sum * sum / degrees : 1};
 }
 
+/// a - b of independent estimates; the degrees of freedom follow Satterthwaite (1946).
 estimate difference_of(const estimate& a, const estimate& b) {
     const double var_a = a.error * a.error;
     const double var_b = b.error * b.error;
@@ -163,6 +170,8 @@ estimate difference_of(const estimate& a, const estimate& b) {
     return {a.value - b.value, std::sqrt(sum), sum * sum / (var_a * var_a / a.degrees + var_b * var_b / b.degrees)};
 }
 
+/// Quartiles and median: a share p of n sorted values is at the position p (n - 1), between two of which it
+/// interpolates.
 quartiles quartiles_of(std::vector<double> values) {
     std::ranges::sort(values);
     const auto quantile_at = [&](double share) {
@@ -174,6 +183,7 @@ quartiles quartiles_of(std::vector<double> values) {
     return {quantile_at(0.25), quantile_at(0.5), quantile_at(0.75)};
 }
 
+/// The least-squares line through points: its slope, and the mean of y, which it has at the mean of x.
 fitted_line line_through(std::span<const double> x, std::span<const double> y) {
     const auto count = static_cast<double>(x.size());
     double mean_x = 0, mean_y = 0;

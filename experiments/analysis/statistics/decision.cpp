@@ -10,8 +10,10 @@ double least_p_value(const tested& t) {
     return std::min(direction, t.expected == expectation::not_more ? t.p.not_more : t.p.same);
 }
 
-/// The level at which each p-value is decided by Holm's step-down rule (1979), which corrects for many tests: the k-th
-/// least of n p-values is compared with 1/(n - k + 1) of the level; from the first that exceeds it on, levels are 0.
+/// The significance level of each test by Holm's step-down rule (1979), which corrects for many tests: the k-th least
+/// of n p-values is compared with 1/(n - k + 1) of the level. From the first that exceeds it on, none is significant,
+/// and levels are 0.
+/// @param p_of returns the p-value of a test
 template <class Tested, class P>
 std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
     std::vector<std::size_t> order(family.size());
@@ -28,8 +30,10 @@ std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
 
 }  // namespace
 
-/// Tests whether a ratio is below, within or above the equivalence band, and returns the outcome with the least
-/// p-value. It is within if it is shown to be neither above nor below: two one-sided tests.
+/// Tests whether a ratio is below, within or above the equivalence band around 1, and returns the outcome with the
+/// least p-value. The p-value of an outcome is the probability of the estimate if another were true. The ratio is
+/// within the band if it is shown to be neither above nor below: two one-sided tests, of which the greater p-value
+/// counts.
 evidence evidence_of(const estimate& log_ratio) {
     const double high = std::log1p(equivalence_band);
     const double low = -high;
@@ -67,10 +71,14 @@ outcome direction_of(const tails& p, double level) {
     return outcome::undecided;
 }
 
+/// Whether measurements support a claim about a ratio.
+/// @param expected the claim: it is less than 1, or not more
+/// @param p the p-values of statements about the ratio
+/// @param level at which a statement is significant
 support support_of(expectation expected, const tails& p, double level) {
     if (expected == expectation::not_more && p.not_more <= level) return support::favours;
     const outcome direction = direction_of(p, level);
-    // This holds for any width of the interval: with more repeats the ratio would be shown to be the same.
+    // A ratio within the equivalence band is too close to 1 to matter, even if it is significantly on one side of 1.
     if (direction != outcome::undecided && p.is_within_band) return support::no_difference;
     switch (direction) {
         case outcome::less: return support::favours;
@@ -85,9 +93,11 @@ std::vector<double> levels_together(std::span<const tested> family) {
     return holm_levels(family, least_p_value);
 }
 
+/// Judges a claim by the support of its primary endpoints. A verdict other than undecided is one that further
+/// measurements of the undecided endpoints cannot change.
 verdict_kind verdict_of(std::span<const support> primary) {
     const auto any_is = [&](support s) { return std::ranges::find(primary, s) != primary.end(); };
-    const bool any_otherwise = any_is(support::contradicts) || any_is(support::no_difference);
+    const bool any_otherwise = any_is(support::contradicts) || any_is(support::no_difference);  // not as claimed
     if (any_is(support::favours) && any_otherwise) return verdict_kind::in_part;
     if (primary.empty() || any_is(support::undecided)) return verdict_kind::undecided;
     if (!any_otherwise) return verdict_kind::holds;

@@ -64,9 +64,9 @@ public:
     [[nodiscard]] double mean_of(const cells& measured) const;
 
 private:
-    std::vector<std::size_t> processes_, seeds_;
     level drawn_;
-    std::uint64_t random_;
+    std::uint64_t random_;                        // the state of the generator
+    std::vector<std::size_t> processes_, seeds_;  // indices, drawn or in order
 };
 
 /// A statistic with its standard error.
