@@ -81,7 +81,8 @@ double width_of(const scale& axis, const tick& t, std::size_t name_length) {
     return axis.named ? width_of(lines_of(axis, t, name_length)) : width_of(t.label + t.power);
 }
 
-/// The maximum width and height of the labels of an axis.
+/// The maximum width and height of the labels of an axis, in ems.
+/// @param name_length the maximum number of characters in a line of a name
 std::pair<double, double> extent_of_labels(const scale& axis, std::size_t name_length) {
     double width = 0, height = 0;
     for (const tick& t : axis.ticks) {
@@ -105,6 +106,7 @@ struct legend {
     double column_width = 0;
     std::size_t rows = 0;
     bool has_long_entries = false;
+    bool is_in_cell = false;  ///< in the place of a panel, not below all plots
 
     [[nodiscard]] double height() const { return rows == 0 ? 0 : legend_row * static_cast<double>(rows) + gap; }
 };
@@ -115,13 +117,14 @@ struct flag {
     std::size_t row = 0;  ///< counted from below
 };
 
-/// Assigns rows to the texts of marks so that no text meets another, or the line of another mark.
+/// Assigns rows, one above the other, to the texts of marks (vertical lines below their text) so that no text overlaps
+/// another, or the line of another mark, which ends in the row of its own text.
 /// @returns the number of rows
 std::size_t assign_rows(std::vector<flag>& flags) {
     const auto crosses = [](const flag& line, const flag& text) {
         return text.begin < line.line_x && line.line_x < text.end;
     };
-    // Each round settles at least one row, except for texts that mutually cross each other's lines.
+    // Each round settles at least one row, except for texts that cross each other's lines.
     for (std::size_t round = 0; round < flags.size(); ++round)
         for (flag& a : flags)
             for (flag& b : flags) {
@@ -147,7 +150,8 @@ public:
           column_count_(std::min<std::size_t>(panel_count_, 2)),
           row_count_((panel_count_ + column_count_ - 1) / column_count_) {}
 
-    /// Margins depend on labels, the plots on margins and the legend, and the places of texts on the plots. In ems.
+    /// Places all parts of the figure. Margins depend on labels, the plots on margins and the legend, and the places of
+    /// texts on the plots. Lengths are in ems, heights are measured from the lower edge.
     arrangement arranged() && {
         place_left();
         const std::vector<end_label> ends = place_ends();
@@ -162,19 +166,8 @@ public:
         const double marks = line_height * static_cast<double>(flag_rows);
         const double row = plot_height_ + marks + (titled ? line_height + gap / 2 : 0);
 
-        // The legend can take the free cell that an incomplete last row of panels leaves.
-        legend labels;
-        bool is_in_cell = false;
-        if (ends.empty()) {
-            labels = legend_of(plot_width());
-            is_in_cell =
-                panel_count_ % column_count_ != 0 && labels.height() + below_plot <= row && !labels.has_long_entries;
-            if (!is_in_cell) labels = legend_of(figure_width);
-            labels.left =
-                is_in_cell ? plot_left(panel_count_) + gap : std::min(labels.left, std::max(gap, left_margin_));
-        }
-
-        const double low = (is_in_cell ? 0 : labels.height()) + gap / 2;
+        const legend labels = ends.empty() ? placed_legend(row, below_plot) : legend{};
+        const double low = (labels.is_in_cell ? 0 : labels.height()) + gap / 2;
         const double bottom = add_x_label(low) + gap / 2 + below_plot;
         constexpr double row_gap = 1.2;
         const auto rows = static_cast<double>(row_count_);
@@ -187,7 +180,7 @@ public:
         }
         add_y_label((bottom + layout_.plots.front().top) / 2);
         add_ends(ends, bottom);
-        add_legend(labels, is_in_cell ? bottom + plot_height_ - labels.height() : gap / 2);
+        add_legend(labels, labels.is_in_cell ? bottom + plot_height_ - labels.height() : gap / 2);
         return std::move(layout_);
     }
 
@@ -200,7 +193,8 @@ private:
         return left_margin_ + static_cast<double>(panel % column_count_) * (plot_width() + column_gap_);
     }
 
-    /// Sets the height of the plots, which grows with the number of names on the y axis, and the left margin, in ems.
+    /// Sets the height of the plots, which grows with the number of names on the y axis, and the left margin, which has
+    /// room for the label of the y axis and for its tick labels. Lengths are in ems.
     void place_left() {
         const auto [width, height] = extent_of_labels(drawing_.y, y_name_length);
         plot_height_ = panel_count_ == 1 ? 17 : 10;
@@ -210,12 +204,12 @@ private:
         left_margin_ = gap / 2 + height_of(y_label_) + gap + width + tick_room;
     }
 
-    /// Clears the labels of ticks but every second one, third one, and so on, until no two overlap.
+    /// Keeps the labels of every second tick of the x axis, or every third, and so on, so that no two overlap.
     void thin_x_ticks() {
         std::vector<tick*> labelled;
         for (tick& t : layout_.x_ticks)
             if (!t.label.empty()) labelled.push_back(&t);
-        const auto fits = [&](std::size_t step) {
+        const auto fits = [&](std::size_t step) {  // every step-th label
             for (std::size_t i = step; i < labelled.size(); i += step) {
                 const tick& previous = *labelled[i - step];
                 const tick& next = *labelled[i];
@@ -231,8 +225,9 @@ private:
             if (i % step != 0) labelled[i]->label.clear();
     }
 
-    /// Places the labels of the x axis, and widens the right margin and the gap between plots for outer labels that
-    /// protrude. @returns the height of the labels. Lengths are in ems.
+    /// Places the labels of the x axis below the plots. Of numbers that would overlap, some are omitted; names that do
+    /// not fit side by side are turned.
+    /// @returns the height of the labels in ems
     double place_x_ticks() {
         layout_.x_name_length = longest_name;
         layout_.x_ticks = drawing_.x.ticks;
@@ -241,31 +236,44 @@ private:
         std::ranges::copy_if(drawing_.x.ticks, std::back_inserter(labelled),
                              [](const tick& t) { return !t.label.empty(); });
         if (labelled.empty()) return 0;
-        double nearest = 1;
+        double nearest = 1;  // distance of two labels, as a share of the axis
         for (std::size_t i = 1; i < labelled.size(); ++i)
             nearest = std::min(nearest, drawing_.x.place(labelled[i].at) - drawing_.x.place(labelled[i - 1].at));
-        const double plot = plot_width();
-        const double slot = plot * nearest - gap;
+        const double slot = plot_width() * nearest - gap;  // room for the width of a label
         if (drawing_.x.named) layout_.x_name_length = length_in(slot);
         const auto [width, height] = extent_of_labels(drawing_.x, layout_.x_name_length);
-        if (!drawing_.x.named || (width <= slot && height <= 3 * line_height)) {
-            const auto overhang = [&](const tick& t, double to_edge) {
-                return width_of(drawing_.x, t, layout_.x_name_length) / 2 - to_edge * plot;
-            };
-            const double left_overhang = overhang(labelled.front(), drawing_.x.place(labelled.front().at));
-            const double right_overhang = overhang(labelled.back(), 1 - drawing_.x.place(labelled.back().at));
-            right_margin_ = std::max(right_margin_, right_overhang + gap / 2);
-            if (column_count_ > 1)
-                column_gap_ = std::max(column_gap_, std::max(left_overhang, 0.) + std::max(right_overhang, 0.) + gap);
-            if (!drawing_.x.named) thin_x_ticks();
-            return height;
-        }
-        // Slanted labels end at their tick; vertical ones replace them if they overlap or narrow the plot too much.
+        const bool fits = width <= slot && height <= 3 * line_height;
+        if (drawing_.x.named && !fits) return turn_x_names(labelled, slot);
+        make_room_for_overhang(labelled.front(), labelled.back());
+        if (!drawing_.x.named) thin_x_ticks();
+        return height;
+    }
+
+    /// Widens the right margin and the gap between plots if the labels of outer ticks, which are centred there, extend
+    /// beyond the plot.
+    void make_room_for_overhang(const tick& first, const tick& last) {
+        const double plot = plot_width();
+        const auto overhang = [&](const tick& t, double to_edge) {
+            return width_of(drawing_.x, t, layout_.x_name_length) / 2 - to_edge * plot;
+        };
+        const double left_overhang = overhang(first, drawing_.x.place(first.at));
+        const double right_overhang = overhang(last, 1 - drawing_.x.place(last.at));
+        right_margin_ = std::max(right_margin_, right_overhang + gap / 2);
+        if (column_count_ > 1)
+            column_gap_ = std::max(column_gap_, std::max(left_overhang, 0.) + std::max(right_overhang, 0.) + gap);
+    }
+
+    /// Slants names below the plots, so that each ends at its tick. If lines of slanted text would overlap, or if the
+    /// left margin, into which the first ones extend, would narrow the plots too much, names are vertical.
+    /// @param slot the distance of two names in ems
+    /// @returns the height of the names in ems
+    double turn_x_names(const std::vector<tick>& labelled, double slot) {
         constexpr int slant_degrees = 30;
         constexpr double slant = slant_degrees * std::numbers::pi / 180;
         constexpr double widest_margin = 16;    // nearly half of the figure
         constexpr double least_distance = 0.8;  // of the lines of slanted text
         layout_.x_name_length = longest_name;
+        const double plot = plot_width();
         double left = left_margin_;
         double longest = 0;
         for (const tick& t : labelled) {
@@ -281,7 +289,8 @@ private:
         return longest;
     }
 
-    /// The ends of the lines of a figure without panels, provided that all labelled series end near the right edge.
+    /// The labels of series beside the ends of their lines, at the height of the last point. Empty for a figure with
+    /// panels, or if any labelled series does not end near the right edge.
     [[nodiscard]] std::vector<end_label> wanted_ends() const {
         constexpr double near_edge = 0.9;
         std::vector<end_label> ends;
@@ -298,8 +307,9 @@ private:
         return ends;
     }
 
-    /// Places labels at the ends of lines, which need no legend. Returns none, for a legend instead, if a label takes
-    /// too many lines, is too wide, overlaps another or ends up too far from its line. Lengths are in ems.
+    /// Places labels beside the ends of lines, which then need no legend, and moves them apart where they overlap.
+    /// @returns none, for a legend instead, if a label has too many lines, is too wide, still overlaps another or ends
+    /// up too far from its line
     std::vector<end_label> place_ends() {
         constexpr std::size_t most_lines = 3;
         constexpr double furthest = 2.2;      // from its line: further away, a label seems to belong to another
@@ -333,10 +343,28 @@ private:
         return ends;
     }
 
-    /// Lays out the legend column by column, aligned to the right of the given width.
+    /// The legend: in the free cell that an incomplete last row of panels leaves, if it fits there, otherwise below the
+    /// plots.
+    /// @param row_height of a row of panels
+    /// @param below_plot the height of the tick labels
+    [[nodiscard]] legend placed_legend(double row_height, double below_plot) const {
+        legend in_cell = legend_of(plot_width());
+        if (panel_count_ % column_count_ != 0 && in_cell.height() + below_plot <= row_height &&
+            !in_cell.has_long_entries) {
+            in_cell.left = plot_left(panel_count_) + gap;
+            in_cell.is_in_cell = true;
+            return in_cell;
+        }
+        legend below = legend_of(figure_width);
+        below.left = std::min(below.left, std::max(gap, left_margin_));
+        return below;
+    }
+
+    /// Breaks the labels of the legend into lines and chooses the number of columns, filled one after the other, that
+    /// fit into the width. The legend is aligned to its right.
     [[nodiscard]] legend legend_of(double width) const {
         legend result;
-        const std::size_t most = length_in(width - legend_sample - gap);
+        const std::size_t most = length_in(width - legend_sample - gap);  // characters in a line
         std::size_t lines = 0;
         double widest = 0;
         for (const shown_label& label : drawing_.labels) {
@@ -356,7 +384,8 @@ private:
         return result;
     }
 
-    /// The texts of a panel's marks, each on the side of its line where there is room.
+    /// The horizontal extents of the texts of a panel's marks (vertical lines). A text is to the right of its line, or
+    /// to the left if the figure ends before it does.
     [[nodiscard]] std::vector<flag> flags_of(std::size_t panel) const {
         std::vector<flag> flags;
         for (const figure_mark& m : drawing_.panels[panel].marks) {
@@ -375,7 +404,8 @@ private:
         for (std::size_t i = 0; i < lines.size(); ++i) add(centres[i], lines[i], end);
     }
 
-    /// Adds the label of the x axis, centred below the plots. @returns its upper edge
+    /// Adds the label of the x axis, centred below the plots. Takes the height of its lower edge.
+    /// @returns that of its upper edge
     double add_x_label(double bottom) {
         const double middle = (left_margin_ + figure_width - right_margin_) / 2;
         const double room = 2 * std::min(middle, figure_width - middle);
@@ -393,7 +423,10 @@ private:
         }
     }
 
-    /// Adds the edges of a panel's plot, its title, and the texts of its marks between these.
+    /// Adds the plot of a panel, its title above it, and the texts of its marks between these.
+    /// @param bottom the height of the plot's lower edge
+    /// @param height_of_marks the room for the texts, which is the same in all panels
+    /// @param flags the rows and horizontal extents of the texts
     void add_plot(std::size_t panel, double bottom, double height_of_marks, const std::vector<flag>& flags) {
         const double left = plot_left(panel);
         const double top = bottom + plot_height_;
@@ -415,7 +448,8 @@ private:
         }
     }
 
-    /// Adds the labels at the ends of lines, each after the sign of its line, because it may be slightly displaced.
+    /// Adds the labels at the ends of lines, each after the sign of its line (the symbol of its points), because it may
+    /// be slightly above or below the end.
     void add_ends(const std::vector<end_label>& ends, double bottom) {
         const double left = layout_.plots.front().right + 0.7;  // the centre of a sign; a label begins 0.8 after it
         for (const end_label& end : ends) {
@@ -427,19 +461,20 @@ private:
         }
     }
 
-    /// Adds the legend column by column; an entry of several lines has one sample, beside the first.
+    /// Adds the legend column by column. An entry of several lines of text has one sample of its series, beside the
+    /// first.
     void add_legend(const legend& labels, double bottom) {
-        std::size_t entry = 0;
+        std::size_t line = 0;
         for (std::size_t i = 0; i < labels.entries.size(); ++i)
             for (const std::string& text : labels.entries[i]) {
-                const std::size_t column = entry / labels.rows;
-                const auto from_below = static_cast<double>(labels.rows - 1 - entry % labels.rows);
+                const std::size_t column = line / labels.rows;
+                const auto from_below = static_cast<double>(labels.rows - 1 - line % labels.rows);
                 const place at{labels.left + static_cast<double>(column) * labels.column_width,
                                bottom + (from_below + 0.5) * legend_row};
                 if (&text == labels.entries[i].data())
                     layout_.samples.push_back({at, &drawing_.labels[i], /*is_end=*/false});
                 add({at.x + legend_sample - 0.8, at.y}, text);
-                ++entry;
+                ++line;
             }
     }
 
