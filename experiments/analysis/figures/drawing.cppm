@@ -8,7 +8,8 @@ import aabblab.figures;
 
 namespace aabblab {
 
-/// The points of a series that the figure's CSV file lists: all finite ones, or only the first for a level.
+/// The points of a series that the figure's CSV file lists: all finite ones, or only the first for a level (a
+/// horizontal line across the plot, for which x does not matter). Without valid quartiles, `low` and `high` become y.
 [[nodiscard]] std::vector<figure_point> points_of(const series& s) {
     std::vector<figure_point> points;
     for (figure_point p : s.points) {
@@ -35,7 +36,8 @@ struct numbered_series {
     return list;
 }
 
-/// Half the distance of the two nearest names on an axis; the square root of their ratio if it is logarithmic.
+/// Half the distance of the two nearest names on an axis, the room on either side of a name. On a logarithmic axis it
+/// is a factor: the square root of their ratio.
 [[nodiscard]] double half_gap(const figure_axis& axis) {
     double gap = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < axis.names.size(); ++i) {
@@ -87,10 +89,11 @@ struct extent {
     return std::isfinite(value) && (!axis.logarithmic || value > 0);
 }
 
-/// The appearance (colour, dashes and sign) of each series: its own, or with panels that of all with the same label.
+/// The index of the appearance (colour, dashes and sign) of each series. Each has its own, but series with the same
+/// label in several panels share one.
 [[nodiscard]] std::vector<std::size_t> appearances_of(const figure& f, const std::vector<numbered_series>& lines) {
     std::vector<std::size_t> appearances;
-    std::vector<const series*> first;
+    std::vector<const series*> first;  // by appearance
     for (const numbered_series& s : lines) {
         const auto known = std::ranges::find_if(first, [&](const series* other) {
             return !f.panels.empty() && !other->label.empty() && other->label == s.source->label;
@@ -110,7 +113,8 @@ struct extent {
     return marks;
 }
 
-/// The panels with the series and points that can be shown; a figure without panels counts as one.
+/// The panels with the series and points that can be shown: on logarithmic axes only positive ones. A figure without
+/// panels counts as one.
 [[nodiscard]] std::vector<shown_panel> shown_panels_of(const figure& f) {
     const std::vector<numbered_series> series_list = numbered_series_of(f);
     const std::vector<std::size_t> appearances = appearances_of(f, series_list);
@@ -132,7 +136,8 @@ struct extent {
     return panels;
 }
 
-/// The legend: one entry per appearance (colour, dashes and sign), shown as a point if no panel joins its points.
+/// The entries of the legend, one per appearance (colour, dashes and sign). A line is shown as a point if every panel
+/// has only a single point of it.
 [[nodiscard]] std::vector<shown_label> labels_of(const std::vector<shown_panel>& panels) {
     std::vector<shown_label> labels;
     for (const shown_panel& panel : panels)
@@ -148,10 +153,12 @@ struct extent {
     return labels;
 }
 
-/// Scales an axis to its values or, if it has names, to their positions with half a gap on either side.
+/// Scales an axis to its values. If it has names instead of numbers, it also includes their positions, with half the
+/// distance of two names on either side.
+/// @param end whether a linear axis ends near the values or on a tick
 [[nodiscard]] scale axis_scale(const figure_axis& axis, extent values, scale_end end) {
     std::vector<tick> names;
-    const double half = half_gap(axis);
+    const double half = half_gap(axis);  // a factor on a logarithmic axis
     for (const auto& [at, name] : axis.names) {
         if (!has_place(axis, at)) continue;
         names.push_back({at, name, /*power=*/{}});

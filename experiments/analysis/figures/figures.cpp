@@ -20,7 +20,8 @@ namespace {
 
 }  // namespace
 
-/// One row per point, with the columns that the figure needs: panels, and names of its axes.
+/// The points of a figure as CSV, one row per point, so that it can be drawn by other programs. Columns for panels and
+/// for names on the axes exist only if the figure has them.
 std::string csv_of(const figure& f) {
     std::vector<std::string> header{"number", "x", "y", "low", "high", "series"};
     if (!f.panels.empty()) header.emplace_back("panel");
@@ -49,6 +50,7 @@ std::string pdf_of(const figure& f) {
     return pdf_of(sheet_of(f));
 }
 
+/// Writes each figure into the folder as NAME.csv (its points), NAME.svg and NAME.pdf.
 void draw(const std::filesystem::path& folder, std::span<const figure> figures) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);

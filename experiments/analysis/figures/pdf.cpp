@@ -35,7 +35,8 @@ char code_of(char32_t character) {
     return known == beyond_latin.end() ? '?' : codes[static_cast<std::size_t>(known - beyond_latin.begin())];
 }
 
-/// Converts UTF-8 to the codes of the font's characters, one byte each, since PDF's standard fonts know no Unicode.
+/// Converts UTF-8 to the codes of the font's characters, one byte each, since PDF's standard fonts know no Unicode. The
+/// first byte of a character says by its leading ones how many bits it has; each further byte, 10xxxxxx, has six.
 std::string encoded(std::string_view utf8) {
     std::string text;
     for (std::size_t i = 0; i < utf8.size();) {
@@ -51,8 +52,8 @@ std::string encoded(std::string_view utf8) {
     return text;
 }
 
-/// The width of a text in Helvetica, in ems: PDF has no anchors, so that centred texts need it. Control codes stand for
-/// signs; the table of widths is in thousandths.
+/// The width of a text in Helvetica, in ems: PDF has no anchors, so that centred texts need it. The table of widths is
+/// in thousandths; control codes stand for mathematical signs, other codes for letters with accents.
 double width_of(std::string_view encoded_text) {
     double width = 0;
     for (const char c : encoded_text)
@@ -62,7 +63,7 @@ double width_of(std::string_view encoded_text) {
     return width / 1000;
 }
 
-/// A PDF string literal.
+/// A string literal of PDF, in which brackets and backslashes are escaped.
 std::string in_brackets(std::string_view encoded_text) {
     std::string text = "(";
     for (const char c : encoded_text) {
@@ -80,7 +81,9 @@ std::string operands_of(std::string_view hexadecimal) {
     return text;
 }
 
-/// The PDF operators that draw lines or fill areas, in a graphics state of their own (q, Q).
+/// The PDF operators that draw lines or fill areas (strokes without a width), in a graphics state of their own (q, Q).
+/// They set colour (RG of lines, rg of areas), opacity (gs), width (w), caps (J) and dashes (d), describe paths (m:
+/// move, l: line, h: close), and paint them (S: stroke, f: fill).
 std::string operators_of(const strokes& s) {
     const bool is_area = s.width == 0;
     std::string text = "q ";
@@ -96,13 +99,14 @@ std::string operators_of(const strokes& s) {
             text += short_number(p.x * em) + " " + short_number(p.y * em) + " " + path_operator + "\n";
         };
         for (const place& p : line) add(p, &p == line.data() ? 'm' : 'l');
-        if (line.size() == 1) add(line.front(), 'l');
+        if (line.size() == 1) add(line.front(), 'l');  // to itself: with round caps, a disc
         if (s.closed) text += "h\n";
     }
     return text + (is_area ? "f Q\n" : "S Q\n");
 }
 
-/// The PDF operators that write a text with its superscript, turned about its anchor.
+/// The PDF operators that write a text with its superscript, turned about its anchor, `w.at`. PDF places the left end
+/// of the baseline, (x, y): `offset` to the left of the anchor along the text, and `baseline` below it.
 std::string operators_of(const words& w) {
     const std::string text = encoded(w.text);
     const std::string power = encoded(w.power);
@@ -121,9 +125,10 @@ std::string operators_of(const words& w) {
 
 }  // namespace
 
-/// A file of one page: five objects, then the table of their byte positions (xref), which PDF requires.
+/// A PDF file of one page: five objects (catalog, list of pages, page, its content, font), then the table of their byte
+/// positions (xref), which PDF requires.
 std::string pdf_of(const sheet& s) {
-    std::string page;
+    std::string page;  // its content
     for (const auto& part : s.parts) page += std::visit([](const auto& p) { return operators_of(p); }, part);
     const std::vector<std::string> objects = {
         "<</Type/Catalog/Pages 2 0 R>>", "<</Type/Pages/Kids[3 0 R]/Count 1>>",

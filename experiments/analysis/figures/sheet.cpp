@@ -77,11 +77,11 @@ public:
     explicit painter(const figure& f)
         : drawing_(f), layout_(arranger(drawing_).arranged()), sheet_{layout_.width, layout_.height, {}} {}
 
-    /// Paints each panel from back to front, then the texts and the legend.
+    /// Paints each panel from back to front, then the texts and the legend, as the layout places them.
     sheet painted() && {
         for (std::size_t i = 0; i < drawing_.panels.size(); ++i) {
-            plot_ = &layout_.plots[i];
-            panel_ = &drawing_.panels[i];
+            plot_ = &layout_.plots[i];     // the edges of the panel that is painted
+            panel_ = &drawing_.panels[i];  // and its content
             draw_grid();
             for (const shown_series& s : panel_->lines) draw_band(s);
             draw_marks();
@@ -116,7 +116,8 @@ private:
             for (const double tenths : dashes[appearance % dashes.size()]) lengths.push_back(tenths / 10);
         stroke(std::move(lines), colour_of(appearance), line_width, std::move(lengths));
     }
-    /// Draws the sign of an appearance at each place.
+    /// Draws the sign (disc, square, …) of a series at each place.
+    /// @param appearance the index of its colour and sign
     void put_signs(const places& centres, std::size_t appearance) {
         const sign& s = signs[appearance % signs.size()];
         strokes drawn{{}, colour_of(appearance)};
@@ -146,11 +147,12 @@ private:
         return y(drawing_.y.logarithmic ? std::max(p.low, drawing_.y.from) : p.low);
     }
 
-    /// The horizontal shift that puts points of several series over one name side by side: up to 0.3 of half the
-    /// distance of two names apart, and if there are many, closer, so that they stay within 0.7 of it.
+    /// The horizontal shift of a series of points, so that n series are side by side over a name of the x axis. Series
+    /// k is shifted by k - (n - 1)/2 steps of min(0.3, 1.4/n) h, with h half the distance of two names: all stay within
+    /// 0.7 h of the name.
     [[nodiscard]] double shift_of(const shown_series& s) const {
         if (!drawing_.x.named || drawing_.x.logarithmic || !s.is(series_style::points)) return 0;
-        double count = 0, before = 0;
+        double count = 0, before = 0;  // of series with points
         for (const shown_series& other : panel_->lines) {
             if (!other.is(series_style::points)) continue;
             if (&other < &s) ++before;
@@ -159,6 +161,7 @@ private:
         return (before - (count - 1) / 2) * std::min(0.3, 1.4 / count) * half_gap(drawing_.f.x);
     }
 
+    /// Draws a thin line across the plot at each tick with a label. x() and y() convert values of the axes to places.
     void draw_grid() {
         std::vector<places> lines;
         for (const tick& t : layout_.x_ticks)
@@ -168,7 +171,7 @@ private:
         stroke(std::move(lines), grid_colour, thin);
     }
 
-    /// Fills the area between the quartiles of a line or level.
+    /// Fills the area between the quartiles of a line, or of a level (a horizontal line across the plot).
     void draw_band(const shown_series& s) {
         if (!s.varies) return;
         if (s.is(series_style::level)) {
@@ -184,7 +187,7 @@ private:
         }
     }
 
-    /// Draws a bar from quartile to quartile at each point that no line joins.
+    /// Draws a vertical bar from the lower to the upper quartile at each point of a series whose points no line joins.
     void draw_bars(const shown_series& s) {
         if (!s.varies || s.is(series_style::level) || s.is_joined()) return;
         const double shift = shift_of(s);
@@ -194,7 +197,7 @@ private:
         stroke_series(std::move(lines), s.appearance, /*is_dashed=*/false);
     }
 
-    /// Draws the line of a series and the signs of its points.
+    /// Draws a series: the line that joins its points and their signs, or a level, a horizontal line across the plot.
     void draw_line(const shown_series& s) {
         if (s.is(series_style::level)) {
             const double height = y(s.points.front().y);
@@ -219,7 +222,8 @@ private:
         }
     }
 
-    /// Draws both axes with their ticks; inner panels share the tick labels of the outer ones.
+    /// Draws both axes of a plot with their ticks (longer ones with labels). Inner plots share the tick labels of the
+    /// outer ones. Labels below may be turned, because long names do not fit side by side.
     void draw_frame() {
         const auto& [left, right, bottom, top, has_x, has_y, mark_tops] = *plot_;
         std::vector<places> lines{{{left, top}, {left, bottom}, {right, bottom}}};
@@ -242,9 +246,11 @@ private:
         }
     }
 
+    /// Draws how a series looks, beside its label: its sign at the end of its line, or in the legend a short line with
+    /// the sign in the middle.
     void draw_sample(const arrangement::sample& s) {
         if (s.is_end) return put_signs({s.at}, s.label->appearance);
-        constexpr double length = 4.4;
+        constexpr double length = 4.4;  // of the line, in ems
         const auto [x, y] = s.at;
         if (s.label->style != series_style::points)
             stroke_series({{{x, y}, {x + length, y}}}, s.label->appearance, /*is_dashed=*/true);

@@ -15,7 +15,7 @@ struct svg_writer {
     double height;
     svg_picture picture{};
 
-    /// Writes lines or filled areas as one path.
+    /// Writes lines, or areas (strokes without a width), as one path; lengths in ems become pixels.
     void operator()(strokes s) {
         for (std::vector<place>& line : s.lines)
             for (place& p : line) p = in_pixels(p);
@@ -31,7 +31,7 @@ struct svg_writer {
                       {"stroke-linecap", s.round ? "round" : ""}});
     }
 
-    /// Writes a line of text, turned about its anchor.
+    /// Writes a line of text with its superscript, turned about its anchor (the left end, middle or right end).
     void operator()(const words& w) {
         constexpr std::array<std::string_view, 3> anchors = {"start", "middle", "end"};
         const place at = in_pixels(w.at);
