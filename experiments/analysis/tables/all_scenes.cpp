@@ -74,7 +74,9 @@ std::vector<std::string> cells_of(const scene_summary& scene, const candidate_su
 
 }  // namespace
 
-/// Ratios are times over those of a scene's baseline; regrets compare with the least ratio, of the fastest exact one.
+/// A row per candidate over all scenes. Its ratio in a scene is its time over that of the scene's baseline, its regret
+/// the ratio over the least one of an exact candidate. The table has the geometric mean of its ratios, the least and
+/// the greatest, in how many scenes it is the fastest, and the median and the worst regret.
 table overall_table_of(std::span<const scene_summary> scenes) {
     std::vector<standing> standings;
     std::map<candidate_name, std::size_t> indices;

@@ -57,7 +57,8 @@ struct shared_column {
     }
 };
 
-/// The columns that move to the heading if all cells are equal: results, as of exact candidates, and bytes.
+/// The columns that move to the heading if all their cells are equal, as results are if all candidates are exact:
+/// result, pairs of boxes, pairs of triangles (contacts) and bytes.
 std::vector<shared_column> shared_columns(const scene_summary& scene,
                                           std::span<const candidate_summary* const> ranking) {
     shared_column result{{"result"}, "{}", {}};
@@ -96,9 +97,67 @@ std::string count_text(double value) {
                                      : grouped(static_cast<std::uint64_t>(std::llround(value)));
 }
 
+/// "all compositions: sweep one_axis, triangle exact", the strategies that all share; empty if they share none.
+std::string common_line(const scene_summary& scene) {
+    if (scene.common.empty()) return "";
+    const auto is_automatic = [](const candidate_summary& candidate) { return candidate.name.is_automatic(); };
+    const char* const which = scene.differing.empty()                               ? "this composition: "
+                              : std::ranges::any_of(scene.candidates, is_automatic) ? "all compositions but auto: "
+                                                                                    : "all compositions: ";
+    return which + scene.common + "\n";
+}
+
+/// The columns that the table omits because all their cells are equal; empty if there are none.
+std::string constant_line(const scene_summary& scene, std::span<const candidate_summary* const> ranking) {
+    std::string constant;
+    for (const shared_column& c : shared_columns(scene, ranking))
+        if (c.is_constant())
+            constant += (constant.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
+    return constant.empty() ? "" : "all lines of the table, over all frames: " + constant + "\n";
+}
+
+/// Explains results such as "-3 +5" by the first one in the table; empty if there are none.
+std::string errors_line(std::span<const candidate_summary* const> ranking) {
+    for (const candidate_summary* c : ranking)
+        if (c->status != "exact" && c->false_negatives)
+            return fmt::format("a result {} has {} false negatives and {} false positives\n", result_of(*c),
+                               *c->false_negatives, *c->false_positives);
+    return "";
+}
+
+/// The candidates that were stopped early, and therefore have fewer repeats; empty if there are none.
+std::string stopped_line(const scene_summary& scene) {
+    std::size_t repeats = 0;
+    for (const candidate_summary& candidate : scene.candidates) repeats = std::max(repeats, candidate.repeats);
+    std::string stopped;
+    for (const candidate_summary& candidate : scene.candidates)
+        if (candidate.repeats < repeats) stopped += (stopped.empty() ? "" : ", ") + candidate.label;
+    return stopped.empty() ? "" : "repeated less often than others: " + stopped + "\n";
+}
+
+/// How to read the order of the rows, the columns of the table, and missing intervals.
+std::string explanation_of_columns(const scene_summary& scene) {
+    std::string text;
+    const bool inexact = std::ranges::any_of(scene.candidates, [](const auto& c) { return c.status != "exact"; });
+    if (scene.candidates.size() > 1 && any_has(scene, &candidate_summary::ratio))
+        text += std::string("in ascending order of ratio") +
+                (inexact ? ", exact results before inexact ones\n" : "\n") +
+                "ratio: ms/frame relative to the baseline in the same repeat, the median over\nrepeats, with its 95 % "
+                "confidence interval\nbaseline: " +
+                scene.candidates[0].label + "\n";
+    if (any_has(scene, &candidate_summary::ms_per_frame))
+        text += "ms/frame: the mean wall time per frame after frame 0, the median over repeats\n";
+    if (any_has(scene, &candidate_summary::bytes)) text += "KiB: memory after the last frame, without meshes\n";
+    if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
+        text += "95 %: - if repeats, seeds or processes are too few; the baseline needs two\n";
+    return text;
+}
+
 }  // namespace
 
-/// One row per candidate, by rank: times if it was timed, results that differ, bytes, and the metrics asked for.
+/// The candidates of a scene, by rank: times if any was timed, results and bytes unless they are the same for all (then
+/// the heading has them), and the metrics asked for.
+/// @param shown the names of these metrics
 table table_of(const scene_summary& scene, std::span<const std::string> shown) {
     const bool has_meshes = any_has(scene, &candidate_summary::contacts);
     const int decimals = decimals_of(scene);
@@ -133,7 +192,7 @@ table table_of(const scene_summary& scene, std::span<const std::string> shown) {
     return t;
 }
 
-/// What the table would otherwise repeat in every row, and how to read its order, its results and missing intervals.
+/// The lines above the table of a scene: what the table would otherwise repeat in every row, and how to read it.
 std::string heading_of(const scene_summary& scene) {
     std::string text = fmt::format("{}: {}, frame 0{}\n", scene.scene.kind, counted(scene.objects, "object"),
                                    scene.frames > 1 ? fmt::format(" and {} more", grouped(scene.frames - 1)) : "");
@@ -142,45 +201,14 @@ std::string heading_of(const scene_summary& scene) {
     text += parameters + "\n";
     if (scene.seeds.size() > 1)
         text += fmt::format("pooled over {} seeds: pairs are sums, ratios geometric means\n", scene.seeds.size());
-    const auto is_automatic = [](const candidate_summary& candidate) { return candidate.name.is_automatic(); };
-    if (!scene.common.empty())
-        text += (scene.differing.empty()                               ? "this composition: "
-                 : std::ranges::any_of(scene.candidates, is_automatic) ? "all compositions but auto: "
-                                                                       : "all compositions: ") +
-                scene.common + "\n";
-    std::string constant;
     const std::vector<const candidate_summary*> ranking = ranking_of(scene);
-    for (const shared_column& c : shared_columns(scene, ranking))
-        if (c.is_constant())
-            constant += (constant.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
-    if (!constant.empty()) text += "all lines of the table, over all frames: " + constant + "\n";
+    text += common_line(scene) + constant_line(scene, ranking);
     if (!scene.digest.empty()) text += "digest of the ground truth: " + scene.digest + "\n";
-    const bool inexact = std::ranges::any_of(scene.candidates, [](const auto& c) { return c.status != "exact"; });
-    const auto with_errors = std::ranges::find_if(
-        ranking, [](const candidate_summary* c) { return c->status != "exact" && c->false_negatives.has_value(); });
-    if (with_errors != ranking.end())
-        text += fmt::format("a result {} has {} false negatives and {} false positives\n", result_of(**with_errors),
-                            *(*with_errors)->false_negatives, *(*with_errors)->false_positives);
-    std::size_t repeats = 0;
-    for (const candidate_summary& candidate : scene.candidates) repeats = std::max(repeats, candidate.repeats);
-    std::string stopped;
-    for (const candidate_summary& candidate : scene.candidates)
-        if (candidate.repeats < repeats) stopped += (stopped.empty() ? "" : ", ") + candidate.label;
-    if (!stopped.empty()) text += "repeated less often than others: " + stopped + "\n";
-    if (scene.candidates.size() > 1 && any_has(scene, &candidate_summary::ratio))
-        text += std::string("in ascending order of ratio") +
-                (inexact ? ", exact results before inexact ones\n" : "\n") +
-                "ratio: ms/frame relative to the baseline in the same repeat, the median over\nrepeats, with its 95 % "
-                "confidence interval\nbaseline: " +
-                scene.candidates[0].label + "\n";
-    if (any_has(scene, &candidate_summary::ms_per_frame))
-        text += "ms/frame: the mean wall time per frame after frame 0, the median over repeats\n";
-    if (any_has(scene, &candidate_summary::bytes)) text += "KiB: memory after the last frame, without meshes\n";
-    if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
-        text += "95 %: - if repeats, seeds or processes are too few; the baseline needs two\n";
-    return text;
+    return text + errors_line(ranking) + stopped_line(scene) + explanation_of_columns(scene);
 }
 
+/// The work of each composition per frame after frame 0, and its memory by part, by rank. Columns in which no
+/// composition has a value, and rows of other libraries, which count nothing, are omitted.
 table counts_table_of(const scene_summary& scene) {
     constexpr auto copies = static_cast<std::size_t>(aabb::work::subset_copies);
     table t{name_columns_of(scene.differing), {}};

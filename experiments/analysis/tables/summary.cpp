@@ -19,8 +19,10 @@ void add(std::optional<Number>& sum, const std::optional<Number>& value) {
     if (value) sum = sum.value_or(0) + *value;
 }
 
-/// Adds what does not vary between the repeats of a seed: pairs and errors to sums, bytes to maxima, counts to means.
-/// @param share the weight of the seed in means over the seeds
+/// Adds a seed to the summary of a candidate, without times. Over the seeds, pairs and errors are sums, bytes are
+/// maxima and counts of work are means.
+/// @param r a row of any repeat, since all repeats of a seed have the same values
+/// @param share the weight of the seed in means: 1 / number of seeds
 void add_untimed(const row& r, double share, candidate_summary& summary) {
     summary.pairs += r.candidates;
     add(summary.contacts, r.contacts);
@@ -42,7 +44,7 @@ void add_untimed(const row& r, double share, candidate_summary& summary) {
         summary.bytes_by_part[i] = std::max(summary.bytes_by_part[i], r.bytes[i]);
 }
 
-/// Summarises all repeats of one composition or engine in one scene, except its ratio to the baseline.
+/// Summarises all repeats of one composition or engine in one scene, over all seeds, except its ratio to the baseline.
 candidate_summary summary_of(std::span<const row* const> repeats) {
     candidate_summary summary;
     summary.name = repeats[0]->name;
@@ -74,7 +76,8 @@ candidate_summary summary_of(std::span<const row* const> repeats) {
     return summary;
 }
 
-/// Sets the ratio of a candidate's times to the baseline's in the same repeats of the same seeds.
+/// Sets the ratio of a candidate's times to those of the baseline in the same repeat and seed, and its 95 % interval,
+/// by a bootstrap of its logarithms over processes, seeds and repeats (a cell per process and seed).
 void set_ratio(candidate_summary& summary, std::span<const row* const> repeats, std::span<const row* const> baseline) {
     std::map<std::pair<std::optional<std::uint64_t>, std::uint64_t>, double> base_ms;  // by seed and repeat
     for (const row* b : baseline)
@@ -103,7 +106,8 @@ void set_ratio(candidate_summary& summary, std::span<const row* const> repeats, 
     summary.ratio_interval = {std::exp(low), std::exp(high)};
 }
 
-/// Labels consist of the strategies that differ within the scene; the heading names those that all share.
+/// Sets the label of each candidate: an engine's name, or those strategies of a composition that differ within the
+/// scene. `common` names the strategies that all compositions share, for the heading.
 void set_labels(scene_summary& scene) {
     std::vector<candidate_name> names;
     for (const candidate_summary& summary : scene.candidates) names.push_back(summary.name);
@@ -128,13 +132,14 @@ struct rows_of_scene {
     std::vector<repeats_of_candidate> candidates;
     std::map<candidate_name, std::size_t> indices;  // of `candidates`
 
+    /// Adds a row to those of its candidate, and its seed to those of the scene.
     void add(const row& r) {
         const auto [index, is_new] = indices.emplace(r.name, candidates.size());
         if (is_new) candidates.emplace_back();
         candidates[index->second].push_back(&r);
         if (r.scene.seed && std::ranges::find(scene.seeds, *r.scene.seed) == scene.seeds.end())
             scene.seeds.push_back(*r.scene.seed);
-        // Exact rows of a seed have one digest, or they are rejected. Of several seeds, the last one's is shown.
+        // Exact rows of a seed have one digest, or they are rejected.
         if (r.status == "exact") scene.digest = r.digest;
     }
 };
@@ -169,10 +174,12 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
     return scenes;
 }
 
+/// The candidates in the order of tables: timed before untimed ones, exact before inexact ones, then by the ratio to
+/// the baseline, or by time if there is none.
 std::vector<const candidate_summary*> ranking_of(const scene_summary& scene) {
     std::vector<const candidate_summary*> candidates;
     for (const candidate_summary& summary : scene.candidates) candidates.push_back(&summary);
-    const auto key = [](const candidate_summary* c) {  // false precedes true; the pointer keeps equals in order
+    const auto key = [](const candidate_summary* c) {  // false precedes true; by the pointer, equals stay in order
         const double ms = c->ms_per_frame ? c->ms_per_frame->median : 0;
         return std::tuple(!c->ms_per_frame, c->status != "exact", !c->ratio, c->ratio.value_or(0), ms, c);
     };
@@ -180,6 +187,7 @@ std::vector<const candidate_summary*> ranking_of(const scene_summary& scene) {
     return candidates;
 }
 
+/// The kinds of strategy in which compositions differ: tables name only these in each row. Engines have no strategies.
 std::vector<aabb::strategy_kind> differing_kinds(std::span<const candidate_name> names) {
     std::vector<aabb::strategy_kind> kinds;
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -199,7 +207,8 @@ std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differi
     return columns;
 }
 
-/// The rank of a candidate and its strategies of the kinds that differ; an engine's name stands in the first of these.
+/// The first cells of a row: the rank of a candidate, then its strategies of the kinds that differ within the scene. An
+/// engine has its name in the first of these; the others stay empty.
 std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing, const candidate_name& name,
                                        std::size_t rank) {
     std::vector<std::string> cells{std::to_string(rank)};

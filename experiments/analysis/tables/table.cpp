@@ -50,7 +50,9 @@ void remove_columns(table& t, std::size_t begin, std::size_t end) {
     for (auto& cells : t.rows) remove(cells);
 }
 
-/// Removes spare columns until the table fits or none is left, and returns a line that lists them.
+/// Removes columns, the most dispensable (greatest `spare`) first, until the table fits into the width or only
+/// necessary ones (`spare` 0) are left.
+/// @returns a line that lists them
 std::string leave_out_spare_columns(table& t, std::size_t width) {
     std::string names;
     while (!fits(t, width)) {
@@ -63,33 +65,34 @@ std::string leave_out_spare_columns(table& t, std::size_t width) {
     return names.empty() ? "" : "left out to fit the width: " + names + "\n";
 }
 
-/// "a + b + c" after a number, in lines of at most `width` characters unless a single part is longer.
+/// "a + b + c" after the number of a row, in lines of at most `width` characters unless a single part is longer.
 std::string legend_of(const std::string& number, const std::vector<std::string>& parts, std::size_t width) {
     std::string text;
     std::string line = number + std::string(gap, ' ');
     const std::string indent(line.size(), ' ');
-    bool first = true;
+    bool begins_line = true;
     for (const std::string& part : parts) {
         if (part.empty()) continue;
-        if (!first) line += " +";
-        if (!first && characters(line) + 1 + characters(part) > width - gap) {
+        if (!begins_line) line += " +";
+        if (!begins_line && characters(line) + 1 + characters(part) > width - gap) {
             text += std::exchange(line, indent) + "\n";
-            first = true;
+            begins_line = true;
         }
-        line += (first ? "" : " ") + part;
-        first = false;
+        line += (begins_line ? "" : " ") + part;
+        begins_line = false;
     }
     return text + line + "\n";
 }
 
-/// Saves width: replaces the names of the rows by numbers, and returns a legend of the names.
+/// Makes a table narrower: the first columns, which name the rows, become one of row numbers.
+/// @returns a legend, the names of each number
 std::string replace_names_by_numbers(table& t, std::size_t width) {
     if (!has_numbered_rows(t)) {
         t.columns.insert(t.columns.begin(), {row_number});
         std::size_t row = 0;
         for (auto& cells : t.rows) cells.insert(cells.begin(), std::to_string(++row));
     }
-    const std::size_t names = name_count(t);
+    const std::size_t names = name_count(t);  // columns before the first value
     std::string legend;
     for (const auto& cells : t.rows)
         legend += legend_of(std::string(width_of(t, 0) - cells[0].size(), ' ') + cells[0],
@@ -160,6 +163,9 @@ std::string to_markdown(const table& t) {
     return text;
 }
 
+/// A table for terminals, in lines of at most `width` characters where possible. If it is too wide, it loses spare
+/// columns, then long names become numbers with a legend, and the columns that remain are split into blocks, each with
+/// the names of the rows.
 std::string to_text(table t, std::size_t width) {
     if (name_count(t) == t.columns.size()) return to_text(t);
     table fewer = t;
@@ -171,8 +177,8 @@ std::string to_text(table t, std::size_t width) {
         left_out = leave_out_spare_columns(t, width);
     else
         t = std::move(fewer);
-    const std::size_t names = name_count(t);
-    const std::size_t room = width - std::min(width, width_of(t, 0, names) + gap);
+    const std::size_t names = name_count(t);                                        // columns
+    const std::size_t room = width - std::min(width, width_of(t, 0, names) + gap);  // for values
     std::string text;
     for (std::size_t begin = names; begin < t.columns.size();) {
         std::size_t end = begin + 1;

@@ -20,8 +20,9 @@ std::size_t longest_cell(const table& t, std::size_t column) {
     return longest;
 }
 
-/// The column types of a LaTeX tabular: `r` for numbers, `l` for short texts, and for long ones `P{share}` of
-/// paper/tex/layout.tex, which breaks lines; they share the page width by the square roots of their longest cells.
+/// The column types of a LaTeX tabular: `r` for numbers, `l` for short texts, and for long ones `P{w}`, which breaks
+/// lines at a share w of the page width (paper/tex/layout.tex). The width of these columns together is `share`, which
+/// they divide in proportion to the square roots of their longest cells: as longer cells have more lines, too.
 std::string column_types_of(const table& t) {
     double sum = 0, letters = 0;
     const auto weight = [&](std::size_t k) {
@@ -61,6 +62,7 @@ std::string head_of(const column& c) {
 
 }  // namespace
 
+/// Escapes the special characters of LaTeX.
 std::string tex_text(std::string_view text) {
     std::string safe;
     for (const char c : text) switch (c) {
@@ -79,6 +81,7 @@ std::string tex_text(std::string_view text) {
     return safe;
 }
 
+/// A LaTeX tabular with horizontal rules.
 std::string to_tex(const table& t) {
     std::vector<std::string> heads;
     for (const column& c : t.columns) heads.push_back(head_of(c));
