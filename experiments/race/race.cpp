@@ -138,7 +138,8 @@ private:
         return std::isfinite(least);
     }
 
-    /// Runs all candidates. If none finishes, the first gets all the time for one frame: there is nothing to validate.
+    /// Runs all candidates on the first frames. If none finishes, the first one gets all the time that is left, with
+    /// that reserved for the ground truth, to finish one frame.
     void run_first_round(std::size_t& frames, double margin) {
         if (!run_all(frames, margin, /*is_first_round=*/true)) {
             frames = 1;

@@ -65,7 +65,7 @@ std::vector<std::string> legend() {
         ratio_text, ms_per_frame_text, build_ms_text, "KiB: memory without meshes."};
 }
 
-/// The report as HTML: the advice, then what it rests on: ranking, measures of the scene, dropped candidates, machine.
+/// The report as HTML: the advice, then the ranking, measures of the scene, dropped candidates, and the machine.
 std::string page_of(const std::string& scene, const race_result& race, const std::string& measures_html) {
     page report(scene);
     report.title(scene);
@@ -78,8 +78,7 @@ std::string page_of(const std::string& scene, const race_result& race, const std
         "Dropped: a candidate was stopped after this many frames, since it took this many times as long as the "
         "fastest, both in total and per frame after the first; or its run did not finish. Strategies have their "
         "default parameters.");
-    // Only the label counts: it names the program, machine and date, on which these times depend as costs do.
-    const calibrated_costs here = label_costs(/*costs=*/{});
+    const calibrated_costs here = label_costs(/*costs=*/{});  // for its label: program, date and machine
     report.paragraph(fmt::format("aabblab {}, {}, {}, {}", here.version, here.date, here.processor, here.instructions));
     return report.html();
 }

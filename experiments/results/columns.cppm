@@ -156,7 +156,7 @@ template <class Row, class Columns, class OnRow>
                                        std::span<const std::string_view> later, OnRow on_row) {
     std::vector<Row> rows;
     if (records.empty()) return rows;
-    std::vector<std::string> absent(later.begin(), later.end());
+    std::vector<std::string> absent(later.begin(), later.end());  // the later columns that this table lacks
     std::erase_if(absent, [&](const std::string& name) {
         return std::ranges::find(records[0].fields, name) != records[0].fields.end();
     });

@@ -70,7 +70,9 @@ std::vector<std::filesystem::path> error_configs() {
     return configs_in(AABBLAB_ERROR_CONFIGS);
 }
 
-/// Runs a study of error against time: of compositions in whole scenes, or of triangle tests on pairs of triangles.
+/// Runs a study of error against time: of compositions in whole scenes, or of triangle tests on pairs of triangles. It
+/// may also compare the intersections of triangles that tests construct with exact ones (`hits`).
+/// @returns a sentence per failure
 std::vector<std::string> measure_study(const error_study& study, const std::filesystem::path& folder, printed shown) {
     require_fine_clock();
     std::vector<std::string> failures;

@@ -15,7 +15,8 @@ namespace aabblab {
 
 namespace {
 
-/// The tables of the report on the extreme scenes, without empty ones.
+/// The tables of the report on scenes with extreme coordinates and shapes and on hard pairs of triangles, without empty
+/// tables. A row is the result of one method in one scene or on one pair.
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
     std::vector<named_table> tables = {
         {"extreme_boxes", "Boxes, compared with a test of every pair of boxes", scene_table(rows, row_group::boxes)},
@@ -108,7 +109,7 @@ figure stored_figure(const json_value& j) {
     return f;
 }
 
-/// Reads a table from a report as JSON, which earlier versions stored instead of rows.
+/// Reads a table from a report in JSON, which earlier versions stored instead of rows.
 named_table stored_table(const json_value& j) {
     named_table t{j.needed("name").text(), j.needed("caption").text(), {}};
     for (const json_value& c : j.needed("columns").list())

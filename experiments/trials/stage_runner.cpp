@@ -60,7 +60,7 @@ stage_runner::stage_runner(const candidate& tested, const scene_frames& scene, a
 /// Connects the stages for a scene. Boxes go to the broad phase directly. Meshes need a pipeline, which derives boxes
 /// from their poses; without a broad phase it takes every two objects to the narrow phase.
 stage_runner::stage_runner(stages given, const scene_frames& scene) : scene_(scene), stages_(std::move(given)) {
-    if (stages_.global) stages_.global->expect(scene.frames());
+    if (stages_.global) stages_.global->expect(scene.frames());  // few frames do not repay much preparation
     if (!scene.meshes()) return;
     if (stages_.global)
         pipeline_.emplace(*scene.meshes(), *stages_.global, *stages_.local);
@@ -68,7 +68,8 @@ stage_runner::stage_runner(stages given, const scene_frames& scene) : scene_(sce
         pipeline_.emplace(*scene.meshes(), *stages_.local);
 }
 
-/// Meshes go to the pipeline with their poses; boxes go to the broad phase, after the changes of the objects present.
+/// Passes the scene's current frame to the stages: poses of meshes to the pipeline, boxes to the broad phase, after the
+/// removal and insertion of objects. If poses from a file are rejected, the error names file and frame.
 void stage_runner::update() try {
     if (pipeline_) return pipeline_->update(scene_.poses());
     for (const std::uint32_t object : scene_.departures()) stages_.global->remove(object);
@@ -183,7 +184,8 @@ void run_frames(scene_frames& scene, stage_runner& runner, const std::function<v
     }
 }
 
-/// The digest lets runs be compared without storing their pairs.
+/// Adds the results of a frame to their numbers and to their digest, a hash by which runs are compared without storing
+/// their pairs. In a scene of meshes the digest covers contacts (pairs of triangles), otherwise pairs of boxes.
 void tally::add(std::span<const aabb::index_pair> pairs, std::span<const aabb::contact> contacts) {
     candidates_ += pairs.size();
     if (meshes_) {

@@ -102,7 +102,9 @@ ending ending_of(int status) {
 //   l bytes omission...
 constexpr char frame_line = 'f', last_line = 'l';
 
-/// The line that reports the times of all frames so far, so that the last one describes a run that was killed.
+/// The line that reports the times of all frames so far to the parent process, so that the last line describes a run
+/// that was killed: time of building, number of frames, digest, times of frame 0 and of all later frames.
+/// @param seconds since the run began
 std::string line_of(const observation& seen, double seconds) {
     std::ostringstream text;
     text.precision(17);
@@ -185,7 +187,8 @@ child_result run_in_child(const std::function<void(const output_sender&)>& work,
     return result;
 }
 
-/// A child inherits the meshes, so they are read only once.
+/// Does work on the scene, from its first frame, in a child process that is killed after `seconds`. The child inherits
+/// the meshes, so they are read only once.
 child_result staged_scene::in_child(const std::function<void(scene_frames&, const output_sender&)>& work,
                                     double seconds) {
     return run_in_child(

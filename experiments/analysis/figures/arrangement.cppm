@@ -117,8 +117,9 @@ struct flag {
     std::size_t row = 0;  ///< counted from below
 };
 
-/// Assigns rows, one above the other, to the texts of marks (vertical lines below their text) so that no text overlaps
-/// another, or the line of another mark, which ends in the row of its own text.
+/// Assigns rows, one above the other, to the texts of marks. The vertical line of a mark ends in the row of its text.
+/// So texts that overlap get different rows, and a text that is crossed by the line of another mark a higher row than
+/// it.
 /// @returns the number of rows
 std::size_t assign_rows(std::vector<flag>& flags) {
     const auto crosses = [](const flag& line, const flag& text) {
@@ -156,21 +157,20 @@ public:
         place_left();
         const std::vector<end_label> ends = place_ends();
         const double below_plot = tick_room + place_x_ticks();
-        std::vector<std::vector<flag>> flags;
+        std::vector<std::vector<flag>> flags;  // the texts of marks, by panel
         std::size_t flag_rows = 0;
         for (std::size_t i = 0; i < panel_count_; ++i) {
             flags.push_back(flags_of(i));
             flag_rows = std::max(flag_rows, assign_rows(flags.back()));
         }
         const bool titled = std::ranges::any_of(drawing_.panels, [](const shown_panel& p) { return !p.title.empty(); });
-        const double marks = line_height * static_cast<double>(flag_rows);
+        const double marks = line_height * static_cast<double>(flag_rows);  // the height of their texts
         const double row = plot_height_ + marks + (titled ? line_height + gap / 2 : 0);
-
         const legend labels = ends.empty() ? placed_legend(row, below_plot) : legend{};
-        const double low = (labels.is_in_cell ? 0 : labels.height()) + gap / 2;
-        const double bottom = add_x_label(low) + gap / 2 + below_plot;
+        const double low = (labels.is_in_cell ? 0 : labels.height()) + gap / 2;  // the upper edge of the legend
+        const double bottom = add_x_label(low) + gap / 2 + below_plot;           // the lower edge of the lowest plots
         constexpr double row_gap = 1.2;
-        const auto rows = static_cast<double>(row_count_);
+        const auto rows = static_cast<double>(row_count_);  // of panels
         layout_.width = figure_width;
         layout_.height = bottom + rows * row + (rows - 1) * row_gap + (titled ? gap / 2 : 1);
         for (std::size_t i = 0; i < panel_count_; ++i) {

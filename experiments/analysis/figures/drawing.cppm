@@ -93,7 +93,7 @@ struct extent {
 /// label in several panels share one.
 [[nodiscard]] std::vector<std::size_t> appearances_of(const figure& f, const std::vector<numbered_series>& lines) {
     std::vector<std::size_t> appearances;
-    std::vector<const series*> first;  // by appearance
+    std::vector<const series*> first;  // the first series of each appearance
     for (const numbered_series& s : lines) {
         const auto known = std::ranges::find_if(first, [&](const series* other) {
             return !f.panels.empty() && !other->label.empty() && other->label == s.source->label;
@@ -172,7 +172,8 @@ struct extent {
 
 /// A prepared figure; it refers to the original, which must outlive it.
 struct drawing {
-    /// Selects what can be shown, and scales both axes to it.
+    /// Selects what can be shown, and scales both axes to all its values: points, quartiles and marks. A level, a
+    /// horizontal line across the plot, has no x.
     explicit drawing(const figure& source) : f(source), panels(shown_panels_of(source)), labels(labels_of(panels)) {
         extent x_values;
         extent y_values;
