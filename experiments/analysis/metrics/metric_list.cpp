@@ -148,7 +148,8 @@ bool describes_input(aabb::work counted) {
            counted == pieces;
 }
 
-/// Adds one metric per work counter: its value per frame after frame 0, of which less is better if it counts work.
+/// Adds one metric per work counter: its value per frame after frame 0. Less is better, except for counters that only
+/// describe the input.
 void add_work_metrics(std::vector<metric>& list) {
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
         std::string spaced(aabb::work_names[i]);

@@ -37,6 +37,25 @@ struct standing {
     }
 };
 
+/// The ratios of each candidate in the scenes in which it was timed. The candidates are sorted by the geometric mean of
+/// their ratios, exact ones before inexact ones.
+std::vector<standing> standings_of(std::span<const scene_summary> scenes) {
+    std::vector<standing> standings;
+    std::map<candidate_name, std::size_t> indices;
+    for (const scene_summary& scene : scenes) {
+        const candidate_summary* const fastest = ranking_of(scene).front();
+        const std::optional<double> least_ratio = least_ratio_of(scene);
+        for (const candidate_summary& candidate : scene.candidates) {
+            if (!candidate.ratio) continue;
+            const auto [index, is_new] = indices.emplace(candidate.name, standings.size());
+            if (is_new) standings.emplace_back().name = candidate.name;
+            standings[index->second].add(candidate, &candidate == fastest, least_ratio);
+        }
+    }
+    std::ranges::sort(standings, {}, [](const standing& s) { return std::tuple(!s.is_exact, s.ratio(), s.name); });
+    return standings;
+}
+
 std::string text_of(const std::optional<std::uint64_t>& value) {
     return value ? fmt::format("{}", *value) : "";
 }
@@ -78,22 +97,10 @@ std::vector<std::string> cells_of(const scene_summary& scene, const candidate_su
 /// the ratio over the least one of an exact candidate. The table has the geometric mean of its ratios, the least and
 /// the greatest, in how many scenes it is the fastest, and the median and the worst regret.
 table overall_table_of(std::span<const scene_summary> scenes) {
-    std::vector<standing> standings;
-    std::map<candidate_name, std::size_t> indices;
-    for (const scene_summary& scene : scenes) {
-        const candidate_summary* const fastest = ranking_of(scene).front();
-        const std::optional<double> least_ratio = least_ratio_of(scene);
-        for (const candidate_summary& candidate : scene.candidates) {
-            if (!candidate.ratio) continue;
-            const auto [index, is_new] = indices.emplace(candidate.name, standings.size());
-            if (is_new) standings.emplace_back().name = candidate.name;
-            standings[index->second].add(candidate, &candidate == fastest, least_ratio);
-        }
-    }
+    const std::vector<standing> standings = standings_of(scenes);
     std::vector<candidate_name> names;
     for (const standing& entry : standings) names.push_back(entry.name);
     const std::vector<aabb::strategy_kind> differing = differing_kinds(names);
-    std::ranges::sort(standings, {}, [](const standing& s) { return std::tuple(!s.is_exact, s.ratio(), s.name); });
     const bool inexact = !std::ranges::all_of(standings, &standing::is_exact);
     table t{name_columns_of(differing), {}};
     if (inexact) t.columns.push_back({"result"});
