@@ -24,7 +24,8 @@ struct motion_config : scene_size {
     double displacement = 0.1;
     length_unit unit = length_unit::extent;
 };
-/// The parameters of scenes of moving boxes; `help` explains the displacement, which not every kind applies alike.
+/// The parameters that every kind of moving boxes has: the numbers of boxes and frames, the displacement and its unit.
+/// @param help explains the displacement, which kinds apply differently
 [[nodiscard]] constexpr auto motion_parameters_with(std::string_view help) {
     return std::tuple_cat(
         size_parameters<scene_size>("how many boxes"),
@@ -70,16 +71,17 @@ inline constexpr auto motion_parameters =
     return Eigen::Matrix<std::uint64_t, 3, 1>(cell / (side * side), cell / side % side, cell % side).cast<double>();
 }
 
-/// Edges in geometric progression from 1 to a ratio, ascending. The i-th is ratio^(i / (count - 1)), a product of roots
-/// of the ratio, one for each binary digit of the exponent, since std::pow differs between libraries.
+/// Edges in geometric progression, ascending from 1 to `ratio`: edge i is ratio^(i / (count - 1)). std::pow differs
+/// between libraries, but square roots do not, so a power is the product of the roots ratio^(1/2), ratio^(1/4), ...
+/// for which the exponent, as a binary fraction, has the digit 1.
 [[nodiscard]] inline std::vector<double> spread_edges(std::uint32_t count, double ratio) {
     constexpr int digits = 32;
-    std::array<double, digits + 1> roots{};
+    std::array<double, digits + 1> roots{};  // roots[k] = ratio^(2^(k - digits))
     roots[digits] = ratio;
     for (std::size_t k = digits; k > 0; --k) roots[k - 1] = std::sqrt(roots[k]);
     std::vector<double> edges(count, 1);
     for (std::uint64_t i = 1; i < count; ++i) {
-        const std::uint64_t exponent = (i << digits) / (count - 1);
+        const std::uint64_t exponent = (i << digits) / (count - 1);  // in units of 2^-digits
         for (std::size_t k = 0; k <= digits; ++k)
             if (exponent >> k & 1) edges[i] *= roots[k];
     }

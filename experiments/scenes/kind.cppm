@@ -21,21 +21,23 @@ concept MeshScene =
         { S::most_meshes } -> std::convertible_to<std::size_t>;
     };
 
-/// A kind that reads the `file` of its configuration; the file determines the boxes, or the poses of given meshes.
+/// A kind that reads the `file` of its configuration.
 template <class S>
-concept PlaysFile = aabb::Configurable<S> && requires(const aabb::config_of<S>& config) {
+concept ReadsFile = aabb::Configurable<S> && requires(const aabb::config_of<S>& config) {
     { config.file } -> std::convertible_to<std::string>;
 };
+/// Its file determines the boxes of every frame.
 template <class S>
-concept BoxFileScene = PlaysFile<S> && requires(const aabb::config_of<S>& config) {
+concept BoxFileScene = ReadsFile<S> && requires(const aabb::config_of<S>& config) {
     { S::open(config) } -> std::same_as<std::unique_ptr<aabb::box_scene>>;
 };
+/// Its file determines the poses of the given meshes in every frame.
 template <class S>
-concept MeshFileScene = PlaysFile<S> && requires(const aabb::config_of<S>& config, std::vector<aabb::mesh> meshes) {
+concept MeshFileScene = ReadsFile<S> && requires(const aabb::config_of<S>& config, std::vector<aabb::mesh> meshes) {
     { S::open(config, std::move(meshes)) } -> std::same_as<std::unique_ptr<aabb::mesh_scene>>;
 };
 
-/// Exactly one of the two functions is set; the other is null.
+/// A kind and the function that makes its scenes: of boxes or of meshes; the other function is null.
 struct scene_kind {
     scene_info info;
     std::unique_ptr<aabb::box_scene> (*make_boxes)(const scene_choice&) = nullptr;
@@ -48,18 +50,19 @@ struct scene_kind {
 [[nodiscard]] std::vector<aabb::mesh> meshes_named(const scene_choice& choice, std::span<const std::string> names,
                                                    std::size_t most);
 
-/// The configuration with the resolved path of its file.
-template <PlaysFile S>
+/// The configuration of a scene, with its file's path resolved: here, or in the folder of the config.
+template <ReadsFile S>
 [[nodiscard]] aabb::config_of<S> with_file(const scene_choice& choice) {
     aabb::config_of<S> config = aabb::configured<S>(choice.settings);
     config.file = resolve_file(config.file, choice.folder).string();
     return config;
 }
 
-/// Describes kind S, with the function that makes its scenes from a choice of settings, meshes and seed.
+/// Describes kind S, with the function that makes its scenes from a choice of settings, meshes and seed. S is one of
+/// four: a scene of boxes or of meshes, constructed from settings and seed, or opened from a file.
 template <class S>
 [[nodiscard]] scene_kind kind_of() {
-    scene_kind kind{{std::string(S::name), std::string(S::summary), MeshScene<S> || MeshFileScene<S>, PlaysFile<S>,
+    scene_kind kind{{std::string(S::name), std::string(S::summary), MeshScene<S> || MeshFileScene<S>, ReadsFile<S>,
                      aabb::parameters_of<S>()}};
     if constexpr (BoxScene<S>) {
         kind.make_boxes = [](const scene_choice& choice) -> std::unique_ptr<aabb::box_scene> {

@@ -38,7 +38,8 @@ public:
                    aabb::number_parameter{"parked", &config::parked, 0.0, 1.0,
                                           "share of the cubes that rest in a cloud of their own", true}});
 
-    /// Derives the width of the clouds from the density and places them. The first cubes rest, some of them parked.
+    /// Places the clouds, whose width follows from the density: the volume of all cubes over that of all clouds. The
+    /// first cubes rest; of them, the first `parked_` rest in an additional cloud, the last one.
     cloud(const config& c, std::uint64_t seed)
         : drifting_boxes(name, c, seed, sizeof(double) + sizeof(Eigen::Vector3d)),
           edges_(spread_edges(c.objects, c.ratio)),
@@ -54,7 +55,8 @@ public:
         const double width = cube_root(volume / c.density / clouds);
         place_clouds(clouds, width, width * c.apart);
         const double mean_edge = sum_of_edges / std::max(c.objects, 1U);
-        const double side_without_gaps = width * cube_root(clouds);  // for spacings, which are those within clouds
+        // A displacement in spacings refers to the spacing within clouds, so the gaps between clouds do not count.
+        const double side_without_gaps = width * cube_root(clouds);
         drift(c, width, mean_edge, side_without_gaps);
         const auto resting = std::max(static_cast<std::uint32_t>((1 - c.moving) * c.objects), parked_);
         for (std::uint32_t i = 0; i < resting; ++i) resting_.push_back(points_[i]);

@@ -22,8 +22,10 @@ public:
         motion_parameters,
         std::tuple{aabb::integer_parameter{"clusters", &config::clusters, 1U, 1'000'000U, "how many clusters"}});
 
-    /// Each cube overlaps two others of its cluster on average; the world is the bounding box of the clusters.
+    /// Makes clusters so wide that each cube overlaps two others of its cluster on average. The world, for
+    /// displacements in spacings, is the bounding box of the clusters.
     clustered(const config& c, std::uint64_t seed) : drifting_boxes(name, c, seed) {
+        // The width in which the corners of unit cubes lie; a cluster is wider by the edge of a cube.
         const double width = width_for((c.objects + c.clusters - 1) / c.clusters, /*axes=*/3);
         place_clusters(c.clusters, width + 1);
         Eigen::Vector3d least = corners_.front();
@@ -38,13 +40,15 @@ public:
     }
 
 private:
-    /// Selects random cells of a lattice, eight clusters wide (Knuth's algorithm S); clusters lie near their middles.
+    /// Places clusters of this width in random cells of a lattice. A cell is eight clusters wide, and its cluster
+    /// begins at 2 to 5 of these 8 on each axis. The loop visits the cells in order and takes one with the probability
+    /// clusters left / cells left, so that every choice of cells is equally likely (Knuth, TAOCP 3.4.2, algorithm S).
     void place_clusters(std::uint32_t wanted, double width) {
         const std::uint32_t side = lattice_side(wanted);
         for (std::uint32_t cell = 0, cells = side * side * side; corners_.size() < wanted; ++cell) {
             if (random_.below(cells - cell) >= wanted - corners_.size()) continue;
             const Eigen::Vector3d start = lattice_cell(cell, side) * 8 + Eigen::Vector3d::Constant(2);
-            corners_.emplace_back((start + random_.point(1) * 3) * width);  // from 2 to 5 of 8
+            corners_.emplace_back((start + random_.point(1) * 3) * width);
         }
     }
 

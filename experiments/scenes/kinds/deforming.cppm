@@ -31,12 +31,14 @@ public:
                                "of the wave, over the extent of the mesh that it deforms"},
         normalise_parameter<config>("scale each mesh to a longest extent of 1")};
 
-    /// Chooses the rotations of both meshes, their offset and the directions of the wave at random.
+    /// Chooses at random the rotations of both meshes, the place of the rigid one beside the waving one at the origin,
+    /// and the direction in which the wave travels and that in which it moves vertices.
     deforming(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise) {
         // A single mesh is paired with a copy of itself.
         if (meshes.size() == 1) meshes.push_back(meshes.front());
         mesh_of = {0, 1};
+        // The wave moves vertices in float, so double coordinates of a file are dropped.
         set_floats(meshes[1], [](const Eigen::Vector3d& v) { return v; });
         waving_extent_ = longest_extent(meshes[1]);
         amplitude_ = c.amplitude * waving_extent_;

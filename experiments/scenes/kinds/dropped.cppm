@@ -37,10 +37,12 @@ public:
         aabb::number_parameter{"loss", &config::loss, 0.0, 1e6, "damping over critical damping", true},
         normalise_parameter<config>("scale the ball to a longest extent of 1")};
 
-    /// Places the balls above the floor; the contacts that a detector reports then push them apart.
+    /// Places the balls above the floor; in each frame, the contacts that the tested method reports push them apart.
+    /// The floor keeps its size; the ball is scaled to extent 1 unless the configuration says otherwise.
     dropped(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), scaling::no), step_(c.step) {
         if (meshes.size() != 2) throw aabb::input_error("dropped needs two meshes: a floor and a ball");
+        // Nine numbers per ball: position, velocity and acceleration.
         require_memory("dropped with " + std::to_string(c.balls) + " balls",
                        c.balls * (sizeof(body) + sizeof(aabb::pose) + 9 * sizeof(double) + sizeof(std::uint32_t)));
         if (c.normalise == scaling::yes) normalise(meshes[1]);

@@ -23,7 +23,8 @@ public:
                        std::tuple{aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e9,
                                                          "displacement of a flying cube per frame, in edges"}});
 
-    /// Places cubes at random in a cube of their total volume; each will fly away from its centre.
+    /// Places unit cubes at random in a cube of their total volume, centred at the origin. They later fly
+    /// straight away from this centre.
     explosion(const config& c, std::uint64_t seed)
         : generated_boxes(name, c, seed, sizeof(flying_box)), flight_step_(c.displacement) {
         const double side = cube_root(c.objects);
@@ -31,7 +32,7 @@ public:
         for (flying_box& b : boxes_) {
             for (double& x : b.corner) x = side * random_.signed_unit() / 2;
             const double away = length_of(b.corner);
-            b.direction = random_.direction();
+            b.direction = random_.direction();  // kept only by a cube exactly at the centre
             if (away > 0) b.direction = b.corner / away;
         }
     }

@@ -24,7 +24,8 @@ public:
     };
     static constexpr auto parameters = motion_parameters_with("greatest displacement of a box per frame");
 
-    /// Derives gravity from the speed v at which a box from the greatest height h hits the floor: v² = 2 g h.
+    /// Places boxes at random above a square floor with an area of 1 per box. Gravity g follows from the speed v at
+    /// which a box from the greatest height h hits the floor, the displacement per frame: v² = 2 g h.
     free_fall(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(falling_box)) {
         const double width = std::sqrt(c.objects);
         const double fastest = step_of(c, 1, {width + 1, width + 1, height + 1});
@@ -46,7 +47,8 @@ private:
         for (falling_box& b : boxes_) fall(b);
     }
 
-    /// Moves a box along its parabola for a frame; if it hits the floor, up again for the remaining share of the frame.
+    /// Moves a box freely for a frame, the unit of time: z += v - g/2, v -= g. If it hits the floor within the frame,
+    /// it bounces and rises for the remaining time.
     void fall(falling_box& b) const {
         double& z = b.corner[2];
         const double next = z + b.speed - gravity_ / 2;
@@ -55,8 +57,9 @@ private:
             b.speed -= gravity_;
             return;
         }
+        // Energy is conserved until the impact, whose time is that in which v falls by v + impact.
         const double impact = std::sqrt(b.speed * b.speed + 2 * gravity_ * z);
-        const double remaining = 1 - (b.speed + impact) / gravity_;  // share of the frame
+        const double remaining = 1 - (b.speed + impact) / gravity_;
         const double bounced = kept * impact;
         if (2 * bounced < gravity_) {
             // A box that would return within a frame comes to rest.

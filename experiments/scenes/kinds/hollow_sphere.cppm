@@ -17,17 +17,18 @@ public:
     using config = motion_config;
     static constexpr auto parameters = motion_parameters;
 
-    /// Chooses the radius of the sphere and the angle of a step, and places points at random with random directions.
+    /// Derives the radius r of the sphere from the number of cubes, and the angle of a step along a great circle from
+    /// the displacement. Places the cubes at random, with random directions.
     hollow_sphere(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(point)) {
         // A cube overlaps those with centres in the cube of edge 2 around its own, in which the sphere has an area of
-        // 4.767, averaged over the direction of its normal. With this radius each overlaps two others on average.
+        // 4.767, averaged over the direction of its normal. Each overlaps two others if n · 4.767 / (4πr²) = 2.
         radius_ = std::sqrt(c.objects * 4.767 / (8 * pi));
         const double side = 2 * radius_ + 1;
         const double step = step_of(c, 1, {side, side, side});
-        // The sine of half the angle of a step, which is at most the diameter of the sphere.
-        const double sine = radius_ > 0 ? std::min(1.0, step / (2 * radius_)) : 0;
-        step_cosine_ = 1 - 2 * sine * sine;
-        step_sine_ = 2 * sine * std::sqrt(1 - sine * sine);
+        // The chord of an angle is 2 r sin(angle/2). A step is a chord, at most the diameter.
+        const double half_angle_sine = radius_ > 0 ? std::min(1.0, step / (2 * radius_)) : 0;
+        step_cosine_ = 1 - 2 * half_angle_sine * half_angle_sine;
+        step_sine_ = 2 * half_angle_sine * std::sqrt(1 - half_angle_sine * half_angle_sine);
         points_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
             const Eigen::Vector3d at = random_.direction();
@@ -54,9 +55,11 @@ private:
         }
     }
 
-    /// Rotates each point and its direction by a step along its great circle, after a random hundredth has turned.
+    /// Gives a random hundredth of the points a new direction, then moves each point by a step along its great circle.
+    /// Point and direction are orthogonal unit vectors, which the step rotates in their plane.
     void advance() override {
         const auto count = static_cast<std::uint32_t>(points_.size());
+        // The remainder is carried over, so that few points turn as often as many do.
         for (to_turn_ += count; to_turn_ >= 100; to_turn_ -= 100) {
             point& turned = points_[random_.below(count)];
             turned.direction = tangent_at(turned.at);

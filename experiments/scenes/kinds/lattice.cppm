@@ -28,7 +28,8 @@ public:
         : generated_boxes(name, c, seed, 0, ""), displacement_(c.displacement), side_(lattice_side(c.objects)) {}
 
 private:
-    /// Shifts all cubes. The bounds where neighbours touch are the same sum, so that they are equal; `cube_at` differs.
+    /// Shifts the whole lattice along the diagonal. Neighbours touch exactly, since the upper bound of one and the
+    /// lower bound of the next are the same sum. With `cube_at`, which adds the edge last, they might differ.
     void place(std::span<aabb::box> boxes) override {
         const double shift = static_cast<double>(frame()) * displacement_;
         for (std::size_t i = 0; i < boxes.size(); ++i) {

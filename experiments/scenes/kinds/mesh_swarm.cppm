@@ -32,16 +32,17 @@ public:
         size_parameters<config>("how many objects"),
         std::tuple{aabb::number_parameter{"density", &config::density, 1e-30, 1e6,
                                           "volume of cubes with the extents of the objects over that of the world"},
-                   aabb::number_parameter{
-                       "displacement", &config::displacement, 0.0, 1e6,
-                       "greatest displacement of an object per frame, in mean extents; its rotation, in radians"},
+                   aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e6,
+                                          "greatest displacement of an object per frame, in mean extents; "
+                                          "its rotation, in radians"},
                    normalise_parameter<config>("scale each mesh to a longest extent of 1"),
                    aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many objects are huge"},
                    aabb::number_parameter{"span", &config::span, 0.0, 1.0,
                                           "longest extent of a huge object over the side of the world"}});
 
-    /// Assigns a mesh to each object, derives the side of the world from the density of the objects that are not huge,
-    /// scales the huge mesh to its share of the side, and chooses random points, steps and rotations.
+    /// Objects 0 to huge - 1 have mesh 0; the others alternate between the other meshes, or a copy of mesh 0. The
+    /// density gives the side of the world: the others' volume, as cubes of their extents, over that of the world. The
+    /// huge mesh is scaled to `span` of the side. Points, steps and rotations are random.
     mesh_swarm(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise), random_(seed) {
         require_memory(
@@ -54,22 +55,25 @@ public:
         std::vector<double> extents;
         for (const aabb::mesh& m : meshes) extents.push_back(longest_extent(m));
         mesh_of.assign(huge, 0);
-        double sum = 0;
+        double sum_of_extents = 0;  // of the others, as is the volume
         double volume = 0;
         for (std::uint32_t i = 0; i < others; ++i) {
             mesh_of.push_back(first_other_mesh + static_cast<std::uint32_t>(i % (meshes.size() - first_other_mesh)));
             const double extent = extents[mesh_of.back()];
-            sum += extent;
+            sum_of_extents += extent;
             volume += extent * extent * extent;
         }
-        mean_extent_ = others == 0 ? 0 : sum / others;
+        mean_extent_ = others == 0 ? 0 : sum_of_extents / others;
+        // If all are huge, each counts as a unit cube.
         const double side = cube_root((others == 0 ? huge : volume) / c.density);
         if (huge > 0) normalise(meshes[0], c.span * side);
         for (const aabb::mesh& m : meshes) centres_.push_back(centre_of(m));
         huge_extent_ = c.span * side;
-        const double mean = c.objects == 0 ? 0 : (sum + huge * huge_extent_) / c.objects;
-        points_ = {others, /*axes=*/3, side - mean_extent_, {0, c.displacement * mean}, random_};
-        huge_ = {huge, /*axes=*/3, side - huge_extent_, {0, c.displacement * mean}, random_};
+        const double mean_of_all = c.objects == 0 ? 0 : (sum_of_extents + huge * huge_extent_) / c.objects;
+        const step_range steps = {0, c.displacement * mean_of_all};
+        // The space of a centre is the world without half an extent at each wall.
+        points_ = {others, /*axes=*/3, side - mean_extent_, steps, random_};
+        huge_ = {huge, /*axes=*/3, side - huge_extent_, steps, random_};
         spins_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
             const Eigen::Quaterniond rotation = random_rotation(random_);

@@ -21,17 +21,19 @@ public:
     };
     static constexpr auto parameters = std::tuple_cat(
         motion_parameters,
-        std::tuple{
-            aabb::number_parameter{"span", &config::span, 0.0, 1.0, "edge of a huge box over the side of the world"},
-            aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many boxes are huge"}});
+        std::tuple{aabb::number_parameter{"span", &config::span, 0.0, 1.0,
+                                          "edge of a huge box over the side of the "
+                                          "world"},
+                   aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many boxes are huge"}});
 
-    /// Derives the world from the unit cubes, each of which overlaps two others on average, and the huge ones from it.
+    /// The world is so wide that each unit cube overlaps two others on average. The edge of a huge cube is `span` of
+    /// the side of the world. All cubes take the same step per frame.
     one_huge(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, drifting_points::bytes_each) {
         const std::uint32_t huge = std::min(c.objects, c.huge);
-        const double width = width_for(c.objects, /*axes=*/3);
+        const double width = width_for(c.objects, /*axes=*/3);  // of the lowest corners; the world is wider by an edge
         edge_ = c.span * (width + 1);
-        const double extent = (huge * edge_ + (c.objects - huge)) / std::max(c.objects, 1U);
-        const double step = step_of(c, extent, {width + 1, width + 1, width + 1});
+        const double mean_extent = (huge * edge_ + (c.objects - huge)) / std::max(c.objects, 1U);
+        const double step = step_of(c, mean_extent, {width + 1, width + 1, width + 1});
         huge_ = {huge, /*axes=*/3, width + 1 - edge_, {step, step}, random_};
         unit_ = {c.objects - huge, /*axes=*/3, width, {step, step}, random_};
     }

@@ -23,14 +23,15 @@ public:
                        std::tuple{aabb::integer_parameter{"neighbours", &config::neighbours, 10U, 50U,
                                                           "mean number of others that a box overlaps"}});
 
-    /// Places boxes at random in a heap that is as high as the wanted number of neighbours requires.
+    /// Places boxes at random in a heap, whose height is such that a box overlaps the wanted number of others on
+    /// average. A box starts at its home, near which it later moves.
     pile(const config& c, std::uint64_t seed) : generated_boxes(name, c, seed, sizeof(jiggling_box)) {
         const double height = height_for(c);
         step_ = step_of(c, 1, {2 * height + 1, 2 * height + 1, height + 1});
         boxes_.reserve(c.objects);
         for (std::uint32_t i = 0; i < c.objects; ++i) {
             const Eigen::Vector3d home = place_in_heap(height);
-            boxes_.push_back({home, home});
+            boxes_.push_back({home, /*corner=*/home});
         }
     }
 
@@ -52,8 +53,9 @@ private:
         }
     }
 
-    /// The height of the heap, by fixed-point iteration: a box overlaps those whose corners lie in the cube of volume 8
-    /// around its own, as far as this cube is in the heap of volume 4/3 height^3, and that share depends on the height.
+    /// The height h at which a box overlaps `neighbours` others on average. It overlaps those whose corners lie in the
+    /// cube of volume 8 around its own; of this cube, a share lies in the heap, of volume 4/3 h^3. So neighbours =
+    /// (objects - 1) · 8 share / (4/3 h^3). The share depends on h: the equation is solved by fixed-point iteration.
     double height_for(const config& c) {
         if (c.objects < 2) return 1;
         double height = 0;
@@ -66,7 +68,7 @@ private:
         return height;
     }
 
-    /// Estimates by sampling which share of the cube of edge 2 around a box of the heap lies in the heap, on average.
+    /// Estimates, by sampling, which share of the cube of edge 2 around a box's corner lies in the heap, on average.
     double share_in_heap(double height) {
         constexpr int samples = 4096;
         int inside = 0;
