@@ -67,7 +67,8 @@ namespace aabblab {
     return m.frame.scale * (double{b.max[k]} - double{b.min[k]});
 }
 
-/// Replaces each vertex by the image of its given one, rounded to float once.
+/// Moves each vertex to its image, rounded to float once: the image is of the vertex as given, in double if its file
+/// has doubles. Then the mesh has no given vertices besides.
 inline void set_floats(aabb::mesh& m, const auto& image_of) {
     for (std::size_t v = 0; v < m.vertices.size(); ++v) {
         Eigen::Vector3d image = image_of(in_eigen(m.given_vertex(v)));

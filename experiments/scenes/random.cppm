@@ -23,8 +23,8 @@ public:
         return static_cast<std::uint32_t>((engine_() >> 32) * count >> 32);
     }
 
-    /// Uniform on the unit sphere (2 axes: circle, 1: two points), by rejecting points of the cube outside the ball, or
-    /// so near its centre that their direction is inexact.
+    /// A random direction, uniform on the unit sphere (2 axes: circle, 1: two points). It is that of a random point of
+    /// the cube; points outside the ball are rejected, and those so near its centre that their direction is inexact.
     [[nodiscard]] Eigen::Vector3d direction(int axes = 3) {
         while (true) {
             Eigen::Vector3d p = Eigen::Vector3d::Zero();
@@ -44,7 +44,8 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// The root of x^3 = value >= 0 by Newton's method, from above: std::cbrt differs between libraries in its last digit.
+/// The root of x^3 = value >= 0 by Newton's method, since std::cbrt differs between libraries in its last digit. From a
+/// start above the root, iterates decrease until rounding stops them.
 [[nodiscard]] inline double cube_root(double value) {
     if (value == 0) return 0;
     double root = value > 1 ? value : 1;
@@ -70,7 +71,8 @@ struct step_range {
 class drifting_points {
 public:
     drifting_points() = default;
-    /// Points move along the first `axes` axes; their other coordinates stay 0.
+    /// Places points at random, with random directions and steps. They move along the first `axes` axes; their other
+    /// coordinates stay 0.
     drifting_points(std::uint32_t count, int axes, double width, step_range steps, random_source& random)
         : axes_(axes), width_(width > 0 ? width : 0) {
         points_.reserve(count);
@@ -85,7 +87,7 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return points_.size(); }
     [[nodiscard]] const Eigen::Vector3d& operator[](std::size_t i) const noexcept { return points_[i].at; }
 
-    /// Moves all points by a step, after a random hundredth of them has turned.
+    /// Gives a random hundredth of the points a new direction, then moves all points by a step.
     void advance(random_source& random) {
         const auto count = static_cast<std::uint32_t>(points_.size());
         // The remainder is carried over, so that few points turn as often as many do.
@@ -108,7 +110,7 @@ private:
     /// Moves a point along axis k, between reflecting walls at 0 and at the width.
     void move(point& p, int k) const {
         if (width_ == 0) return;
-        // The unfolded path between two walls has a period of twice the width.
+        // A path that walls reflect is a straight one, folded at the walls: it repeats after twice the width.
         double along = std::fmod(p.at[k] + p.step * p.direction[k], 2 * width_);
         if (along < 0) along += 2 * width_;
         if (along > width_) {

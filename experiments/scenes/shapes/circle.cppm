@@ -10,23 +10,24 @@ struct circle_point {
     double sin;
 };
 
-/// The point of the unit circle at `turns` turns from (1, 0), within 1e-15.
+/// The point of the unit circle at `turns` turns from (1, 0), within 1e-15. The nearest quarter turn is applied last,
+/// so that the Taylor series are of angles below an eighth of a turn, where they converge fast.
 [[nodiscard]] inline circle_point on_circle(double turns) {
     constexpr double two_pi = 6.283185307179586;
-    const double quarter = std::floor(4 * turns + 0.5);
-    const double x = (turns - quarter / 4) * two_pi;  // at most an eighth of a turn from 0
-    circle_point p{1, x};
-    double power = x;
-    // The Taylor series, until terms are below 1e-17.
+    const double quarters = std::floor(4 * turns + 0.5);
+    const double angle = (turns - quarters / 4) * two_pi;  // at most π/4 from 0
+    circle_point p{1, angle};
+    double term = angle;
+    // Terms angle^n / n!, even n for the cosine and odd n for the sine, until they are below 1e-17.
     for (int n = 2; n < 18; ++n) {
-        power *= x / n;
+        term *= angle / n;
         const bool subtracted = n % 4 >= 2;
-        (n % 2 == 0 ? p.cos : p.sin) += subtracted ? -power : power;
+        (n % 2 == 0 ? p.cos : p.sin) += subtracted ? -term : term;
     }
-    const double turn = quarter - 4 * std::floor(quarter / 4);
-    if (turn == 1) return {-p.sin, p.cos};
-    if (turn == 2) return {-p.cos, -p.sin};
-    if (turn == 3) return {p.sin, -p.cos};
+    const double quarter = quarters - 4 * std::floor(quarters / 4);  // 0 to 3
+    if (quarter == 1) return {-p.sin, p.cos};
+    if (quarter == 2) return {-p.cos, -p.sin};
+    if (quarter == 3) return {p.sin, -p.cos};
     return p;
 }
 

@@ -17,7 +17,8 @@ struct icosphere {
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(20, "about how many triangles");
 
-    /// Cuts each edge of the icosahedron into n parts, so that 20 n² is nearest to the wanted number of triangles.
+    /// Cuts each edge of the icosahedron into `cuts` parts, and so each face into cuts² triangles. Their number,
+    /// 20 cuts², is the nearest to the wanted one, which is at most the mean of it and the next.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         builder b;
         b.cuts = 1;
@@ -48,7 +49,8 @@ private:
         std::uint32_t cuts = 1;
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges;  // the first inner vertex of each edge
 
-        /// Vertex i of `cuts` on the edge from p to q, which the two faces of the edge share.
+        /// The index of the vertex after i of `cuts` parts of the edge from p to q. The first of the two faces at an
+        /// edge adds its inner vertices, in the direction from the lesser corner; the second finds them in `edges`.
         [[nodiscard]] std::uint32_t on_edge(std::uint32_t p, std::uint32_t q, std::uint32_t i) {
             if (i == 0) return p;
             if (i == cuts) return q;
@@ -66,7 +68,8 @@ private:
             return on_sphere(p * (cuts - i - j) + q * i + r * j);
         }
 
-        /// Adds the triangles of a face in rows of vertices: row j runs parallel to p-q, from the edge p-r to q-r.
+        /// Cuts the face with corners p, q, r into triangles. Row j of its vertices is parallel to p-q, from the edge
+        /// p-r to the edge q-r, and has cuts - j + 1 of them; the triangles lie between a row and the one below.
         void cut_face(std::uint32_t p, std::uint32_t q, std::uint32_t r) {
             std::vector<std::uint32_t> below;
             for (std::uint32_t j = 0; j <= cuts; ++j) {

@@ -18,7 +18,8 @@ struct noise_sphere {
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(18, "about how many triangles");
 
-    /// Puts rings of vertices between the poles, at distances from the centre that the noise decides.
+    /// Puts a vertex at each pole and rings of vertices between them, at distances from the centre that the noise
+    /// determines. Fans of triangles join the poles to the outer rings.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         const auto [rings, around] = rings_for(c.triangles, /*aspect=*/0.5);
         const noise waves;
@@ -47,7 +48,8 @@ private:
     /// Plane waves of random directions, with amplitudes proportional to wavelengths.
     class noise {
     public:
-        /// The same waves for every mesh, each 1.2 times as frequent as the one before, and as much lower.
+        /// Chooses the waves, with a fixed seed, so that all meshes have the same. Each has 1.2 times the frequency of
+        /// the one before, and its height divided by 1.2.
         noise() {
             random_source random(/*seed=*/1);
             double frequency = 0.35;

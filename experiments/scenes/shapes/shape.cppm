@@ -22,15 +22,17 @@ struct ring_counts {
     std::uint32_t around;  ///< vertices per ring
 };
 
-/// Chooses rings so that 2 · rings · around is nearest to `triangles`, and among equals rings to aspect · around.
+/// Chooses the number of rings, and of vertices around each, so that the number of triangles, 2 · rings · around, is
+/// nearest to `triangles`. Among equally near choices, takes the one in which rings is nearest to aspect · around.
 [[nodiscard]] inline ring_counts rings_for(std::uint32_t triangles, double aspect) {
-    const double half = triangles / 2.0;
-    const double ideal = std::fmax(3, std::sqrt(half / aspect));
+    const double half = triangles / 2.0;  // the wanted rings · around
+    const double ideal_around = std::fmax(3, std::sqrt(half / aspect));
     ring_counts best{3, 3};
     double best_error = 1e300;
-    for (auto around = static_cast<std::uint32_t>(std::fmax(3, ideal * 0.7)); around <= ideal * 1.4; ++around) {
+    for (auto around = static_cast<std::uint32_t>(std::fmax(3, ideal_around * 0.7)); around <= ideal_around * 1.4;
+         ++around) {
         const double rings = std::fmax(3, std::floor(half / around + 0.5));
-        const double off_shape = std::fabs(around / ideal - 1);
+        const double off_shape = std::fabs(around / ideal_around - 1);
         const double error = std::fabs(rings * around - half) + off_shape / 2;  // the shape only breaks ties
         if (error >= best_error) continue;
         best = {static_cast<std::uint32_t>(rings), around};

@@ -13,7 +13,8 @@ struct slivers {
     using config = shape_size<3000>;
     static constexpr auto parameters = config::parameters(2, "how many triangles");
 
-    /// Adds triangles that point along the diagonal (1, 1, 1), side by side; `along`, `aside`, `up` are its local axes.
+    /// Adds thin triangles along the diagonal (1, 1, 1), side by side in a row along (1, -1, 0), each as wide along
+    /// (1, 1, -2). `add` takes the coordinates of a vertex along these three orthogonal axes.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         constexpr double half_length = 28.867513459481287;  // 50 √⅓ along each axis
         constexpr double across = 7.0710678118654755;       // 10 √½ along x, and back along y

@@ -18,7 +18,7 @@ struct torus_knot {
     using config = shape_size<5000>;
     static constexpr auto parameters = config::parameters(96, "about how many triangles");
 
-    /// Puts rings of vertices along the knot, and closes the tube with the band from the last ring to the first.
+    /// Puts rings of vertices along the knot and joins each to the next, the last to the first.
     [[nodiscard]] static aabb::mesh make(const config& c) {
         // The length of the knot is about 12.5 times the circumference of the tube.
         const auto [rings, around] = rings_for(c.triangles, /*aspect=*/12.5);
@@ -32,7 +32,10 @@ struct torus_knot {
     }
 
 private:
-    /// The point `along` the knot and `around` the tube, in turns; the frame of torus normal and knot tangent closes.
+    /// The point of the tube's surface at `along` turns of the knot and `around` turns of the tube. The centre line
+    /// lies on a torus, with angle u = 2 · along about its axis and v = 3 · along about its tube. The ring around a
+    /// point of the line lies in the plane of the torus normal and the direction across the knot: both return after a
+    /// turn of the knot, so that the tube closes without a twist.
     [[nodiscard]] static aabb::vec3f surface(double along, double around) {
         constexpr double major = 2;
         constexpr double tube = 0.4;
