@@ -23,7 +23,8 @@ bool is_shape(std::string_view name) {
     return std::ranges::find(shapes(), name, &shape_info::name) != shapes().end();
 }
 
-/// Makes the shape that the choice names, one of the list; rejects a size beyond the memory before it is allocated.
+/// Makes the shape that the choice names, which must be one of `Shapes`. Rejects a size beyond the memory before it is
+/// allocated.
 template <class... Shapes>
 aabb::mesh make_shape(aabb::type_list<Shapes...>, const aabb::strategy_choice& choice) {
     aabb::mesh mesh;
@@ -49,7 +50,7 @@ bool is_there(std::string_view name, const std::filesystem::path& folder) {
                                [&](const auto& p) { return std::filesystem::exists(p, ignored); });
 }
 
-/// Candidates for the nearest name: shapes and the meshes of the data folder.
+/// All names of meshes, shapes and files of the data folder, from which messages suggest the nearest to an unknown one.
 std::vector<std::string> known_names() {
     std::vector<std::string> names;
     for (const shape_info& shape : shapes()) names.push_back(shape.name);
@@ -71,7 +72,8 @@ struct ordered_name {
     std::optional<std::string_view> build;  ///< empty if triangles keep their order
 };
 
-/// Splits "NAME:order=BUILD" into the name and the build, unless a file has the full name.
+/// Splits "NAME:order=BUILD" into the name and the build, unless a file has the full name. "order=" is a parameter only
+/// after a colon, or after a comma that follows a colon.
 ordered_name split_name(std::string_view name, const std::filesystem::path& folder) {
     constexpr std::string_view key = "order=";
     if (is_there(name, folder)) return {name, {}};
@@ -90,7 +92,8 @@ ordered_name split_name(std::string_view name, const std::filesystem::path& fold
     return {name, {}};
 }
 
-/// Reads the first file of this name, or makes the shape; an unknown name is rejected with the nearest known one.
+/// Reads the first file of this name in search order, or makes the shape of this name. Rejects an unknown name, and
+/// suggests the nearest known one.
 loaded_mesh make_unordered_mesh(std::string_view name, const std::filesystem::path& folder) {
     std::error_code ignored;
     for (const std::filesystem::path& file : places(name, folder))
@@ -115,14 +118,15 @@ std::filesystem::path data_folder() {
     return set != nullptr && *set != '\0' ? set : AABBLAB_DATA_FOLDER;
 }
 
-/// The path of a file, as given or in the folder of the config that names it.
+/// The path of a file: as given if it exists, otherwise in the folder of the config that names it. An empty name, which
+/// means no file, stays empty.
 std::filesystem::path resolve_file(const std::filesystem::path& name, const std::filesystem::path& folder) {
     std::error_code ignored;
-    std::filesystem::path beside = folder / name;
+    std::filesystem::path in_folder = folder / name;
     if (name.empty() || std::filesystem::exists(name, ignored)) return name;
-    if (std::filesystem::exists(beside, ignored)) return beside;
+    if (std::filesystem::exists(in_folder, ignored)) return in_folder;
     throw aabb::input_error(name.string() + ": no such file" +
-                            (beside != name ? ", here or in " + folder.string() : ""));
+                            (in_folder != name ? ", here or in " + folder.string() : ""));
 }
 
 std::string_view name_without_order(std::string_view name, const std::filesystem::path& folder) {
@@ -134,7 +138,8 @@ bool is_mesh(std::string_view name, const std::filesystem::path& folder) {
     return is_shape(name.substr(0, name.find(':'))) || is_there(name, folder);
 }
 
-/// Finds a mesh by name; its triangles are in the order of the leaves of a tree if the name ends in "order=BUILD".
+/// Makes or reads the mesh of this name. If the name ends in "order=BUILD", its triangles are in the order of the
+/// leaves of the tree that this build strategy makes.
 loaded_mesh make_mesh(std::string_view name, const std::filesystem::path& folder) {
     const auto [plain_name, build] = split_name(name, folder);
     if (!build) return make_unordered_mesh(name, folder);

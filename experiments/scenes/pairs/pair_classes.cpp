@@ -20,7 +20,7 @@ struct pair {
 struct format {
     double smallest;  ///< denormal
     double largest;
-    double step;  ///< from 1 to the next greater number: the machine epsilon
+    double epsilon;  ///< from 1 to the next greater number
 };
 template <class Real>
 constexpr format format_of{double{std::numeric_limits<Real>::denorm_min()}, double{std::numeric_limits<Real>::max()},
@@ -59,12 +59,13 @@ pair lattice_pair(random_source& random, std::uint32_t most) {
     return {lattice_triangle(random, most), lattice_triangle(random, most)};
 }
 
-/// The second triangle lies in the plane of the first, up to rounding and one unit in the last place.
+/// The second triangle lies in the plane of the first, but for rounding and a random change of each coordinate by -1, 0
+/// or 1 unit in the last place.
 pair near_coplanar(random_source& random, const format& f) {
     pair p = any_pair(random);
     for (Vector3d& corner : p.b) {
         corner = near_triangle(random, p.a);
-        for (int k = 0; k < 3; ++k) corner[k] *= 1 + (static_cast<double>(random.below(3)) - 1) * f.step;
+        for (int k = 0; k < 3; ++k) corner[k] *= 1 + (static_cast<double>(random.below(3)) - 1) * f.epsilon;
     }
     return p;
 }
@@ -108,7 +109,8 @@ pair coplanar(random_source& random, const format&) {
     return changed(any_pair(random), [&](const Vector3d& p) -> Vector3d { return {p[0], p[1], height}; });
 }
 
-/// Two triangles of length 1 and little height whose long edges pass each other within about that distance.
+/// Two triangles of length 1 and height up to 1e-6. Both have a long edge that passes a common point within this
+/// height, so that a small error decides whether they intersect.
 pair sliver(random_source& random, const format&) {
     constexpr double height = 1e-6;
     pair p = any_pair(random);
@@ -116,19 +118,19 @@ pair sliver(random_source& random, const format&) {
     for (triangle* t : {&p.a, &p.b}) {
         const Vector3d along = random.direction();
         const Vector3d off = random.direction();
-        const double back = random.unit();
-        const Vector3d start = meeting - along * back + off * (height * random.signed_unit());
+        const double before_meeting = random.unit();
+        const Vector3d start = meeting - along * before_meeting + off * (height * random.signed_unit());
         *t = {start, start + along, start + along * random.unit() + off * height};
     }
     return p;
 }
 
-/// Flattens the second triangle, and the first in half of the pairs, to a segment or, seldom, a point.
+/// Makes triangles of area 0: the second, and the first in half of the pairs, is a segment or, seldom, a point.
 pair zero_area(random_source& random, const format&) {
     pair p = lattice_pair(random, /*most=*/4);
     const auto flatten = [&](triangle& t) {
-        const double further = static_cast<double>(random.below(4)) - 1;  // -1 to 2: also beyond both ends
-        t[2] = t[0] + (t[1] - t[0]) * further;
+        const double along = static_cast<double>(random.below(4)) - 1;  // -1 to 2: also beyond both ends of the edge
+        t[2] = t[0] + (t[1] - t[0]) * along;
         if (random.below(4) == 0) t[1] = t[0];
         std::swap(t[0], t[random.below(3)]);
     };
@@ -214,7 +216,7 @@ struct pair_source<Real>::state {
     random_source random;
 };
 
-/// Finds the class of this name. Each class has random numbers of its own, or several would have the same corners.
+/// A source of pairs of the class of this name. Each class has a seed of its own, or classes would share their corners.
 template <class Real>
 pair_source<Real>::pair_source(std::string_view name, std::uint64_t seed) {
     const auto entry = std::ranges::find(classes, name, [](const pair_class& c) { return c.info.name; });

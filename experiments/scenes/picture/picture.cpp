@@ -21,8 +21,9 @@ constexpr double narrowest = 1.0 / 8;  // ratio of the sides of a panel
 
 /// The two axes that are shown, and their scales in pixels.
 struct view_plane {
-    /// Chooses the two axes that the picture shows. Objects fall and pile up along z, so z is omitted only if it is
-    /// flat or less than a quarter as wide as both others. If one of the two is much longer, each has its own scale.
+    /// Chooses the two axes that the picture shows, and their scales: it omits the shortest axis. Objects fall and pile
+    /// up along z, so z is omitted only if it is less than a quarter as long as both others. If one of the two axes is
+    /// more than 8 times as long as the other, each has its own scale.
     /// @param sides of the world, 0 on axes on which all boxes are equal
     view_plane(const aabb::box& world, const aabb::vec3d& sides) {
         for (int k = 0; k < 3; ++k) {
@@ -34,7 +35,7 @@ struct view_plane {
             least[k] -= 0.5;
             length[k] = 1;
         }
-        // A single box is flat on all axes, so its lengths decide.
+        // The sides decide which axis is omitted; if all are 0, as with a single box, the lengths of the box do.
         aabb::vec3d importance = sides == aabb::vec3d{} ? length : sides;
         importance[2] *= 4;
         int omitted_axis = 2;
@@ -45,7 +46,7 @@ struct view_plane {
         const double true_aspect = length[up] / length[across];
         const double aspect = std::clamp(true_aspect, narrowest, 1 / narrowest);
         has_equal_scales = aspect == true_aspect;
-        // A flat panel has the width of two, as it would be low beside another.
+        // A panel fits into a square, but one much wider than high has the width of two squares.
         width = aspect < 0.4 ? wide_panel : aspect <= 1 ? panel_side : panel_side / aspect;
         height = width * aspect;
         scale[across] = width / length[across];
@@ -107,7 +108,8 @@ svg_box rectangle_of(const view_plane& view, const aabb::box& b) {
     return {left, top, std::max(1.0, view.x(b.max[view.across]) - left), std::max(1.0, view.y(b.min[view.up]) - top)};
 }
 
-/// Draws the boxes of a frame in two colours, and outlines the huge ones, which would otherwise be hidden.
+/// Draws the boxes of a frame, in one colour those that overlap another, in another the rest. Outlines the first
+/// `drawing.huge` ones, the largest, which would otherwise be hidden.
 void add_boxes(svg_picture& to, const view_plane& view, const picture_data::frame& frame,
                const frame_drawing& drawing) {
     double area = 0;
@@ -117,7 +119,7 @@ void add_boxes(svg_picture& to, const view_plane& view, const picture_data::fram
         area += r.width * r.height;
         boxes.rectangle(drawing.overlapping[object] != 0 ? "overlapping" : "apart", r);
     }
-    // Boxes are more transparent the more of them overlap on the plane.
+    // The mean number of boxes over a pixel: the more there are, the more transparent each is.
     const double depth = area / (view.width * view.height);
     to.group(boxes, {{"fill-opacity", std::clamp(0.6 / depth, 0.03, 0.35)},
                      {"stroke-opacity", std::clamp(1.5 / depth, 0.1, 0.8)}});
@@ -125,7 +127,7 @@ void add_boxes(svg_picture& to, const view_plane& view, const picture_data::fram
         to.rectangle("huge", rectangle_of(view, frame.boxes[drawing.drawn_objects[i]]));
 }
 
-/// The drawing of one frame, with its axes and paths.
+/// The drawing of one frame: title, axes, boxes, and the paths of some objects, empty for none.
 svg_picture panel_of(const view_plane& view, std::string_view title, const picture_data::frame& frame,
                      const frame_drawing& drawing, const std::vector<polylines>& paths) {
     svg_picture panel;
@@ -140,7 +142,7 @@ svg_picture panel_of(const view_plane& view, std::string_view title, const pictu
     return panel;
 }
 
-/// Projects a path, which is interrupted while the object is absent.
+/// Projects a path to the plane, in pixels. A new line begins after each absence of the object.
 polylines projected_path(const view_plane& view, const picture_data::path& path) {
     polylines lines;
     bool is_new = true;
@@ -152,19 +154,19 @@ polylines projected_path(const view_plane& view, const picture_data::path& path)
     return lines;
 }
 
-/// Projects paths until their total length would hide the boxes, but at least one.
+/// Projects paths, at least one, until their total length is so great that more of them would hide the boxes.
 std::vector<polylines> projected_paths(const view_plane& view, std::span<const picture_data::path> paths) {
-    const double most = 8 * (view.width + view.height);
+    const double greatest_length = 8 * (view.width + view.height);  // pixels
     double length = 0;
-    std::vector<polylines> clear;
+    std::vector<polylines> projected;
     for (const picture_data::path& path : paths) {
-        if (length >= most) break;
-        clear.push_back(projected_path(view, path));
-        for (const std::vector<place>& line : clear.back())
+        if (length >= greatest_length) break;
+        projected.push_back(projected_path(view, path));
+        for (const std::vector<place>& line : projected.back())
             for (std::size_t i = 1; i < line.size(); ++i)
                 length += std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
     }
-    return clear;
+    return projected;
 }
 
 constexpr std::size_t most_boxes = 4000;
@@ -186,16 +188,16 @@ double extent_of(const aabb::box& b) {
     return double{b.max[k]} - double{b.min[k]};
 }
 
-/// Sorts the objects by size and returns the number of huge ones.
+/// Sorts the objects by descending extent. @returns the number of huge ones, longer than five mean extents
 std::size_t sort_by_size(std::vector<std::size_t>& objects, const std::vector<aabb::box>& boxes) {
     double sum = 0;
     for (const std::size_t i : objects) sum += extent_of(boxes[i]);
-    const double huge = huge_extents * sum / static_cast<double>(objects.size());
+    const double longest_usual = huge_extents * sum / static_cast<double>(objects.size());
     std::ranges::sort(objects, [&](std::size_t a, std::size_t b) {
         return std::tuple(-extent_of(boxes[a]), a) < std::tuple(-extent_of(boxes[b]), b);
     });
     return static_cast<std::size_t>(
-        std::ranges::count_if(objects, [&](std::size_t i) { return extent_of(boxes[i]) > huge; }));
+        std::ranges::count_if(objects, [&](std::size_t i) { return extent_of(boxes[i]) > longest_usual; }));
 }
 
 /// Limits the number of boxes: keeps the largest huge ones and a sample of the others that is uniform in size order.
@@ -207,7 +209,7 @@ void sample(std::vector<std::size_t>& objects, std::size_t huge) {
     objects.resize(most_boxes);
 }
 
-/// Finds the overlapping boxes of a frame by CGAL, and selects the boxes to draw.
+/// Finds the overlapping boxes of a frame by CGAL, and selects the boxes to draw: the huge ones first, then a sample.
 frame_drawing drawing_of(const picture_data::frame& frame) {
     frame_drawing drawing;
     const std::unique_ptr<aabb::global_stage> search = aabb::make_box_engine("cgal");

@@ -47,7 +47,7 @@ private:
     void extend_paths(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present);
 
     std::size_t frames_seen_ = 0;
-    std::size_t path_stride_;  // in frames
+    std::size_t path_stride_ = 1;  // frames between the places of a path
     frame first_;
     frame last_;
     std::vector<std::size_t> followed_;  // objects with paths

@@ -19,8 +19,8 @@ aabb::vec3d centre_of(const aabb::box& b) {
 }  // namespace
 
 /// Follows some objects, evenly spaced by index, in every frame or, of many frames, in every n-th.
-picture_data::picture_data(std::size_t objects, std::size_t frames)
-    : path_stride_(std::max<std::size_t>(1, frames / most_places)) {
+picture_data::picture_data(std::size_t objects, std::size_t frames) {
+    path_stride_ = std::max<std::size_t>(1, frames / most_places);
     const std::size_t count = std::min(objects, most_paths);
     for (std::size_t i = 0; i < count; ++i) followed_.push_back(i * objects / count);
     paths_.resize(count);
@@ -34,7 +34,9 @@ void picture_data::add_frame(std::span<const aabb::box> boxes, std::span<const s
     if (frames_seen_++ == 0) first_ = last_;
 }
 
-/// Adds a frame to the bounds of the world, and to the sums of extents and displacements for the means in the caption.
+/// Adds the present boxes of a frame to the bounds of the world, and to the sums of longest extents and of
+/// displacements since the last frame, whose means the caption states. An axis stays flat while all boxes of a frame
+/// are equal on it.
 void picture_data::measure(std::span<const aabb::box> boxes, std::span<const std::uint8_t> present) {
     const aabb::box* first = nullptr;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
