@@ -11,7 +11,9 @@ namespace {
 /// A validator that throws aabb::input_error on an unknown or malformed choice.
 using choice_check = std::function<void(const aabb::strategy_choice&)>;
 
-/// Adds the choices of one list entry: a name, or a table of a name and parameters, whose lists multiply.
+/// Adds the strategies of one list entry: a name, or a table of a name and parameters, whose lists of values multiply.
+/// @param key the key of the list, for messages, as is the `example` of a valid name
+/// @param require throws on an unknown strategy or setting
 void add_strategies(const document& doc, const std::string& key, const node& value, const std::string& example,
                     const choice_check& require, unique_list<aabb::strategy_choice>& choices) {
     const auto add = [&](const aabb::strategy_choice& choice) {
@@ -51,10 +53,11 @@ struct listed_strategies {
     std::vector<std::string> others;                            ///< strategies that others_but adds
 };
 
-/// Expands { others_but = […] } to every strategy of the kind that is neither excluded nor listed by name.
+/// Expands { others_but = […] }: adds every strategy of the kind that is neither excluded nor listed by name.
+/// @param listed holds the choices that are listed by name
 void add_others(const document& doc, aabb::strategy_kind kind, const std::vector<located_text>& excluded,
                 listed_strategies& listed) {
-    std::set<std::string> named;
+    std::set<std::string> named;  // excluded, listed or added
     for (const located_text& name : excluded) {
         doc.at_line(name.line, [&] { aabb::require_known(kind, {name.text, {}}); });
         named.insert(name.text);
@@ -72,7 +75,7 @@ void add_others(const document& doc, aabb::strategy_kind kind, const std::vector
 listed_strategies strategies_of(const document& doc, aabb::strategy_kind kind, const node* value) {
     if (!value) return {.choices = {std::nullopt}, .others = {}};
     node named = *value;
-    const auto excluded = doc.take_others(named);  // leaves the names
+    const auto excluded = doc.take_others(named);  // nullopt without others_but; leaves the names
     const auto require = [kind](const aabb::strategy_choice& choice) {
         if (choice.name == "auto")
             throw aabb::input_error("auto is not a " + std::string(name_of(kind)) + " strategy: omit " +
@@ -118,9 +121,10 @@ void add_composition(const document& doc, int line, const aabb::composition& c, 
     if (!list.add(c, text_of(c))) doc.fail(line, "this composition is listed twice: " + text_of(c));
 }
 
-/// Every combination of the listed strategies, the last kind fastest. Invalid combinations are dropped if others_but
-/// contributes to them; those of named strategies only are kept, so that the caller can report them.
-/// @param listed the number of compositions that the config has already, for the limit
+/// Every combination of the strategies that a [compose] table lists, one per kind; the last kind varies fastest.
+/// Invalid combinations are dropped if one of their strategies comes from others_but. Those of strategies that the
+/// config names are kept, so that the caller reports them as errors.
+/// @param listed the number of compositions that the config has already, which count towards its limit
 std::vector<aabb::named_strategies> combinations_of(const document& doc, const node& compose, std::size_t listed) {
     aabb::by_kind<listed_strategies> strategies;
     std::vector<std::size_t> factors;
@@ -129,22 +133,22 @@ std::vector<aabb::named_strategies> combinations_of(const document& doc, const n
         factors.push_back(strategies[kind].choices.size());
     }
     doc.require_small_product(compose.line, "compositions", factors, listed);
-    std::vector<aabb::named_strategies> products(1);
+    std::vector<aabb::named_strategies> combinations(1);  // of the kinds so far
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         std::vector<aabb::named_strategies> extended;
-        for (const aabb::named_strategies& product : products)
-            for (const auto& choice : strategies[kind].choices) extended.emplace_back(product)[kind] = choice;
-        products = std::move(extended);
+        for (const aabb::named_strategies& combination : combinations)
+            for (const auto& choice : strategies[kind].choices) extended.emplace_back(combination)[kind] = choice;
+        combinations = std::move(extended);
     }
-    std::erase_if(products, [&](const aabb::named_strategies& product) {
-        const bool is_named = std::ranges::none_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
-            return product[kind] && std::ranges::count(strategies[kind].others, product[kind]->name) > 0;
+    std::erase_if(combinations, [&](const aabb::named_strategies& combination) {
+        const bool has_other = std::ranges::any_of(aabb::strategy_kinds, [&](aabb::strategy_kind kind) {
+            return combination[kind] && std::ranges::count(strategies[kind].others, combination[kind]->name) > 0;
         });
-        const aabb::composition c(product);
-        return !is_named && !(rejection_of(c, aabb::stage::global_search).empty() &&
+        const aabb::composition c(combination);
+        return has_other && !(rejection_of(c, aabb::stage::global_search).empty() &&
                               rejection_of(c, aabb::stage::local_detection).empty());
     });
-    return products;
+    return combinations;
 }
 
 /// @param compose a table whose keys are kinds; its lists multiply
@@ -153,7 +157,8 @@ void add_compositions(const document& doc, const node& compose, unique_list<aabb
         add_composition(doc, compose.line, aabb::composition(named), list);
 }
 
-/// Adds an `auto` for each combination of named strategies; selecting without a scene rejects those valid in none.
+/// Adds each combination of the strategies that the table names, which `auto` completes for each scene by selecting the
+/// other strategies. One that no selection makes valid is rejected here, by a selection without a scene.
 void add_automatic(const document& doc, const node& compose, std::vector<aabb::named_strategies>& automatic) {
     for (const aabb::named_strategies& named : combinations_of(doc, compose, automatic.size())) {
         unique_list<aabb::composition> ignored;
@@ -163,7 +168,7 @@ void add_automatic(const document& doc, const node& compose, std::vector<aabb::n
     }
 }
 
-/// Describes the points of a curve by the names of the choices, and by the settings that do not vary along it.
+/// A label for the strategies of one kind along a curve: their names, and the settings that all points share.
 std::string common_text(std::span<const aabb::strategy_choice> choices) {
     std::string text;
     std::set<std::string> names;
@@ -177,7 +182,7 @@ std::string common_text(std::span<const aabb::strategy_choice> choices) {
     return text;
 }
 
-/// A default label from the kinds that the config names.
+/// The default label of a curve, from its triangle tests or from the kinds of strategies that its table names.
 std::string label_of(const node& methods, const error_curve& curve) {
     if (!curve.triangles.empty()) return common_text(curve.triangles);
     std::string label;
@@ -192,7 +197,8 @@ std::string label_of(const node& methods, const error_curve& curve) {
 
 }  // namespace
 
-/// Reads one [compose], several [[compose]], each of which multiplies separately, or "auto".
+/// Reads one [compose], several [[compose]], of which each has combinations of its own, or compose = "auto".
+/// Combinations that `auto` completes go to e.automatic, the others to e.compositions.
 /// @param compose null if the config has none
 void read_compositions(const document& doc, const node* compose, experiment& e) {
     static const node nothing{};  // an empty table composes the defaults
@@ -233,7 +239,7 @@ error_curve read_curve(const document& doc, const node& written) {
     error_curve curve;
     if (methods.items.size() == 1 && methods.items[0].key == name_of(aabb::strategy_kind::triangle)) {
         curve.triangles = choices_of(doc, methods.items[0], "moller", [](const aabb::strategy_choice& choice) {
-            static_cast<void>(triangle_test_named(choice));
+            static_cast<void>(triangle_test_named(choice));  // throws if the test or a setting is unknown
         });
     } else {
         unique_list<aabb::composition> list;
@@ -246,6 +252,7 @@ error_curve read_curve(const document& doc, const node& written) {
     return curve;
 }
 
+/// Makes the triangle test of this name, which is a strategy or comes from a library.
 std::unique_ptr<aabb::triangle_test> triangle_test_named(const aabb::strategy_choice& choice) {
     std::vector<std::string> names = aabb::strategy_names(aabb::strategy_kind::triangle);
     if (std::ranges::find(names, choice.name) != names.end()) return aabb::make_triangle_test(choice);

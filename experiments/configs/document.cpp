@@ -72,9 +72,10 @@ std::string_view name_of(node_kind kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
-/// Bisects for the first line at which an assertion of toml++ fails, as that does not say where.
+/// The first line, from 1, at which an assertion of toml++ fails, since the failure does not say where: bisects for the
+/// shortest text of whole lines that fails.
 int line_of_failed_assertion(std::string_view text) {
-    const auto fails = [&](std::size_t end) {
+    const auto fails = [&](std::size_t end) {  // the text before `end`
         try {
             (void)toml::parse(text.substr(0, end));
         } catch (const failed_toml_assertion&) {
@@ -84,7 +85,7 @@ int line_of_failed_assertion(std::string_view text) {
         }
         return false;
     };
-    std::vector<std::size_t> ends;  // line ends
+    std::vector<std::size_t> ends;  // of the lines, in ascending order: if one text fails, so do longer ones
     for (std::size_t end = 0; (end = text.find('\n', end)) != std::string_view::npos;) ends.push_back(++end);
     const auto first = std::ranges::partition_point(ends, [&](std::size_t end) { return !fails(end); });
     return static_cast<int>(first - ends.begin()) + 1;
@@ -97,16 +98,17 @@ std::size_t end_of_quotes(std::string_view text, std::size_t end, std::size_t mo
     return end;
 }
 
-/// The end of the string that begins here: its last quote, or the end of the text if it is unterminated.
+/// The index of the last character of the TOML string whose opening quote is at `begin`: its closing quote, or the end
+/// of its line or of the text if it is unterminated.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
     const std::string_view quote = text.substr(begin, 1);
     const std::string triple(3, quote[0]);
     const bool is_multi_line = text.substr(begin).starts_with(triple);
     const std::string_view closing = is_multi_line ? triple : quote;
-    const std::size_t most_before_closing = is_multi_line ? 2 : 0;  // quotes that belong to the string
+    const std::size_t most_before_closing = is_multi_line ? 2 : 0;  // quotes of the string itself, before the closing
     for (std::size_t i = begin + closing.size(); i < text.size(); ++i) {
         if (text[i] == '\\' && quote == "\"")
-            ++i;
+            ++i;  // an escaped character does not close the string
         else if (text.substr(i).starts_with(closing))
             return end_of_quotes(text, i + closing.size(), most_before_closing) - 1;
         else if (text[i] == '\n' && !is_multi_line)
@@ -115,9 +117,12 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     return text.size();
 }
 
-/// The line of a dotted key (a.b.c) of more than `most_parts` parts, or 0: toml++ recurses into each, without a limit.
+/// The line of the first dotted key (a.b.c) with more than `most_parts` parts, or 0 if there is none: toml++ recurses
+/// into each part, and so many would overflow the stack. Strings and comments are skipped.
 int line_of_deep_key(std::string_view text) {
-    const auto joins = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '\t'; };
+    const auto continues_key = [](unsigned char c) {
+        return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '\t';
+    };
     std::size_t parts = 1;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
@@ -127,7 +132,7 @@ int line_of_deep_key(std::string_view text) {
             i = end_of_string(text, i);
         } else if (c == '#') {
             i = std::min(text.find('\n', i), text.size()) - 1;
-        } else if (!joins(static_cast<unsigned char>(c))) {
+        } else if (!continues_key(static_cast<unsigned char>(c))) {
             parts = 1;
         }
     }
@@ -141,7 +146,7 @@ const node* node::find(std::string_view wanted) const {
     return entry == items.end() ? nullptr : &*entry;
 }
 
-/// Parses TOML. What toml++ does not limit or locate itself is rejected with its line here.
+/// Parses TOML. Rejects, with their line, texts that toml++ would crash on or report without a line.
 document::document(const std::string& as_written, std::string file, std::size_t most, std::string_view noun)
     : file_(std::move(file)) {
     const std::string text = without_returns_at_ends(as_written);
@@ -207,6 +212,7 @@ const std::string& document::text_of(const std::string& key, const node& value) 
     return value.text;
 }
 
+/// Reads a whole number, at least `least`. The key is its name in messages.
 std::uint64_t document::integer_of(const std::string& key, const node& value, std::uint64_t least) const {
     std::uint64_t number = 0;
     const char* end = value.text.data() + value.text.size();
@@ -233,7 +239,8 @@ std::vector<located_text> document::texts_of(const std::string& key, const node&
     return texts;
 }
 
-/// Removes { others_but = […] } from a list; returns the excluded names, or nullopt if the list has no such entry.
+/// Removes the entry { others_but = […] } from a list, which stands for all names but those. @returns these names, or
+/// nullopt if the list has no such entry
 std::optional<std::vector<located_text>> document::take_others(node& list) const {
     const auto is_others = [](const node& item) { return item.find("others_but") != nullptr; };
     const auto others = std::ranges::find_if(list.items, is_others);
@@ -244,7 +251,7 @@ std::optional<std::vector<located_text>> document::take_others(node& list) const
     return excluded;
 }
 
-/// The distinct values that a key takes in turn, each in runs of its own: a scalar, or the scalars of a list.
+/// The values of a key: a scalar, or a list of distinct scalars, of which each makes a scene or composition of its own.
 std::vector<located_text> document::alternatives_of(const std::string& key, const node& value) const {
     if (value.is_scalar()) return {{value.text, value.line}};
     if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");
@@ -280,6 +287,7 @@ std::vector<std::size_t> sizes_of(const std::vector<alternatives>& keys, std::si
     return sizes;
 }
 
+/// Every combination of one value per key, as settings; the first key varies slowest.
 std::vector<std::vector<aabb::setting>> cartesian_product(const std::vector<alternatives>& keys) {
     std::vector<std::vector<aabb::setting>> products{{}};
     for (const auto& [key, values] : keys) {
