@@ -62,6 +62,7 @@ calibrated_costs label_costs(const aabb::cost_model& costs) {
     return {AABBLAB_VERSION, date_now(), this_machine().processor, std::string(instructions()), costs};
 }
 
+/// Formats the costs as a TOML file: the version and machine, then each cost with its unit and operation as a comment.
 std::string text_of(const calibrated_costs& costs) {
     std::string text =
         "# Times of elementary operations in nanoseconds, measured by `aabblab calibrate`. Another version of the\n"
@@ -78,6 +79,7 @@ std::string text_of(const calibrated_costs& costs) {
     return text;
 }
 
+/// Reads a file of costs. Of another version's file, only the header is read: its costs may have other names.
 calibrated_costs parse_costs(const std::string& text, const std::string& file) {
     const document doc(text, file, longest_file, "a file of costs");
     calibrated_costs parsed{.version = header_field(doc, "version"),
@@ -85,7 +87,7 @@ calibrated_costs parse_costs(const std::string& text, const std::string& file) {
                             .processor = header_field(doc, "processor"),
                             .instructions = header_field(doc, "instructions"),
                             .costs = {}};
-    if (parsed.version != AABBLAB_VERSION) return parsed;  // another version, whose costs are ignored, has other keys
+    if (parsed.version != AABBLAB_VERSION) return parsed;
     doc.require_keys(doc.root(), "", {"version", "date", "processor", "instructions", "costs"});
     parsed.date = header_field(doc, "date");
     const node& table = doc.required(doc.root(), "costs", "there is no [costs]; aabblab calibrate writes it");
@@ -107,6 +109,8 @@ std::filesystem::path calibrated_costs_file() {
     return home.empty() ? home : home / ".config" / file;
 }
 
+/// Replaces the shipped costs of operations by those of the user's file, if this version of the program measured them
+/// on this processor with these instructions; otherwise keeps them and prints a note. No file, no change.
 void use_calibrated_costs() {
     const std::filesystem::path file = calibrated_costs_file();
     std::error_code ignored;  // an inaccessible file counts as absent

@@ -18,7 +18,7 @@ const std::vector<std::string> known_precisions = {"float", "double"};
 constexpr std::uint64_t default_count = 100'000;
 constexpr std::uint64_t quick_share = 20;  // a quick run takes 1/20 of the pairs by default
 
-/// The number of pairs in each set of a table: `count`, or in quick runs that of `quick`, or else a share of `count`.
+/// The number of pairs of each class in a table: `count`. In quick runs, that of `quick`, or else a 20th.
 std::uint64_t count_of(const document& doc, const node& pairs, experiment_size size) {
     const node* count = pairs.find("count");
     const node* quick = pairs.find("quick");
@@ -31,8 +31,9 @@ std::uint64_t count_of(const document& doc, const node& pairs, experiment_size s
     return size == experiment_size::quick ? quick_count : full_count;
 }
 
-/// Adds the sets of one table: every listed class, or all classes, in every listed precision.
+/// Adds the sets of pairs of one table: every class that it lists, or all classes, in every precision that it lists.
 /// @param key "pairs", or "hits", whose count includes only pairs that intersect
+/// @param sets rejects a class that is listed twice in a precision
 void add_pairs(const document& doc, const std::string& key, const node& written, experiment_size size,
                std::uint64_t seed, unique_list<pair_set>& sets) {
     doc.require_table(key, written, " of [[" + key + "]]", {"class", "precision", "count", "quick"});
@@ -48,6 +49,7 @@ void add_pairs(const document& doc, const std::string& key, const node& written,
         if (precision.text != "float" && precision.text != "double")
             doc.fail(precision.line, aabb::unknown_name("precision", precision.text, known_precisions));
         for (const located_text& name : classes) {
+            // Throws if there is no such class.
             doc.at_line(name.line, [&] { static_cast<void>(pair_source<float>(name.text, seed)); });
             if (!sets.add({name.text, /*in_double=*/precision.text == "double", count, seed},
                           name.text + " in " + precision.text))
@@ -56,7 +58,7 @@ void add_pairs(const document& doc, const std::string& key, const node& written,
     }
 }
 
-/// Notes which tests support only floats, and rejects pairs in double if no test supports them.
+/// If the study has pairs of doubles: notes which tests support only floats, and rejects the study if all do.
 void require_test_for_doubles(const document& doc, error_study& study) {
     if (std::ranges::none_of(study.pairs, &pair_set::in_double)) return;
     bool has_test = false;
@@ -81,7 +83,7 @@ void require_meshes(const document& doc, const node& scene) {
             doc.fail(kind.line, kind.text + " is a scene of boxes, which has no triangles");
 }
 
-/// Reads the curves, which are either all of triangle tests or all of compositions, and share no method.
+/// Reads the curves. All are of triangle tests or all of compositions, and no method may be a point of two curves.
 std::vector<error_curve> curves_of(const document& doc) {
     std::vector<error_curve> curves;
     std::set<std::string> methods;  // of all curves so far
@@ -132,11 +134,11 @@ std::vector<metric_plot> plots_of(const document& doc) {
     return plots;
 }
 
-/// The experiment for curves of compositions, which run whole scenes of the config, as `run` does, and not single
-/// pairs. A curve is a line of a plot, through compositions that differ in parameters.
+/// The experiment for curves of compositions, which run whole scenes of the config as `run` does. A curve is a line of
+/// a plot, through compositions that differ in parameters; the experiment runs the compositions of all curves.
 experiment scene_experiment_of(const document& doc, const error_study& study, experiment_size size) {
     experiment e;
-    // `read_scenes` does not check the files of these scenes, of the other size, again.
+    // A config is read for full and for quick runs. `read_scenes` does not generate scenes of the first reading again.
     if (study.scene_experiment) e.scenes = study.scene_experiment->scenes;
     e.name = study.name;
     e.file = doc.file();
@@ -157,6 +159,7 @@ experiment scene_experiment_of(const document& doc, const error_study& study, ex
     return e;
 }
 
+/// The sets of pairs of all tables [[pairs]] or [[hits]], as the key says.
 std::vector<pair_set> pairs_of(const document& doc, const std::string& key, experiment_size size) {
     const std::span<const node> tables = doc.tables_of(key);
     if (tables.empty()) return {};
@@ -174,7 +177,8 @@ void read_triangles(const document& doc, experiment_size size, error_study& stud
     for (const node& table : doc.tables_of("scene")) require_meshes(doc, table);
     if (doc.root().find("scene")) {
         experiment with_scenes;
-        with_scenes.scenes = study.scenes;  // of the other size, whose files are not checked again
+        // A config is read for full and for quick runs. Scenes of the first reading are not generated again.
+        with_scenes.scenes = study.scenes;
         read_scenes(doc, size, with_scenes);
         study.scenes = with_scenes.scenes;
         study.notes.insert(study.notes.end(), with_scenes.notes.begin(), with_scenes.notes.end());
@@ -183,7 +187,8 @@ void read_triangles(const document& doc, experiment_size size, error_study& stud
         doc.fail(1, "this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
 }
 
-/// Reads everything that depends on the size of the experiment.
+/// Reads what differs between full and quick runs, as the kind of the curves requires: triangle pairs for triangle
+/// tests, whole scenes for compositions. Without curves, only hits are read.
 void read_sized(const document& doc, experiment_size size, error_study& study) {
     study.hits = pairs_of(doc, "hits", size);
     if (study.curves.empty()) {
@@ -203,6 +208,7 @@ void read_sized(const document& doc, experiment_size size, error_study& study) {
 
 }  // namespace
 
+/// Reads a config of `errors` from its text; the file's name is for messages.
 error_study parse_error_study(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
     if (const node* compose = doc.root().find("compose"))
@@ -213,7 +219,7 @@ error_study parse_error_study(const std::string& text, const std::string& file, 
     study.text = text;
     study.curves = curves_of(doc);
     read_sized(doc, size, study);
-    // Validates the quick settings in full runs, too.
+    // The quick settings are validated in full runs too, so that mistakes in them surface early.
     error_study in_quick = study;
     if (size == experiment_size::full) read_sized(doc, experiment_size::quick, in_quick);
     return study;

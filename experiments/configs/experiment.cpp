@@ -80,7 +80,8 @@ std::vector<external_engine> externals_of(const document& doc) {
     return externals.items();
 }
 
-/// Reads names of groups and metrics. A listed group is only recorded; a listed metric is also shown in the tables.
+/// Reads `metrics`, a list of metrics and of groups of them, which replaces the recorded groups of the default. A
+/// listed group is only recorded; a listed metric is also shown in the tables.
 void read_metrics(const document& doc, const node& value, experiment& e) {
     e.recorded.clear();
     std::vector<std::string> known;
@@ -114,7 +115,8 @@ std::size_t read_word(const document& doc, const char* key, const node& value,
     return static_cast<std::size_t>(word - known.begin());
 }
 
-/// Reads the query and the state of the caches, which only mesh scenes support.
+/// Reads the query of the narrow phase (`ask`) and whether caches are cold before it. Only scenes of meshes support
+/// other values than the defaults, so the scenes must have been read.
 void read_query(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     if (!measure) return;
@@ -138,8 +140,9 @@ void read_query(const document& doc, experiment& e) {
     if (e.query.cold) e.notes.emplace_back("caches: cold before each query");
 }
 
-/// Reads how many fresh processes share the repeats: at most one for each. More are an error, but not in quick runs,
-/// which have fewer repeats, or if nothing is timed.
+/// Reads `processes`, the number of fresh processes among which the repeats are divided; in quick runs, that of `quick`
+/// overrides it. There is at least one repeat for each process. More processes than repeats are an error, but in quick
+/// runs, which have fewer repeats, and without timing, they are reduced.
 void read_processes(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     const node* processes = measure ? measure->find("processes") : nullptr;
@@ -169,7 +172,8 @@ std::string read_name(const document& doc) {
     return plain_name_of(doc, doc.required(doc.root(), "name", "this config has no name; expected name = \"…\""));
 }
 
-/// Reads [measure], except what `read_processes` and `read_query` read; `quick` applies in quick runs only.
+/// Reads [measure], except what `read_processes` and `read_query` read. Its table `quick` applies in quick runs only,
+/// but its keys are checked in all.
 void read_measure(const document& doc, experiment_size size, experiment& e) {
     const bool quick = size == experiment_size::quick;
     if (quick) e.repeats = quick_repeats;
@@ -188,6 +192,7 @@ void read_measure(const document& doc, experiment_size size, experiment& e) {
     if (const node* value = in_quick->find("repeats"); value && quick) e.repeats = doc.integer_of("repeats", *value, 1);
 }
 
+/// Reads a config of `run` from its text; the file's name is for messages.
 experiment parse_experiment(const std::string& text, const std::string& file, experiment_size size) {
     const document doc(text, file);
     if (const node* curve = doc.root().find("curve"))
@@ -233,6 +238,7 @@ std::vector<aabb::composition> every_composition(const experiment& e) {
     return compositions;
 }
 
+/// Hashes a text of everything in the config that determines results, but not the config's own layout and comments.
 std::string hash_of(const experiment& e) {
     std::string text = e.name + " repeats=" + std::to_string(e.repeats) + " processes=" + std::to_string(e.processes);
     if (e.patience) text += " patience=" + std::to_string(*e.patience);

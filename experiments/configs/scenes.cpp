@@ -12,7 +12,7 @@ bool is_false(const node& value) {
     return value.kind == node_kind::boolean && value.text == "false";
 }
 
-/// The scene at this size of the experiment: `quick` is removed, and its entries override the others in quick runs.
+/// The table of a scene without its entry `quick`, a table whose entries override the others in quick runs.
 node at_size(const document& doc, const node& written, experiment_size size) {
     node scene = written;
     std::erase_if(scene.items, [](const node& entry) { return entry.key == "quick"; });
@@ -67,6 +67,7 @@ void require_known_keys(const document& doc, const node& scene, const scene_info
     if (quick) doc.require_keys(*quick, " of scene " + info.name, known);
 }
 
+/// The names of meshes under a key; empty if the scene lacks it.
 std::vector<std::string> names_of(const document& doc, const node& scene, const std::string& key) {
     std::vector<std::string> names;
     const node* value = scene.find(key);
@@ -92,6 +93,7 @@ std::vector<std::string> meshes_of(const document& doc, const node& scene, std::
     return fallback;
 }
 
+/// The settings of a scene with their alternative values. If its kind reads a file, every listed file must exist.
 std::vector<alternatives> settings_of(const document& doc, const node& scene, bool reads_file) {
     std::vector<alternatives> settings;
     for (const node& entry : scene.items) {
@@ -104,7 +106,8 @@ std::vector<alternatives> settings_of(const document& doc, const node& scene, bo
     return settings;
 }
 
-/// The alternatives of a seed, which is 1 by default.
+/// The seeds of a scene: a number or a list of them; 1 by default.
+/// @param seed null if the config has none
 std::vector<std::optional<std::uint64_t>> seeds_of(const document& doc, const node* seed) {
     if (!seed) return {1U};
     if (seed->kind != node_kind::list) return {doc.integer_of("seed", *seed, 0)};
@@ -131,7 +134,7 @@ void add_frames(aabb::digest& digest, auto& scene, std::size_t objects) {
     }
 }
 
-/// Generates the scene once and digests its meshes and file, which may change before a run is resumed.
+/// Generates the scene once and digests the contents of its meshes and file: if they change, a run cannot be resumed.
 void add_content(aabb::digest& digest, const scene_choice& choice, const scene_info& info) {
     if (info.has_meshes) {
         const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
@@ -163,7 +166,8 @@ int line_naming(const node& in, const std::string& strategy) {
     return 0;
 }
 
-/// Rejects compositions with strategies that need meshes if the scene has only boxes.
+/// Rejects compositions with strategies that need meshes if the scene has only boxes. The error is at the line
+/// that names such a strategy.
 void require_runnable(const document& doc, const written_scene& scene, const experiment& e) {
     if (scene.info->has_meshes) return;
     const node* compose = doc.root().find("compose");
@@ -184,20 +188,21 @@ int line_of_file(const scene_choice& choice, const std::vector<alternatives>& ke
     return std::ranges::find(key->second, file->value, &located_text::text)->line;
 }
 
-/// Digests the scene; an error whose message begins with the file's name is reported at the line that names the file.
+/// Digests the scene. Errors are reported at the line of the scene, but one whose message begins with the name of the
+/// scene's file, at the line that names the file.
 void add_content(const document& doc, const written_scene& scene, aabb::digest& digest) {
     try {
         add_content(digest, scene.choice, *scene.info);
     } catch (const aabb::input_error& error) {
         const std::string sentence = error.what();
         const auto file = std::ranges::find(scene.choice.settings, "file", &aabb::setting::name);
-        const bool of_file = scene.info->reads_file && scene.file_line > 0 && !file->value.empty() &&
-                             sentence.starts_with(resolve_file(file->value, doc.folder()).string());
-        doc.fail(of_file ? scene.file_line : scene.line, sentence);
+        const bool is_of_file = scene.info->reads_file && scene.file_line > 0 && !file->value.empty() &&
+                                sentence.starts_with(resolve_file(file->value, doc.folder()).string());
+        doc.fail(is_of_file ? scene.file_line : scene.line, sentence);
     }
 }
 
-/// Adds the scenes of one [[scene]]: kinds, settings and seeds multiply.
+/// Adds the scenes of one [[scene]]: every combination of its kinds, settings and seeds.
 /// @param seed the default of the config; null if it has none
 void add_scenes(const document& doc, const node& written, const node* seed, experiment_size size,
                 std::vector<std::string>& notes, unique_list<written_scene>& scenes) {
@@ -230,7 +235,7 @@ void add_scenes(const document& doc, const node& written, const node* seed, expe
 
 }  // namespace
 
-/// The default seeds of scenes at this size of the experiment.
+/// The entry with the default seeds of scenes: that of `quick` in quick runs, if it has one. Null if there is none.
 const node* seed_of(const document& doc, experiment_size size) {
     const node* quick = doc.root().find("quick");
     if (quick) {
@@ -240,7 +245,8 @@ const node* seed_of(const document& doc, experiment_size size) {
     return doc.root().find("seed");
 }
 
-/// Reads and checks all scenes. Those that the experiment already has, at its other size, are not generated again.
+/// Reads and checks all scenes into e.scenes. A config is read for full and for quick runs: scenes that e already has,
+/// from the first reading, are not generated again for a check of their files.
 void read_scenes(const document& doc, experiment_size size, experiment& e) {
     const node& scenes = doc.required(doc.root(), "scene", "this config has no scene; expected at least one [[scene]]");
     const std::span<const node> tables = doc.tables_of("scene");

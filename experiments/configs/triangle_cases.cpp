@@ -27,6 +27,7 @@ double coordinate_of(const document& doc, const std::string& key, const node& va
     return number;
 }
 
+/// Reads a triangle: a list of three corners, each a list of three coordinates.
 aabb::triangle3d triangle_of(const document& doc, const node& table, const std::string& key) {
     const node& corners = entry_of(doc, table, key);
     const auto require_three = [&](const node& list) {
@@ -62,6 +63,7 @@ aabb::triangle_case case_of(const document& doc, const node& table) {
 
 }  // namespace
 
+/// Reads the triangle pairs with known results in a text; the file's name is for messages.
 std::vector<aabb::triangle_case> parse_triangle_cases(const std::string& text, const std::string& file) {
     const document doc(text, file, longest_file, "a file of cases");
     doc.require_keys(doc.root(), "", {"case"});
