@@ -37,7 +37,8 @@ private:
     [[nodiscard]] double damped() const { return frequency * std::sqrt(1 - damping * damping); }
 };
 
-/// The world of a ball of 1 kg that touches the floor at time 0, with the stiffness ω² and the dashpot 2ζω.
+/// The world of a ball of 1 kg whose lowest vertex touches a fixed floor at time 0 and moves down at `speed_down` m/s.
+/// The contact is a spring of stiffness ω² with a dashpot of 2ζω, so that the ball moves as the oscillator says.
 [[nodiscard]] inline stepped_world ball_on_floor(const oscillator& contact, double speed_down, double gravity = 0) {
     stepped_world world;
     world.meshes = {floor_of(4), octahedron(0.5)};

@@ -14,7 +14,8 @@ struct method {
     candidate tested;
 };
 
-/// The default composition with one strategy replaced, by its kind and name: "triangle moller:epsilon=none".
+/// The default composition with one strategy replaced.
+/// @param replacement kind, blank and strategy: "triangle moller:epsilon=none"
 [[nodiscard]] method composed_with(std::string_view replacement) {
     aabb::composition c;
     const std::size_t space = replacement.find(' ');
@@ -41,7 +42,8 @@ struct method {
     return methods;
 }
 
-/// Every compressed tree layout, Verlet lists that are rebuilt in time, and others so rarely that they miss contacts.
+/// Every compressed tree layout, and Verlet lists: some that are rebuilt before they can miss a contact, and some,
+/// with margin=0, that are rebuilt so rarely that they miss contacts.
 [[nodiscard]] std::vector<method> tree_and_list_methods() {
     std::vector<method> methods;
     for (const char* const replacement :

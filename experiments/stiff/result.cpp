@@ -43,7 +43,8 @@ std::filesystem::path file_of(const std::filesystem::path& folder, const stiff_s
 
 }  // namespace
 
-/// Appends the result's points to the lines of the study's figures, and new lines where there is none of that label.
+/// The figures of a study with the points of its result: each point names its figure and the label of its line, which
+/// is added if the figure lacks it. Figures without points are left out.
 std::vector<figure> figures_of(const stiff_study& study, const stiff_result& result) {
     std::vector<figure> figures = study.figures;
     if (study.mark) study.mark(figures, result.rows);

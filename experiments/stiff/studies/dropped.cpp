@@ -24,7 +24,7 @@ public:
     /// @param side number of balls along an edge of the lattice
     /// @param diameter m
     dropped_balls(std::size_t side, double diameter) : diameter_(diameter) {
-        // Only the last half diameter is simulated, since the fall before it has a closed form.
+        // Of the fall, 5 diameters, only the last half diameter is simulated; the rest has a closed form, v² = 2 g h.
         const double fallen = 4.5 * diameter;
         world_ =
             dropped_world({.balls = static_cast<std::uint32_t>(side * side * side),
@@ -37,7 +37,8 @@ public:
     /// Scales a time for balls of 1 m to these balls, s.
     [[nodiscard]] double seconds(double for_1_m) const { return for_1_m * std::sqrt(diameter_); }
 
-    /// Simulates the fall with the candidate's contacts. Ends early if bodies leave the range of valid poses.
+    /// Simulates the fall with the contacts that the candidate finds. Samples the greatest depth, and the energy on
+    /// request, twenty times. Ends early if bodies leave the range of valid poses.
     /// @param stored_every the interval of the stored positions, in steps
     /// @throws aabb::input_error if it ends before the first of its twenty samples.
     [[nodiscard]] trajectory run(const candidate& tested, const integrator_info& stepping, double step,
@@ -46,7 +47,7 @@ public:
         simulation balls(world_, tested, stepping);
         const double initial_energy = dynamics(world_).mechanical_energy(balls.state());
         const auto steps = static_cast<std::size_t>(std::llround(seconds(end) / step));
-        double squares = 0;
+        double squares = 0;  // of relative energy errors
         const std::size_t sample_interval = std::max<std::size_t>(steps / 20, 1);
         for (std::size_t s = 1; s <= steps; ++s) {
             try {
@@ -66,7 +67,8 @@ public:
         return t;
     }
 
-    /// The greatest error of any coordinate, in diameters, by stored step; infinite after the end of the trajectory.
+    /// How far a trajectory departs from the reference: by stored step, the greatest difference of any coordinate of
+    /// any ball, in diameters. Infinite after the trajectory's end, if it ended early.
     [[nodiscard]] std::vector<double> departures(const trajectory& t, const trajectory& reference) const {
         std::vector<double> errors;
         for (std::size_t s = 0; s < std::min(t.positions.size(), reference.positions.size()); ++s) {
@@ -99,7 +101,8 @@ private:
         return sum;
     }
 
-    /// The greatest overlap of two balls, bodies 1 and up, treated as spheres, in diameters.
+    /// The greatest overlap of two balls, treated as spheres, in diameters; 0 if none overlap.
+    /// @param p three coordinates of each body in turn, of which body 0 is the floor
     [[nodiscard]] double greatest_depth(const std::vector<double>& p) const {
         double least_distance = diameter_;
         for (std::size_t i = 1; 3 * i < p.size(); ++i)
@@ -126,7 +129,8 @@ void plot_depths(const std::string& size, const std::string& label, const trajec
     for (std::size_t i = 0; i < t.times.size(); ++i) result.plot(depth, label, t.times[i], t.depths[i]);
 }
 
-/// The trajectory of each method, with one thread per processor, since these runs are not timed.
+/// The trajectory of the balls with each method. Since these runs are not timed, every processor has a thread that
+/// takes the next method until none is left; the calling thread reports progress.
 std::vector<trajectory> trajectories_of(const std::vector<method>& methods, const dropped_balls& balls, double step,
                                         const stiff_setting& setting) {
     std::vector<trajectory> trajectories(methods.size());
@@ -146,8 +150,9 @@ std::vector<trajectory> trajectories_of(const std::vector<method>& methods, cons
     return trajectories;
 }
 
-/// Compares the trajectory of each method with that of exact contacts, for one step size. Exact methods must not depart
-/// from it at all; how far others do is reported, and drawn for the first nine of them.
+/// Compares the trajectory of the balls with each method with that with exact contacts, at one step size. With an exact
+/// method it must not depart at all; with others, how far it departs is reported, and drawn for the first nine of them.
+/// @param size the diameter of the balls in words, for labels
 void compare_methods(const dropped_balls& balls, const std::string& size, const stiff_setting& setting,
                      stiff_result& result) {
     const double step = balls.seconds(1e-3);
@@ -186,12 +191,14 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
     result.add(reported("exact, " + size, "energy error, RMS", reference.energy_error));
 }
 
-/// Plots error over detection time, of each symplectic integrator by step size, and of stale Verlet lists by the frames
-/// between rebuilds. The reference has a 16th of the smallest step. The energy of symplectic integrators only deviates,
-/// by a power of the step size that is their order; that of others drifts, so they are left out.
+/// Plots the error of a trajectory over its detection time: of each symplectic integrator with several step sizes, and
+/// of stale Verlet lists with several numbers of frames between rebuilds. The reference has a 16th of the smallest
+/// step. The energy error of a symplectic integrator is bounded, and must fall with the step size to the power of its
+/// order; the energy of other integrators drifts, so they are left out.
 void compare_steps(const dropped_balls& balls, const stiff_setting& setting, stiff_result& result) {
     const std::vector<double> steps =
         setting.quick ? std::vector{4e-3, 2e-3, 1e-3} : std::vector{4e-3, 2e-3, 1e-3, 5e-4};
+    // Trajectories of all step sizes are stored at the same times, those of the greatest step.
     const auto stored_every = [&](double dt) { return static_cast<std::size_t>(std::llround(steps.front() / dt)); };
     const integrator_info& verlet = *integrator_named("velocity_verlet");
     const double finest = steps.back() / 16;

@@ -22,7 +22,8 @@ double share_of_rest(double frequency, double time) {
 
 }  // namespace
 
-/// Compares the depth with the closed form by each adaptive integrator; the implicit one must need few detections.
+/// Lets an overdamped ball sink into the floor and compares its depth with the closed form, once while it sinks and
+/// once after 1 s, by which it rests. Runs adaptive integrators only; the implicit one, bdf, must need few detections.
 void run_overdamped(const stiff_setting& setting, stiff_result& result) {
     for (const double k : {1e4, 1e6, 1e8, 1e10}) {
         const double frequency = std::sqrt(k);
@@ -41,7 +42,7 @@ void run_overdamped(const stiff_setting& setting, stiff_result& result) {
                 ball.advance(sinking);
                 result.add(within(subject, "depth while it sinks over depth at rest",
                                   depth_of_ball(ball.state()) * k / gravity, share_of_rest(frequency, sinking), 1e-3));
-                // Up to the rounding of the sum of steps.
+                // The tolerance covers the rounding of the sum of steps.
                 while (ball.state().time < end * (1 - 1e-9)) ball.advance(std::min(end / 20, end - ball.state().time));
                 result.add(within(subject, "depth after 1 s over depth at rest",
                                   depth_of_ball(ball.state()) * k / gravity, share_of_rest(frequency, end), 1e-3));

@@ -24,8 +24,10 @@ public:
         local_->add_model(body_);
     }
 
-    /// Shoots the body once. @param phase offset of the start, in steps
-    /// @param swept whether boxes cover the motion between frames, in which case positions in between are tested too
+    /// Shoots the body down through the plate once. @returns whether a frame detects that they intersect
+    /// @param phase offset of the start, in steps
+    /// @param swept whether a box covers the motion from a frame to the next; if the boxes overlap, positions between
+    /// the frames are tested too
     [[nodiscard]] bool is_detected(double phase, bool swept) {
         const double above = double{thickness} + step_;
         for (double z = above - phase * step_; z > -above - 2 * double{radius}; z -= step_) {

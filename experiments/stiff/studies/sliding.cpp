@@ -16,7 +16,8 @@ constexpr double rest = 1e-3;      // compression of a spring whose vertex just 
 constexpr int positions = 257;
 constexpr double displacement = 1.0 / 128;  // between positions
 
-/// Teeth that stand on their tips. Each is a single triangle, so that only pairs at its tip detect it.
+/// The upper mesh: 8 by 8 teeth that stand on their tips. Each tooth is a single triangle that meets the flat mesh only
+/// at its tip, so that a false negative there loses the tooth's share of the load.
 aabb::mesh comb_mesh() {
     aabb::mesh teeth;
     for (std::uint32_t i = 0; i < tips * tips; ++i) {
@@ -61,7 +62,9 @@ aabb::mesh placed(aabb::mesh m, const placement& p) {
     return m;
 }
 
-/// The normal force at each position, relative to the force if all tips are detected at their depth.
+/// The normal force between the meshes at each position of the slide, relative to the load: the force if the contacts
+/// of all tips are detected. The spring of a tip that just touches is already compressed by `rest`, so that a
+/// contact of depth 0 exerts a force too.
 std::vector<double> forces_of(const candidate& tested, const placement& p) {
     const aabb::mesh lower = placed(floor_of(/*side=*/8, /*n=*/16), p);
     const aabb::mesh upper = placed(comb_mesh(), p);

@@ -11,10 +11,11 @@ namespace aabblab {
 
 namespace {
 
-constexpr double frequency = 1e3;
+constexpr double frequency = 1e3;  // ω of the contact, 1/s
 constexpr double gravity = 9.81;
 constexpr auto greatest_step = "greatest stable dt·ω";
-constexpr double at_rest = gravity / (frequency * frequency);  // the depth of equilibrium, m
+// The depth of equilibrium, m.
+constexpr double at_rest = gravity / (frequency * frequency);
 
 /// A ball that oscillates about its equilibrium and never leaves contact.
 class oscillating_ball {
@@ -40,8 +41,9 @@ private:
     simulation ball_;
 };
 
-/// The energy drift, without bounded oscillations: the greatest energy in the last tenth of the steps over that in the
-/// first tenth, minus 1.
+/// The relative drift of the energy of a ball that oscillates for a number of periods: its greatest value in the last
+/// tenth of the steps over that in the first tenth, minus 1. Bounded oscillations of the energy do not count.
+/// @param scaled_step dt·ω
 double drift_of(const candidate& tested, const integrator_info& stepping, double scaled_step, std::size_t periods,
                 double tolerance) {
     oscillating_ball ball(tested, stepping, /*amplitude=*/at_rest / 100, tolerance);
@@ -63,10 +65,11 @@ double energy_factor_of_dormand_prince(double scaled_step) {
     return std::norm(growth);
 }
 
-/// Whether the energy does not grow, apart from 1 %. Symplectic integrators conserve a modified energy, so that the
-/// real one oscillates, more so near their limit.
+/// Whether an integrator is stable with steps of this dt·ω: in 20,000 steps, the ball stays in contact, and its
+/// greatest energy in the second half is at most 1 % above that in the first. Halves are compared because the energy
+/// oscillates, and the more the nearer the limit: a symplectic integrator conserves only a modified energy.
 bool is_stable(const candidate& tested, const integrator_info& stepping, double scaled_step) {
-    // The amplitude is so small that the ball stays in contact even if it grows.
+    // The amplitude is so small that the ball stays in contact even if the amplitude grows.
     oscillating_ball ball(tested, stepping, /*amplitude=*/at_rest * 1e-6, /*tolerance=*/0);
     double before = 0, after = 0;
     constexpr int steps = 20000;
@@ -81,7 +84,7 @@ bool is_stable(const candidate& tested, const integrator_info& stepping, double 
     return after <= 1.01 * before;
 }
 
-/// The greatest stable dt·ω, by bisection between 0.1 and 4.
+/// The greatest dt·ω at which an integrator is stable, by bisection between 0.1 and 4.
 double limit_of(const candidate& tested, const integrator_info& stepping) {
     double stable = 0.1, unstable = 4;
     while (unstable - stable > 1e-3) {
@@ -100,7 +103,8 @@ void mark_limits(std::span<figure> figures, std::span<const stiff_row> rows) {
 }  // namespace
 
 /// Measures the energy drift of each integrator at several step sizes, and the greatest stable step of those with a
-/// fixed step. Symplectic ones must not drift; that of order 5 must lose energy as its stability polynomial says.
+/// fixed step. The energy of symplectic ones must not drift; dormand_prince, of order 5, must lose energy as its
+/// stability polynomial says: each step multiplies the energy by a factor.
 void run_stability(const stiff_setting& setting, stiff_result& result) {
     const std::size_t periods = setting.quick ? 100 : 1000;
     for (const integrator_info& i : integrators()) {
@@ -118,7 +122,7 @@ void run_stability(const stiff_setting& setting, stiff_result& result) {
                     result.add(
                         at_most(subject, "energy drift, without sign", std::abs(drift), setting.quick ? 0.05 : 1e-3));
                 } else {
-                    // From the first step to the first one of the last tenth.
+                    // The energy falls: its greatest values are at the first steps of both tenths, 0.9 of all apart.
                     const double lost =
                         std::pow(energy_factor_of_dormand_prince(scaled_step),
                                  0.9 * static_cast<double>(periods) * 2 * std::numbers::pi / scaled_step) -

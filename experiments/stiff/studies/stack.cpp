@@ -13,8 +13,9 @@ constexpr double gravity = 9.81;   // m/s²
 constexpr double edge = 0.25;      // m
 constexpr std::size_t bodies = 10;
 
-/// Ten stacked pyramids with masses in geometric progression from 1 kg at the bottom to `ratio` at the top. Dashpots
-/// are critical for the slowest mode, all masses M on n springs in series: c/n = 2 √(M k/n).
+/// Ten stacked pyramids with masses in geometric progression, from 1 kg at the bottom to `ratio` kg at the top. The
+/// dashpots are critical for the slowest oscillation, of the total mass M on n springs in series. Their stiffness is
+/// k/n and their damping c/n, so c/n = 2 √(M k/n).
 stepped_world stack_of(double ratio) {
     stepped_world world;
     world.meshes = {floor_of(4), hanging_pyramid(edge, 2 * edge)};
@@ -41,8 +42,9 @@ double depth_of(const motion_state& state, std::size_t i) {
 
 }  // namespace
 
-/// Lets the stack settle for two seconds, with the implicit integrator, and with Verlet where the masses are similar:
-/// more mass needs a stronger dashpot, and so shorter steps. Compares the depths with mg/k, m being the mass above.
+/// Lets the stack settle for two seconds and compares the depth of each body in the one below with mg/k, where m is its
+/// mass and that above. Runs the implicit integrator, and Verlet where the masses are similar: more mass needs a
+/// stronger dashpot, and so shorter explicit steps.
 void run_stack(const stiff_setting& setting, stiff_result& result) {
     for (const double ratio : {1.0, 10.0, 100.0, 1000.0}) {
         const stepped_world world = stack_of(ratio);
@@ -52,14 +54,15 @@ void run_stack(const stiff_setting& setting, stiff_result& result) {
             if (i.name != "bdf" && (i.name != "velocity_verlet" || ratio > (setting.quick ? 1 : 10))) continue;
             run_or_record_failure(result, i.name, [&] {
                 simulation stack(world, setting.tested, i, /*tolerance=*/1e-9);
-                double greatest = 0;
+                double greatest = 0;  // depth of the lowest body
                 const double end = 2;
                 while (stack.state().time < end) {
                     stack.advance(step);
                     greatest = std::max(greatest, depth_of(stack.state(), 1));
                     setting.progress(stack.state().time / end);
                 }
-                double worst = 0, mass = 0;  // of a body and those above
+                double worst = 0;  // relative error of a depth
+                double mass = 0;   // of body b and those above
                 for (std::size_t b = bodies; b > 0; --b) {
                     mass += world.bodies[b].mass;
                     worst = std::max(worst, std::abs(depth_of(stack.state(), b) * stiffness / (mass * gravity) - 1));
