@@ -18,7 +18,8 @@ public:
         values_.insert(values_.end(), state.velocity.begin(), state.velocity.end());
     }
 
-    /// x'' = a(x, v) in first order: displacements since the start change by velocities, and these by accelerations.
+    /// The derivative of the values, for solvers: the values are displacements since the start, then velocities, so
+    /// their derivative is velocities, then accelerations a(x, v).
     void operator()(const std::vector<double>& values, std::vector<double>& derivative, double /*time*/) {
         const auto half = static_cast<std::ptrdiff_t>(position_.size());
         std::transform(values.begin(), values.begin() + half, start_.begin(), position_.begin(), std::plus());

@@ -29,8 +29,9 @@ struct depth_of_vertex {
     Vector3d normal;  // of length 1
 };
 
-/// The vertices that springs push: those of the second body's reported triangles below the plane of the intersected
-/// triangle of the first body, or at most `rest` above it. A vertex that several pairs report is repeated.
+/// The vertices that springs push. Each contact is a pair of triangles, one of each body: of the second one's triangle,
+/// the vertices below the plane of the first one's triangle count, or at most `rest` above it. A vertex that several
+/// contacts report is repeated.
 std::vector<depth_of_vertex> depths_of(std::span<const aabb::contact> contacts, const placed_mesh& first,
                                        const placed_mesh& second, double rest) {
     std::vector<depth_of_vertex> depths;
@@ -80,6 +81,7 @@ contact_force pressure_force(const contact_law& law, std::span<const aabb::conta
         const aabb::triangle_intersection common =
             aabb::intersection_of(first.triangle(c.triangle_a), second.triangle(c.triangle_b));
         if (common.size != 2) continue;  // only a segment has an integral
+        // The sum over a closed curve is the same for every origin; one on the curve rounds least.
         if (!origin) origin = in_eigen(common.corners[0]);
         const Vector3d p = in_eigen(common.corners[0]) - *origin;
         const Vector3d q = in_eigen(common.corners[1]) - *origin;
@@ -112,13 +114,13 @@ std::vector<half_space> half_spaces_of(const placed_mesh& m, std::uint32_t most_
     return half_spaces;
 }
 
-/// Clips a convex polygon by a half-space (Sutherland and Hodgman 1974).
+/// The part of a convex polygon inside a half-space (Sutherland and Hodgman 1974), with the boundary.
 polygon clipped(const polygon& p, const half_space& h) {
     polygon kept;
     for (std::size_t i = 0; i < p.size(); ++i) {
         const Vector3d& from = p[i];
         const Vector3d& to = p[(i + 1) % p.size()];
-        const double d_from = dot(h.normal, from) - h.offset;
+        const double d_from = dot(h.normal, from) - h.offset;  // at most 0 inside
         const double d_to = dot(h.normal, to) - h.offset;
         if (d_from <= 0) kept.push_back(from);
         if ((d_from < 0 && d_to > 0) || (d_from > 0 && d_to < 0)) {
@@ -128,8 +130,8 @@ polygon clipped(const polygon& p, const half_space& h) {
     return kept;
 }
 
-/// Clips all triangles by the half-spaces, and returns six times the signed volume of the cones from the apex over
-/// them. Over a closed surface these volumes add up to the enclosed one (the divergence theorem).
+/// Clips all triangles of a mesh by the half-spaces. @returns six times the signed volume of the cones from the apex
+/// over the clipped parts. Over a closed surface these volumes add up to the enclosed one (the divergence theorem).
 double cones_over(const placed_mesh& m, std::span<const half_space> half_spaces, const Vector3d& apex) {
     double sum = 0;
     for (std::uint32_t t = 0; t < m.mesh->triangle_count(); ++t) {
@@ -139,6 +141,7 @@ double cones_over(const placed_mesh& m, std::span<const half_space> half_spaces,
             part = clipped(part, {h.normal, h.offset - dot(h.normal, apex)});
             if (part.size() < 3) break;
         }
+        // The part is a fan of triangles; the triple product is six times the volume of the cone over one.
         for (std::size_t i = 2; i < part.size(); ++i) sum += dot(part[0], part[i - 1].cross(part[i]));
     }
     return sum;
@@ -154,7 +157,7 @@ auto vector_at(std::span<double> values, std::size_t body) {
 
 }  // namespace
 
-/// Transforms the corners to world coordinates, in double.
+/// The triangle of this index in world coordinates, computed in double.
 aabb::triangle3d placed_mesh::triangle(std::uint32_t index) const {
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(pose.rotation.data());
     const aabb::triangle3f local = mesh->triangle(index);
@@ -164,7 +167,8 @@ aabb::triangle3d placed_mesh::triangle(std::uint32_t index) const {
     return {{corner(0), corner(1), corner(2)}};
 }
 
-/// The force on the second body: one pressure, or springs at the deepest vertex or at each vertex, as the law says.
+/// The force on the second body from all contacts of two bodies. As the law says, it is that of a pressure, of one
+/// spring at the deepest vertex, or of a spring at each vertex.
 contact_force force_of(const contact_law& law, std::span<const aabb::contact> contacts, const placed_mesh& first,
                        const placed_mesh& second, const aabb::vec3d& approach) {
     if (law.geometry == contact_geometry::shared_volume)
@@ -206,8 +210,9 @@ void stepped_world::place(std::span<const double> position, std::vector<aabb::po
     for (std::size_t i = 0; i < bodies.size(); ++i) poses[i] = {bodies[i].rotation, from_eigen(vector_at(position, i))};
 }
 
-/// Sets the accelerations: gravity for bodies that are not fixed, then force over mass for each two bodies in contact,
-/// whose contacts follow each other because they are sorted. Division by a fixed body's infinite mass gives none.
+/// Sets the acceleration of every body: gravity, unless it is fixed, and contact forces over its mass. A fixed body has
+/// infinite mass, so forces do not accelerate it.
+/// @param contacts sorted, so that those of two bodies follow each other
 void dynamics::accelerate(std::span<const double> position, std::span<const double> velocity,
                           std::span<const aabb::contact> contacts, std::span<double> acceleration) {
     const std::vector<body>& bodies = world_.bodies;

@@ -18,7 +18,8 @@ class adaptive_dormand_prince final : public integrator {
 public:
     explicit adaptive_dormand_prince(double tolerance) : tolerance_(tolerance) {}
 
-    /// Takes as many steps within `step` as keep the estimated error of each within the tolerance.
+    /// Advances the state by `step`, in steps of its own, so short that the estimated error of each is within the
+    /// tolerance.
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         namespace odeint = boost::numeric::odeint;
         using stepper = odeint::runge_kutta_dopri5<std::vector<double>>;
@@ -40,7 +41,7 @@ private:
 
 }  // namespace
 
-/// Its summary follows that of dormand_prince in lists.
+/// The entry of lists of integrators. "The same" refers to dormand_prince, which precedes it there.
 integrator_info adaptive_dormand_prince_integrator() {
     return {.name = "adaptive_dormand_prince",
             .summary = "the same with adaptive steps, controlled by a tolerance (Boost.odeint)",

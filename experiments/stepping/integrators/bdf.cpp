@@ -23,7 +23,8 @@ public:
         context_.reset(context);
     }
 
-    /// Continues CVODE's solution, whose order and step depend on the earlier calls, to the end of this step.
+    /// Advances the state by `step`. CVODE continues its solution from the earlier calls, on which its order and the
+    /// length of its own steps depend. Rethrows an exception of the callback that computes accelerations.
     void advance(const acceleration_of& acceleration, motion_state& state, double step) override {
         if (!system_) {
             system_.emplace(acceleration, state);
@@ -59,7 +60,8 @@ private:
     template <class Handle, auto Free>
     using owned = std::unique_ptr<std::remove_pointer_t<Handle>, freed_by<Free>>;
 
-    /// Sets CVODE up: Newton's method with a dense matrix, for the error tolerance, without printed messages.
+    /// Sets CVODE up for these initial values: backward differences, Newton's method with a dense matrix, the tolerance
+    /// of this integrator, and no printed messages.
     void create_solver(const std::vector<double>& initial, double time) {
         const auto size = static_cast<sunindextype>(initial.size());
         values_.reset(N_VNew_Serial(size, context_.get()));
@@ -75,7 +77,8 @@ private:
         CVodeSetErrHandlerFn(memory_.get(), [](int, const char*, const char*, char*, void*) {}, nullptr);
     }
 
-    /// CVODE's callback, which computes the derivative of `values`. @return 0, or -1 after an exception.
+    /// CVODE's callback, which writes the derivative of `values` to `change`. `self` is the bdf of CVodeSetUserData.
+    /// @returns 0, or -1 after an exception
     static int derivative(double time, N_Vector values, N_Vector change, void* self) {
         bdf& solver = *static_cast<bdf*>(self);
         try {
