@@ -72,7 +72,8 @@ struct box_run {
     aabb::cost_model planned_by;
 };
 
-/// Measures every frame of a run: its work if the run counts it, otherwise its time, which counting would lengthen.
+/// Runs the broad phase on all frames and measures each: its work if the run counts it, otherwise its time, which
+/// counting would lengthen. Strategies plan by the costs of the run.
 std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentation counted) {
     const costs_in_scope costs(run.planned_by);
     scene_frames scene(std::make_unique<aabb::known_boxes>(*run.frames));
@@ -94,7 +95,7 @@ std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentatio
 /// Earlier frames are not representative: nothing is sorted, planned or kept between frames yet.
 constexpr std::size_t warm_up_frames = 2;
 
-/// The means over every `step`-th frame from `first` on.
+/// The mean time, pairs and work of frames first, first + step, first + 2 step, ...
 frame_sample mean_of(const std::vector<frame_sample>& frames, std::size_t first, std::size_t step) {
     frame_sample mean;
     std::uint64_t count = 0;
@@ -126,7 +127,8 @@ struct generated_scene {
 /// The work of a mean frame: first the kinds with a cost, then kinds that no strategy plans by, with a constant 1.
 using work_of_frame = std::function<std::vector<double>(const frame_sample&)>;
 
-/// A trial whose only part is the mean frame after the warm-up.
+/// A trial that measures one thing, the mean frame after the warm-up: its time, and its amounts of work, which `work`
+/// computes from the counters.
 trial frames_trial(const generated_scene& scene, cost_group group, const aabb::composition& c,
                    const aabb::cost_model& planned_by, work_of_frame work) {
     const box_run run{scene.frames, c, planned_by};
@@ -146,7 +148,8 @@ struct list_work {
     }
 };
 
-/// Adds a search by columns, and a Verlet list that is rebuilt in every even frame and reused in every odd one.
+/// Adds two trials for the costs of Verlet lists: a plain search in every frame; and a list that is rebuilt in every
+/// even frame and reused in every odd one, with a measurement for each of the two.
 void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
     trials.push_back(frames_trial(scene, cost_group::lists, {}, {}, [n = scene.n](const frame_sample& mean) {
         return list_work{.searched_boxes = n, .searched_pairs = mean.pairs}.by_cost();
@@ -172,7 +175,8 @@ void add_list_trials(std::vector<trial>& trials, const generated_scene& scene) {
     trials.push_back({scene.name, scene.held_out, measure});
 }
 
-/// Adds a search with an axial cut, or none. It sorts `lists` lists: of each cut axis, and of the swept one if uncut.
+/// Adds a trial of a search with this sort and with an axial cut of the world into subsets, or with none.
+/// @param lists how many lists it sorts: one for each cut axis, and one for the swept axis if that is not cut
 void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, const std::string& sort,
                    const aabb::strategy_choice& partition, double lists) {
     aabb::composition c;
@@ -189,7 +193,8 @@ void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, con
     }));
 }
 
-/// Adds trials with few and many subsets and copies, so that the fit can separate their costs.
+/// Adds trials of axial cuts: with one subset, with few and with many, and so with few and many copies of boxes in
+/// several subsets. Work in different ratios lets the fit separate the costs.
 void add_cut_trials(std::vector<trial>& trials, const generated_scene& scene) {
     const auto cut = [](const char* axes, const char* segments) {
         return aabb::strategy_choice{"axial_cut", {{"axes", axes}, {"segments", segments}}};
@@ -203,7 +208,8 @@ void add_cut_trials(std::vector<trial>& trials, const generated_scene& scene) {
     add_cut_trial(trials, scene, "radix", cut("3", "16"), /*lists=*/3);
 }
 
-/// Adds a search by columns along these axes; the costs `planned_by` determine how many columns it has.
+/// Adds a trial of a search by columns. Its number of columns is planned by `planned_by`, which need not be true costs.
+/// @param axes number of axes along which the world is divided
 void add_column_trial(std::vector<trial>& trials, const generated_scene& scene, const char* axes,
                       const aabb::cost_model& planned_by) {
     aabb::composition c;
@@ -219,14 +225,15 @@ void add_column_trial(std::vector<trial>& trials, const generated_scene& scene, 
     }));
 }
 
-/// Adds trials with more and with fewer columns than are optimal, so that the fit can separate their costs.
+/// Adds trials with as many columns as are optimal, with more and with fewer, so that the fit can separate the costs.
+/// If the plan is given too high a cost of tests, it has more columns; if too high a cost of columns, fewer.
 void add_column_trials(std::vector<trial>& trials, const generated_scene& scene) {
-    constexpr double many_times = 8;
+    constexpr double exaggeration = 8;
     aabb::cost_model more;
-    more.column_test *= many_times;
+    more.column_test *= exaggeration;
     aabb::cost_model fewer;
-    fewer.column_entry *= many_times;
-    fewer.column *= many_times;
+    fewer.column_entry *= exaggeration;
+    fewer.column *= exaggeration;
     add_column_trial(trials, scene, "2", {});
     add_column_trial(trials, scene, "2", more);
     add_column_trial(trials, scene, "2", fewer);
@@ -245,7 +252,10 @@ std::size_t frames_for(std::size_t objects) {
     return objects < 1000 ? 41 : objects < 10'000 ? 17 : 9;
 }
 
-/// Adds a trial with two parts: building the trees, by triangle, and all queries, by node visit.
+/// Adds a trial of the narrow phase with two measurements: building the trees, whose work is the number of triangles,
+/// and all queries, whose work is the number of node visits.
+/// @param held_out whether it serves to check the fit, and not for the fit
+/// @param group of the costs of this build
 void add_mesh_trial(std::vector<trial>& trials, const scene_choice& choice, bool held_out, const std::string& build,
                     cost_group group) {
     const auto triangles = static_cast<double>(traits_of(scene_frames(choice)).triangles);
@@ -271,7 +281,8 @@ void add_mesh_trials(std::vector<trial>& trials, const std::string& standing, co
 
 using sizes = std::vector<std::size_t>;
 
-/// Trials of the lists and of the broad phase; the held-out ones use other kinds of scenes than the fitted ones.
+/// Trials of Verlet lists, axial cuts and columns, on scenes of several kinds and sizes. The held-out ones, which check
+/// the fit, use other kinds of scenes than the fitted ones.
 std::vector<trial> box_trials(calibration_size size) {
     const bool quick = size == calibration_size::quick;
     std::vector<trial> trials;
@@ -301,7 +312,7 @@ std::vector<trial> box_trials(calibration_size size) {
     return trials;
 }
 
-/// Trials of builds and queries of trees; the held-out ones use another pair of shapes.
+/// Trials of builds and queries of trees, on pairs of shapes. The held-out ones, which check the fit, use another pair.
 std::vector<trial> mesh_trials(calibration_size size) {
     const bool quick = size == calibration_size::quick;
     std::vector<trial> trials;
@@ -334,7 +345,8 @@ struct group_observations {
     std::vector<timed_work> fitted, held_out;
 };
 
-/// Counts the work of every trial, then times all trials in interleaved rounds until the time is over.
+/// Runs every trial once with its work counted, then times all trials in interleaved rounds until the time is over,
+/// with 3 to 25 repeats. @returns work and times by group of costs
 std::vector<group_observations> observe_trials(std::vector<trial> trials, double seconds) {
     constexpr std::size_t fewest_repeats = 3, most_repeats = 25;
     const auto remaining = [seconds, began = std::chrono::steady_clock::now()] {
@@ -361,12 +373,13 @@ std::vector<group_observations> observe_trials(std::vector<trial> trials, double
 
 }  // namespace
 
-/// Fits the costs of each group of operations to measured times, and checks their predictions in held-out scenes.
+/// Measures the costs of operations on this machine: fits the costs of each group to the work and times of its trials,
+/// and checks the times that they predict on held-out scenes.
 calibration calibrate(calibration_size size, double seconds) {
     std::vector<trial> trials = box_trials(size);
     std::ranges::move(mesh_trials(size), std::back_inserter(trials));
     const std::vector<group_observations> observed = observe_trials(std::move(trials), seconds);
-    // A cost of nearly 0 means that noise hid it: nothing is free.
+    // A cost of nearly 0 means that noise hid it, for nothing is free: it becomes a hundredth of the shipped cost.
     constexpr double least_share = 0.01;
     calibration result;
     for (std::size_t g = 0; g < observed.size(); ++g) {

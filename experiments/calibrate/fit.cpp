@@ -27,7 +27,8 @@ struct normal_equations {
     Eigen::VectorXd sums;
 };
 
-/// Solves non-negative least squares by coordinate descent (Franc, Hlaváč and Navara 2005), from the given costs.
+/// Improves the given costs until they solve the least-squares problem with costs >= 0, by coordinate descent (Franc,
+/// Hlaváč and Navara 2005): each cost in turn becomes the best one while the others stay.
 void descend(const normal_equations& equations, Eigen::VectorXd& costs) {
     constexpr int most_rounds = 20'000;
     constexpr double near_enough = 1e-12;
@@ -51,14 +52,15 @@ double median_of(std::vector<double> values) {
     return quartiles_of(std::move(values)).median;
 }
 
-/// The Huber weight of each observation: 1 for usual residuals, smaller for outliers.
+/// The Huber weight of each observation: 1 up to a threshold of its residual, the relative error of the predicted time;
+/// threshold / residual beyond.
 std::vector<double> weights_of(std::span<const timed_work> observations, const Eigen::VectorXd& costs) {
     constexpr double most_deviations = 1.345;         // standard deviations: 95 % efficient for normal errors
-    constexpr double deviations_per_median = 1.4826;  // of absolute normal errors
-    constexpr double least_scale = 1e-9;              // if most residuals are 0
+    constexpr double deviations_per_median = 1.4826;  // standard deviation over median of absolute normal errors
+    constexpr double least_deviation = 1e-9;          // if most residuals are 0
     std::vector<double> residuals;
     for (const timed_work& o : observations) residuals.push_back(std::abs(work_of(o).dot(costs) / median_of(o.ns) - 1));
-    const double threshold = most_deviations * std::max(least_scale, deviations_per_median * median_of(residuals));
+    const double threshold = most_deviations * std::max(least_deviation, deviations_per_median * median_of(residuals));
     std::vector<double> weights;
     for (const double r : residuals) weights.push_back(r <= threshold ? 1 : threshold / r);
     return weights;
@@ -67,7 +69,8 @@ std::vector<double> weights_of(std::span<const timed_work> observations, const E
 /// Normal equations that can be bootstrapped. Whole scenes are resampled, in the role of processes.
 class resampled_equations {
 public:
-    /// Sums up the equations of each scene and repeat. The bootstrap draws scenes as its processes, with one seed each.
+    /// Sums up the normal equations of each scene and repeat, over the observations of the scene. The bootstrap, made
+    /// for processes, seeds and repeats, takes each scene as a process with a single seed.
     resampled_equations(std::span<const timed_work> observations, std::span<const double> weights)
         : count_(static_cast<Eigen::Index>(observations.front().work.size())) {
         std::map<std::string, std::vector<std::size_t>> scenes;
@@ -79,12 +82,13 @@ public:
         std::size_t scene = 0;
         for (const auto& [name, indices] : scenes) {
             for (std::size_t repeat = 0; repeat < size_.repeats; ++repeat) {
-                normal_equations own(count_);
-                for (const std::size_t o : indices) own.add(observations[o], observations[o].ns[repeat], weights[o]);
+                normal_equations equations(count_);
+                for (const std::size_t o : indices)
+                    equations.add(observations[o], observations[o].ns[repeat], weights[o]);
                 for (Eigen::Index i = 0; i < count_; ++i) {
-                    sums_[static_cast<std::size_t>(i)].add(scene, /*seed=*/0, own.sums[i]);
+                    sums_[static_cast<std::size_t>(i)].add(scene, /*seed=*/0, equations.sums[i]);
                     for (Eigen::Index j = 0; j <= i; ++j)
-                        products_[index_of(i, j)].add(scene, /*seed=*/0, own.products(i, j));
+                        products_[index_of(i, j)].add(scene, /*seed=*/0, equations.products(i, j));
                 }
             }
             ++scene;
@@ -92,7 +96,8 @@ public:
     }
 
     [[nodiscard]] const sample_size& size() const { return size_; }
-    /// The equations of one bootstrap resample.
+    /// The normal equations of one bootstrap resample: means over the drawn scenes and repeats. They are symmetric, so
+    /// only the entries on and below the diagonal are stored.
     [[nodiscard]] normal_equations draw(const resample& drawn) const {
         normal_equations equations(count_);
         for (Eigen::Index i = 0; i < count_; ++i) {
@@ -116,7 +121,8 @@ private:
 
 }  // namespace
 
-/// Iteratively reweighted least squares (Huber), in which outliers count less; intervals are from a bootstrap.
+/// Fits the costs of kinds of work, such that work times costs is near the measured times: by iteratively reweighted
+/// least squares (Huber), in which outliers count less. The confidence intervals are from a bootstrap.
 std::vector<estimate> fit_costs(std::span<const timed_work> observations) {
     constexpr int rounds = 30;
     const auto count = static_cast<Eigen::Index>(observations.front().work.size());
@@ -142,7 +148,7 @@ std::vector<estimate> fit_costs(std::span<const timed_work> observations) {
     return estimates;
 }
 
-/// By what factor the predicted times are off, in either direction: the median and the worst.
+/// The factor, at least 1, by which times predicted with these costs are too long or too short: median and worst.
 accuracy accuracy_of(std::span<const timed_work> observations, std::span<const estimate> costs) {
     Eigen::VectorXd values(static_cast<Eigen::Index>(costs.size()));
     std::ranges::transform(costs, values.begin(), &estimate::value);
