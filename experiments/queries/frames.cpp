@@ -46,15 +46,15 @@ std::map<std::string, std::uint64_t> by_name(const kind_counts& counts) {
     return named;
 }
 
-/// A line with the number of pairs of each kind that occurs, in the order of `intersection_kind`; empty if there is
-/// none.
+/// A line with the number of pairs of triangles of each kind of intersection that occurs; empty if there is none.
 std::string to_text(const kind_counts& counts) {
-    constexpr std::array<std::string_view, std::tuple_size_v<kind_counts>> what{
+    // In the order of `intersection_kind`.
+    constexpr std::array<std::string_view, std::tuple_size_v<kind_counts>> words{
         "do not intersect", "touch in a point", "touch along a segment", "pass through each other",
         "overlap in a plane"};
     std::string line;
     for (std::size_t k = 0; k < counts.size(); ++k)
-        if (counts[k] > 0) line += fmt::format("{}{} {}", line.empty() ? "" : ", ", grouped(counts[k]), what[k]);
+        if (counts[k] > 0) line += fmt::format("{}{} {}", line.empty() ? "" : ", ", grouped(counts[k]), words[k]);
     return line.empty() ? line : line + "\n";
 }
 
@@ -65,7 +65,8 @@ bool hit_filter::keeps(aabb::intersection_kind kind) {
     return true;
 }
 
-/// Makes the stages of a search. An engine takes the place of the last one; strategies without a name are selected.
+/// Makes the stages of a search, one or both, from the strategies that the user names; the others are selected for the
+/// scene. If the user chooses an engine, it takes the place of the last stage.
 search_method method_of(const search_choice& choice, const aabb::scene_traits& traits) {
     constexpr auto uncounted = aabb::instrumentation::none;
     const aabb::composition c = select_composition(choice.named, traits);
@@ -84,8 +85,10 @@ search_method method_of(const search_choice& choice, const aabb::scene_traits& t
     return method;
 }
 
-/// Searches every frame, and sums up times and results. Moves the stages out of `method`, but uses its name. `rows`
-/// receives every result and is committed at the end; it may be null.
+/// Searches every frame, and sums up times and results.
+/// @param method its stages are moved out; its name is for messages
+/// @param rows receives every result and is committed at the end; may be null
+/// @param hits which pairs of triangles are reported, and whether with their intersection
 frames_result search_frames(scene_frames& scene, search_method& method, number_table* rows, const hit_choice& hits) {
     const bool meshes = scene.meshes() != nullptr;
     frames_result result;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr auto no_corner = std::numeric_limits<std::size_t>::max();
 
-/// For each corner of each triangle, the next corner at its position, in the order of the triangles. Vertices are
-/// compared by position, since meshes may repeat them.
+/// Links the corners at each position, in ascending order: gives, for each corner, the next one or no_corner. Corner
+/// 3 t + k is corner k of triangle t. Vertices are compared by position, since meshes may repeat them.
 std::vector<std::size_t> next_corners(const aabb::mesh& m) {
     std::vector<std::uint32_t> vertices;
     for (std::uint32_t vertex = 0; vertex < m.vertices.size(); ++vertex)
@@ -22,13 +22,13 @@ std::vector<std::size_t> next_corners(const aabb::mesh& m) {
         const aabb::vec3d at = m.given_vertex(vertex);
         return std::array{at[0], at[1], at[2]};
     });
-    std::vector<std::size_t> position_of(m.vertices.size());  // equal for equal vertices
+    std::vector<std::size_t> position_of(m.vertices.size());  // a number, equal for equal vertices
     for (std::size_t i = 1; i < vertices.size(); ++i) {
         const bool is_next = m.given_vertex(vertices[i]) != m.given_vertex(vertices[i - 1]);
         position_of[vertices[i]] = position_of[vertices[i - 1]] + static_cast<std::size_t>(is_next);
     }
     std::vector<std::size_t> next(3 * m.triangles.size());
-    std::vector<std::size_t> first(m.vertices.size(), no_corner);  // by position
+    std::vector<std::size_t> first(m.vertices.size(), no_corner);  // by position, of the corners linked so far
     for (std::size_t corner = next.size(); corner-- > 0;)
         next[corner] = std::exchange(first[position_of[m.triangles[corner / 3][corner % 3]]], corner);
     return next;
@@ -50,8 +50,9 @@ bool share_vertex(const aabb::mesh& m, aabb::index_pair pair) {
     return shared_vertices(m, pair) > 0;
 }
 
-/// Merges all pairs a < b of triangles that share a vertex into others, with the pairs of only one triangle in memory.
-/// @param others sorted pairs that share no vertex
+/// Merges all pairs a < b of triangles that share a vertex with other pairs. There may be very many, so that only those
+/// of one triangle a at a time are in memory.
+/// @param others sorted pairs of triangles that share no vertex
 /// @param take receives the sorted pairs of each triangle in turn
 /// @returns the number of pairs that share a vertex
 std::uint64_t merge_neighbours(const aabb::mesh& m, std::span<const aabb::index_pair> others,
@@ -62,18 +63,18 @@ std::uint64_t merge_neighbours(const aabb::mesh& m, std::span<const aabb::index_
     for (std::uint32_t a = 0; a < m.triangle_count(); ++a) {
         pairs.clear();
         for (std::size_t corner = 3 * std::size_t{a}; corner < 3 * std::size_t{a} + 3; ++corner) {
-            const auto merged = static_cast<std::ptrdiff_t>(pairs.size());
+            const auto sorted = static_cast<std::ptrdiff_t>(pairs.size());  // how many pairs are sorted already
             for (std::size_t other = next[corner]; other != no_corner; other = next[other])
                 pairs.push_back({a, static_cast<std::uint32_t>(other / 3)});
-            std::ranges::inplace_merge(pairs, pairs.begin() + merged);
+            std::ranges::inplace_merge(pairs, pairs.begin() + sorted);
         }
         // Triangles with two corners at one position are met twice there, among them this one.
         pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
         std::erase(pairs, aabb::index_pair{a, a});
         count += pairs.size();
-        const auto first = static_cast<std::ptrdiff_t>(pairs.size());
+        const auto neighbours = static_cast<std::ptrdiff_t>(pairs.size());
         for (; !others.empty() && others.front().a == a; others = others.subspan(1)) pairs.push_back(others.front());
-        std::ranges::inplace_merge(pairs, pairs.begin() + first);
+        std::ranges::inplace_merge(pairs, pairs.begin() + neighbours);
         take(pairs);
     }
     return count;
@@ -92,8 +93,10 @@ class posed_meshes final : public aabb::mesh_scene {
 public:
     /// @param poses_b at least one pose, even without a second mesh
     posed_meshes(std::vector<aabb::mesh> objects, const aabb::pose& pose_a, std::vector<aabb::pose> poses_b,
-                 std::size_t repeats)
-        : pose_a_(pose_a), poses_b_(std::move(poses_b)), frames_(repeats * poses_b_.size()) {
+                 std::size_t repeats) {
+        pose_a_ = pose_a;
+        poses_b_ = std::move(poses_b);
+        frames_ = repeats * poses_b_.size();
         meshes = std::move(objects);
         for (std::uint32_t object = 0; object < meshes.size(); ++object) mesh_of.push_back(object);
     }
@@ -109,7 +112,7 @@ public:
 private:
     aabb::pose pose_a_;
     std::vector<aabb::pose> poses_b_;
-    std::size_t frames_;
+    std::size_t frames_ = 0;
     std::size_t frame_ = 0;
 };
 
@@ -126,8 +129,9 @@ bool is_reported(const aabb::mesh& m, aabb::index_pair pair, self_pairs wanted) 
            aabb::self_intersection::intersects(m.given_triangle(pair.a), m.given_triangle(pair.b));
 }
 
-/// Runs the query. Within one mesh, neighbours (pairs that share a vertex) are counted separately, and stored on
-/// request.
+/// Runs the query of two meshes, or of one mesh with itself. Within one mesh, neighbours, which share a vertex and are
+/// not reported, are counted separately.
+/// @param neighbours_too whether neighbours are stored besides
 query_result result_of(stage_runner& runner, const mesh_query& query, const aabb::mesh& m, bool neighbours_too) {
     query_result result;
     if (query.self) {
@@ -156,7 +160,10 @@ public:
     pair_record(const mesh_query& query, const scene_frames& scene, mesh_result& result, number_table* rows)
         : query_(query), scene_(scene), result_(result), method_(result.method), rows_(rows) {}
 
-    /// @param neighbours_too whether the pairs include those that share a vertex
+    /// Records the pairs of one pose: removes those that only touch unless they are wanted, counts the rest by kind,
+    /// and writes them. Neighbours, pairs that share a vertex, are among the pairs or else follow from the mesh; then
+    /// their number must be the one that the query counted.
+    /// @param neighbours_too whether the pairs include them
     void add(std::uint32_t pose, query_result hits, bool neighbours_too) {
         pose_ = pose;
         sort_rows(hits.pairs);
@@ -181,6 +188,7 @@ public:
     [[nodiscard]] std::string digest() const { return digest_.text(); }
 
 private:
+    /// Adds sorted pairs to the digest, and, as the query asks, with their intersections to the rows and to the result.
     void add_sorted(std::span<const aabb::index_pair> pairs) {
         digest_.add(pose_, pairs);
         if (!rows_ && !query_.hits.geometry && query_.ask != query_kind::first) return;
@@ -192,7 +200,8 @@ private:
         }
     }
 
-    /// Writes a pair: after its pose if there are several, or with its number of shared vertices within one mesh.
+    /// Writes a row: the triangles a and b, followed by the number of vertices that they share if both are of one mesh,
+    /// or preceded by the pose if there are several.
     void add_row(const intersecting_pair& pair) {
         const auto [a, b] = pair.triangles;
         const std::string cells = pair.common ? to_cells(*pair.common) : "";
@@ -214,7 +223,7 @@ private:
     std::uint32_t pose_ = 0;
 };
 
-/// Bytes of the trees per triangle; empty for an engine that does not report them.
+/// The bytes of the trees (nodes and indices) per triangle; empty for an engine that does not report them.
 std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
     std::optional<std::size_t> trees;
     for (const aabb::part_bytes& part : result.bytes)
@@ -226,7 +235,8 @@ std::optional<double> bytes_per_triangle_of(const mesh_result& result) {
 
 }  // namespace
 
-/// Times each query on its own; only the results of the first repeat are recorded.
+/// Runs the query for each pose of the second mesh, several times if it is to be timed. Times each query on its own,
+/// and records only the results of the first repeat.
 mesh_result search_meshes(const mesh_query& query, const search_choice& choice, std::vector<aabb::mesh> meshes,
                           const aabb::pose& pose_a, given_poses poses_b, number_table* rows) {
     const std::size_t poses = poses_b.poses.size();
