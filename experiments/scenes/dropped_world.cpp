@@ -9,11 +9,26 @@ import :posed_meshes;
 
 namespace aabblab {
 
+namespace {
+
+constexpr double gravity = 9.81;
+
+/// The law of contact of balls of 1 kg with this extent: at rest, a ball sinks into the floor to `c.depth`, in extents.
+/// The damping is `c.loss` times the critical one. A sphere of radius R at depth δ in a plane shares a volume of πRδ²
+/// with it, so a pressure p acts like a spring of stiffness 2πRp.
+contact_law law_of(const dropped_config& c, double extent) {
+    const double spring = gravity / (c.depth * extent);      // N/m
+    const double circumference = std::numbers::pi * extent;  // 2πR
+    return {.geometry = contact_geometry::shared_volume,
+            .stiffness = spring / circumference,
+            .damping = 2 * c.loss * std::sqrt(spring) / circumference};
+}
+
+}  // namespace
+
 /// A fixed floor, and balls above it in a cubic lattice, each shifted at random so that the lattice does not stay
-/// balanced when it lands. The stiffness is such that a ball at rest on the floor sinks to `c.depth`; the damping is
-/// `c.loss` times the critical one.
+/// balanced when it lands, with random rotations.
 stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> meshes, std::uint64_t seed) {
-    constexpr double gravity = 9.81;
     constexpr double cell = 1.05;           // edge of a lattice cell, in extents of the ball
     constexpr double perturbation = 0.005;  // greatest shift of a ball on each axis, in extents
     stepped_world world;
@@ -22,12 +37,7 @@ stepped_world dropped_world(const dropped_config& c, std::vector<aabb::mesh> mes
     world.bodies = {{}};  // body 0 is the fixed floor, with mesh 0
     const aabb::mesh& ball = world.meshes[1];
     const double extent = longest_extent(ball);
-    // A sphere at depth δ in a plane shares a volume of πRδ² with it, so a pressure p acts like a spring of 2πRp.
-    const double spring = gravity / (c.depth * extent);      // for 1 kg
-    const double circumference = std::numbers::pi * extent;  // 2πR
-    world.law = {.geometry = contact_geometry::shared_volume,
-                 .stiffness = spring / circumference,
-                 .damping = 2 * c.loss * std::sqrt(spring) / circumference};
+    world.law = law_of(c, extent);
     const std::uint32_t side = lattice_side(c.balls);
     // The lattice is centred above the floor's centre, the origin.
     const double half_width = extent * cell * (side - 1) / 2;

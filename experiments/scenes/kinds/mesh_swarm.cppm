@@ -40,9 +40,9 @@ public:
                    aabb::number_parameter{"span", &config::span, 0.0, 1.0,
                                           "longest extent of a huge object over the side of the world"}});
 
-    /// Objects 0 to huge - 1 have mesh 0; the others alternate between the other meshes, or a copy of mesh 0. The
-    /// density gives the side of the world: the others' volume, as cubes of their extents, over that of the world. The
-    /// huge mesh is scaled to `span` of the side. Points, steps and rotations are random.
+    /// The density gives the side of the world: it is the volume of the objects that are not huge, as cubes of their
+    /// extents, over that of the world. The huge mesh is scaled to `span` of the side. Points, steps and rotations are
+    /// random.
     mesh_swarm(const config& c, std::vector<aabb::mesh> models, std::uint64_t seed)
         : generated_meshes(c.frames, std::move(models), c.normalise), random_(seed) {
         require_memory(
@@ -50,26 +50,14 @@ public:
             c.objects * (drifting_points::bytes_each + sizeof(spin) + sizeof(aabb::pose) + sizeof(std::uint32_t)));
         const std::uint32_t huge = std::min(c.huge, c.objects);
         const std::uint32_t others = c.objects - huge;
-        const std::uint32_t first_other_mesh = huge > 0 ? 1 : 0;
-        if (meshes.size() == first_other_mesh) meshes.push_back(meshes[0]);
-        std::vector<double> extents;
-        for (const aabb::mesh& m : meshes) extents.push_back(longest_extent(m));
-        mesh_of.assign(huge, 0);
-        double sum_of_extents = 0;  // of the others, as is the volume
-        double volume = 0;
-        for (std::uint32_t i = 0; i < others; ++i) {
-            mesh_of.push_back(first_other_mesh + static_cast<std::uint32_t>(i % (meshes.size() - first_other_mesh)));
-            const double extent = extents[mesh_of.back()];
-            sum_of_extents += extent;
-            volume += extent * extent * extent;
-        }
-        mean_extent_ = others == 0 ? 0 : sum_of_extents / others;
+        const extent_sums sums = assign_meshes(huge, others);
+        mean_extent_ = others == 0 ? 0 : sums.extents / others;
         // If all are huge, each counts as a unit cube.
-        const double side = cube_root((others == 0 ? huge : volume) / c.density);
+        const double side = cube_root((others == 0 ? huge : sums.volumes) / c.density);
         if (huge > 0) normalise(meshes[0], c.span * side);
         for (const aabb::mesh& m : meshes) centres_.push_back(centre_of(m));
         huge_extent_ = c.span * side;
-        const double mean_of_all = c.objects == 0 ? 0 : (sum_of_extents + huge * huge_extent_) / c.objects;
+        const double mean_of_all = c.objects == 0 ? 0 : (sums.extents + huge * huge_extent_) / c.objects;
         const step_range steps = {0, c.displacement * mean_of_all};
         // The space of a centre is the world without half an extent at each wall.
         points_ = {others, /*axes=*/3, side - mean_extent_, steps, random_};
@@ -83,6 +71,31 @@ public:
     }
 
 private:
+    /// Of the objects that are not huge.
+    struct extent_sums {
+        double extents = 0;
+        double volumes = 0;  ///< of cubes with the extents
+    };
+
+    /// Sets the mesh of each object: the huge ones, which come first, have mesh 0; the others alternate between the
+    /// other meshes, or have a copy of mesh 0 if there is no other. Without huge ones, mesh 0 is one of those that
+    /// alternate.
+    extent_sums assign_meshes(std::uint32_t huge, std::uint32_t others) {
+        const std::uint32_t first_other_mesh = huge > 0 ? 1 : 0;
+        if (meshes.size() == first_other_mesh) meshes.push_back(meshes[0]);
+        std::vector<double> extents;
+        for (const aabb::mesh& m : meshes) extents.push_back(longest_extent(m));
+        mesh_of.assign(huge, 0);
+        extent_sums sums;
+        for (std::uint32_t i = 0; i < others; ++i) {
+            mesh_of.push_back(first_other_mesh + static_cast<std::uint32_t>(i % (meshes.size() - first_other_mesh)));
+            const double extent = extents[mesh_of.back()];
+            sums.extents += extent;
+            sums.volumes += extent * extent * extent;
+        }
+        return sums;
+    }
+
     void advance() override {
         points_.advance(random_);
         huge_.advance(random_);
