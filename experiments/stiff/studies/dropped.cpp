@@ -150,6 +150,21 @@ std::vector<trajectory> trajectories_of(const std::vector<method>& methods, cons
     return trajectories;
 }
 
+/// Adds rows for a trajectory with an inexact method: how far it departs from the one with exact contacts, and, if it
+/// does, from which step on, and its greatest depth and energy error.
+/// @param errors the departure by step, in diameters
+/// @returns whether it departs
+bool report_departure(const std::string& subject, const trajectory& t, const std::vector<double>& errors,
+                      stiff_result& result) {
+    result.add(reported(subject, "greatest departure (diameters)", std::ranges::max(errors)));
+    const auto first = std::ranges::find_if(errors, [](double d) { return !(d <= 0); });  // or NaN
+    if (first == errors.end()) return false;
+    result.add(reported(subject, "first step that is wrong", static_cast<double>(first - errors.begin()) + 1));
+    result.add(reported(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
+    result.add(reported(subject, "energy error, RMS", t.energy_error));
+    return true;
+}
+
 /// Compares the trajectory of the balls with each method with that with exact contacts, at one step size. With an exact
 /// method it must not depart at all; with others, how far it departs is reported, and drawn for the first nine of them.
 /// @param size the diameter of the balls in words, for labels
@@ -168,19 +183,12 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
     for (std::size_t m = 0; m < methods.size(); ++m) {
         const trajectory& t = trajectories[m];
         const std::vector<double> errors = balls.departures(t, reference);
-        const auto first = std::ranges::find_if(errors, [](double d) { return !(d <= 0); });  // or NaN
         const std::string subject = methods[m].label + ", " + size;
-        const double greatest = std::ranges::max(errors);
         if (methods[m].tested.exact && methods[m].tested.exact_boxes) {
-            result.add(at_most(subject, "greatest departure (diameters)", greatest, 0));
+            result.add(at_most(subject, "greatest departure (diameters)", std::ranges::max(errors), 0));
             continue;
         }
-        result.add(reported(subject, "greatest departure (diameters)", greatest));
-        if (first == errors.end()) continue;
-        result.add(reported(subject, "first step that is wrong", static_cast<double>(first - errors.begin()) + 1));
-        result.add(reported(subject, "greatest depth of two balls (diameters)", std::ranges::max(t.depths)));
-        result.add(reported(subject, "energy error, RMS", t.energy_error));
-        if (drawn == most_drawn) continue;
+        if (!report_departure(subject, t, errors, result) || drawn == most_drawn) continue;
         if (drawn++ == 0) plot_depths(size, "exact", reference, result);
         for (std::size_t s = 0; s < errors.size(); ++s)
             result.plot(departure, methods[m].label, step * static_cast<double>(s + 1), errors[s]);
