@@ -259,6 +259,7 @@ mesh_result search_meshes(const mesh_query& query, const search_choice& choice, 
     // Which pairs only touch is known once they are stored.
     mesh_query search = query;
     if (!query.hits.touching) search.ask = query_kind::pairs;
+    // A frame is one query: frame r · poses + p is pose p of repeat r.
     for (std::uint32_t frame = 0; scene.next(); ++frame) {
         query_result hits;
         try {
