@@ -57,10 +57,10 @@ private:
             b.speed -= gravity_;
             return;
         }
-        // Energy is conserved until the impact, whose time is that in which v falls by v + impact.
+        // The speed v falls from its value to -impact, by g per frame; conservation of energy gives the impact.
         const double impact = std::sqrt(b.speed * b.speed + 2 * gravity_ * z);
         const double remaining = 1 - (b.speed + impact) / gravity_;
-        const double bounced = kept * impact;
+        const double bounced = kept * impact;  // upwards
         if (2 * bounced < gravity_) {
             // A box that would return within a frame comes to rest.
             z = b.speed = 0;
