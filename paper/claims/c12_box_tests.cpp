@@ -2,7 +2,8 @@ module aabblab.claims;
 
 namespace aabblab {
 
-/// Claim C12: counted box tests with the axial cut over those without it, both with Shell sort.
+/// Drafts claim C12, which is judged together with the others. Its ratios (endpoints), one per scene, are the box tests
+/// counted with the axial cut over those without it, both with Shell sort.
 draft c12_claim(const measurements& m) {
     draft c12{.claim = {.claim = "The axial cut avoids needless tests of boxes",
                         .measured = "box tests per frame, axial_cut over none, both with shell",

@@ -25,8 +25,9 @@ std::string subject_of(const condition& c) {
 
 }  // namespace
 
-/// Claim C1: times of the improved broad phase over those of the traditional one and of incremental sweep and prune.
-/// Each change alone is reported with it, as an explanation, but does not decide the claim.
+/// Drafts claim C1, which is judged together with the others. Its ratios (endpoints), one per scene, are the time of
+/// the improved broad phase over that of the traditional one, or over that of incremental sweep and prune. The ratios
+/// with the factors in `primary` decide the verdict; those of each change alone only explain it.
 draft c1_claim(const measurements& m) {
     draft c1{
         .claim = {.claim = "Shell sort with axial cut takes less time in the broad phase than insertion sort alone",
@@ -36,6 +37,7 @@ draft c1_claim(const measurements& m) {
         .primary = {{{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.1"}, {"over", ""}},
                     {{"scene", "brownian"}, {"objects", "10000"}, {"displacement", "0.001"}, {"over", "incremental"}}}};
     const std::vector<condition>& conditions = m.conditions_of("figure1");
+    // The sentence on the claim reports the ratios of a subject together, ordered along a factor.
     const auto add = [&](const condition& c, const std::string& subject, const std::string& along = "") {
         c1.add(endpoint_of(c, improved, traditional, "frame_cpu_ms"), subject, along);
     };

@@ -27,7 +27,8 @@ row_value work() {
     return sum_of({"comparisons", "moves"});
 }
 
-/// Inversions per element at all sizes, to check that "almost ordered" means the same for each.
+/// Inversions per element, to check that "almost ordered" means the same at all sizes: one row per displacement, one
+/// column per number of elements. There is at least one displacement.
 table inversions_table(const std::map<std::string, std::vector<const condition*>>& by_displacement) {
     table t{{{"displacement"}}, {}};
     for (const condition* c : by_displacement.begin()->second)
@@ -54,23 +55,26 @@ std::optional<double> inversions_of(const std::vector<const condition*>& conditi
     return values.empty() ? std::nullopt : std::optional(quartiles_of(values).median);
 }
 
-/// The sizes for the regression: so large that the passes of the largest gaps are complete, with equal inversions per
-/// element. Far from the origin, where floats cannot represent a move of a hundredth of an edge, there are fewer.
+/// The sizes to which the growth of work is fitted. With fewer than 10,000 elements, the passes with the largest gaps
+/// are incomplete. Sizes whose inversions per element deviate from the median by more than 10 % are left out, too: far
+/// from the origin, floats cannot represent a move of a hundredth of an edge.
 std::vector<const condition*> equally_ordered_sizes(std::vector<const condition*> conditions) {
     constexpr double fewest_elements = 10'000;
     constexpr double most_deviation = 0.1;
     std::erase_if(conditions, [](const condition* c) { return objects_of(*c) < fewest_elements; });
-    const std::optional<double> usual = inversions_of(conditions);
+    const std::optional<double> median = inversions_of(conditions);
     std::erase_if(conditions, [&](const condition* c) {
         const std::optional<double> inversions = inversions_of(*c);
-        return usual && inversions && std::abs(*inversions - *usual) > most_deviation * *usual;
+        return median && inversions && std::abs(*inversions - *median) > most_deviation * *median;
     });
     return conditions;
 }
 
 }  // namespace
 
-/// Claim C2: the growth of each sort's counted work per element, by displacement; a sort in O(N) has the ratio 1.
+/// Drafts claim C2, which is judged together with the others. Its ratios (endpoints), one per sort and displacement,
+/// are the counted work per element at 10 N elements over that at N, from a line fitted to all sizes. A sort in O(N)
+/// has the ratio 1.
 draft c2_claim(const measurements& m) {
     // The paper leaves the number of gaps open: fixed numbers, two and eight, which keep O(N), are primary, too.
     draft c2{.claim = {.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too",

@@ -20,7 +20,8 @@ endpoint over_insertion(const condition& c, const std::string& gaps) {
     return ratio;
 }
 
-/// The time of Shell sort over that of insertion sort, for all gap sequences in all conditions, ordered by inversions.
+/// The time of Shell sort over that of insertion sort: one row per condition (scene), ordered by inversions, and one
+/// column per gap sequence.
 table gaps_table(const std::vector<condition>& conditions) {
     std::vector<const condition*> ordered = matching(conditions, {});
     std::ranges::stable_sort(ordered, {}, [](const condition* c) { return disorder_of(*c); });
@@ -35,7 +36,8 @@ table gaps_table(const std::vector<condition>& conditions) {
     return t;
 }
 
-/// The time of Shell sort over that of insertion sort against inversions per element, for boxes in space and on a line.
+/// The time of Shell sort over that of insertion sort against the inversions per element: one panel for boxes in space
+/// and one for boxes on a line, one series per gap sequence, one point per condition (scene).
 figure figure_of(const std::vector<condition>& conditions) {
     figure f = log_log("c3",
                        "Time of Shell sort over that of insertion sort (the level 1) against inversions per element, "
@@ -60,7 +62,8 @@ figure figure_of(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Claim C3: times of Shell sort over those of insertion sort. The inversions per element decide which sort is faster.
+/// Drafts claim C3, which is judged together with the others. Its ratios (endpoints), one per scene, are the time of
+/// Shell sort over that of insertion sort. The inversions per element decide which of them is faster.
 draft c3_claim(const measurements& m) {
     // In full runs, the first primary condition has few inversions (4 per element), and the second many (150): boxes on
     // a line that move by up to 300 of their edge lengths per frame. In space, 100,000 boxes that move by one edge

@@ -27,7 +27,8 @@ bool is_finer(const condition& c, int axes, int wanted, int before) {
     return segments && coarser && *segments > 1.1 * *coarser;
 }
 
-/// Times against the requested segments, a line per number of cut axes. Marks show the most that the limit allows.
+/// The time in one scene against the requested segments per axis, a line per number of cut axes. A mark shows the
+/// number of segments that the limit of one cut per box leaves of the greatest request.
 figure figure_of(const std::string& name, const condition& c) {
     figure f = log_log(
         name,
@@ -49,21 +50,22 @@ figure figure_of(const std::string& name, const condition& c) {
     return f;
 }
 
-/// The automatic number of segments, and its time over that of the most that the limit of one cut per box allows.
+/// One row per scene and number of cut axes: the automatic number of segments, and its time over that with as many
+/// segments as the limit of one cut per box allows.
 table automatic_table(const std::vector<condition>& conditions) {
     table t = factors_table(factors_of(conditions));
-    const std::vector<std::vector<std::string>> places = std::exchange(t.rows, {});
+    const std::vector<std::vector<std::string>> cells_of_factors = std::exchange(t.rows, {});  // by condition
     constexpr int beyond_limit = segments_wanted.back();  // more than the limit allows anywhere
     t.columns.insert(t.columns.end(), {{"axes"}, {"segments, auto"}, {"segments, limit"}, {"time, auto over limit"}});
     for (const condition& c : conditions)
         for (int axes = 1; axes <= 3; ++axes) {
             const endpoint ratio =
                 endpoint_of(c, cut_into(axes, "auto"), cut_into(axes, std::to_string(beyond_limit)), "frame_cpu_ms");
-            const auto chosen = median_of(c, cut_into(axes, "auto"), measured("segments_got"));
+            const auto chosen = median_of(c, cut_into(axes, "auto"), measured("segments_got"));  // sum over the axes
             const auto limit = segments_got(c, axes, beyond_limit);
             if (!ratio.is_known() || !chosen || !limit) continue;
             std::vector<std::string>& cells =
-                t.rows.emplace_back(places[static_cast<std::size_t>(&c - conditions.data())]);
+                t.rows.emplace_back(cells_of_factors[static_cast<std::size_t>(&c - conditions.data())]);
             cells.insert(cells.end(),
                          {std::to_string(axes), three_digits(*chosen / axes), three_digits(*limit), ratio_cell(ratio)});
         }
@@ -72,7 +74,9 @@ table automatic_table(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Claim C4: times of finer cuts over coarser ones, and of the automatic number of segments over the most allowed.
+/// Drafts claim C4, which is judged together with the others. Its ratios (endpoints), per scene and number of cut axes,
+/// are the time of a finer cut over that of a coarser one, and that of the automatic number of segments over that of
+/// "the limit": the most segments with at most one cut per box. A request for more yields the limit.
 draft c4_claim(const measurements& m) {
     draft c4{
         .claim = {.claim = "More segments are faster until one lies inside a box; tiny segments are not needed",

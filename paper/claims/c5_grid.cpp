@@ -28,7 +28,8 @@ bool is_grid(const condition& c, const std::string& size) {
 /// Times of grids of all cell sizes over that of the axial cut, in scenes with the same number of objects.
 class scenes_and_cells {
 public:
-    /// Reads the ratios by scene, without cells so large that a single one is made, which divides nothing.
+    /// Reads, per scene and cell size, the times with a grid over those with the axial cut. Cells so large that the
+    /// world is a single one are left out, as they divide nothing.
     explicit scenes_and_cells(const std::vector<const condition*>& scenes) {
         for (const std::string& size : cell_sizes)
             if (std::ranges::all_of(scenes, [&](const condition* c) { return is_grid(*c, size); }))
@@ -55,7 +56,8 @@ public:
     }
 
 private:
-    /// The least value of the elements; NaN if any is NaN, which was not measured: ignoring it would be too optimistic.
+    /// The least value of the elements, by `value(element)`. It is NaN if any is NaN: an element that was not measured
+    /// might be the least.
     template <class Range, class Value>
     [[nodiscard]] static double least_of(const Range& range, Value value) {
         double least = std::numeric_limits<double>::infinity();
@@ -96,8 +98,10 @@ table times_table(const std::vector<condition>& conditions) {
     return t;
 }
 
-/// Adds how bytes, and times over the axial cut's, grow from the smallest world to the largest: in a sparse one all
-/// times fall, as pairs are fewer. Claimed growth is a ratio of small over large, since claims favour ratios below 1.
+/// Adds to claim C5 how a grid's cost grows from the smallest world to the largest, with the same number of boxes: its
+/// bytes, and its time over that of the axial cut (times alone fall in a sparse world, with its fewer pairs). Claims
+/// favour ratios below 1, so growth is expressed as the cost in the small world over that in the large one.
+/// @param worlds from the densest, and so smallest, to the sparsest
 void add_growth(const std::vector<condition>& worlds, draft& c5) {
     if (worlds.size() < 2) return;
     const condition& small = worlds.front();
@@ -127,7 +131,9 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
         large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
-/// Times of grids over that of the axial cut against the cell size, a line per scene and a panel per number of objects.
+/// Times of grids over that of the axial cut against the cell size: one panel per number of objects, one line per
+/// scene.
+/// @param by_objects the scenes by their number of objects
 figure cell_figure(const std::map<double, std::vector<const condition*>>& by_objects) {
     figure f = log_log(
         "c5",
@@ -155,6 +161,7 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
 figure world_figure(const std::string& name, const std::string& quantity_name, const std::string& y_label,
                     const std::vector<condition>& worlds, const row_value& value) {
     const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
+    // In edges of a cube: the cubes fill the share `density` of the world.
     const auto side_of = [](const condition& c) { return std::cbrt(objects_of(c) / number_of(c.scene(), "density")); };
     return log_log(name,
                    quantity_name +
@@ -166,7 +173,10 @@ figure world_figure(const std::string& name, const std::string& quantity_name, c
 
 }  // namespace
 
-/// Claim C5: the worst slowdown of the axial cut over the least one of a single cell size, and growth with the world.
+/// Drafts claim C5, which is judged together with the others. A slowdown (regret) in a scene is the time over that of
+/// the scene's best cell size. The ratio (endpoint) that decides is the worst slowdown of the axial cut over all
+/// scenes, over the worst slowdown of the single cell size for which this is least. Further ratios are those of growth
+/// with the world.
 draft c5_claim(const measurements& m) {
     const std::string over_best_single = "axial_cut over the best single cell size";
     draft c5{

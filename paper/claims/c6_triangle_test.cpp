@@ -12,7 +12,8 @@ namespace {
 /// Nanoseconds of each elementary test, by name, process and repetition.
 using test_times = std::map<std::string, std::vector<std::vector<double>>>;
 
-/// Reads the times of one process of Google Benchmark; its aggregates are skipped.
+/// Reads the results of one process of Google Benchmark into `times`, in ns by test, process and repetition. Its
+/// aggregates (mean, median and so on) are skipped.
 void read_process(const std::filesystem::path& file, std::size_t process, test_times& times) {
     const std::string otherwise = "is not a result of Google Benchmark (remove it to measure again)";
     const json_value results(file.string(), text_of_file(file), otherwise);
@@ -41,7 +42,8 @@ test_times read_tests(const std::filesystem::path& folder) {
     }
 }
 
-/// Logarithms of the time of one test over that of another, by process and repetition; empty if one was not measured.
+/// Logarithms of the time of one test over that of another, by process and repetition; empty if either was not
+/// measured. The tests run without a seed, so each process has one cell.
 cells ratios_of(const test_times& times, const std::string& test, const std::string& other_test) {
     const auto a = times.find(test);
     const auto b = times.find(other_test);
@@ -106,7 +108,9 @@ figure figure_of(const test_times& times) {
 
 }  // namespace
 
-/// Claim C6: a triangle-box test against box tests, alone and, by trees with and without leaves, in whole queries.
+/// Drafts claim C6, which is judged together with the others. Its ratios (endpoints) are the time of a triangle-box
+/// test over that of a box test, and the time of whole queries of trees that test the triangles of leaves over that of
+/// trees that store and test the boxes of leaves.
 draft c6_claim(const measurements& m) {
     draft c6{
         .claim = {.claim = "Testing the triangle of a leaf costs what testing its box costs",

@@ -16,7 +16,9 @@ std::vector<const condition*> conditions_by_size(const measurements& m) {
     return conditions;
 }
 
-/// A figure of bytes or times of four trees against the number of triangles of noise spheres, which have one shape.
+/// A figure of the bytes or times of four tree layouts against the number of triangles, on spheres with noise of one
+/// shape and many sizes.
+/// @param value the bytes or the time of a measurement
 figure size_figure(const measurements& m, const std::string& name, const std::string& caption, const std::string& y,
                    const row_value& value) {
     const method layouts[] = {{"canonical", tree("canonical")},
@@ -35,7 +37,8 @@ endpoint compressed_over_canonical(const condition& c, const std::string& metric
 
 }  // namespace
 
-/// Claim C7a: the bytes of the compressed tree over those of the canonical one, by mesh.
+/// Drafts claim C7a, which is judged together with the others. Its ratios (endpoints), one per mesh, are the bytes of
+/// the compressed tree over those of the canonical one.
 draft c7a_claim(const measurements& m) {
     draft c7a{.claim = {.claim = "Compressed storage takes less memory",
                         .measured = "bytes of the compressed tree over those of the canonical one",
@@ -51,7 +54,9 @@ draft c7a_claim(const measurements& m) {
     return c7a;
 }
 
-/// Claim C7b: the query times of the same trees, for each test that replaces that of a leaf's box, which is not stored.
+/// Drafts claim C7b, which is judged together with the others. Its ratios (endpoints), one per mesh and leaf test, are
+/// the query time of the compressed tree over that of the canonical one. The compressed tree stores no boxes of leaves,
+/// so a leaf test replaces the test of such a box.
 draft c7b_claim(const measurements& m) {
     draft c7b{.claim = {.claim = "Compressed storage takes less time",
                         .measured = "time per query of the compressed tree over that of the canonical one",

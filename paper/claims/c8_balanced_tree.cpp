@@ -8,7 +8,8 @@ selection canonical(const std::string& build) {
     return {{kind::tree, "canonical"}, {kind::build, build}};
 }
 
-/// Median time of each build, and of the queries in the canonical tree that it makes, with their counted work.
+/// One row per mesh and split rule: the median times to build a canonical tree and to query it, and the counted work of
+/// the query.
 table builds_table(const std::vector<condition>& conditions) {
     table t = empty_table({"meshes", "build"},
                           {"build (ms)", "query (ms)", "box tests per query", "triangle tests per query"});
@@ -25,7 +26,8 @@ table builds_table(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Claim C8: times of queries in canonical trees split at the median over those in trees split otherwise, by mesh.
+/// Drafts claim C8, which is judged together with the others. Its ratios (endpoints), one per mesh and other split
+/// rule, are the query time of a canonical tree split at the median over that of a tree split otherwise.
 draft c8_claim(const measurements& m) {
     draft c8{.claim = {.claim = "The balanced (median) tree is searched faster than an unbalanced one",
                        .measured = "time per query of the canonical tree split at the median over that split otherwise",

@@ -17,7 +17,9 @@ bool has_pieces(const condition& c, const selection& split) {
 
 }  // namespace
 
-/// Claim C9: times with large objects split over those without, for boxes and for meshes, where any object is split.
+/// Drafts claim C9, which is judged together with the others. Its ratios (endpoints), one per scene and limit, are the
+/// time with objects larger than the limit split over that without, where any object is so large. The limit is in mean
+/// extents; either boxes or meshes are split.
 draft c9_claim(const measurements& m) {
     draft c9{
         .claim = {.claim = "Dividing large objects into smaller ones before the broad phase is worth its cost",
