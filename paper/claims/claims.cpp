@@ -7,7 +7,9 @@ namespace aabblab {
 
 namespace {
 
-/// Decides a family of endpoints by Holm's correction (1979); outcomes on which machines disagree are undecided.
+/// Decides a family of endpoints (ratios of claims) together, by Holm's correction for multiple tests (1979). Sets
+/// `corrected`, the support for the claim, and `direction`. An outcome must be found on every machine; where machines
+/// disagree, it is undecided.
 /// @param band as in `tails_of`: ratios from 1 / (1 + band) to 1 + band count as no difference
 void decide_family(std::span<endpoint* const> endpoints, double band) {
     if (endpoints.empty()) return;
@@ -47,12 +49,31 @@ std::string evidence_text(std::span<const endpoint> primaries, std::span<const e
                                {count_of(others, support::undecided), "is undecided", "are undecided"}});
 }
 
-/// The verdict on a drafted claim from its decided endpoints, with sentences, and the table of all ratios as the first.
+/// Every ratio of a judged claim with its outcome, the primary ones first.
+named_table ratio_table(const claim_result& claim) {
+    std::string name = claim.id;
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::vector<endpoint> ordered = claim.primaries;
+    ordered.insert(ordered.end(), claim.secondaries.begin(), claim.secondaries.end());
+    table ratios = endpoint_table(
+        ordered, [](const endpoint& e) { return text_of(e.corrected) + (e.is_primary ? " (primary)" : ""); });
+    const bool has_unit = std::ranges::find(ratios.columns, "unit", &column::name) != ratios.columns.end();
+    return {name,
+            "Every ratio of " + claim.id + ": " + claim.measured +
+                ". Outcomes are corrected by Holm's method: of primary ratios over all claims, of the "
+                "others over this claim. Intervals are uncorrected." +
+                (has_unit ? unit_legend : ""),
+            std::move(ratios)};
+}
+
+/// Turns a draft and its decided endpoints (ratios) into the judged claim: the verdict, its sentences and its tables,
+/// of which that of all ratios comes first.
 claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoints) {
     claim_result claim = drafted.claim;
     claim.verdict = verdict_of(endpoints);
     std::vector<endpoint> primary_clauses, secondary_clauses;
     for (const endpoint& e : endpoints) {
+        // A clause of the sentence reports several endpoints; one primary endpoint makes the whole clause primary.
         const auto makes_primary = [&](const endpoint& p) { return p.is_primary && is_same_clause(p, e); };
         const bool is_primary = std::ranges::any_of(endpoints, makes_primary);
         if (is_primary || e.subject) (is_primary ? primary_clauses : secondary_clauses).push_back(e);
@@ -67,24 +88,11 @@ claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoi
     std::ranges::copy_if(endpoints, std::back_inserter(claim.primaries), &endpoint::is_primary);
     std::ranges::remove_copy_if(endpoints, std::back_inserter(claim.secondaries), &endpoint::is_primary);
     claim.evidence = evidence_text(claim.primaries, claim.secondaries);
-    std::string name = claim.id;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    std::vector<endpoint> ordered = claim.primaries;
-    ordered.insert(ordered.end(), claim.secondaries.begin(), claim.secondaries.end());
-    table ratios = endpoint_table(
-        ordered, [](const endpoint& e) { return text_of(e.corrected) + (e.is_primary ? " (primary)" : ""); });
-    const bool has_unit = std::ranges::find(ratios.columns, "unit", &column::name) != ratios.columns.end();
-    claim.tables.insert(claim.tables.begin(),
-                        {name,
-                         "Every ratio of " + claim.id + ": " + claim.measured +
-                             ". Outcomes are corrected by Holm's method: of primary ratios over all claims, of the "
-                             "others over this claim. Intervals are uncorrected." +
-                             (has_unit ? unit_legend : ""),
-                         std::move(ratios)});
+    claim.tables.insert(claim.tables.begin(), ratio_table(claim));
     return claim;
 }
 
-/// The drafts of all claims, which have ratios but no verdicts, from the results of one machine.
+/// The drafts of all claims, which have ratios but no verdicts yet, from the results of one machine.
 std::vector<draft> drafts_of(const measurements& m) {
     std::vector<draft> drafts;
     for (const claim_source& source : claim_sources()) {
@@ -92,6 +100,7 @@ std::vector<draft> drafts_of(const measurements& m) {
         claim_result& claim = added.claim;
         claim.id = source.listed.id;
         claim.expected = source.listed.expected;
+        // A ratio without an expectation of its own has that of the claim.
         for (std::vector<endpoint>* endpoints : {&added.endpoints, &added.unjudged})
             for (endpoint& e : *endpoints) e.expected = e.expected.value_or(claim.expected);
         for (const std::string& experiment : claim.experiments)
@@ -100,7 +109,9 @@ std::vector<draft> drafts_of(const measurements& m) {
     return drafts;
 }
 
-/// Adds another machine's measurements to the drafts. Endpoints that it lacks become unknown, and are then left out.
+/// Adds another machine's ratios to the drafts of the first; both lists are in the order of the claims. A ratio that
+/// the other machine did not measure becomes unknown, and is left out later.
+/// @param more the other machine's drafts
 void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
     const auto add = [](std::vector<endpoint>& endpoints, const std::vector<endpoint>& others) {
         for (endpoint& e : endpoints) {
@@ -117,7 +128,8 @@ void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
 
 }  // namespace
 
-/// Decides an endpoint by its own 95 % interval, without correction for the number of decisions.
+/// Decides an endpoint (a ratio) by its own 95 % interval, without a correction for the number of decisions.
+/// @param band as in `tails_of`: ratios from 1 / (1 + band) to 1 + band count as no difference
 endpoint decided_alone(endpoint e, double band) {
     const estimate log_ratio = e.log_ratio();
     const interval range = log_ratio.range();
@@ -130,8 +142,8 @@ endpoint decided_alone(endpoint e, double band) {
     return e;
 }
 
-/// Decides the primary endpoints of all claims as one family, the others within their claim, and returns them by claim.
-/// Endpoints without a finite ratio (a composition was wrong, an experiment has not run) are left out.
+/// Decides the primary endpoints (ratios) of all claims as one family, and the others of a claim as another. Returns
+/// them by claim. Endpoints without a finite ratio are left out: a composition was wrong, or an experiment has not run.
 std::vector<std::vector<endpoint>> decided(std::span<const draft> drafts, double band) {
     std::vector<std::vector<endpoint>> by_claim(drafts.size());
     std::vector<endpoint*> primaries;
@@ -166,6 +178,7 @@ std::vector<listed_claim> listed_claims() {
 }
 
 /// Drafts all claims from every machine's rows, then decides them together, since Holm's correction spans all claims.
+/// Tables and open choices are those of the first machine.
 reproduction judged(std::span<const measurements> machines) {
     const measurements& first = machines.front();
     std::vector<draft> drafts = drafts_of(first);

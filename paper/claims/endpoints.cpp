@@ -15,8 +15,9 @@ std::vector<const condition*> matching(const std::vector<condition>& conditions,
     return selected;
 }
 
-/// An endpoint: the ratio of two compositions in one condition, averaged as a logarithm; NaN if it was not measured.
-/// @param more factors in addition to the condition's
+/// A ratio (endpoint) of a claim in one condition (scene): a metric of the composition `tested` over that of
+/// `baseline`, averaged as a logarithm; NaN if it was not measured.
+/// @param more factors that identify the endpoint, in addition to the condition's
 endpoint endpoint_of(const condition& c, const selection& tested, const selection& baseline, const std::string& metric,
                      factors more) {
     endpoint ratio;
@@ -74,7 +75,7 @@ figure_point point_of(double x, const endpoint& e) {
     return {x, std::exp(ratio.value), std::exp(range.low), std::exp(range.high)};
 }
 
-/// A line of a figure: a composition's median in each condition against a number of the condition, in its order.
+/// A line of a figure: a composition's medians, one point per condition (scene), at the position `x` of the condition.
 series series_of(const std::string& label, std::span<const condition* const> conditions, const condition_number& x,
                  const selection& tested, const row_value& value) {
     series s{label};
@@ -91,7 +92,10 @@ std::vector<series> series_of(std::span<const method> methods, std::span<const c
     return lines;
 }
 
-/// Ratios with the factors `wanted` against the number of huge boxes, a line per edge length, and the baseline's level.
+/// Lines of a figure in scenes with huge boxes: the ratios against the number of these boxes, one line per edge length,
+/// and the level 1 of the baseline.
+/// @param wanted factors that a ratio must have to be drawn
+/// @param level the label of the baseline's level
 std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted, const std::string& level) {
     std::map<std::string, series> by_span;
     for (const endpoint& e : ratios) {

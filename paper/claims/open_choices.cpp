@@ -28,8 +28,10 @@ struct tried_choice {
     selection baseline;
 };
 
-/// A claim's ratio of times under each choice of an open question, in a single condition: `conditions` has at most
-/// one. The first choice is ours.
+/// A claim's ratio of a metric under each choice for an open question of the paper, of which the first is ours, in the
+/// given condition (scene).
+/// @param conditions at most one; without one, the result has no ratios
+/// @param note is appended to the text of the condition
 measured_choices ratios_in_condition(const std::vector<const condition*>& conditions, const std::string& metric,
                                      const std::string& note, const std::vector<tried_choice>& choices) {
     measured_choices measured{.where = "", .ours = choices.front().label};
@@ -59,7 +61,8 @@ measured_choices displacement_choices(const measurements& m) {
     return measured;
 }
 
-/// Claim C1's ratio in other scenes with our displacement, and in our choice, the drifting scene, of the nearest size.
+/// Claim C1's ratio in each scene in which boxes move by 0.1 of their extent per frame, as alternatives to our choice,
+/// the drifting cubes of the scene `brownian`. Of the sizes of that scene, the nearest to theirs is compared.
 measured_choices scene_choices(const measurements& m) {
     measured_choices measured{.where = "displacement 0.1 of the extent", .ours = ""};
     std::vector<const condition*> scenes =
@@ -88,7 +91,8 @@ measured_choices leaf_test_choices(const measurements& m) {
     return ratios_in_condition(matching(m.conditions_of("figure2"), large_spheres), "detect_cpu_ms", "", tests);
 }
 
-/// The growth of a sort's work per element, as in claim C2, for gap sequences with fixed numbers of gaps and others.
+/// The growth of Shell sort's work per element when N grows tenfold, as in claim C2, for gap sequences whose number of
+/// gaps is fixed or grows with N.
 measured_choices gap_count_choices(const measurements& m) {
     measured_choices measured{.where = "line, displacement 0.1", .ours = "enough for N"};
     for (endpoint e : c2_claim(m).endpoints) {
@@ -104,7 +108,8 @@ measured_choices gap_count_choices(const measurements& m) {
     return measured;
 }
 
-/// Claim C11's ratio of both phases in each of its scenes, which are readings of the paper's "different models".
+/// Claim C11's ratio, the time of both phases improved over both traditional, in each of its scenes: the paper's
+/// "different models" may mean any of them.
 measured_choices model_choices(const measurements& m) {
     measured_choices measured{.where = "displacement 0.05", .ours = ""};
     for (const condition& c : m.conditions_of("c11")) {
@@ -117,7 +122,7 @@ measured_choices model_choices(const measurements& m) {
     return measured;
 }
 
-/// Claim C1's ratio with the time of all frames, and with that of all but the first one, which is our choice.
+/// Claim C1's ratio with and without the time of the first frame. Our choice is without.
 measured_choices first_frame_choices(const measurements& m) {
     measured_choices measured{.where = "", .ours = "without the first frame"};
     for (const condition* c : matching(m.conditions_of("figure1"), drifting)) {
@@ -128,8 +133,10 @@ measured_choices first_frame_choices(const measurements& m) {
     return measured;
 }
 
-/// Puts our choice first and decides it alone, the others together, like the endpoints of a claim. Without a
-/// measurement of our choice there are no alternatives, since nothing can be compared.
+/// Judges the ratios under the alternatives to one of our choices: ours comes first and is decided alone, the others
+/// together, like the ratios of a claim. If ours was not measured, there are no alternatives, since nothing can be
+/// compared.
+/// @param ours our choice in words; `measured.ours` is its label
 open_choice judge(const std::string& question, const std::string& ours, const std::string& why,
                   const std::string& claim, measured_choices measured) {
     open_choice result{question, ours, why, claim, measured.where, /*alternatives=*/{}};
@@ -151,7 +158,8 @@ open_choice judge(const std::string& question, const std::string& ours, const st
 
 }  // namespace
 
-/// What the paper leaves open: questions, our choices, and a claim's ratio under the alternatives to each.
+/// The questions that the paper leaves open, with our choices and their reasons, and a claim's ratio under the
+/// alternatives, which shows whether the outcome depends on the choice.
 std::vector<open_choice> open_choices(const measurements& m) {
     const auto shell = [](const std::string& gaps, const std::string& cut = "axial_cut:axes=2") {
         return improved.with(kind::sort, "shell:gaps=" + gaps).with(kind::partition, cut);

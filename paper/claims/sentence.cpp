@@ -35,8 +35,8 @@ std::string span_text(const std::string& low, const std::string& high) {
     return low == high ? high : low + " to " + high;
 }
 
-/// The size of ratios that all lie on one side of 1, in one unit for each quantity: "up to 2.1 times as fast", "1.27
-/// times as long", "34 to 36 % of the bytes".
+/// The size of ratios that all lie on one side of 1: for times "up to 2.1 times as fast" or "1.27 times as long", for
+/// other quantities "34 to 36 % of the bytes".
 std::string size_text(std::span<const endpoint> endpoints) {
     const auto [least, greatest] = std::ranges::minmax_element(endpoints, {}, &endpoint::ratio);
     const double low = least->ratio, high = greatest->ratio;
@@ -45,16 +45,16 @@ std::string size_text(std::span<const endpoint> endpoints) {
         return span_text(percent_text(low), percent_text(high)) + " %" + (noun.empty() ? "" : " of the " + noun);
     }
     const bool is_faster = high < 1;
-    const double mild = is_faster ? 1 / high : low;
-    const double strong = is_faster ? 1 / low : high;
+    const double least_factor = is_faster ? 1 / high : low;
+    const double greatest_factor = is_faster ? 1 / low : high;
     const std::string unit = is_faster ? " times as fast" : " times as long";
     // Almost equal ratios are reported as one, unless they are near 1, where a small difference matters.
-    if (mild >= factor_threshold && strong / mild <= equality_threshold)
-        return times_text(std::sqrt(mild * strong)) + unit;
-    return span_text(times_text(mild), times_text(strong)) + unit;
+    if (least_factor >= factor_threshold && greatest_factor / least_factor <= equality_threshold)
+        return times_text(std::sqrt(least_factor * greatest_factor)) + unit;
+    return span_text(times_text(least_factor), times_text(greatest_factor)) + unit;
 }
 
-/// The phrase for endpoints (ratios of a claim) with the same outcome: "up to 2.1 times as fast".
+/// The phrase for endpoints (ratios of a claim) with one outcome, `form`: "up to 2.1 times as fast", "no difference".
 std::string outcome_text(std::span<const endpoint> endpoints, wording form) {
     if (form == wording::less || form == wording::more) return size_text(endpoints);
     const quantity compared = endpoints.front().compared;
@@ -71,7 +71,7 @@ struct stretch {
     std::vector<endpoint> endpoints;
 };
 
-/// Divides the ordered endpoints of a clause into stretches, where the outcome changes.
+/// Divides the ordered endpoints (ratios) of a clause into stretches: maximal runs with the same outcome.
 std::vector<stretch> stretches_of(std::span<const endpoint> endpoints) {
     std::vector<stretch> stretches;
     for (const endpoint& e : endpoints) {
@@ -81,7 +81,8 @@ std::vector<stretch> stretches_of(std::span<const endpoint> endpoints) {
     return stretches;
 }
 
-/// The range of a stretch: "with 100 objects", "with up to 1,000 objects", "on 2 or more axes".
+/// The range of the factor over the i-th stretch, a run of successive ratios with the same outcome: "with 100 objects",
+/// "with up to 1,000 objects", "on 2 or more axes". It is empty if the clause has a single value.
 std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
     const std::vector<endpoint>& endpoints = stretches[i].endpoints;
     const std::string& factor = endpoints.front().along;
@@ -104,7 +105,8 @@ std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
            " of " + values;
 }
 
-/// Reports ordered endpoints by stretches: "1.30 times as long with 100 objects, 2.0 times as fast with 1,000 or more".
+/// Reports the outcomes of ratios that are ordered along a factor: "1.30 times as long with 100 objects, 2.0 times as
+/// fast with 1,000 or more".
 std::string ordered_outcomes(std::span<const endpoint> endpoints) {
     const std::vector<stretch> stretches = stretches_of(endpoints);
     std::string text;
@@ -114,7 +116,8 @@ std::string ordered_outcomes(std::span<const endpoint> endpoints) {
     return text;
 }
 
-/// Reports the least and the greatest ratio if their outcomes differ, and of undecided ones only the number.
+/// Reports the outcomes of ratios without an order: the least and the greatest one if outcomes differ, "from 1.2 times
+/// as fast to 1.3 times as long". Undecided ratios are only counted.
 std::string unordered_outcomes(std::vector<endpoint> endpoints) {
     std::string undecided = outcome_text(endpoints, wording::open);
     const std::size_t count = endpoints.size();
@@ -135,7 +138,8 @@ struct clause {
     std::string outcomes;
 };
 
-/// The clause that reports `member` and all endpoints with the same subject and quantity.
+/// The clause of a claim's sentence that reports the ratio `member`, together with all other ratios of the same subject
+/// and quantity.
 clause clause_of(std::span<const endpoint> endpoints, const endpoint& member) {
     std::vector<endpoint> reported;
     std::ranges::copy_if(endpoints, std::back_inserter(reported),
@@ -156,7 +160,8 @@ const claim_result* claim_named(std::span<const claim_result> claims, const std:
     return claim != claims.end() ? &*claim : nullptr;
 }
 
-/// The comparison with the classic sweep under the paper's own premise, that objects hardly move.
+/// The part of the headline that compares the improved broad phase with incremental sweep and prune, the classic one,
+/// under the paper's premise that objects hardly move; empty if it was not measured.
 std::string classic_sweep_text(std::span<const claim_result> claims) {
     const claim_result* claim = claim_named(claims, "C1");
     if (!claim) return "";
@@ -183,7 +188,8 @@ wording wording_of(const endpoint& e) {
     return e.corrected == support::favours ? wording::not_more : wording::open;
 }
 
-/// Appends the counts above 0, each with its verb: ", 2 hold, 1 does not hold and 3 are undecided."
+/// Appends the counts above 0, each with its verb in the singular or plural: ", 2 hold, 1 does not hold and 3 are
+/// undecided."
 std::string counts_text(std::string text, std::initializer_list<counted_verb> counts) {
     auto left = std::ranges::count_if(counts, [](const counted_verb& c) { return c.count > 0; });
     std::string_view separator = ", ";
@@ -205,8 +211,9 @@ std::string number_text(const std::string& value) {
                                                                                                   : value;
 }
 
-/// The sentence on a claim: a clause for each subject and quantity of its endpoints, in the order of their first ones.
-/// Successive clauses on one subject share its label.
+/// The sentence on a claim: a clause for each subject and quantity of its endpoints (ratios), in the order of their
+/// first ones. Successive clauses on one subject share its label. Endpoints without a subject are not mentioned.
+/// @param lead precedes the first label
 std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead) {
     if (endpoints.empty()) return "There are no measurements that decide it.";
     std::string text, label;

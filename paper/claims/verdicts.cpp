@@ -18,7 +18,9 @@ std::string range_text(const endpoint& e) {
 
 }  // namespace
 
-/// One row per endpoint (a ratio of a claim), with the factors in which their conditions differ as columns.
+/// One row per endpoint (a ratio of a claim): the factors in which their conditions differ, the ratio, its interval and
+/// its outcome.
+/// @param outcome returns the text of the last column
 table endpoint_table(std::span<const endpoint> endpoints, const std::function<std::string(const endpoint&)>& outcome) {
     std::vector<factors> conditions;
     for (const endpoint& e : endpoints) conditions.push_back(factors_of(e));
@@ -30,7 +32,8 @@ table endpoint_table(std::span<const endpoint> endpoints, const std::function<st
     return t;
 }
 
-/// One row per condition, with the factors in which they differ as columns, so that equal ones do not widen the table.
+/// One row per condition (scene), with a column for each factor, such as the number of objects, whose value differs
+/// between conditions. Factors with one value would only widen the table.
 table factors_table(std::span<const factors> conditions) {
     table t;
     t.rows.resize(conditions.size());
@@ -53,7 +56,8 @@ std::vector<factors> factors_of(const std::vector<condition>& conditions) {
     return scenes;
 }
 
-/// Whether any alternative has another outcome than our choice, the first; undecided ones contradict nothing.
+/// Whether a claim's outcome depends on our choice for an open question, the first of the alternatives: "yes", if one
+/// of them has another outcome; "undecided", if an outcome is undecided; otherwise "no".
 std::string dependence_of(const open_choice& choice) {
     bool is_undecided = choice.alternatives.empty();
     for (const open_choice::alternative& a : choice.alternatives) {
@@ -116,7 +120,7 @@ table choice_table(const reproduction& results) {
     return t;
 }
 
-/// The verdicts under bands of 0, 3, 5 and 10 %, which show how much they depend on the chosen band.
+/// The verdicts under bands of no difference of 0, 3, 5 and 10 %, which show how much they depend on the chosen 5 %.
 named_table bands_table(std::span<const draft> drafts) {
     table t = empty_table({"", "claim"});
     for (const draft& d : drafts) t.rows.push_back({d.claim.id, d.claim.claim});
@@ -131,8 +135,8 @@ named_table bands_table(std::span<const draft> drafts) {
         t};
 }
 
-/// Judges ratios of a composition to itself under another name. Every difference that is found here is an error of the
-/// intervals, so their number shows how far the intervals of claims can be trusted.
+/// Judges ratios of a composition to itself under another name. Their true value is 1, so every difference found here
+/// is an error of the intervals. Their number shows how far the intervals of claims can be trusted.
 named_table null_control(const measurements& m) {
     // A composition, and the same one with an explicit default.
     const std::pair<selection, selection> twins[] = {{traditional, traditional.with(kind::sweep, "one_axis:axis=auto")},
@@ -144,7 +148,7 @@ named_table null_control(const measurements& m) {
                                                {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
             if (ratio.is_known()) ratios.push_back(decided_alone(ratio));
         }
-    // A difference lies outside the band. A mere direction is found by chance in one of twenty.
+    // Only an interval outside the band is a difference: one in twenty excludes 1 by chance.
     const auto outcome_of = [](const endpoint& e) {
         if (e.range.low > 1 + equivalence_band || e.range.high < 1 / (1 + equivalence_band))
             return std::string("a difference");
@@ -167,7 +171,8 @@ named_table null_control(const measurements& m) {
             t};
 }
 
-/// A warning if a machine was not quiet, by the time without a processor and the scatter of repeats; otherwise empty.
+/// A warning, if a machine was not quiet: if the program waited for a processor, or if times vary between successive
+/// repeats, by more than the limits; otherwise empty.
 std::string disturbance_of(std::span<const measurements> machines) {
     std::string text;
     for (const measurements& m : machines) {
