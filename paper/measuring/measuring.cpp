@@ -21,7 +21,8 @@ namespace aabblab {
 
 namespace {
 
-/// The project's studies of error against run time that have curves.
+/// The project's studies of error against run time that draw curves, for the report.
+/// @param quick takes the quick sizes of their configs
 std::vector<error_study> studies_with_curves(bool quick) {
     std::vector<error_study> studies;
     for (const std::filesystem::path& config : error_configs()) {
@@ -31,7 +32,8 @@ std::vector<error_study> studies_with_curves(bool quick) {
     return studies;
 }
 
-/// Times claim C6's tests of single boxes and triangles by Google Benchmark; keeps results of the same build.
+/// Times claim C6's tests of single boxes and triangles, by Google Benchmark in several processes, between which times
+/// vary. Keeps existing results of the same build and settings, which `made_by.txt` describes, and removes others.
 /// @returns a sentence if a test is wrong
 std::vector<std::string> time_elementary_tests(const std::filesystem::path& folder, bool quick) {
     constexpr std::size_t processes = 5;
@@ -47,6 +49,7 @@ std::vector<std::string> time_elementary_tests(const std::filesystem::path& fold
     std::ofstream(description_file, std::ios::binary) << description;
     for (std::size_t process = 0; process < processes; ++process) {
         if (std::filesystem::exists(file_of(process))) continue;
+        // A process that is interrupted leaves no file that looks complete.
         const std::filesystem::path part = file_of(process).string() + ".part";
         const std::filesystem::path log = folder / "benchmarks.log";
         const ended_process ended = run_to_end(
@@ -66,7 +69,7 @@ constexpr const char* failures_name = "failures.txt";
 /// Runs the suites of extreme and stiff scenes, which the report includes.
 /// @returns the errors that they found
 std::vector<std::string> run_suites(const std::filesystem::path& folder, bool quick) {
-    // The file of an earlier version would have priority over the rows.
+    // The report of an earlier version, if it were left, would have priority over the new rows.
     for (const char* suite : {"extreme", "stiff"}) std::filesystem::remove(folder / suite / "report.json");
     constexpr bool shown = false;
     note("the extreme scenes");
@@ -76,8 +79,8 @@ std::vector<std::string> run_suites(const std::filesystem::path& folder, bool qu
     return failures;
 }
 
-/// Removes the times of claim C6's elementary tests if the folder does not match its seal: a new run keeps the times
-/// that it finds, and would seal edited ones anew. Experiments check their own results when they are resumed.
+/// Removes the times of claim C6's elementary tests if the folder does not match its seal (checksums of a finished
+/// run). A new run keeps the times that it finds, and would seal edited ones anew; experiments check their own results.
 void remove_edited_test_times(const std::filesystem::path& folder) {
     try {
         verify_record(folder);
@@ -87,7 +90,8 @@ void remove_edited_test_times(const std::filesystem::path& folder) {
     }
 }
 
-/// The report's section on error against run time, from those studies of triangle pairs or whole scenes that were run.
+/// The report's section on error against run time: statements, figures and tables of the studies that were run, on
+/// triangle pairs (errors.csv) or on whole scenes (results.csv).
 report_section errors_section(const std::filesystem::path& folder, bool quick) {
     report_section section{
         .id = "errors",
@@ -157,8 +161,9 @@ std::vector<std::string> read_failures(const std::filesystem::path& folder) {
     return failures;
 }
 
-/// Runs all experiments of the paper and the studies and suites of the report, and stores errors immediately. Results
-/// of the same build and size are kept. At the end the folder is sealed.
+/// Runs the paper's experiments, and the studies, suites and atlas of the report. Results of the same build and size
+/// are kept. Errors are stored as soon as they are found. The folder is unsealed at the start, and sealed with
+/// checksums at the end, so that an unfinished run has no seal.
 void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     remove_edited_test_times(folder);
     std::vector<experiment> experiments;
@@ -218,7 +223,8 @@ void require_consistent(const reproduce_request& request) {
         throw aabb::input_error("--archive takes the results of one run, but several are given");
 }
 
-/// Reads and verifies the results of one run: all of them at once, so that a damaged one is found before any output.
+/// Reads and verifies the results of one run. It reads all of them at once, so that a damaged one is found before any
+/// output.
 /// @param name the user's name for it
 measurements verified_measurements(const std::filesystem::path& folder, const std::string& name) {
     const std::vector<std::string> experiments = recorded_experiments(folder);
@@ -247,7 +253,7 @@ bool is_quick(const std::filesystem::path& folder) {
     return read_manifest(folder / recorded_experiments(folder).front()).quick;
 }
 
-/// Rejects copies of a run, which would count as agreeing machines.
+/// Rejects copies of a run, which have the same seal: they would count as machines that agree.
 void require_different(std::span<const measurements> runs) {
     std::map<std::string, std::string> names;  // by seal
     for (const measurements& run : runs) {
@@ -257,7 +263,8 @@ void require_different(std::span<const measurements> runs) {
     }
 }
 
-/// A sentence on how the verdicts agree with the published run of this size, an archive in the repository; or empty.
+/// A sentence on how the verdicts agree with those of the published run of the same size, quick or full, an archive in
+/// the repository; empty if there is no such archive.
 std::string verdict_agreement_with_published(std::span<const measurements> runs, const reproduction& reproduced) {
     const std::string name = is_quick(runs.front().folder()) ? "quick_run.tar.xz" : "full_run.tar.xz";
     const std::filesystem::path archive = std::filesystem::path(AABBLAB_ARCHIVES) / name;
@@ -279,7 +286,8 @@ std::string verdict_agreement_with_published(std::span<const measurements> runs,
     }
 }
 
-/// Judges the results of several runs, as one per machine, together, writes the report and prints the verdicts.
+/// Judges the results of several runs together, each as those of one machine, writes the report and prints the
+/// verdicts.
 /// @returns the exit status: 1 if validation had found wrong results
 int judge(const std::filesystem::path& out, std::span<const measurements> runs) {
     std::vector<std::string> failures;
@@ -313,6 +321,8 @@ void archive_reproduction(const std::filesystem::path& folder, const std::filesy
 
 }  // namespace
 
+/// Measures unless existing results are to be judged, then judges and reports. The folder is locked meanwhile, so that
+/// no second run writes to it.
 int reproduce(const reproduce_request& request) {
     outlive_reader();
     require_consistent(request);

@@ -19,8 +19,8 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
     return names;
 }
 
-/// The files of a reproduction's folder from which its report is made: they are sealed and archived. Relative to the
-/// folder, sorted.
+/// The files of a reproduction's folder from which its report is made, so that they are sealed and archived; relative
+/// to the folder, sorted.
 std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
     const auto add = [&](const std::filesystem::path& subfolder, std::initializer_list<const char*> names) {
@@ -66,7 +66,8 @@ checksums_by_file checksums_in(const std::filesystem::path& folder) {
     return checksums;
 }
 
-/// Reads SHA256SUMS, whose lines are 64 hexadecimal digits, two blanks and a file.
+/// Reads SHA256SUMS: each line has the 64 hexadecimal digits of a checksum, two blanks and a file.
+/// @throws aabb::input_error with file and line if a line differs
 checksums_by_file stated_checksums(const std::filesystem::path& file) {
     checksums_by_file checksums;
     std::istringstream in(text_of_file(file));
@@ -85,6 +86,7 @@ checksums_by_file stated_checksums(const std::filesystem::path& file) {
 
 }  // namespace
 
+/// The names of the experiments with results, finished or not, in the folder of a reproduction.
 std::vector<std::string> recorded_experiments(const std::filesystem::path& folder) {
     std::vector<std::string> experiments;
     for (const std::string& name : names_in(folder))
@@ -100,7 +102,7 @@ std::vector<std::filesystem::path> archived_files(const std::filesystem::path& f
     return files;
 }
 
-/// Takes the named folders of results as they are, and unpacks the named archives of such folders.
+/// Collects the sources of results to judge: folders are taken as they are, archives are unpacked to temporary folders.
 results_sources::results_sources(std::span<const std::string> names) {
     for (const std::string& name : names) {
         if (!std::filesystem::exists(name)) throw aabb::input_error(name + " does not exist");
@@ -114,7 +116,8 @@ void results_sources::add(const std::filesystem::path& folder) {
     sources_.push_back({folder.string(), folder});
 }
 
-/// Archives are unpacked into temporary folders, which the user does not know: messages get the archive's name.
+/// Runs the work. Archives are unpacked to temporary folders, which the user does not know, so an error message gets
+/// the name of the archive in place of the folder's.
 int results_sources::run_with_source_names(const std::function<int()>& work) const {
     try {
         return work();

@@ -40,8 +40,8 @@ void add_axis(svg_picture& picture, double y) {
     }
 }
 
-/// Draws a value beyond the scale as an arrow at its end, with the number. As everywhere in these pictures, x is in
-/// percent of the width and y in pixels.
+/// Draws a value beyond the scale as an arrow at the left or right end of the picture, with the number beside it.
+/// Positions are in percent of the width (x) and in pixels (y), as everywhere in these pictures.
 void add_arrow(svg_picture& picture, bool to_left, double y, double number) {
     const double back = to_left ? 8 : -8;  // pixels
     svg_picture head;
@@ -51,7 +51,8 @@ void add_arrow(svg_picture& picture, bool to_left, double y, double number) {
                  {{"text-anchor", to_left ? "start" : "end"}});
 }
 
-/// Draws a ratio as a disc on its interval; what lies beyond the scale is drawn as an arrow.
+/// Draws a ratio as a disc on its 95 % interval, in the row at y. If the interval leaves the scale, an arrow at that
+/// end shows its limit, or the ratio, if that is beyond the scale, too.
 void add_interval(svg_picture& picture, const endpoint& e, double y) {
     const auto& [low, high] = e.range;
     const bool is_below = low < claims_scale.from;
@@ -62,8 +63,8 @@ void add_interval(svg_picture& picture, const endpoint& e, double y) {
     if (is_above) add_arrow(picture, /*to_left=*/false, y, e.ratio > claims_scale.to ? e.ratio : high);
 }
 
-/// A claim's ratios with their intervals, one per row, against the band of no difference. All claims share a scale,
-/// with 1 at 50 % of the width.
+/// A claim's ratios with their intervals as SVG, one per row, against the band of no difference. All claims share a
+/// logarithmic scale with 1 in the middle, so that their pictures compare.
 std::string interval_picture(std::span<const endpoint> endpoints) {
     const double axis_y = first_row + row_height * static_cast<double>(endpoints.size());
     std::string label;
@@ -78,7 +79,8 @@ std::string interval_picture(std::span<const endpoint> endpoints) {
     return picture.in_page("interval", label, axis_y + 16);
 }
 
-/// The rule by which ratios are judged as SVG for the page: example intervals and their outcomes.
+/// An SVG picture of the rule by which ratios are judged: example intervals against the band of no difference, with
+/// their outcomes.
 std::string rule_picture() {
     struct example {
         double low;
@@ -94,7 +96,7 @@ std::string rule_picture() {
     constexpr double plot_width = 64;  // %
     const scale shown{.from = 0.4, .to = 2.5, .logarithmic = true};
     const auto x = [&](double ratio) { return plot_width * shown.place(ratio); };
-    constexpr double row = 26;
+    constexpr double row = 26;  // vertical measures, in pixels
     constexpr double first = 40;
     constexpr double end = first + row * examples.size() - 8;
     svg_picture picture("%");
@@ -131,7 +133,8 @@ const verdict_word& word_of(verdict_kind verdict) {
     return verdict_words[static_cast<std::size_t>(verdict)];
 }
 
-/// The paragraphs of rule.md, which explains how a verdict is reached, without line breaks.
+/// The paragraphs of rule.md, the text on how a verdict is reached, each joined to one line. The file is embedded in
+/// the program.
 std::vector<std::string> rule_paragraphs() {
     std::vector<std::string> paragraphs;
     std::istringstream text{std::string(embedded::rule_md)};
@@ -156,7 +159,8 @@ std::string verdict_markup(const claim_result& c, const std::string& sentence) {
            markup_text(sentence);
 }
 
-/// Adds an overview with a row per claim, which links to its section; in Markdown a table, sentences and figures.
+/// Adds the overview of the claims: in HTML a row per claim, which links to its section; in Markdown a table, a
+/// sentence per claim, and the figures.
 void add_claim_rows(page& out, const reproduction& reproduced) {
     std::string rows = "\n";
     for (const claim_result& c : reproduced.claims) {
@@ -232,7 +236,8 @@ table rule_table() {
     return t;
 }
 
-/// Composes the report's page: warnings and headline, claims, the decision rule, details per claim, and provenance.
+/// Composes the report as a page: warnings and headline, the claims, the decision rule, details of each claim, table 1,
+/// open choices, further sections, and provenance.
 page report_of(const reproduction& reproduced, std::span<const report_section> sections, const provenance& origin,
                const std::vector<std::string>& failures) {
     page out("AABB Lab: the paper, reproduced", embedded::report_css);

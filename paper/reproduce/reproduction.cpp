@@ -20,14 +20,15 @@ private:
     std::string text_ = "% Written by ./aabblab reproduce: every number of the report.\n";
 };
 
-/// The values of all factors over the scenes of a claim: "scene brownian, still; objects 100, 1000."
+/// The values that each factor takes over the scenes of a claim, numbers in ascending order: "scene brownian, still;
+/// objects 100, 1000."
 std::string setup_of(const claim_result& c) {
     std::vector<std::pair<std::string, std::vector<std::string>>> values;
     for (const factors& scene : c.scenes)
         for (const auto& [name, value] : scene) {
-            auto known = std::ranges::find(values, name, &std::pair<std::string, std::vector<std::string>>::first);
-            if (known == values.end()) known = values.insert(known, {name, {}});
-            if (std::ranges::find(known->second, value) == known->second.end()) known->second.push_back(value);
+            auto factor = std::ranges::find(values, name, &std::pair<std::string, std::vector<std::string>>::first);
+            if (factor == values.end()) factor = values.insert(factor, {name, {}});
+            if (std::ranges::find(factor->second, value) == factor->second.end()) factor->second.push_back(value);
         }
     std::string text;
     const auto number = [](const std::string& value) { return number_of({{"", value}}, ""); };  // NaN for words
@@ -48,7 +49,7 @@ std::string list_of(const std::vector<Named>& entries, std::size_t from = 0) {
     return text;
 }
 
-/// Sets the macros of a claim for the LaTeX report, whose keys begin with its id.
+/// Sets the macros of a claim, such as `C1.verdict`, which the LaTeX report expands.
 void add_claim(macros& tex, const claim_result& c) {
     const auto set = [&](const char* key, std::string_view text) { tex.set(c.id + "." + key, text); };
     set("claim", c.claim);
@@ -75,7 +76,7 @@ void add_claim(macros& tex, const claim_result& c) {
                 static_cast<std::size_t>(std::ranges::count(c.secondaries, what, &endpoint::corrected)));
 }
 
-/// Every endpoint (ratio) of every claim with its outcome, for programs that check or continue the analysis.
+/// Every endpoint (ratio) of every claim with its outcome, as a table for programs that check or continue the analysis.
 table endpoints_of(const reproduction& reproduced) {
     table t = empty_table({"claim", "endpoint", "where", "source", "expected"}, {"ratio", "low", "high"},
                           {"direction", "outcome"});
@@ -95,9 +96,9 @@ table endpoints_of(const reproduction& reproduced) {
     return t;
 }
 
-/// The first primary ratio of every claim against the band of no difference.
+/// A figure of the first primary ratio of every claim, with its interval, against the band of no difference.
 figure verdict_figure(const reproduction& reproduced) {
-    // Smaller ones need no figure to be seen, and would stretch the axis until the band is too narrow to see.
+    // Smaller ratios would stretch the axis until the band is too narrow to see.
     constexpr double least_shown = 0.2;
     figure f{.name = "verdicts",
              .caption = fmt::format("The first primary ratio of every claim with its 95 % interval, and the band of no "
@@ -126,7 +127,8 @@ void write_table(const std::filesystem::path& folder, const named_table& t) {
     write_file(folder / (t.name + ".tex"), to_tex(t.content));
 }
 
-/// All macros of the LaTeX report. A missing key ends its build, so keys of unmeasured values are set too.
+/// The macros of the LaTeX report, one per number or sentence in it. A missing key ends its build, so keys of values
+/// that were not measured are set, too.
 std::string macros_of(const reproduction& reproduced, const provenance& origin,
                       const std::vector<std::string>& failures) {
     macros tex;
@@ -182,7 +184,8 @@ std::string macros_of(const reproduction& reproduced, const provenance& origin,
     return tex.text();
 }
 
-/// Collects the origin of the results from the manifests of all experiments behind claims, choices and null control.
+/// Collects the origin of the results (commit, compiler, processor, numbers of rows, …) from the manifests of all
+/// experiments on which claims, open choices and the null control rest.
 provenance provenance_of(const measurements& results, const reproduction& reproduced) {
     provenance origin;
     const std::filesystem::path& folder = results.folder();
@@ -219,6 +222,8 @@ provenance provenance_of(const measurements& results, const reproduction& reprod
 
 }  // namespace
 
+/// Writes the judged claims with their origin as tables, figures, macros for the LaTeX report, and a page.
+/// @param runs of several machines: ratios and verdicts are of all of them, figures and tables of the first
 void write_reproduction(const std::filesystem::path& folder, std::span<const measurements> runs,
                         const reproduction& judged_claims, std::span<const report_section> sections,
                         const std::vector<std::string>& failures, const std::string& verdict_agreement) {
@@ -259,6 +264,8 @@ void write_reproduction(const std::filesystem::path& folder, std::span<const mea
     write_file(folder / "report.html", report.html());
 }
 
+/// Compares the verdicts of two judgements in a sentence: "12 of 13 verdicts agree with …: C5: here holds, there …."
+/// @param other the name of the other judgement
 std::string agreement_of_verdicts(std::span<const claim_result> claims, std::span<const claim_result> other_claims,
                                   const std::string& other) {
     std::string differing;
