@@ -43,7 +43,9 @@ double atlas_scene::number(std::string_view parameter) const {
     return info != parameters.end() ? number_or_nan(info->fallback) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The atlas is mapped a second time without the winner of nearly every scene, to compare the classic strategies.
+/// The atlas without the candidates with the partition `columns`, which wins nearly every scene, and without `auto`,
+/// which selects it: a second set of maps compares the other strategies. Scenes without a remaining candidate are left
+/// out.
 std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas) {
     for (atlas_scene& scene : atlas)
         std::erase_if(scene.candidates, [](const atlas_candidate& candidate) {
@@ -61,7 +63,9 @@ estimate log_ratio(const atlas_candidate& candidate, const atlas_candidate& base
     return bootstrap(ratios);
 }
 
-/// Groups the exact, timed rows by scene and candidate. A scene in which only `auto` was timed has no winner.
+/// Groups the exact, timed rows of an experiment by scene and by candidate (composition or engine), a time per repeat.
+/// Scenes in which only `auto` was timed are left out, since `auto` cannot win.
+/// @param is_held_out whether the scenes are kept out of fits, to test fitted models
 std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is_held_out) {
     std::vector<atlas_scene> atlas;
     std::map<scene_choice, std::size_t> indices;

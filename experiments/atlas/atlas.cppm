@@ -135,7 +135,8 @@ namespace aabblab {
     return labels;
 }
 
-/// The strategies in a label without their parameters: "neighbour_list + bucket + columns + simd".
+/// The strategies in a candidate's label without their parameters (":name=value"), which distinguish it:
+/// "neighbour_list + bucket + columns + simd".
 [[nodiscard]] inline std::string family_of(std::string_view label) {
     std::string family;
     for (std::size_t i = 0; i < label.size(); ++i) {
@@ -145,7 +146,8 @@ namespace aabblab {
     return family;
 }
 
-/// Times relative to the fastest, one per scene that has the label, in ascending order.
+/// The regrets of one candidate: its time over that of the fastest, for each scene in which it was timed, in ascending
+/// order.
 [[nodiscard]] inline std::vector<double> regrets_of(const std::vector<atlas_scene>& atlas, const std::string& label,
                                                     atlas_time time) {
     std::vector<double> regrets;
@@ -156,9 +158,10 @@ namespace aabblab {
     return regrets;
 }
 
-/// The logarithm of the ratio of two candidates' times per frame in a scene. If their repeats give no error, since
-/// early stopping left only one, the error is that of two times with the variance pooled over the repeats of all
-/// candidates of the scene; the result is unknown (NaN) if none was repeated.
+/// The logarithm of the ratio of two candidates' times per frame in a scene, with its standard error. Early stopping
+/// leaves slow candidates one repeat, which gives no error. The error is then √(2 s²), that of a difference of two
+/// logarithms with the variance s² pooled over the repeats of all candidates of the scene. The result is NaN if none
+/// was repeated.
 [[nodiscard]] inline estimate log_ratio_in(const atlas_scene& scene, const atlas_candidate& candidate,
                                            const atlas_candidate& baseline) {
     const estimate of_repeats = log_ratio(candidate, baseline);

@@ -21,8 +21,12 @@ std::string settings_without(const scene_choice& scene, std::string_view paramet
     return settings_text(others);
 }
 
-/// The fraction of the segment at which the interpolated log ratio is 0, and its 95 % interval by sampling both ends.
+/// Where two candidates take the same time between two scenes: the fraction of the way at which the logarithm of their
+/// ratio, interpolated linearly, is 0. Its 95 % interval is that of lines whose ends are drawn with their errors.
+/// @param from the logarithm at the first scene, which the first candidate wins: below 0
+/// @param to the logarithm at the second scene: above 0
 std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
+    // A line from a at 0 to b at 1 is 0 at a / (a - b).
     const auto share = [](double a, double b) { return a == b ? 0.5 : std::clamp(a / (a - b), 0.0, 1.0); };
     constexpr std::size_t draws = 2000;
     std::mt19937_64 random(1);
@@ -48,23 +52,25 @@ const atlas_candidate* fastest_of(const atlas_scene& scene, const std::string& f
     return scene.fastest_if([&](const atlas_candidate& candidate) { return family_of(candidate.label) == family; });
 }
 
-/// The value of the parameter in which two scenes differ at which the winner of the first and that of the second take
-/// the same time; empty if both are won by the same strategies, or if a winner was not timed in both.
+/// The border between the winners of two scenes, which differ in one parameter only: the value of the parameter at
+/// which both winners take the same time, interpolated along its logarithm. There is none if the same strategies win
+/// both scenes, or if a winner was not timed in both.
 std::optional<border> border_between(const atlas_scene& from, const atlas_scene& to, std::string_view parameter) {
-    const atlas_candidate& first_best = from.fastest();
-    const atlas_candidate& last_best = to.fastest();
-    const std::string before = family_of(first_best.label), after = family_of(last_best.label);
+    const atlas_candidate& first_winner = from.fastest();
+    const atlas_candidate& second_winner = to.fastest();
+    const std::string before = family_of(first_winner.label), after = family_of(second_winner.label);
     if (before == after) return std::nullopt;
-    const atlas_candidate* after_at_first = fastest_of(from, after);
-    const atlas_candidate* before_at_last = fastest_of(to, before);
-    if (!after_at_first || !before_at_last) return std::nullopt;
+    const atlas_candidate* second_at_first = fastest_of(from, after);
+    const atlas_candidate* first_at_second = fastest_of(to, before);
+    if (!second_at_first || !first_at_second) return std::nullopt;
     const double log_from = std::log(from.number(parameter));
     const double log_length = std::log(to.number(parameter)) - log_from;
     if (!std::isfinite(log_from)) return std::nullopt;
-    const estimate at_first = log_ratio_in(from, first_best, *after_at_first);
-    const estimate at_last = log_ratio_in(to, *before_at_last, last_best);
-    if (!at_first.is_known() || !at_last.is_known()) return std::nullopt;
-    const auto [share, range] = crossing(at_first, at_last);
+    // Logarithms of the first winner's time over the second's, at either scene.
+    const estimate ratio_at_first = log_ratio_in(from, first_winner, *second_at_first);
+    const estimate ratio_at_second = log_ratio_in(to, *first_at_second, second_winner);
+    if (!ratio_at_first.is_known() || !ratio_at_second.is_known()) return std::nullopt;
+    const auto [share, range] = crossing(ratio_at_first, ratio_at_second);
     return border{before,
                   after,
                   std::string(parameter),
@@ -82,7 +88,7 @@ estimate log_position_of(const border& b) {
 
 }  // namespace
 
-/// Along each parameter, compares successive scenes of the map that agree in all other parameters.
+/// The borders along each parameter: between successive scenes of the map whose other parameters are all equal.
 std::vector<border> borders_of(const std::vector<atlas_scene>& atlas) {
     std::vector<border> borders;
     for (const std::string_view parameter : parameters) {
@@ -107,7 +113,8 @@ table borders_table(const std::vector<border>& borders) {
     return t;
 }
 
-/// One row per parameter and pair of winners, the most frequent first; positions have a geometric mean.
+/// One row per parameter and pair of winners, the most frequent first: the number of borders, and the geometric mean
+/// and range of the parameter's values at them.
 table borders_summary(const std::vector<border>& borders) {
     std::map<std::tuple<std::string, std::string, std::string>, std::vector<const border*>> by_winners;
     for (const border& b : borders) by_winners[{b.parameter, b.before, b.after}].push_back(&b);

@@ -8,7 +8,8 @@ namespace {
 
 constexpr const char* kind_of_map = "cloud";
 
-/// The strategies that win most scenes, which get a series of their own in figures; others share the series "another".
+/// The strategies that win the most scenes, in descending order. Each has a series of its own in figures; the others
+/// share the series "another".
 std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most_series = 7;
     std::map<std::string, std::size_t> wins;
@@ -33,8 +34,10 @@ void add_point(std::vector<series>& to, const std::string& winner, double x, dou
     (match != to.end() ? *match : to.back()).points.push_back({x, y});
 }
 
-/// A map of the winners by number of objects and displacement, with one panel per density and ratio of sizes.
-/// @param clouds only scenes with this number of separate clouds, in which all boxes move
+/// A map of the fastest candidates in the scene `cloud`, by number of objects and displacement, with one panel per
+/// density and ratio of sizes.
+/// @param winners the strategies with a series of their own
+/// @param clouds only scenes with this number of separate clouds, and in which all boxes move
 /// @param among empty, or text that names the restricted set of candidates
 figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners, double clouds,
               const std::string& among) {
@@ -61,7 +64,10 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
     return f;
 }
 
-/// A map of the winners of all scenes in motion, by measures that are defined for each, unlike the parameters.
+/// A map of the fastest candidates in all scenes in motion. Unlike the parameters of a scene, its measures (objects,
+/// inversions) are defined for scenes of every kind.
+/// @param winners the strategies with a series of their own
+/// @param among empty, or text that names the restricted set of candidates
 figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners,
                       const std::string& among) {
     figure f{.name = among.empty() ? "map_inversions" : "map_classic_inversions",
@@ -78,7 +84,8 @@ figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<s
     return f;
 }
 
-/// The regrets in ascending order of the candidates with the least medians, of those timed in half of the scenes.
+/// The regrets (time over that of the fastest) of using one candidate in all scenes, in ascending order: one curve for
+/// each of the candidates with the least medians. Candidates must have been timed in half of the scenes.
 figure regret_figure(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most_curves = 7;
     constexpr std::size_t least_scenes = 2;
@@ -102,6 +109,7 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
 }
 
 /// Adds a map for each number of clouds that occurs, and the map of all scenes in motion.
+/// @param among empty, or text that names the restricted set of candidates
 void add_maps(std::vector<figure>& figures, const std::vector<atlas_scene>& atlas, const std::string& among) {
     const std::vector<std::string> winners = most_frequent_winners(atlas);
     std::vector<double> clouds;
@@ -115,6 +123,7 @@ void add_maps(std::vector<figure>& figures, const std::vector<atlas_scene>& atla
 
 }  // namespace
 
+/// The maps of the fastest candidates, and the curves of their regrets.
 std::vector<figure> atlas_figures(const std::vector<atlas_scene>& atlas) {
     std::vector<figure> figures;
     add_maps(figures, atlas, /*among=*/"");

@@ -90,7 +90,9 @@ std::vector<stated_ratio> by_count(const std::string& candidate, const std::stri
     return ratios;
 }
 
-/// The statements as published, with the ratios that decide them. The candidate expected to be faster comes first.
+/// Published statements on broad phases, each with its source and the ratios of times that decide it. A ratio is that
+/// of the candidate expected to be faster over another, in the scenes of a filter, such as `moved(objects,
+/// displacement)`. Two filters compare the ratio in two sets of scenes.
 const std::vector<statement>& statements() {
     static const std::vector<statement> published{
         {"B1",
@@ -203,7 +205,8 @@ struct measured_ratio {
     estimate log{std::nan(""), 0, 1};
 };
 
-/// The geometric mean of a ratio over the matching scenes that have both candidates, as independent estimates.
+/// The ratio of the times of two candidates, as a geometric mean over the matching scenes in which both were timed. The
+/// scenes count as independent estimates.
 measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_ratio& r, const scene_filter& matches) {
     std::vector<estimate> logs;
     for (const atlas_scene& scene : atlas) {
@@ -227,7 +230,8 @@ measured_ratio measure(const std::vector<atlas_scene>& atlas, const stated_ratio
 
 }  // namespace
 
-/// Measures all ratios first, because Holm's correction for multiple tests needs the whole family.
+/// The verdicts on the published statements from the ratios in the atlas. All ratios are measured before any is
+/// decided, because Holm's correction for multiple tests needs the whole family.
 std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& atlas) {
     std::vector<judged_statement> verdicts;
     std::vector<tested> evidence;
@@ -256,6 +260,7 @@ std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& 
     return verdicts;
 }
 
+/// One row per published statement: its verdict and the ratios that decide it.
 table statements_table(const std::vector<judged_statement>& judged) {
     table t = empty_table({"statement", "says", "source", "verdict", "ratios"});
     for (const judged_statement& s : judged) {
@@ -276,6 +281,7 @@ table ratios_table(const std::vector<judged_statement>& judged) {
     return t;
 }
 
+/// The labels of all candidates that the statements compare, each once: a test checks that the atlas times them.
 std::vector<std::string> labels_in_statements() {
     std::vector<std::string> labels;
     for (const statement& s : statements())

@@ -44,7 +44,8 @@ std::vector<double> work_of(const scene_measures& m) {
     return work;
 }
 
-/// The measured times and the work of one candidate in the scenes of the map, or in those held out.
+/// What the cost model of a candidate is fitted to or tested by: its time in ns and its work, for each scene.
+/// @param held_out takes the scenes that are kept out of the fit, instead of those of the map
 std::vector<timed_work> observations_of(const std::vector<atlas_scene>& atlas, std::string_view label, bool held_out) {
     std::vector<timed_work> observations;
     for (const atlas_scene& scene : atlas) {
@@ -67,7 +68,8 @@ double predicted_ns(const std::vector<estimate>& costs, const scene_measures& m)
 
 }  // namespace
 
-/// Fits the costs of each candidate that was timed in more scenes than the model has terms.
+/// Fits a linear cost model (ns per box, pair and so on) to the times of each candidate in the scenes of the map, and
+/// tests it in the scenes held out. A fit needs more scenes than the model has terms.
 std::vector<candidate_model> models_of(const std::vector<atlas_scene>& atlas) {
     std::vector<candidate_model> models;
     const std::vector<std::string> labels = labels_of(atlas);
@@ -87,6 +89,8 @@ std::vector<candidate_model> models_of(const std::vector<atlas_scene>& atlas) {
     return models;
 }
 
+/// One row per candidate: the factor by which its model is off, as the median and at worst, in the scenes of the map
+/// and in unseen scenes.
 table models_table(const std::vector<candidate_model>& models) {
     table t = empty_table({"candidate"}, {"scenes", "off by", "worst", "unseen scenes", "off by there", "worst there"});
     for (const candidate_model& m : models)
@@ -96,7 +100,8 @@ table models_table(const std::vector<candidate_model>& models) {
     return t;
 }
 
-/// Each cost in ns per unit, with its 95 % interval; a cost is never negative.
+/// One row per candidate: each cost of its linear model in ns per unit, with its 95 % interval, which begins at 0 at
+/// the least, as no cost is negative.
 table costs_table(const std::vector<candidate_model>& models) {
     table t = empty_table({"candidate"});
     for (const term& cost : terms)
@@ -110,7 +115,8 @@ table costs_table(const std::vector<candidate_model>& models) {
     return t;
 }
 
-/// Judges the models' choice in scenes held out: the time of the candidate predicted to be fastest over the least time.
+/// What relying on the cost models would lose, in each scene that they were not fitted to: the time of the candidate
+/// with the least predicted time, over that of the fastest.
 std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas,
                                       const std::vector<candidate_model>& models) {
     std::vector<double> regrets;

@@ -16,7 +16,8 @@ struct section {
     bool is_shown = true;  ///< in the page; otherwise only in its file
 };
 
-/// Explains the table of models, with the regrets of relying on them in scenes held out.
+/// The text above the table of cost models, with the regrets (time over that of the fastest) of relying on their
+/// predictions in scenes held out from the fit.
 std::string models_text(const std::vector<atlas_scene>& atlas, const std::vector<candidate_model>& models) {
     std::string text =
         "A linear model predicts the time per frame as a sum of costs per box, pair, inversion and so on, fitted to "
@@ -30,6 +31,7 @@ std::string models_text(const std::vector<atlas_scene>& atlas, const std::vector
                       quartiles_of(regrets).median, *std::ranges::max_element(regrets));
 }
 
+/// All sections of the atlas: a table each, with its title and text. Long tables are written to files only.
 std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
     const std::vector<border> borders = borders_of(atlas);
     const std::vector<atlas_scene> classic = without_columns(atlas);
@@ -80,6 +82,7 @@ std::vector<section> sections_of(const std::vector<atlas_scene>& atlas) {
 
 }  // namespace
 
+/// Writes the atlas to a folder: figures, a CSV file per table, and the page as Markdown and HTML.
 void write_atlas(const std::filesystem::path& folder, const std::vector<atlas_scene>& atlas) {
     const std::vector<section> sections = sections_of(atlas);
     const std::vector<figure> figures = atlas_figures(atlas);

@@ -20,8 +20,9 @@ bool is_slower(const atlas_candidate& candidate, const atlas_candidate& best) {
 
 }  // namespace
 
-/// Per candidate: the scenes that it wins, those in which its lead over the second is significant (`shown`), and those
-/// in which it is not significantly slower than the winner (`as_fast`).
+/// One row per candidate: the number of scenes that it wins (`fastest`), those of them in which the second fastest is
+/// significantly slower (`shown`), and the other scenes in which it is not significantly slower than the winner
+/// (`as_fast`).
 table winners_table(const std::vector<atlas_scene>& atlas) {
     table t = empty_table({"candidate"}, {"scenes", "fastest in", "shown in", "as fast in"});
     t.columns.insert(t.columns.begin(), {row_number});
@@ -55,7 +56,8 @@ table winners_table(const std::vector<atlas_scene>& atlas) {
     return t;
 }
 
-/// One row per scene, with the lead of the fastest; an empty cell if the scene lacks a second, `auto` or motion.
+/// One row per scene: its measures, the fastest candidate, the ratio of the second fastest to it, and that of `auto`. A
+/// cell is empty if the scene has no second candidate, no `auto` or no motion.
 table cells_table(const std::vector<atlas_scene>& atlas) {
     table t = empty_table({"scene", "parameters"},
                           {"pairs_an_object", "inversions", "at_rest", "clustering", "size_ratio"}, {"fastest"});
@@ -87,7 +89,8 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
     return t;
 }
 
-/// Candidates in ascending order of their median time relative to the fastest of each scene.
+/// One row per candidate: the distribution over scenes of its regret, the time over that of the fastest of the scene.
+/// The row with the least median comes first.
 table regrets_table(const std::vector<atlas_scene>& atlas, atlas_time time) {
     struct standing {
         std::string label;
