@@ -22,15 +22,16 @@ constexpr std::array<std::string_view, 2> built_meshes = {"noise_sphere:triangle
 
 constexpr int turns = 5;
 
-/// Times the build of a tree by one thread, by two threads, and two builds at once, in turn. Their ratios are the
-/// speedup of a build by two threads, and the greatest speedup that this machine allows, that of independent builds.
+/// Times the build of a tree by one thread, by two threads, and two builds at once, in turn. The counter `two_threads`
+/// is the speedup of a build by two threads. `two_builds` is that of two independent builds, the most that this machine
+/// allows.
 template <class Build>
 void time_build(benchmark::State& state, const aabb::mesh& m) {
-    Build by_one;
-    Build by_two;
-    by_two.threads = 2;
-    const auto build = [&](const Build& by) {
-        const aabb::model<aabb::implicit_tree> built(m, aabb::as_tree_builder(by));
+    Build sequential;
+    Build parallel;
+    parallel.threads = 2;
+    const auto build = [&](const Build& strategy) {
+        const aabb::model<aabb::implicit_tree> built(m, aabb::as_tree_builder(strategy));
         benchmark::DoNotOptimize(&built);
     };
     const auto ms_of = [](const auto& work) {
@@ -39,18 +40,18 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
         return watch.ms();
     };
     // Warm-up: starts the threads. TBB determines the available processors on its first use.
-    build(by_two);
+    build(parallel);
     std::vector<double> two_threads, two_builds;
     for (auto _ : state) {
         double total = 0;
         for (int turn = 0; turn < turns; ++turn) {
             // The build by two threads comes last, as its threads linger.
-            const double one_thread = ms_of([&] { build(by_one); });
+            const double one_thread = ms_of([&] { build(sequential); });
             two_builds.push_back(2 * one_thread / ms_of([&] {
-                                     const std::jthread other([&] { build(by_one); });
-                                     build(by_one);
+                                     const std::jthread other([&] { build(sequential); });
+                                     build(sequential);
                                  }));
-            two_threads.push_back(one_thread / ms_of([&] { build(by_two); }));
+            two_threads.push_back(one_thread / ms_of([&] { build(parallel); }));
             total += one_thread;
         }
         state.SetIterationTime(total / turns / 1000);
@@ -61,6 +62,8 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
 
 }  // namespace
 
+/// Adds a benchmark per strategy `build` and mesh. The thread is pinned to one processor except while it builds, since
+/// threads that it starts would inherit that.
 void add_build_benchmarks(const idlest_processor& pinned) {
     for_each_strategy(aabb::builds{}, [&]<class Build>(aabb::type_list<Build>) {
         for (const std::string_view mesh : built_meshes)

@@ -18,7 +18,8 @@ void for_each_strategy(aabb::type_list<Strategies...>, Run run) {
 }
 
 namespace detail {
-/// All values of a parameter with named or few integer values; empty for other parameters, which keep their default.
+/// All values of a parameter that has names or few integers as values, as text. Other parameters have no list of
+/// values, so the result is empty, and they keep their default.
 template <class Parameter>
 [[nodiscard]] std::vector<std::string> values_of(const Parameter& parameter) {
     constexpr std::size_t few = 8;
@@ -33,7 +34,8 @@ template <class Parameter>
 }
 }  // namespace detail
 
-/// The strategy with every combination of its parameters' values: each parameter multiplies the choices so far.
+/// The strategy with every combination of its parameters' values: each parameter with V values makes V choices of each
+/// choice so far.
 template <aabb::Strategy S>
 [[nodiscard]] std::vector<aabb::strategy_choice> choices_of() {
     std::vector<aabb::strategy_choice> choices{{std::string(S::name), {}}};

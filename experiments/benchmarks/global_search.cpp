@@ -23,8 +23,9 @@ auto* add_case(std::string_view stage, const aabb::strategy_choice& choice, std:
 
 using list_of_frame = std::vector<aabb::projection>;
 
-/// What a sort gets in a moving scene: the list of one axis for each frame, with the keys of this frame in the order of
-/// the previous frame. With fewer frames, the branch predictor would learn the outcomes of the comparisons.
+/// The input of a sort in a moving scene, frame by frame: the list of one axis, with the lower ends of this frame's
+/// boxes as keys, in the sorted order of the previous frame. With fewer frames, the branch predictor would learn the
+/// outcomes of the comparisons.
 std::vector<list_of_frame> lists_over_frames(std::uint32_t objects, std::string_view displacement) {
     constexpr std::uint32_t frames = 16;
     constexpr int axis = 0;
@@ -49,7 +50,8 @@ const std::vector<list_of_frame>& lists_of(std::uint32_t objects, std::string_vi
     return lists;
 }
 
-/// Counts the work of a sort in a separate pass, so that counting does not slow down the timed one.
+/// Reports the work of a sort per list element, counted in a separate pass, so that counting does not slow down the
+/// timed one.
 template <class Sort>
 void count_work(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
     aabb::work_counters counted;
@@ -68,7 +70,8 @@ void count_work(benchmark::State& state, Sort sort, std::span<const list_of_fram
     if (counted[aabb::work::moves] > 0) state.counters["moves/n"] = per_element(aabb::work::moves);
 }
 
-/// Times the sort of the lists of successive frames; copying them is not timed.
+/// Times the sort of the lists of successive frames, one per iteration. Each is copied first, as the sort changes it;
+/// the copy is not timed.
 template <class Sort>
 void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
     aabb::no_counters none;
@@ -87,7 +90,9 @@ void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame
 
 constexpr aabb::axis_set swept = 0b001;  // x
 
-/// Times what a partition that cuts sorted lists does per frame: it chooses axes, fits its cuts, and distributes lists.
+/// Times what a partition that cuts sorted lists does per frame: it chooses the axes to cut, fits the cuts, and
+/// distributes the lists over subsets, each of which a sweep along the axis `swept` would search. The work is counted
+/// separately.
 template <class Partition>
 void time_partition(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);
@@ -112,7 +117,8 @@ void time_partition(benchmark::State& state, Partition partition, std::uint32_t 
     state.counters["bytes"] = static_cast<double>(aabb::bytes_of(partition) + subsets.bytes());
 }
 
-/// Times a column partition: the update of a search by columns, which distributes boxes to columns bucket by bucket.
+/// Times a partition into columns by the update of a whole search, which distributes the boxes over columns bucket by
+/// bucket. A second search counts the work.
 template <class Partition>
 void time_column_search(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);
@@ -143,7 +149,7 @@ template <aabb::ListSweep Sweep>
     return std::popcount(make_configured<Sweep>(choice).axes(frame.boxes(), frame.objects())) == 1;
 }
 
-/// Times a sweep over the sorted lists of a whole frame.
+/// Times a sweep over the sorted lists of a whole frame, one search per iteration. The work is counted before.
 template <aabb::ListSweep Sweep>
 void time_sweep(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     const sorted_frame frame(objects);
@@ -161,7 +167,7 @@ void time_sweep(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     }
 }
 
-/// Times a sweep over the columns of a whole frame, which are filled in advance.
+/// Times a sweep over the columns of a whole frame, one search per iteration. The columns are filled before.
 template <aabb::ColumnSweep Sweep>
 void time_columns(benchmark::State& state, Sweep sweep, std::uint32_t objects) {
     const sorted_frame frame(objects);
@@ -224,7 +230,9 @@ private:
     std::size_t step_ = 0;
 };
 
-/// Times the frames of a scene in motion, for sweeps that keep their pairs from frame to frame.
+/// Times a sweep that keeps its pairs from frame to frame, one frame of a moving scene per iteration. `moving_sweep`
+/// runs through the frames forwards and backwards, so that every step is the motion of one frame. The work is counted
+/// before, over a period, the steps until the first frame recurs.
 template <aabb::CoherentSweep Sweep>
 void time_steps(benchmark::State& state, Sweep sweep, std::uint32_t objects, std::string_view displacement) {
     constexpr std::uint32_t last_frame = 16;
@@ -245,7 +253,8 @@ void time_steps(benchmark::State& state, Sweep sweep, std::uint32_t objects, std
     }
 }
 
-/// Adds a sweep of lists; one of several lists only in the smaller scenes.
+/// Adds the benchmarks of a sweep of sorted lists, and, if it can sweep columns, too, those of columns. A sweep of
+/// several lists would take too long in the largest scene.
 template <aabb::ListSweep Sweep>
 void add_sweep(const aabb::strategy_choice& choice) {
     const std::size_t cases = uses_one_list<Sweep>(choice) ? sizes.size() : sizes.size() - 1;
@@ -262,14 +271,18 @@ void add_sweep(const aabb::strategy_choice& choice) {
 template <aabb::CoherentSweep Sweep>
 void add_sweep(const aabb::strategy_choice& choice) {
     for (const std::uint32_t objects : std::span(sizes).first(sizes.size() - 1))
-        for (const std::string_view displacement : displacements)
-            add_case("sweep", choice, objects, displacement, [=](benchmark::State& state) {
+        for (const std::string_view displacement : displacements) {
+            const auto run = [=](benchmark::State& state) {
                 time_steps(state, make_configured<Sweep>(choice), objects, displacement);
-            });
+            };
+            add_case("sweep", choice, objects, displacement, run);
+        }
 }
 
 }  // namespace
 
+/// Adds a benchmark per sort, setting of its parameters, number of objects and displacement. The sort is timed first,
+/// then its work is counted.
 void add_sort_benchmarks() {
     for_each_strategy(aabb::sorts{}, []<class Sort>(aabb::type_list<Sort>) {
         for (const aabb::strategy_choice& choice : choices_of<Sort>())
@@ -283,6 +296,8 @@ void add_sort_benchmarks() {
     });
 }
 
+/// Adds a benchmark per partition, setting of its parameters and number of objects. A partition divides into columns or
+/// cuts sorted lists; `none` and other partitions have nothing to time.
 void add_partition_benchmarks() {
     for_each_strategy(aabb::partitions{}, []<class Partition>(aabb::type_list<Partition>) {
         for (const aabb::strategy_choice& choice : choices_of<Partition>())

@@ -42,6 +42,8 @@ struct leaf_pair {
 /// of hits and misses and the relative sizes of boxes are representative.
 class walked_pairs {
 public:
+    /// Records the tests of a traversal, then runs `local_detection` on the same meshes to compare the numbers of
+    /// tests.
     /// @throws std::logic_error if `local_detection` no longer tests as many pairs as recorded
     walked_pairs() {
         traverse();
@@ -78,7 +80,8 @@ private:
         return poses;
     }
 
-    /// Records the tests of `local_detection` in its order: of two inner nodes, it opens that with the longer box.
+    /// Records the tests of `local_detection` in its order. `open_` is the stack of node pairs whose boxes overlap. Of
+    /// two inner nodes, the one with the longer box is opened.
     void traverse() {
         test({a_.root(), b_.root(), to_a_(b_.bounds())});
         while (!open_.empty()) {
@@ -274,7 +277,8 @@ struct rotated_box_15_test {
     return triangles;
 }
 
-/// True if any two triangles below the pair of nodes intersect: then a leaf test that rejects the pair loses a contact.
+/// True if any two triangles below the pair of nodes intersect. If so, a leaf test that rejects the pair has a false
+/// negative.
 [[nodiscard]] bool any_intersect(const walked_pairs& walk, const reached_leaf& p) {
     for (const std::uint32_t of_b : triangles_below(walk.b(), p.b)) {
         const aabb::triangle3f image = walk.to_a()(walk.b().triangles().triangle(of_b));
@@ -295,7 +299,8 @@ template <class Test>
 template <class Test>
 constexpr bool may_miss = requires { requires !Test::exact; };
 
-/// Times a test of a leaf against a node on the recorded pairs, and reports its false negatives if it is inexact.
+/// Times a test of a leaf against a node on the recorded pairs. If the test is inexact, the counter `kept` is one minus
+/// its share of false negatives.
 /// @throws std::logic_error if an exact test has false negatives
 template <class Test, class Leaf>
 void time_leaf_test(benchmark::State& state) {
@@ -352,7 +357,8 @@ void add_leaf_test_benchmarks() {
     add_leaf_tests<leaf_of_a>(tests);
 }
 
-/// Adds each triangle test twice: with the transform of the second triangle, and ("/frame:a") with its cached image.
+/// Adds each triangle test twice: including the transform of B's triangle into A's frame, and ("/frame:a") with its
+/// cached image.
 void add_triangle_test_benchmarks() {
     for_each_strategy(aabb::triangles{}, []<class Triangle>(aabb::type_list<Triangle>) {
         for (const aabb::strategy_choice& choice : choices_of<Triangle>()) {

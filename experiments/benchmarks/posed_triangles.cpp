@@ -69,7 +69,8 @@ pose turned(double degrees) {
             {0, 0, 0}};
 }
 
-/// The pose p after (x, y, z) -> (y, z, x), a third of a turn about (1, 1, 1), and a translation.
+/// The pose x -> R (P x + shift), of the rotation R of p, and of P: (x, y, z) -> (y, z, x), a third of a turn about
+/// (1, 1, 1), which maps the plane of the sheet to itself. R P is R with its columns permuted.
 pose after_permutation(const pose& p, const vec3d& shift) {
     pose result;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -80,6 +81,7 @@ pose after_permutation(const pose& p, const vec3d& shift) {
     return result;
 }
 
+/// The two meshes of a case, at poses: sheets that cross, coincide or lie 1e-9 apart, or otherwise gears in mesh.
 posed_meshes make(std::string_view name) {
     const aabb::mesh sheets = sheet(64);
     const pose r = turned(30);
@@ -102,10 +104,12 @@ struct posed_pair {
 
 /// The pairs of triangles whose boxes overlap, with the image of the second triangle.
 struct candidates {
+    /// Collects the pairs of triangles whose boxes overlap in A's frame, in all forms that the stages of the test take.
+    /// @param name a case of `make`
     explicit candidates(std::string_view name) : meshes(make(name)) {
         const auto& [a, b, poses] = meshes;
         const aabb::relative_pose to_a(poses.a, poses.b, bounds_of(b), a.frame, b.frame);
-        error = to_a.image_error();
+        image_error = to_a.image_error();
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t) {
             const aabb::box of_t = to_a(bounds_of(b.triangle(t)));
             for (std::uint32_t s = 0; s < a.triangle_count(); ++s)
@@ -120,11 +124,12 @@ struct candidates {
     }
 
     posed_meshes meshes;
-    aabb::vec3f error{};
+    aabb::vec3f image_error{};  // a bound on that of an image in float, by axis
     std::vector<posed_pair> pairs;
 };
 
-/// Times a stage on the candidates of a case, one by one.
+/// Adds the benchmarks of one stage of the exact triangle test, one per case; an iteration tests one pair. The counter
+/// `decided` is the share of the pairs that the stage decides.
 /// @param stage called with the candidates and a pair; returns whether it decides the pair
 template <class Stage>
 void add(const std::string& name, Stage stage) {
@@ -144,9 +149,12 @@ void add(const std::string& name, Stage stage) {
 
 }  // namespace
 
+/// Times the stages of the exact test of triangles at poses, each alone: the filter in double, which may leave a pair
+/// undecided; the whole exact test; and its integer arithmetic, by which `side` says on which side of a triangle a
+/// corner lies.
 void add_posed_triangle_benchmarks() {
     add("filter_in_double", [](const candidates& given, const posed_pair& p) {
-        return aabb::exact_triangle::intersects_if_certain(p.s_in_float, p.image_of_t, given.error).has_value();
+        return aabb::exact_triangle::intersects_if_certain(p.s_in_float, p.image_of_t, given.image_error).has_value();
     });
     add("exact", [](const candidates& given, const posed_pair& p) {
         benchmark::DoNotOptimize(aabb::exact_triangle::intersects(given.meshes.poses, p.s, p.t));
