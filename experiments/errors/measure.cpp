@@ -30,9 +30,11 @@ public:
 
     void add(entry added) { entries_.push_back(std::move(added)); }
 
-    /// Times each test on a batch of pairs, in an order that varies with the batch, and adds the errors to its point.
-    /// @param work is timed, for each test
-    /// @param judge compares the result with the ground truth, untimed
+    /// Times each test on a batch of pairs, in an order that varies with the batch, and adds its errors to its point
+    /// (its sums so far).
+    /// @param pairs their number in the batch
+    /// @param work runs a test; it is timed
+    /// @param judge compares the results of the last test with the ground truth, and adds to its point; untimed
     template <class Work, class Judge>
     void run_batch(std::size_t pairs, Work work, Judge judge) {
         run_round(entries_, batches_, [&](entry& e) {
@@ -45,7 +47,8 @@ public:
         ++batches_;
     }
 
-    /// @param time the member of a point that receives the quartiles of its times
+    /// Moves out the points of all tests, with the quartiles of their times per pair over batches.
+    /// @param time the member of a point that receives these quartiles
     [[nodiscard]] std::vector<Point> points(quartiles Point::* time) {
         std::vector<Point> points;
         for (entry& e : entries_) {
@@ -65,6 +68,8 @@ constexpr std::size_t pairs_in_batch = 4096;
 
 class error_run {
 public:
+    /// Makes every test of every curve of the study; a curve is a test at several values of its parameter.
+    /// @param name of the set of pairs, in reports
     /// @param in_double leaves out the tests that take floats only
     error_run(const error_study& study, const std::string& name, bool in_double) {
         for (const error_curve& curve : study.curves)
@@ -92,7 +97,8 @@ public:
     [[nodiscard]] std::vector<error_point> points() { return methods_.points(&error_point::ns_per_pair); }
 
 private:
-    /// Adds the false negatives and false positives of the last results; results and truth are 0 or 1.
+    /// Adds the errors of the last test: a result is 1 if it reports an intersection, and the truth is 1 if there is
+    /// one.
     void count(error_point& point) const {
         point.count += results_.size();
         for (std::size_t i = 0; i < results_.size(); ++i) {
@@ -106,7 +112,9 @@ private:
     std::vector<std::uint8_t> truth_, results_;
 };
 
-/// Runs the methods on the generated pairs of a set, batch by batch, so that memory does not grow with their number.
+/// Runs the tests of a study on the generated pairs of a set, batch by batch, so that memory does not grow with their
+/// number.
+/// @param done the pairs of all sets so far, for the progress shown
 template <class Real>
 std::vector<error_point> run_pairs(const error_study& study, const pair_set& set, progress& shown, std::size_t& done) {
     error_run run(study, set.pair_class, set.in_double);
@@ -121,8 +129,9 @@ std::vector<error_point> run_pairs(const error_study& study, const pair_set& set
     return run.points();
 }
 
-/// Appends the pairs of triangles of two objects whose boxes overlap. A global search over the boxes of all triangles
-/// of both finds them in less than quadratic time; of its pairs, those within one object do not matter.
+/// Appends the pairs of triangles of two objects whose boxes overlap. A broad phase over the boxes of all triangles of
+/// both finds them in less than quadratic time. Its pairs within one object are dropped; A's triangles have the ids
+/// below A's triangle count.
 void add_overlapping(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::mesh& b, const aabb::pose& pose_b,
                      std::vector<aabb::triangle_pair<float>>& overlapping) {
     const aabb::box bounds_b = aabb::bounds_of(b);
@@ -145,8 +154,8 @@ void add_overlapping(const aabb::mesh& a, const aabb::pose& pose_a, const aabb::
             overlapping.push_back({a.triangle(p.a), images[p.b - a.triangle_count()]});
 }
 
-/// The pairs of triangles with overlapping boxes, of objects with overlapping boxes, over all frames. The second
-/// triangle is transformed into the frame of the first mesh, as in the leaves of a tree.
+/// The pairs of triangles with overlapping boxes, of any two objects of a scene, over all frames. The second triangle
+/// is transformed into the frame of the first mesh, as in the leaves of a tree.
 std::vector<aabb::triangle_pair<float>> overlapping_triangles(const scene_choice& choice) {
     const std::unique_ptr<aabb::mesh_scene> scene = make_mesh_scene(choice);
     std::vector<aabb::triangle_pair<float>> overlapping;
@@ -158,7 +167,7 @@ std::vector<aabb::triangle_pair<float>> overlapping_triangles(const scene_choice
     return overlapping;
 }
 
-/// Runs the methods on the pairs that a narrow phase would test in a scene of meshes.
+/// Runs the tests of a study on the pairs that a narrow phase would test in a scene of meshes.
 std::vector<error_point> run_scene(const error_study& study, const scene_choice& scene) {
     const std::string name = scene.kind + " " + parameters_text(scene);
     error_run run(study, name, /*in_double=*/false);
@@ -188,6 +197,8 @@ void raise_to(aabb::corner_errors& greatest, const aabb::corner_errors& errors) 
 /// Runs the tests that construct the intersection of two triangles on the hits (intersecting pairs) of one class.
 class hit_run {
 public:
+    /// Makes the tests that can construct an intersection, our own strategies and those of libraries, for a set of
+    /// pairs.
     explicit hit_run(const pair_set& set) {
         const std::vector<std::string> strategies = aabb::strategy_names(aabb::strategy_kind::triangle);
         for (const std::string& name : constructing_tests()) {
@@ -200,7 +211,9 @@ public:
         }
     }
 
-    /// Times the tests on some hits, and compares each constructed intersection with CGAL's exact one.
+    /// Times the tests on some hits (intersecting pairs), and compares each constructed intersection with CGAL's exact
+    /// one. An intersection is `different` if its kind or number of corners is wrong, and `outside` if a corner's error
+    /// exceeds the bound that the test states.
     void run_batch(std::span<const aabb::triangle_pair<double>> hits) {
         std::deque<aabb::exact_intersection> exact;
         for (const aabb::triangle_pair<double>& hit : hits) exact.emplace_back(hit.a, hit.b);
@@ -230,8 +243,8 @@ private:
     alternating_tests<hit_point> tests_;
 };
 
-/// Generates pairs until there are enough hits, or too many pairs for each: in some classes hardly any intersect. Runs
-/// the constructing tests on the hits.
+/// Generates pairs until a set has the requested number of hits, and runs the constructing tests on these, batch by
+/// batch. It gives up after a thousand pairs per requested hit, as hits are rare in some classes.
 /// @param done the hits of earlier sets, for the progress shown
 template <class Real>
 std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint64_t done) {
@@ -259,6 +272,8 @@ std::vector<hit_point> run_hits(const pair_set& set, progress& shown, std::uint6
 
 }  // namespace
 
+/// Runs the tests of a study on its sets of generated pairs, then on the triangle pairs of its scenes.
+/// @param finished if set, receives all points so far after each set, so that they can be stored
 std::vector<error_point> measure_errors(const error_study& study,
                                         const std::function<void(std::span<const error_point>)>& finished) {
     std::vector<error_point> points;
@@ -282,6 +297,8 @@ std::vector<error_point> measure_errors(const error_study& study,
     return points;
 }
 
+/// Runs the tests that construct intersections on the hits (intersecting pairs) of each set.
+/// @param finished if set, receives all points so far after each set, so that they can be stored
 std::vector<hit_point> measure_hits(std::span<const pair_set> sets,
                                     const std::function<void(std::span<const hit_point>)>& finished) {
     std::uint64_t count = 0;

@@ -14,8 +14,10 @@ namespace {
 /// Two numbers of a method; less is better in both.
 using cost = std::array<double, 2>;
 
-/// The Pareto front: the indices of the methods whose cost no other cost dominates, in ascending order of the first
-/// number; of equal costs only one. In that order, a method is on the front if its second number is a new minimum.
+/// The Pareto front of methods with two costs: the indices of those that no other method beats in one cost and equals
+/// or beats in the other, in ascending order of the first; of equal methods only one. In that order, a method is on the
+/// front if its second cost is a new minimum.
+/// @param cost_of returns the two costs of a method
 template <class Method, class CostOf>
 std::vector<std::size_t> front_of(const std::vector<Method>& methods, CostOf cost_of) {
     std::vector<std::size_t> order(methods.size());
@@ -142,6 +144,8 @@ struct plotted_composition {
 /// A plot of two metrics of the compositions that ran in one scene.
 class plotted_scene {
 public:
+    /// Collects the compositions of the curves that ran in the scene, each as a point of two metrics.
+    /// @param plot the names of the metrics, x and y
     plotted_scene(const scene_summary& scene, const metric_plot& plot, std::span<const error_curve> curves)
         : scene_(scene), x_(metric_named(plot.x)), y_(metric_named(plot.y)) {
         for (const error_curve& curve : curves) {
@@ -156,7 +160,8 @@ public:
         }
     }
 
-    /// A sentence about the compositions at both ends of the Pareto front; empty if there is no trade-off.
+    /// A sentence about the compositions at both ends of the Pareto front. It is empty if one composition is best in
+    /// both metrics, or if a metric has no better direction.
     [[nodiscard]] std::string statement() const {
         const std::vector<std::size_t> front = front_of_plotted();
         if (front.size() < 2 || !has_front()) return {};
@@ -167,7 +172,8 @@ public:
                            last.label, y_.name, value_text(y_, last.y), x_.name, value_text(x_, last.x));
     }
 
-    /// One curve per method over its parameter, with the Pareto front if both metrics have a better direction.
+    /// A figure of one metric over the other, with one curve per method over its parameter. The Pareto front is added
+    /// if both metrics have a better direction, and, under shares of wrong pairs, a level for methods without errors.
     [[nodiscard]] figure drawn(const std::string& name) const {
         // A logarithmic axis cannot show zero.
         const bool positive_x = std::ranges::all_of(plotted_, [](const plotted_composition& c) { return c.x > 0; });
@@ -202,7 +208,8 @@ private:
         return m.name + (m.unit.empty() ? "" : " (" + m.unit + ")");
     }
 
-    /// The metrics of a composition in this scene; empty if it did not run in it.
+    /// The two metrics of a composition in this scene; empty if it did not run in it. A candidate's metrics are in the
+    /// order of `metrics()`.
     [[nodiscard]] std::optional<plotted_composition> values_of(const aabb::composition& c) const {
         const candidate_name name = candidate_of(c, has_meshes(scene_.scene)).name;
         const auto candidate = std::ranges::find(scene_.candidates, name, &candidate_summary::name);
@@ -308,7 +315,8 @@ std::string_view title_of(pair_group group) {
     return titles[static_cast<std::size_t>(group)];
 }
 
-/// Methods from the least to the greatest share of wrong results (FN: false negatives, FP: false positives).
+/// One row per method, from the least to the greatest share of wrong results. FN is the share of false negatives among
+/// intersecting pairs, FP that of false positives among the others.
 table error_summary(std::span<const error_point> points, pair_group group) {
     table t = empty_table({"triangle"}, {"ns/pair", "wrong", "FN", "FP"});
     std::vector<pooled> methods = pooled_over(of_group(points, group));
@@ -320,6 +328,8 @@ table error_summary(std::span<const error_point> points, pair_group group) {
     return t;
 }
 
+/// One row per method, one column per set of pairs in the group: the shares of false negatives and false positives,
+/// joined by "+".
 table errors_by_set(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> subset = of_group(points, group);
     table t = empty_table({"triangle"});
@@ -348,6 +358,7 @@ figure group_figure(std::span<const error_point> points, pair_group group) {
                      subset);
 }
 
+/// A sentence on both ends of the Pareto front of time and errors: the fastest method, and that with the fewest errors.
 std::string group_statement(std::span<const error_point> points, pair_group group) {
     const std::vector<pooled> methods = pooled_over(of_group(points, group));
     const std::vector<std::size_t> front = front_of(methods, &pooled::costs);
@@ -364,6 +375,7 @@ std::string group_statement(std::span<const error_point> points, pair_group grou
     return text + ".";
 }
 
+/// The figures of error over run time: one per group of sets (float, double, meshes), and one per set.
 std::vector<figure> error_figures(std::span<const error_point> points) {
     std::vector<figure> figures;
     for (const pair_group group : groups_in(points)) {
@@ -379,6 +391,7 @@ std::vector<figure> error_figures(std::span<const error_point> points) {
     return figures;
 }
 
+/// A figure for each scene and each pair of metrics that the study plots.
 std::vector<figure> metric_figures(const error_study& study, std::span<const scene_summary> scenes) {
     std::vector<figure> figures;
     for (const scene_summary& scene : scenes)
@@ -390,7 +403,8 @@ std::vector<figure> metric_figures(const error_study& study, std::span<const sce
     return figures;
 }
 
-/// A sentence about the Pareto front of each plot in each scene in which its metrics are traded against each other.
+/// A sentence for each scene and plot of a study about both ends of its Pareto front, where no composition is best in
+/// both metrics.
 std::vector<std::string> metric_statements(const error_study& study, std::span<const scene_summary> scenes) {
     std::vector<std::string> statements;
     for (const scene_summary& scene : scenes)
