@@ -12,7 +12,8 @@ namespace {
 
 using row_list = std::vector<const extreme_row*>;
 
-/// Groups rows by a text, in order of first appearance.
+/// Groups rows (each the result of one candidate in one scene) by a text, in order of first appearance.
+/// @param text a member of a row, or a function of it, that gives the text
 template <class Text>
 std::vector<std::pair<std::string, row_list>> grouped_by(std::span<const extreme_row> rows, Text text) {
     std::vector<std::pair<std::string, row_list>> groups;
@@ -47,7 +48,8 @@ std::string counts(std::uint64_t false_negatives, std::uint64_t false_positives)
     return text.empty() ? "-" : text;
 }
 
-/// Sums up candidates that must be exact: "312 exact", "312 rejected", or "3 WRONG".
+/// A table cell for many candidates that must be exact: the number of those that are, "312 exact"; "312 rejected" if
+/// each rejects its scenes, as expected; or the number of those that fail, "3 WRONG".
 std::string sum_cell(const row_list& rows) {
     if (rows.empty()) return "-";
     std::set<std::string> candidates, failed;
@@ -61,7 +63,8 @@ std::string sum_cell(const row_list& rows) {
     return std::to_string(candidates.size()) + (rejected ? " rejected" : " exact");
 }
 
-/// The cell of one candidate: "exact", "rejected", "WRONG", or counts of errors if it may be inexact; "-" if not run.
+/// A table cell for one candidate: "exact", "rejected", or "WRONG" if a result is not as expected. A candidate that may
+/// be inexact gets its false negatives and false positives, "-12 +3". A candidate that did not run gets "-".
 std::string cell_of(const row_list& rows) {
     if (rows.empty()) return "-";
     std::uint64_t false_negatives = 0, false_positives = 0;
@@ -77,7 +80,11 @@ std::string cell_of(const row_list& rows) {
     return rejected ? "rejected" : wrong ? "wrong" : "exact";
 }
 
-/// One row per scene or class, the `key`: the first columns summarise its rows, then there is one per candidate.
+/// A table with one row per scene, or per class of cases, and one column per candidate.
+/// @param columns the first columns: the scene or class, then those of the summary
+/// @param key the member of a row by which rows are grouped
+/// @param names the candidates
+/// @param summary_cells returns the cells of the summary of a group
 template <class Summary>
 table candidate_table(std::vector<column> columns, std::span<const extreme_row> rows, std::string extreme_row::* key,
                       const std::vector<std::string>& names, Summary summary_cells) {
@@ -98,7 +105,9 @@ std::vector<extreme_row> filtered(std::span<const extreme_row> rows, Wanted want
     return selected;
 }
 
-/// The errors of triangle tests by `key`, the scene or the class of a row; those without errors are omitted.
+/// The errors of inexact triangle tests, one row per scene or class of cases, one column per test. Rows without errors
+/// are omitted.
+/// @param key the member that holds the scene or the class
 table wrong_table(const std::string& title, std::span<const extreme_row> rows, std::string extreme_row::* key) {
     const auto tests = filtered(rows, [](const extreme_row& row) { return row.role == candidate_role::triangle_test; });
     std::set<std::string> wrong;
@@ -138,6 +147,8 @@ constexpr auto columns_of_row = [](auto& r, auto field) {
 
 }  // namespace
 
+/// One row per class of triangle cases: their number, the exact triangle tests and the compositions in one cell each,
+/// and a column per engine.
 table case_table(std::span<const extreme_row> rows) {
     const auto shown = filtered(rows, [](const extreme_row& row) { return row.group == row_group::cases; });
     const auto sums_of = [](const row_list& group) {
@@ -151,6 +162,7 @@ table case_table(std::span<const extreme_row> rows) {
                            &extreme_row::kind, candidates_in(shown, candidate_role::engine), sums_of);
 }
 
+/// The errors of inexact triangle tests, one row per class of cases.
 table inexact_case_table(std::span<const extreme_row> rows) {
     // Tests with non-default parameters are in the CSV file only.
     const auto shown = filtered(rows, [](const extreme_row& row) {
@@ -160,6 +172,7 @@ table inexact_case_table(std::span<const extreme_row> rows) {
     return wrong_table("class", shown, &extreme_row::kind);
 }
 
+/// One row per scene of a group (boxes or meshes): all compositions in one cell, and a column per engine.
 table scene_table(std::span<const extreme_row> rows, row_group group) {
     const auto shown = filtered(
         rows, [&](const extreme_row& row) { return row.group == group && row.role != candidate_role::triangle_test; });
@@ -175,6 +188,8 @@ table inexact_scene_table(std::span<const extreme_row> rows) {
                        &extreme_row::scene);
 }
 
+/// One row per candidate that may be inexact: its false negatives and false positives in scenes of meshes, by the class
+/// of the wrong pair (touching, coplanar, …).
 table class_table(std::span<const extreme_row> rows) {
     table t = empty_table({"candidate"});
     for (const std::string_view name : aabb::difference_class_names) t.columns.push_back({std::string(name)});
@@ -191,7 +206,7 @@ table class_table(std::span<const extreme_row> rows) {
     return t;
 }
 
-/// A sentence for each scene that limits memory: the most that a composition took, and the limit.
+/// A sentence for each scene with a memory limit: the most bytes that a composition took, and the limit.
 std::vector<std::string> memory_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto limited = filtered(
@@ -214,6 +229,7 @@ std::vector<extreme_row> read_extreme_rows(const std::filesystem::path& file) {
                                      std::array<std::string_view, 2>{"precision", "stated_bytes"});
 }
 
+/// A sentence for each distinct reason of a rejection, after the scenes in which it occurs.
 std::vector<std::string> rejections_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     const auto rejected =
@@ -228,6 +244,7 @@ std::vector<std::string> rejections_in(std::span<const extreme_row> rows) {
     return sentences;
 }
 
+/// A sentence for each row with a result that is not as expected: the candidate, the scene and the reason.
 std::vector<std::string> failures_in(std::span<const extreme_row> rows) {
     std::vector<std::string> sentences;
     for (const extreme_row& row : rows)

@@ -10,7 +10,8 @@ namespace aabblab {
 
 namespace {
 
-/// The strategy with each combination of named values of its parameters; defaults are omitted.
+/// The strategy with each combination of those parameters whose values are names, not numbers. A default is not written
+/// out, so the first choice is the strategy without settings.
 std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, const std::string& name) {
     const auto info = std::ranges::find(aabb::strategies(kind), name, &aabb::strategy_info::name);
     std::vector<aabb::strategy_choice> choices{{name, {}}};
@@ -25,7 +26,8 @@ std::vector<aabb::strategy_choice> with_named_values(aabb::strategy_kind kind, c
     return choices;
 }
 
-/// The composition with each combination of its strategies' named values.
+/// The composition with each combination of the named values of the parameters of its strategies: each strategy kind of
+/// the stage multiplies the compositions so far.
 std::vector<aabb::composition> with_named_values(const aabb::composition& c, aabb::stage stage) {
     std::vector<aabb::composition> compositions{c};
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
@@ -40,7 +42,7 @@ std::vector<aabb::composition> with_named_values(const aabb::composition& c, aab
 }
 
 /// The valid, exact compositions of a stage.
-/// @param named_values with every combination of named values of their parameters
+/// @param named_values includes every combination of those parameters whose values are names
 std::vector<aabb::composition> exact_compositions(aabb::stage stage, bool named_values) {
     std::vector<aabb::composition> compositions;
     for (const aabb::composition& c : aabb::every_composition(stage))
@@ -53,7 +55,7 @@ std::vector<aabb::composition> exact_compositions(aabb::stage stage, bool named_
     return compositions;
 }
 
-/// The default narrow phase with each inexact triangle test.
+/// The default composition of the narrow phase with each inexact triangle test.
 std::vector<aabb::composition> inexact_compositions() {
     std::vector<aabb::composition> compositions;
     for (const aabb::strategy_info& info : aabb::strategies(aabb::strategy_kind::triangle)) {
@@ -70,7 +72,8 @@ struct named_test {
     std::unique_ptr<aabb::triangle_test> test;
 };
 
-/// Strategies with each combination of named values of their parameters, then tests of libraries.
+/// All triangle tests to run on the cases: the strategies, with each combination of named values of their parameters,
+/// then those of libraries.
 std::vector<named_test> named_triangle_tests() {
     std::vector<named_test> tests;
     for (const aabb::strategy_info& info : aabb::strategies(aabb::strategy_kind::triangle))
@@ -107,7 +110,7 @@ extreme_row row_of_test(const aabb::triangle_case& c, const named_test& test, bo
     return row;
 }
 
-/// Two meshes per case, one for each triangle.
+/// Two meshes of one triangle for each case of two triangles: those of case i are 2i and 2i + 1.
 std::vector<aabb::mesh> meshes_of(std::span<const aabb::triangle_case> cases) {
     std::vector<aabb::mesh> meshes;
     for (const aabb::triangle_case& c : cases)
@@ -125,7 +128,9 @@ struct named_candidate {
     candidate implementation;
 };
 
-/// Exact compositions and engines for the stage; of the narrow phase, also one with each inexact triangle test.
+/// All candidates to run on the scenes of a stage: exact compositions, engines, and, for the narrow phase, the default
+/// composition with each inexact triangle test.
+/// @param named_values includes every combination of those parameters whose values are names
 std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
     const bool meshes = stage == aabb::stage::local_detection;
     std::vector<named_candidate> list;
@@ -141,7 +146,8 @@ std::vector<named_candidate> candidates(aabb::stage stage, bool named_values) {
     return list;
 }
 
-/// Tests the two triangles of each case in both orders, as untransformed meshes 2i and 2i + 1, with every query.
+/// Runs a composition or an engine on every case of two triangles, and appends a row with its errors per case. The
+/// triangles of case i are the meshes 2i and 2i + 1, without poses; all queries run on them in both orders.
 void run_on_cases(std::span<const aabb::triangle_case> cases, std::span<const aabb::mesh> meshes,
                   const named_candidate& tested, std::vector<extreme_row>& rows) {
     const std::unique_ptr<aabb::local_stage> stage = tested.implementation.make_local(aabb::instrumentation::none);
@@ -160,7 +166,8 @@ void run_on_cases(std::span<const aabb::triangle_case> cases, std::span<const aa
     }
 }
 
-/// Runs the candidates on one scene, and decides whether each result is as expected.
+/// Runs the candidates on one scene, and appends a row for each with the result, and whether that is as expected.
+/// @param judge has the scene and its ground truth
 void run_candidates(const aabb::extreme_judge& judge, std::span<const named_candidate> list,
                     std::vector<extreme_row>& rows) {
     const aabb::extreme_scene& scene = judge.scene();
@@ -186,6 +193,9 @@ void run_candidates(const aabb::extreme_judge& judge, std::span<const named_cand
 
 }  // namespace
 
+/// Runs the triangle tests on each case of two triangles, in float and in double, then compositions and engines on
+/// meshes of one triangle.
+/// @returns a row per candidate and case, and per precision for triangle tests
 std::vector<extreme_row> run_triangle_cases(std::span<const aabb::triangle_case> cases) {
     std::vector<extreme_row> rows;
     for (const named_test& test : named_triangle_tests())
@@ -199,12 +209,13 @@ std::vector<extreme_row> run_triangle_cases(std::span<const aabb::triangle_case>
     return rows;
 }
 
-/// Runs every candidate on every scene; at full size, compositions with each named value of their parameters.
+/// Runs every candidate on every scene; at full size, compositions also with each named value of their parameters.
+/// @returns a row per candidate and scene
 std::vector<extreme_row> run_extreme_scenes(std::span<const aabb::extreme_scene> scenes, aabb::extreme_size size) {
     const bool named_values = size == aabb::extreme_size::full;
     const auto for_boxes = candidates(aabb::stage::global_search, named_values);
     const auto for_meshes = candidates(aabb::stage::local_detection, named_values);
-    // Parameters would add minutes but no insight in scenes with large meshes.
+    // Parameters would add minutes but no insight in scenes with large meshes: those with a memory limit.
     const auto for_large_meshes = candidates(aabb::stage::local_detection, /*named_values=*/false);
     std::vector<extreme_row> rows;
     progress shown("extreme scenes", scenes.size());
