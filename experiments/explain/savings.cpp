@@ -33,7 +33,9 @@ std::string label_of(const variant& v) {
     return v.name == "none" ? v.kind + " none" : v.name;
 }
 
-/// Exact compositions that differ from the selected one in this kind and apply to the scene.
+/// The exact compositions that apply to the scene and differ from the selected one in the strategy of one kind: they
+/// show what the selected strategy saves.
+/// @param meshes whether the scene has meshes
 std::vector<variant> variants_by_strategy(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
     std::vector<variant> variants;
     for (const aabb::strategy_info& info : aabb::strategies(kind)) {
@@ -47,7 +49,9 @@ std::vector<variant> variants_by_strategy(const aabb::composition& selected, aab
     return variants;
 }
 
-/// Compositions with other settings of this kind, which switch on features that the selected composition may leave out.
+/// Compositions in which one strategy has other settings, with features that the selected composition may leave out:
+/// they show what leaving them out saves.
+/// @param meshes whether the scene has meshes
 std::vector<variant> variants_by_settings(const aabb::composition& selected, aabb::strategy_kind kind, bool meshes) {
     std::vector<variant> variants;
     for (const aabb::strategy_info& info : aabb::strategies(kind))
@@ -86,7 +90,9 @@ std::string difference_text(std::uint64_t bytes, std::uint64_t than) {
     return bytes < than ? "-" + grouped(than - bytes) : grouped(bytes - than);
 }
 
-/// Prints what each omission of the selected composition, the first variant, saves over the fastest variant without it.
+/// Prints what each feature left out by the selected composition saves: the time and bytes of the fastest variant that
+/// has the feature, less those of the selected composition.
+/// @param variants the selected composition, then the others
 void print_omissions(std::span<const variant> variants) {
     const std::vector<observation>& times = variants[0].times;
     table t = empty_table({"left out", "available with"}, {"saved ms", "bytes"});
@@ -104,7 +110,8 @@ void print_omissions(std::span<const variant> variants) {
     print(wrapped("-: no variant that ran has it. Below 0: the variant takes less. ?: undecided, as above.") + "\n");
 }
 
-/// The same candidate with all work counted, which shows what the counters would cost.
+/// The same candidate, made with counters of all work, whatever instrumentation is asked for: its time shows what
+/// counting costs.
 candidate with_counters(candidate tested) {
     const auto counting = [](const auto& make) {
         return [make](aabb::instrumentation) { return make(aabb::instrumentation::counters); };
@@ -122,7 +129,8 @@ std::vector<std::string> ratio_cells_of(const variant& v, std::span<const observ
             fmt::format("{:.2f}-{:.2f}", ratio.least, ratio.greatest)};
 }
 
-/// Adds a variant's times and bytes to the table, with the ratio of its times to those of the selected composition.
+/// Adds a row with a variant's times and bytes, and the ratio of its times to those of the selected composition; "-" if
+/// no run finished.
 void add_row(table& t, const variant& v, const variant& selected) {
     const std::vector<std::string> ratio =
         &v == &selected ? std::vector<std::string>{"1", "-"} : ratio_cells_of(v, selected.times);
@@ -143,7 +151,8 @@ void print_unfinished(const std::vector<variant>& variants) {
     if (!t.rows.empty()) print(to_text(t, output_width()) + "\n");
 }
 
-/// Prints which variants find other pairs than the selected composition, which must not happen as all are exact.
+/// Prints which variants find other pairs than the selected composition, the first. All are exact, so one of the two is
+/// wrong.
 /// @returns whether the results of all variants agree
 bool print_disagreements(const std::vector<variant>& variants) {
     // Inexact candidates find other pairs by design, and move a reactive scene differently.
@@ -157,9 +166,45 @@ bool print_disagreements(const std::vector<variant>& variants) {
     return wrong.empty();
 }
 
+/// The variants that run beside the selected composition.
+struct variant_lists {
+    std::vector<variant> in_table{};     ///< the selected composition first, and with counters of all work last
+    std::vector<variant> by_settings{};  ///< for `print_omissions` only
+    std::string unreplaced{};            ///< kinds without any other strategy that fits the composition
+};
+
+/// Collects the variants of the selected composition that differ in one kind of strategy.
+/// @param meshes whether the scene has meshes
+/// @param is_small varies all kinds; otherwise a slow sort, partition or sweep would take too long, so only those kinds
+/// are varied that are compiled alone (`prepare`, `build`)
+variant_lists variants_of(const aabb::composition& selected, bool meshes, bool is_small) {
+    variant_lists lists;
+    lists.in_table.push_back({"", "as selected", candidate_of(selected, meshes)});
+    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
+        if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
+        if (!is_small && !info_of(kind).is_compiled_alone) continue;
+        const std::vector<variant> of_kind = variants_by_strategy(selected, kind, meshes);
+        lists.in_table.insert(lists.in_table.end(), of_kind.begin(), of_kind.end());
+        std::ranges::move(variants_by_settings(selected, kind, meshes), std::back_inserter(lists.by_settings));
+        if (of_kind.empty()) lists.unreplaced += (lists.unreplaced.empty() ? "" : ", ") + std::string(name_of(kind));
+    }
+    lists.in_table.push_back({"", "counters of all work", with_counters(lists.in_table.front().tested)});
+    return lists;
+}
+
+/// One row per variant, of which the first is the selected composition: times, their ratio to its times, and bytes.
+table savings_table(std::span<const variant> variants) {
+    table t = empty_table({"kind", "replaced by"}, {"ms/frame", "ratio", "range"});
+    t.columns.push_back({.name = "build ms", .spare = 2});
+    t.columns.push_back({.name = "bytes", .spare = 1});
+    for (const variant& v : variants) add_row(t, v, variants[0]);
+    return t;
+}
+
 }  // namespace
 
-/// All omissions of a composition: those that its stages report, and those of strategies that are no part of a stage.
+/// All features that a composition leaves out: those that its stages report, and those of strategies that are no part
+/// of a stage but compiled alone (`prepare`, `build`).
 std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector<aabb::omission> by_stages) {
     for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
         // The stages report the omissions of all other kinds.
@@ -173,28 +218,18 @@ std::vector<aabb::omission> omissions_of(const candidate_name& name, std::vector
     return by_stages;
 }
 
-/// Prints what each choice of the selected composition saves, by runs interleaved with variants that differ in one.
-/// Variants by settings have features that it may lack; `print_omissions`, not the table, shows what that saves.
+/// Prints what each choice of the selected composition saves, measured by runs that are interleaved with those of
+/// variants, which differ from it in one strategy. Variants with other settings of a strategy serve only
+/// `print_omissions`, which shows what the absence of their features saves.
 /// @returns false if variants report different pairs
 bool print_savings(staged_scene& staged, const aabb::composition& selected, const time_limits& limits) {
     const scene_frames& scene = staged.scene();
     const bool meshes = scene.meshes() != nullptr;
     const bool is_small = scene.objects() <= most_objects_to_vary_every_kind;
-    std::vector<variant> variants{{"", "as selected", candidate_of(selected, meshes)}};
-    std::vector<variant> by_settings;
-    std::string unreplaced;  // kinds without any other strategy that fits the composition
-    for (const aabb::strategy_kind kind : aabb::strategy_kinds) {
-        if (!meshes && info_of(kind).stage == aabb::stage::local_detection) continue;
-        // A slow sort, partition or sweep, kinds that are not compiled alone, would take too long with many objects.
-        if (!is_small && !info_of(kind).is_compiled_alone) continue;
-        const std::vector<variant> of_kind = variants_by_strategy(selected, kind, meshes);
-        variants.insert(variants.end(), of_kind.begin(), of_kind.end());
-        std::ranges::move(variants_by_settings(selected, kind, meshes), std::back_inserter(by_settings));
-        if (of_kind.empty()) unreplaced += (unreplaced.empty() ? "" : ", ") + std::string(name_of(kind));
-    }
-    variants.push_back({"", "counters of all work", with_counters(variants.front().tested)});
+    variant_lists lists = variants_of(selected, meshes, is_small);
+    std::vector<variant> variants = std::move(lists.in_table);
     const std::size_t in_table = variants.size();
-    std::ranges::move(by_settings, std::back_inserter(variants));
+    std::ranges::move(lists.by_settings, std::back_inserter(variants));
     std::vector<candidate> candidates;
     for (const variant& v : variants) candidates.push_back(v.tested);
     interleaved_runs outcome = run_interleaved(staged, candidates, most_frames, rounds, limits);
@@ -211,16 +246,13 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
         variants[i].is_hopeless = outcome.hopeless[i];
     }
 
-    table t = empty_table({"kind", "replaced by"}, {"ms/frame", "ratio", "range"});
-    t.columns.push_back({.name = "build ms", .spare = 2});
-    t.columns.push_back({.name = "bytes", .spare = 1});
-    for (std::size_t i = 0; i < in_table; ++i) add_row(t, variants[i], variants[0]);
     print_paragraph(fmt::format(
         "savings of each choice: one strategy is replaced at a time; variants run interleaved, in {} of {} each",
         counted(outcome.rounds, "round"), counted(outcome.frames, "frame")));
-    print(to_text(t, output_width()) + "\n");
+    print(to_text(savings_table(std::span(variants).first(in_table)), output_width()) + "\n");
     print_unfinished(variants);
-    if (!unreplaced.empty()) print_paragraph(unreplaced + ": no other strategy can be composed with the rest.");
+    if (!lists.unreplaced.empty())
+        print_paragraph(lists.unreplaced + ": no other strategy can be composed with the rest.");
     if (!is_small)
         print_paragraph(fmt::format("With more than {}, only prepare and build are replaced, to save time.",
                                     counted(most_objects_to_vary_every_kind, "object")));
