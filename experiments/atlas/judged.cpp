@@ -92,7 +92,7 @@ std::vector<stated_ratio> by_count(const std::string& candidate, const std::stri
 
 /// Published statements on broad phases, each with its source and the ratios of times that decide it. A ratio is that
 /// of the candidate expected to be faster over another, in the scenes of a filter, such as `moved(objects,
-/// displacement)`. Two filters compare the ratio in two sets of scenes.
+/// displacement)`. With two filters, the ratio in the first scenes is divided by that in the second.
 const std::vector<statement>& statements() {
     static const std::vector<statement> published{
         {"B1",

@@ -47,7 +47,7 @@ aabb::mesh gear(std::uint32_t teeth) {
     for (std::uint32_t layer = 0; layer <= layers; ++layer)
         for (std::uint32_t i = 0; i < around; ++i) {
             const double angle = 2 * std::numbers::pi * i / around;
-            const double radius = i % 4 < 2 ? 1.125 : 1;
+            const double radius = i % 4 < 2 ? 1.125 : 1;  // two corners of a tooth, then two of a gap
             m.vertices.push_back({static_cast<float>(radius * std::cos(angle)),
                                   static_cast<float>(radius * std::sin(angle)), 0.125F * static_cast<float>(layer)});
         }
@@ -88,7 +88,8 @@ posed_meshes make(std::string_view name) {
     if (name == "crossing") return {sheets, sheets, {r, turned(50)}};
     if (name == "flush") return {sheets, sheets, {r, after_permutation(r, {0, 0, 0})}};
     if (name == "apart:1e-9") return {sheets, sheets, {r, after_permutation(r, {1e-9, 1e-9, 1e-9})}};
-    // Gears in mesh under one rotation: a tooth of the first lies in a gap of the second, flank to flank.
+    // Gears in mesh under one rotation: a tooth of the first lies in a gap of the second, flank to flank. The axes are
+    // as far apart as the sum of both radii, and the second gear is displaced by half a layer along them.
     const aabb::mesh wheel = gear(24);
     pose beside = r;
     for (std::size_t k = 0; k < 3; ++k)

@@ -106,6 +106,7 @@ draft c2_claim(const measurements& m) {
                                              value_of(conditions.back()->scene(), "objects")}};
             if (const auto inversions = inversions_of(conditions))
                 growth.observed = {{"inversions", three_digits(*inversions)}};
+            // Bootstrapped: the line is fitted anew to each resample of the measurements.
             growth.log_ratios = {bootstrap(measured_work.log_per_element.front().size(),
                                            [&](const resample& d) { return measured_work.growth(d); })};
             growth.source = "c2: growth of comparisons and moves of sort=" + std::string(sort);

@@ -81,7 +81,8 @@ private:
     std::vector<std::map<std::string, cells>> ratios_to_cut_;  // logarithms, by scene, then cell size
 };
 
-/// Median times of the axial cut and of grids of every cell size, for each scene.
+/// One row per scene: the median times of the axial cut, of grids of every cell size, and of one with an automatic
+/// size.
 table times_table(const std::vector<condition>& conditions) {
     table t = factors_table(factors_of(conditions));
     t.columns.push_back({"axial_cut"});
@@ -197,6 +198,7 @@ draft c5_claim(const measurements& m) {
         if (scenes.sizes().empty()) continue;
         const sample_size size =
             conditions.front()->log_ratios(grid(scenes.sizes().front()), cut, measured("frame_cpu_ms")).size();
+        // Bootstrapped: `log_ratio` recomputes the logarithm of a ratio from each resample of the measurements.
         const auto add = [&](const std::string& comparison, const std::string& subject, auto log_ratio,
                              quantity compared, expectation expected) {
             c5.add({.where = {{"scene", "the worst of all"}, {"objects", objects}, {"comparison", comparison}},

@@ -8,8 +8,8 @@ namespace aabblab {
 namespace {
 
 /// Decides a family of endpoints (ratios of claims) together, by Holm's correction for multiple tests (1979). Sets
-/// `corrected`, the support for the claim, and `direction`. An outcome must be found on every machine; where machines
-/// disagree, it is undecided.
+/// `corrected`, the support for the claim, and `direction`: less, same or more. An outcome must be found on every
+/// machine; where machines disagree, it is undecided.
 /// @param band as in `tails_of`: ratios from 1 / (1 + band) to 1 + band count as no difference
 void decide_family(std::span<endpoint* const> endpoints, double band) {
     if (endpoints.empty()) return;
@@ -18,7 +18,7 @@ void decide_family(std::span<endpoint* const> endpoints, double band) {
         for (const endpoint* e : endpoints)
             // `drafts_of` has set what each endpoint expects: its own expectation, or else its claim's.
             evidence.push_back({e->expected.value(), tails_of(e->log_ratios[machine], band)});
-        const std::vector<double> levels = levels_together(evidence);
+        const std::vector<double> levels = levels_together(evidence);  // by Holm's rule
         for (std::size_t i = 0; i < endpoints.size(); ++i) {
             endpoint& e = *endpoints[i];
             const support outcome_here = support_of(evidence[i].expected, evidence[i].p, levels[i]);

@@ -59,7 +59,8 @@ std::string digits_cell(const std::optional<double>& value) {
     return value ? three_digits(*value) : "-";
 }
 
-/// Adds columns to a table with one row per condition: each method's time per frame over that of the first method.
+/// Adds a column per method, except the first, to a table with one row per condition (scene): the method's time per
+/// frame over that of the first.
 void add_ratios(table& t, const std::vector<condition>& conditions, std::span<const method> methods) {
     for (const method& m : methods.subspan(1)) {
         t.columns.push_back({m.label});
