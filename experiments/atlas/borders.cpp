@@ -21,8 +21,9 @@ std::string settings_without(const scene_choice& scene, std::string_view paramet
     return settings_text(others);
 }
 
-/// Where two candidates take the same time between two scenes: the fraction of the way at which the logarithm of their
-/// ratio, interpolated linearly, is 0. Its 95 % interval is that of lines whose ends are drawn with their errors.
+/// The point between two scenes at which two candidates take the same time: the fraction of the way at which the
+/// logarithm of their ratio, interpolated linearly, is 0. Its 95 % interval is that of lines whose ends are drawn with
+/// their errors.
 /// @param from the logarithm at the first scene, which the first candidate wins: below 0
 /// @param to the logarithm at the second scene: above 0
 std::pair<double, interval> crossing(const estimate& from, const estimate& to) {

@@ -81,15 +81,16 @@ pose after_permutation(const pose& p, const vec3d& shift) {
     return result;
 }
 
-/// The two meshes of a case, at poses: sheets that cross, coincide or lie 1e-9 apart, or otherwise gears in mesh.
+/// The two meshes of a case, at poses: sheets that cross, that coincide, or whose planes nearly coincide; otherwise
+/// gears in mesh.
 posed_meshes make(std::string_view name) {
     const aabb::mesh sheets = sheet(64);
     const pose r = turned(30);
     if (name == "crossing") return {sheets, sheets, {r, turned(50)}};
     if (name == "flush") return {sheets, sheets, {r, after_permutation(r, {0, 0, 0})}};
     if (name == "apart:1e-9") return {sheets, sheets, {r, after_permutation(r, {1e-9, 1e-9, 1e-9})}};
-    // Gears in mesh under one rotation: a tooth of the first lies in a gap of the second, flank to flank. The axes are
-    // as far apart as the sum of both radii, and the second gear is displaced by half a layer along them.
+    // Gears in mesh under one rotation: a tooth of the first lies in a gap of the second, flank to flank. The distance
+    // of the axes is the sum of both radii, and the second gear is displaced by half a layer along its axis.
     const aabb::mesh wheel = gear(24);
     pose beside = r;
     for (std::size_t k = 0; k < 3; ++k)

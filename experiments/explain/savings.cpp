@@ -192,7 +192,7 @@ variant_lists variants_of(const aabb::composition& selected, bool meshes, bool i
     return lists;
 }
 
-/// One row per variant, of which the first is the selected composition: times, their ratio to its times, and bytes.
+/// One row per variant: its times, their ratio to those of the first, the selected composition, and its bytes.
 table savings_table(std::span<const variant> variants) {
     table t = empty_table({"kind", "replaced by"}, {"ms/frame", "ratio", "range"});
     t.columns.push_back({.name = "build ms", .spare = 2});

@@ -162,7 +162,7 @@ figure cell_figure(const std::map<double, std::vector<const condition*>>& by_obj
 figure world_figure(const std::string& name, const std::string& quantity_name, const std::string& y_label,
                     const std::vector<condition>& worlds, const row_value& value) {
     const method methods[] = {{"grid, cells of 2", grid("2")}, {"grid, auto", grid("auto")}, {"axial cut", cut}};
-    // In edges of a cube: the cubes fill the share `density` of the world.
+    // The side is in edges of a cube: the cubes fill the share `density` of the world.
     const auto side_of = [](const condition& c) { return std::cbrt(objects_of(c) / number_of(c.scene(), "density")); };
     return log_log(name,
                    quantity_name +

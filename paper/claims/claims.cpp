@@ -66,8 +66,8 @@ named_table ratio_table(const claim_result& claim) {
             std::move(ratios)};
 }
 
-/// Turns a draft and its decided endpoints (ratios) into the judged claim: the verdict, its sentences and its tables,
-/// of which that of all ratios comes first.
+/// Turns a draft and its decided endpoints (ratios) into the judged claim: the verdict, its sentences and its tables.
+/// The table of all ratios comes first.
 claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoints) {
     claim_result claim = drafted.claim;
     claim.verdict = verdict_of(endpoints);

@@ -28,8 +28,8 @@ struct tried_choice {
     selection baseline;
 };
 
-/// A claim's ratio of a metric under each choice for an open question of the paper, of which the first is ours, in the
-/// given condition (scene).
+/// A claim's ratio of a metric in the given condition (scene), under each choice for an open question of the paper. Our
+/// choice comes first.
 /// @param conditions at most one; without one, the result has no ratios
 /// @param note is appended to the text of the condition
 measured_choices ratios_in_condition(const std::vector<const condition*>& conditions, const std::string& metric,

@@ -160,8 +160,8 @@ const claim_result* claim_named(std::span<const claim_result> claims, const std:
     return claim != claims.end() ? &*claim : nullptr;
 }
 
-/// The part of the headline that compares the improved broad phase with incremental sweep and prune, the classic one,
-/// under the paper's premise that objects hardly move; empty if it was not measured.
+/// The part of the headline that compares the improved broad phase with the classic incremental sweep and prune, under
+/// the paper's premise that objects hardly move; empty if it was not measured.
 std::string classic_sweep_text(std::span<const claim_result> claims) {
     const claim_result* claim = claim_named(claims, "C1");
     if (!claim) return "";

@@ -148,7 +148,7 @@ named_table null_control(const measurements& m) {
                                                {{"composition", plain[kind::sort] + " + " + plain[kind::partition]}});
             if (ratio.is_known()) ratios.push_back(decided_alone(ratio));
         }
-    // Only an interval outside the band is a difference: one in twenty excludes 1 by chance.
+    // An interval outside the band is a difference; one that merely excludes 1 is found by chance in one of twenty.
     const auto outcome_of = [](const endpoint& e) {
         if (e.range.low > 1 + equivalence_band || e.range.high < 1 / (1 + equivalence_band))
             return std::string("a difference");
