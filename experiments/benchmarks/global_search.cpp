@@ -91,8 +91,7 @@ void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame
 constexpr aabb::axis_set swept = 0b001;  // x
 
 /// Times what a partition that cuts sorted lists does per frame: it chooses the axes to cut, fits the cuts, and
-/// distributes the lists over subsets for a sweep along the axis `swept`. The work is
-/// counted separately.
+/// distributes the lists over subsets for a sweep along the axis `swept`. The work is counted separately.
 template <class Partition>
 void time_partition(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);
