@@ -11,7 +11,8 @@ public:
     void insert(std::uint32_t id) final { objects_.insert(id); }
     void remove(std::uint32_t id) final { objects_.remove(id); }
 
-    /// Rejects invalid boxes before the engine sees them, and lists the present objects anew if they changed.
+    /// Gives the engine the boxes of a frame, after invalid ones were rejected. The ids of the present objects are
+    /// listed anew only if objects were inserted or removed. `frame_` rejects a search whose update has failed.
     void update(std::span<const box> boxes) final {
         frame_.begin();
         require_ieee_arithmetic();

@@ -20,6 +20,7 @@ const engine& engine_named(std::string_view name) {
 
 }  // namespace
 
+/// What users may know of the engines in this build, without the functions that make them.
 std::span<const engine_info> engines() {
     static const std::vector<engine_info> infos = [] {
         std::vector<engine_info> list;
@@ -30,6 +31,7 @@ std::span<const engine_info> engines() {
     return infos;
 }
 
+/// The triangle tests of the engines' libraries, each with the name of its engine.
 std::span<const library_test_info> library_tests() {
     static const std::vector<library_test_info> infos = [] {
         std::vector<library_test_info> list;
@@ -41,6 +43,7 @@ std::span<const library_test_info> library_tests() {
     return infos;
 }
 
+/// Makes the test of this name with these settings; an unknown name is rejected with the nearest one.
 std::unique_ptr<triangle_test> make_library_test(const strategy_choice& choice) {
     std::vector<std::string> names;
     for (const engine& e : all_engines())

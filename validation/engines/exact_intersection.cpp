@@ -57,7 +57,7 @@ struct common_corners {
     corners operator()(const point_3& s, const point_3& t) const { return s == t ? corners{s} : corners{}; }
     corners operator()(const point_3& s, const auto& t) const { return t.has_on(s) ? corners{s} : corners{}; }
     corners operator()(const auto& s, const point_3& t) const { return (*this)(t, s); }
-    /// Asks CGAL unless one of the hulls is a point, and keeps each corner once.
+    /// For two triangles or segments, by CGAL, each corner only once; the overloads above are for points.
     corners operator()(const auto& s, const auto& t) const {
         const auto shape = CGAL::intersection(s, t);
         if (!shape) return {};
@@ -77,8 +77,9 @@ bool is_interior(const exact_hull& h, const point_3& p) {
     return true;
 }
 
-/// The kind of an intersection with these corners; with more than two, the triangles overlap in their common plane. A
-/// segment is transversal if its middle, and thus the segment, lies inside both triangles.
+/// The kind of the intersection of g and h, which are triangles, segments or points, by its corners. With more than
+/// two, triangles overlap in their common plane. A segment is transversal if its middle, and thus all of it but its
+/// ends, lies inside both triangles, on no edge.
 intersection_kind kind_of(const std::vector<point_3>& corners, const exact_hull& g, const exact_hull& h) {
     if (corners.empty()) return intersection_kind::none;
     if (corners.size() == 1) return intersection_kind::point;
@@ -88,8 +89,10 @@ intersection_kind kind_of(const std::vector<point_3>& corners, const exact_hull&
                                                             : intersection_kind::segment;
 }
 
-/// Raises the greatest errors so far to those of a computed corner, which are subtracted and compared in exact numbers.
-/// @param bounds the stated errors of its coordinates
+/// Adds the errors of a computed corner, its distances on the axes from the exact corner, in exact numbers.
+/// @param errors of all corners so far: whether all are within their bounds, the greatest ratio of an error to its
+/// bound (`of_bound`), and the greatest error with its bound
+/// @param bounds the stated errors of the computed coordinates
 void add_errors(corner_errors& errors, const vec3d& computed, const exact_point& corner, const vec3d& bounds) {
     for (int k = 0; k < 3; ++k) {
         const exact_number error = CGAL::abs(exact_number(computed[k]) - corner[static_cast<std::size_t>(k)]);
@@ -111,7 +114,8 @@ struct exact_intersection::construction {
     std::vector<exact_point> corners;
 };
 
-/// Computes the corners and, since CGAL evaluates coordinates only on demand, their exact coordinates.
+/// Computes the intersection of s and t at their poses: its corners and its kind. CGAL would evaluate exact coordinates
+/// only on demand, so `CGAL::exact` evaluates them here.
 exact_intersection::exact_intersection(const pose_pair& poses, const triangle3d& s, const triangle3d& t)
     : construction_(std::make_unique<construction>()) {
     const exact_hull g = exact_hull_of(s, poses.a), h = exact_hull_of(t, poses.b);
@@ -129,7 +133,8 @@ intersection_kind exact_intersection::kind() const {
     return construction_->kind;
 }
 
-/// Rounds to the middle of CGAL's interval of doubles around a coordinate, whose width bounds the error.
+/// The intersection in double: each coordinate is the middle of CGAL's interval of doubles that contains the exact
+/// one. The width of the interval bounds the error, which is stated per axis for all corners.
 triangle_intersection exact_intersection::rounded() const {
     triangle_intersection common;
     common.kind = construction_->kind;
@@ -138,7 +143,7 @@ triangle_intersection exact_intersection::rounded() const {
         for (int k = 0; k < 3; ++k) {
             const auto [low, high] = CGAL::to_interval(corner[static_cast<std::size_t>(k)]);
             point[k] = low / 2 + high / 2;
-            // Halves of the smallest denormals are rounded.
+            // Halves of the smallest denormals are rounded, which may lead out of the interval.
             if (point[k] < low || point[k] > high) point[k] = low;
             common.error[k] = std::max(common.error[k], high - low);
         }
@@ -146,8 +151,9 @@ triangle_intersection exact_intersection::rounded() const {
     return common;
 }
 
-/// Matches computed with exact corners, and returns the errors of the best match. Tries all first corners and both
-/// orientations, the nearest in double first, which is the right one unless corners are as close as the error.
+/// The errors of computed corners, which may begin at any corner of the exact polygon and run in either direction. All
+/// these alignments are tried, from the nearest one in double on, until one is within the stated errors; otherwise the
+/// errors are those of the alignment with the least ratio to the stated ones.
 corner_errors exact_intersection::errors_of(const triangle_intersection& computed) const {
     corner_errors best;
     const std::size_t size = construction_->corners.size();
@@ -169,7 +175,7 @@ corner_errors exact_intersection::errors_of(const triangle_intersection& compute
             alignment& a = alignments.emplace_back();
             for (std::size_t i = 0; i < size; ++i) {
                 a.order[i] = (first + i * step) % size;
-                for (int k = 0; k < 3; ++k)
+                for (int k = 0; k < 3; ++k)  // halves, since a difference of greatest doubles would overflow
                     a.distance =
                         std::max(a.distance, std::abs(computed.corners[i][k] / 2 - approximate[a.order[i]][k] / 2));
             }

@@ -15,10 +15,13 @@ namespace aabb {
     return transformed;
 }
 
-/// A box in A's frame that overlaps the boxes of all triangles of A that intersect a triangle of B.
+/// The bounds of a triangle of mesh B in the frame of mesh A, grown by the error bounds of the transform on each axis,
+/// so that they overlap the boxes of all triangles of A that intersect it exactly.
+/// @param to_a the transform; its `image_error` has the bounds
 [[nodiscard]] box box_around(const triangle3f& of_b, const relative_pose& to_a) {
     box around = bounds_of(to_a(of_b));
-    // Rounding to nearest is monotone, so that the differences stay below any float that the exact ones are below.
+    // These sums need no further margin: rounding to nearest is monotone, so that a rounded bound is not above any
+    // float that the exact bound is not above.
     for (int k = 0; k < 3; ++k) {
         around.min[k] -= to_a.image_error()[k];
         around.max[k] += to_a.image_error()[k];
@@ -58,7 +61,9 @@ public:
         all_pairs(model_a, pose_a, model_b, pose_b, pairs);
         return pairs.size();
     }
-    /// The pairs of a mesh with its copy contain each pair in both orders, and each triangle with itself.
+    /// Appends the pairs of triangles of one mesh that intersect. They are found as the pairs of the mesh with its
+    /// copy, which contain each pair in both orders, and each triangle with itself; of these only pairs with a < b
+    /// count.
     void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final {
         std::vector<index_pair> both_ways;
         all_pairs(model, {}, model, {}, both_ways);
@@ -98,7 +103,8 @@ public:
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
-    /// Updates a model whose mesh deformed. After a failure, queries are rejected until a refit succeeds.
+    /// Updates a model whose mesh deformed. `fit` records a failure, after which queries are rejected until a refit
+    /// succeeds.
     void refit(std::uint32_t model) final {
         Model& changed = models_[model];
         changed.fit.renew([&] {

@@ -61,7 +61,7 @@ private:
         });
     }
 
-    /// Decides pairs only until one intersects.
+    /// The first pair of triangles that intersects, if there is one; the callback ends the loop there.
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         std::optional<index_pair> first;
         decide(q, [&](index_pair pair) {
@@ -71,7 +71,8 @@ private:
         return first;
     }
 
-    /// Calls `emit` for each pair of triangles that intersect, of those whose boxes overlap, until it returns true.
+    /// Calls `emit({s, t})` for each triangle s of mesh A that intersects a triangle t of mesh B, until it returns
+    /// true. B's triangles get boxes in A's frame; `search_` finds pairs whose boxes overlap, and `decide_` tests them.
     template <class Emit>
     void decide(const model_query& q, Emit emit) const {
         const mesh& b = *q.b.source;
@@ -80,7 +81,7 @@ private:
         std::vector<box> boxes_b;
         for (std::uint32_t t = 0; t < b.triangle_count(); ++t) boxes_b.push_back(box_around(b.triangle(t), to_a));
         const pose_pair poses{q.pose_a, q.pose_b};
-        for (const index_pair near : search_(q.a.boxes, boxes_b)) {
+        for (const index_pair near : search_(q.a.boxes, boxes_b))
             if (decide_({.poses = poses,
                          .s = a.given_triangle(near.a),
                          .t = b.given_triangle(near.b),
@@ -88,7 +89,6 @@ private:
                          .image_of_t = to_a(b.triangle(near.b))}) &&
                 emit(near))
                 return;
-        }
     }
 
     candidate_search& search_;

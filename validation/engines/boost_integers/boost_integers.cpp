@@ -27,12 +27,12 @@ struct point {
     }
 };
 
-/// x / 2^unit, for a unit that divides x.
+/// x / 2^unit as an integer; 2^unit must divide x. A double is an integer of 53 bits times a power of two.
 integer in_units(double x, int unit) {
     int exponent = 0;
     const double fraction = std::frexp(x, &exponent);
     integer units = static_cast<std::int64_t>(std::ldexp(fraction, 53));
-    // Zeros at the end may lie below the unit.
+    // With a negative shift, the bits below the unit are zeros.
     const int shift = exponent - 53 - unit;
     return shift >= 0 ? integer(units << static_cast<unsigned>(shift))
                       : integer(units / (integer(1) << static_cast<unsigned>(-shift)));
@@ -69,6 +69,7 @@ struct world_mesh {
     std::vector<world_triangle> triangles;
     int unit;
 
+    /// Computes R v + t for each corner. The unit divides all products and t, so that the integers are exact.
     world_mesh(const pose& p, std::span<const triangle3d> given) {
         std::vector<double> coordinates;
         for (const triangle3d& t : given)
@@ -112,16 +113,18 @@ bool separates(const point& axis, const world_triangle& s, const world_triangle&
     return std::ranges::max(of_s) < std::ranges::min(of_t) || std::ranges::max(of_t) < std::ranges::min(of_s);
 }
 
-/// Triangles, segments and points are disjoint exactly if the normal of a facet of their Minkowski difference separates
-/// them, or if the origin is not in the affine hull of that difference. A difference of dimension 3 has facets that two
-/// edges span; one of dimension 2, such a normal of its plane, and in it normals of one edge; one on a line, the edge,
-/// and what of the way between two corners is perpendicular to it; and a point, that way.
-bool intersect(const world_triangle& s, const world_triangle& t) {
+/// Axes of which one separates `s` and `t` if they are disjoint, also if they degenerate to segments or points. They
+/// are normals of the Minkowski difference of `s` and `t`, by its dimension:
+/// - 3: the normals of its facets, each a cross product of two edges;
+/// - 2: the normal of its plane, again a cross product, and in the plane the normals of its edges;
+/// - 1: its direction, which is an edge, and the part of `between` that is perpendicular to it;
+/// - 0: `between`, the vector between two corners.
+std::vector<point> candidate_axes(const world_triangle& s, const world_triangle& t) {
     std::vector<point> edges;
     for (const world_triangle* const of : {&s, &t})
         for (std::size_t i = 0; i < 3; ++i) edges.push_back(of->corners[(i + 1) % 3] - of->corners[i]);
     std::vector<point> axes;
-    bool has_volume = false;
+    bool has_volume = false;  // dimension 3
     for (std::size_t i = 0; i < edges.size(); ++i)
         for (std::size_t j = i + 1; j < edges.size(); ++j) {
             axes.push_back(cross(edges[i], edges[j]));
@@ -138,10 +141,16 @@ bool intersect(const world_triangle& s, const world_triangle& t) {
             axes.push_back(cross(edge, cross(between, edge)));
         }
     }
+    return axes;
+}
+
+bool intersect(const world_triangle& s, const world_triangle& t) {
+    const std::vector<point> axes = candidate_axes(s, t);
     return std::ranges::none_of(axes, [&](const point& axis) { return separates(axis, s, t); });
 }
 
-/// Calls `emit` for each pair of triangles that intersect, until it returns true.
+/// Calls `emit({s, t})` for each triangle s of A that intersects a triangle t of B, until `emit` returns true. The
+/// coordinates of both meshes are integers of the smaller unit, so that they are comparable.
 template <class Emit>
 void for_each_pair(const pose_pair& poses, std::span<const triangle3d> of_a, std::span<const triangle3d> of_b,
                    Emit emit) {
@@ -180,6 +189,7 @@ class integer_engine final : public model_engine<given_model> {
             return false;
         });
     }
+    /// The first pair of triangles that intersects, if there is one; the callback ends the loop there.
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         require_valid_poses(q);
         std::optional<index_pair> first;

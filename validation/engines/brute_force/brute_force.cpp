@@ -16,7 +16,7 @@ public:
 private:
     using block_hits = std::array<std::uint32_t, 512>;  // 1 where a box of the block overlaps
 
-    /// Copies the bounds into an array for each axis and end, as loops that vectorise need them.
+    /// Copies the bounds of the present boxes into one array per axis and end, as vectorised loops need them.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         ids_.assign(ids.begin(), ids.end());
         for (std::size_t k = 0; k < 3; ++k) {
@@ -29,7 +29,8 @@ private:
         }
     }
 
-    /// Tests blocks without branches, which vectorises, and looks for pairs only in blocks that have any.
+    /// Tests each box against the boxes after it, in blocks: the test of a block has no branch, so that it vectorises,
+    /// and the few blocks with an overlap are then searched for pairs.
     void find_pairs(std::vector<index_pair>& pairs) override {
         block_hits hits{};
         for (std::size_t i = 0; i < ids_.size(); ++i)
@@ -41,7 +42,9 @@ private:
             }
     }
 
-    /// Tests box i against `count` boxes from `begin` on. @return whether any overlaps.
+    /// Tests box i against `count` boxes from `begin` on.
+    /// @param hits output: hits[j] is whether box i overlaps box begin + j
+    /// @return whether any of them overlaps
     [[nodiscard]] bool test_block(std::size_t i, std::size_t begin, std::size_t count, block_hits& hits) const {
         const box tested{{min_[0][i], min_[1][i], min_[2][i]}, {max_[0][i], max_[1][i], max_[2][i]}};
         const std::array<const float*, 3> low = {&min_[0][begin], &min_[1][begin], &min_[2][begin]};

@@ -21,8 +21,9 @@ public:
     }
 
 private:
-    /// Inserts, moves and removes leaves. Bullet moves a leaf only if its box has left it, enlarged by the margin
-    /// unless the box has jumped. It also reinserts one leaf per frame, which keeps the tree balanced.
+    /// Updates the tree's leaves, one per present object. Bullet moves a leaf only if it no longer contains its
+    /// object's box. The new leaf is enlarged by a margin, so that it stays valid for some frames, unless the box has
+    /// jumped out of the old one. `optimizeIncremental` reinserts one leaf per frame, which keeps the tree balanced.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         drop_absent(leaves_, [&](btDbvtNode* leaf) { tree_.remove(leaf); });
         boxes_.assign(boxes.begin(), boxes.end());

@@ -10,7 +10,8 @@ namespace aabb {
 
 namespace {
 
-/// Clamps coordinates so that no extent of a world overflows. Their order is preserved, though not strictly.
+/// Clamps coordinates to 1e37, so that no extent of Bullet's world overflows. Their order is preserved, though not
+/// strictly: clamped boxes overlap wherever the given ones do.
 box clamped(box b) {
     constexpr float most = 1e37F;
     for (int k = 0; k < 3; ++k) {
@@ -20,12 +21,13 @@ box clamped(box b) {
     return b;
 }
 
-/// Inflates the box by half of its extent on each side, and by more than zero if it is flat.
+/// A world for Bullet's sweep, which cannot grow later: the bounds of all boxes, larger by half of their extent on each
+/// side, so that objects can move. The terms far / 1024 and 1e-20 give an extent to flat bounds, at any coordinate.
 box world_around(const box& bounds) {
     box world = bounds;
     for (int k = 0; k < 3; ++k) {
         const float far = std::max(std::abs(bounds.min[k]), std::abs(bounds.max[k]));
-        const float margin = (bounds.max[k] - bounds.min[k]) / 2 + far / 1024 + 1e-20F;  // also of a flat box
+        const float margin = (bounds.max[k] - bounds.min[k]) / 2 + far / 1024 + 1e-20F;
         world.min[k] -= margin;
         world.max[k] += margin;
     }
@@ -40,7 +42,8 @@ btVector3 corner_of(const vec3f& v) {
 /// is preserved, and lower ends precede upper ends in the same step: false positives, but no false negatives.
 class bullet_sap final : public box_engine {
 public:
-    /// Counts a handle and six ends per object, and the cache of overlapping pairs.
+    /// Bullet does not report its memory, so it is computed from the sizes of its types: a handle and six ends per
+    /// object, and the cache of overlapping pairs.
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::size_t total = bytes_of(boxes_, proxies_, objects_);
         if (sweep_) {
@@ -54,7 +57,8 @@ public:
     }
 
 private:
-    /// Updates the sweep, or starts a new one if there are more objects or some leave the world.
+    /// Moves the boxes in Bullet's sweep. Its number of objects and its world, the range of coordinates, are fixed, so
+    /// a new sweep replaces it if there are more objects or if a box leaves the world.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         boxes_.assign(boxes.begin(), boxes.end());
         box bounds = empty_box();
@@ -64,16 +68,18 @@ private:
         for (const std::uint32_t id : ids) move_or_add(id, clamped(boxes[id]));
     }
 
-    /// Makes an empty sweep with a larger world: Bullet's world cannot grow.
+    /// Makes an empty sweep for this number of objects, in a world around `bounds`: Bullet's sweep cannot grow.
     void renew(const box& bounds, std::size_t objects) {
         world_ = world_around(bounds);
         proxies_.assign(objects, nullptr);
-        objects_.assign(objects + 1, 0);
+        objects_.assign(objects + 1, 0);  // by number of the proxy, from 1
         // The last argument leaves out the tree that Bullet would keep for ray casts.
         sweep_ = std::make_unique<bt32BitAxisSweep3>(corner_of(world_.min), corner_of(world_.max),
                                                      static_cast<unsigned>(objects), nullptr, true);
     }
 
+    /// Moves the object's proxy, by which Bullet's sweep knows its box, or creates it. Group and mask 1 admit all
+    /// pairs.
     void move_or_add(std::uint32_t id, const box& b) {
         btBroadphaseProxy*& proxy = proxies_[id];
         if (proxy) {
@@ -85,7 +91,8 @@ private:
         }
     }
 
-    /// Takes those of the pairs in Bullet's cache whose boxes overlap before they are quantised.
+    /// Appends the pairs in Bullet's cache whose boxes overlap. Bullet compares quantised boxes, which may overlap
+    /// where the given ones do not.
     void find_pairs(std::vector<index_pair>& pairs) override {
         if (!sweep_) return;
         btOverlappingPairCache& cache = *sweep_->getOverlappingPairCache();

@@ -25,7 +25,7 @@ private:
         for (const std::uint32_t id : ids) boxes_.push_back({boxes[id], id});
     }
 
-    /// Intersects the sequence of boxes with itself.
+    /// Intersects the sequence of boxes with itself, so that CGAL reports each pair once.
     void find_pairs(std::vector<index_pair>& pairs) override {
         const auto collect = [&](const numbered_box& a, const numbered_box& b) {
             pairs.push_back(ordered_pair(static_cast<std::uint32_t>(a.number), static_cast<std::uint32_t>(b.number)));
@@ -41,8 +41,8 @@ private:
 
 }  // namespace
 
-/// All pairs of a box of `a` and one of `b` that overlap. CGAL never reports boxes with the same number, so that b's
-/// get numbers from 2^32 on.
+/// All overlapping pairs of a box of `a` and a box of `b`, as indices. CGAL never reports two boxes with the same
+/// number, so those of `b` get 2^32 plus their index, which the cast to u32 removes again.
 std::vector<index_pair> candidates_by_cgal(std::span<const box> a, std::span<const box> b) {
     constexpr std::uint64_t first_of_b = std::uint64_t{1} << 32;
     std::vector<numbered_box> boxes_a, boxes_b;

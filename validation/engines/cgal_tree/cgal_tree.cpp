@@ -24,6 +24,10 @@ using primitive = CGAL::AABB_triangle_primitive<kernel, kernel_triangles::const_
     return {point(t[0]), point(t[1]), point(t[2])};
 }
 
+[[nodiscard]] CGAL::Bbox_3 in_kernel(const box& b) {
+    return {b.min[0], b.min[1], b.min[2], b.max[0], b.max[1], b.max[2]};
+}
+
 /// The poses of both meshes, and A, whose floats the tree has.
 struct tree_query {
     pose_pair poses;
@@ -38,10 +42,7 @@ struct tree_query {
 /// A triangle of B to be tested against a tree of A.
 struct query_triangle {
     query_triangle(const tree_query& of_query, const mesh& b, std::uint32_t t, const relative_pose& to_a)
-        : query(of_query), triangle(b.given_triangle(t)) {
-        const box around = box_around(b.triangle(t), to_a);
-        bounds = {around.min[0], around.min[1], around.min[2], around.max[0], around.max[1], around.max[2]};
-    }
+        : query(of_query), triangle(b.given_triangle(t)), bounds(in_kernel(box_around(b.triangle(t), to_a))) {}
 
     const tree_query& query;
     triangle3d triangle;
@@ -85,7 +86,8 @@ class cgal_tree final : public model_engine<tree_model> {
         changed.tree.rebuild(changed.triangles.cbegin(), changed.triangles.cend());
     }
 
-    /// Queries A's tree with each triangle of B, in A's frame, until one is hit.
+    /// Queries the tree of mesh A with each triangle of B, transformed into A's frame, until a triangle of A is hit.
+    /// @returns the indices of both triangles, or nothing if the meshes do not intersect
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         const mesh& b = *q.b.source;
         const mesh& a = *q.a.source;
@@ -97,7 +99,7 @@ class cgal_tree final : public model_engine<tree_model> {
         return std::nullopt;
     }
 
-    /// Queries A's tree with each triangle of B, in A's frame.
+    /// Queries the tree of mesh A with each triangle of B, transformed into A's frame.
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         const mesh& b = *q.b.source;
         const mesh& a = *q.a.source;

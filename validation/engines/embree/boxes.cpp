@@ -36,6 +36,7 @@ private:
         }
         if (ids_.size() <= brute_force_threshold) return;
         const charge_to charging(embree_bytes_);  // counts Embree's allocations
+        // Embree calls this for the bounds of one box, of index primID.
         const auto bounds_of_one = [](const RTCBoundsFunctionArguments* request) {
             *request->bounds_o = static_cast<const RTCBounds*>(request->geometryUserPtr)[request->primID];
         };
@@ -43,11 +44,12 @@ private:
         scene_.commit(bounds_.data(), bounds_.size());
     }
 
-    /// Collides Embree's scene with itself, then tests the boxes before they were clamped.
+    /// Collides Embree's scene with itself, and removes pairs whose given boxes do not overlap: the scene has clamped
+    /// boxes, and Embree reports all pairs in overlapping leaves.
     void find_pairs(std::vector<index_pair>& pairs) override {
         if (ids_.size() <= brute_force_threshold) return find_by_brute_force(pairs);
-        const std::size_t known = pairs.size();
-        pair_collector collected{pairs};  // indices of boxes, not yet ids
+        const std::size_t known = pairs.size();  // pairs of earlier queries
+        pair_collector collected{pairs};         // indices of boxes, not yet ids
         rtcCollide(scene_.scene.get(), scene_.scene.get(), collect, &collected);
         require_success(embree_device());
         collected.require_memory();

@@ -40,6 +40,7 @@ public:
         if (triangles_.size() <= 4) quality = RTC_BUILD_QUALITY_MEDIUM;
         const charge_to charging(*embree_bytes_);  // counts Embree's allocations
         const bool refits = quality == RTC_BUILD_QUALITY_REFIT;
+        // Embree calls this for the bounds of one triangle, of index primID.
         const auto bounds_of_one = [](const RTCBoundsFunctionArguments* request) {
             const auto* triangles = static_cast<const triangle3f*>(request->geometryUserPtr);
             *request->bounds_o = clamped_to_embree(bounds_of(triangles[request->primID]));
@@ -97,8 +98,9 @@ private:
         return pairs.front();
     }
 
-    /// Collides A's scene with that of B in A's frame, which is kept while neither pose changes, and tests the
-    /// triangles whose boxes overlap.
+    /// Appends the pairs of triangles of meshes A and B that intersect: Embree finds those whose boxes overlap, and
+    /// these are tested. Embree has no poses, so it gets B transformed into A's frame, a scene kept while neither pose
+    /// changes.
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
             q.b.transformed.build(quality_, *q.b.source,

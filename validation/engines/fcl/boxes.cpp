@@ -39,7 +39,7 @@ public:
     }
 
 private:
-    /// Unregisters objects that left, registers new ones, and updates the tree to the boxes.
+    /// Updates FCL's tree (`manager_`) to the boxes of the present objects: removes those that left, and adds new ones.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         drop_absent(objects_, [&](const auto& object) { manager_.unregisterObject(object.get()); });
         if (!ids.empty() && objects_.size() <= ids.back()) objects_.resize(std::size_t{ids.back()} + 1);

@@ -88,7 +88,8 @@ protected:
     virtual void collide(const model_query& q, const fcl::CollisionRequestd& request,
                          fcl::CollisionResultd& result) = 0;
 
-    /// B's tree in A's frame, which is kept until a pose changes.
+    /// The tree of mesh B, transformed into the frame of mesh A; kept until a pose changes. Transformed vertices are
+    /// floats, relative to the offset and scale of A's `frame`, which turns them into doubles.
     [[nodiscard]] static fcl::BVHModel<Volume>& transformed(const model_query& q) {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
             std::vector<vec3d> vertices;
@@ -123,7 +124,8 @@ private:
         return {static_cast<std::uint32_t>(contact.b1), static_cast<std::uint32_t>(contact.b2)};
     }
 
-    /// Contact points are disabled, so that each pair of triangles is reported once.
+    /// FCL's result with at most this number of intersecting pairs of triangles, after which its search ends. Contact
+    /// points are not requested: with them FCL reports a pair once per point.
     [[nodiscard]] fcl::CollisionResultd collide_up_to(const model_query& q, std::size_t most_contacts) {
         fcl::CollisionRequestd request;
         request.num_max_contacts = most_contacts;
@@ -137,7 +139,8 @@ private:
 /// Oriented boxes. FCL uses the raw poses, so that no vertex is rounded to float. It requires rotations; at other
 /// poses, it gets B's vertices in A's frame.
 class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
-    /// FCL takes only rigid transforms: at other poses, B's tree is transformed first.
+    /// Collides both trees. FCL takes only rigid transforms, rotations and translations: at other poses, B's tree is
+    /// transformed into A's frame first, and both have the identity as their transform.
     void collide(const model_query& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
         if (is_rigid(q.pose_a) && is_rigid(q.pose_b)) {
             fcl::collide(&q.a.local.get(), transform(q.pose_a), &q.b.local.get(), transform(q.pose_b), request, result);
@@ -147,6 +150,7 @@ class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
         fcl::collide(&q.a.local.get(), identity, &transformed(q), identity, request, result);
     }
 
+    /// The pose in FCL's type; ours stores the rotation matrix by rows.
     [[nodiscard]] static fcl::Transform3d transform(const pose& p) {
         fcl::Transform3d result = fcl::Transform3d::Identity();
         for (int i = 0; i < 3; ++i) {

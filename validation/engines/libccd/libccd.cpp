@@ -66,6 +66,8 @@ public:
     }
 
 protected:
+    /// @param algorithm GJK or MPR; it knows a triangle by its support function and, for MPR, its centre
+    /// @param iterations after which the triangles count as disjoint
     ccd_test(decltype(&ccdGJKIntersect) algorithm, std::uint32_t iterations) : algorithm_(algorithm) {
         CCD_INIT(&ccd_);
         ccd_.support1 = &ccd_triangle::support;

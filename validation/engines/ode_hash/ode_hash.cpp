@@ -60,7 +60,7 @@ protected:
     virtual void prepare(dSpaceID, std::span<const ode_box>) const {}
 
 private:
-    /// Copies the present boxes into ODE's layout, scaled to the unit, and updates the space.
+    /// Copies the present boxes into ODE's layout, times a power of two, and updates ODE's space, which searches them.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) final {
         boxes_.clear();
         for (const std::uint32_t id : ids) {
@@ -73,11 +73,12 @@ private:
         update_space();
     }
 
+    /// Gives each present object a geometry with its box in ODE's space, and makes the space if there is none.
     void update_space() {
         if (boxes_.empty()) return;
         if (!space_) {
             space_ = make_space(boxes_);
-            dSpaceSetCleanup(space_.get(), 0);
+            dSpaceSetCleanup(space_.get(), 0);  // `geoms_` owns the geometries
         }
         if (geoms_.size() <= boxes_.back().id) geoms_.resize(std::size_t{boxes_.back().id} + 1);
         for (const ode_box& entry : boxes_) {
@@ -93,7 +94,8 @@ private:
         prepare(space_.get(), boxes_);
     }
 
-    /// Collides the space with itself. A search that ran out of memory has given up its space, so a new one is made.
+    /// Collides ODE's space with itself. After an exception ODE keeps the space locked, so the space is given up, and
+    /// the next search makes a new one. The callback itself must not throw: it only records that memory ran out.
     void find_pairs(std::vector<index_pair>& pairs) final {
         if (!space_) update_space();
         if (boxes_.size() < 2) return;
@@ -140,7 +142,8 @@ private:
         return space_handle(dHashSpaceCreate(nullptr));
     }
 
-    /// Cell sizes from the smallest to the largest object, limited so that cell indices fit into an int.
+    /// Sets the levels of the hashed grid: cells of level n have edges of 2^n. They reach from the smallest to the
+    /// largest object, but the least one is limited so that cell indices fit into an int.
     void prepare(dSpaceID space, std::span<const ode_box> boxes) const override {
         constexpr std::size_t most_boxes = (std::size_t{1} << 17) - 1;
         if (boxes.size() > most_boxes)
@@ -170,7 +173,7 @@ public:
     ode_sap() : ode_boxes(1) {}
 
 private:
-    /// Sweeps along the axis with the largest extent of the scene.
+    /// Makes a space that sweeps along the axis on which the boxes' lower ends have the greatest range.
     [[nodiscard]] space_handle make_space(std::span<const ode_box> boxes) const override {
         std::array<dReal, 3> extents{};
         std::array<std::size_t, 3> axes = {0, 1, 2};
