@@ -44,7 +44,7 @@ box_frames points() {
     return moving(boxes_of(80, point), /*shift=*/1);
 }
 
-/// Boxes with zero extent on this number of axes, the first of which alternates.
+/// 80 boxes with zero extent on one or two axes (`flat_axes`), the first of which is axis i % 3 for box i.
 box_frames without_extent(int flat_axes, std::uint32_t seed) {
     draws random(seed);
     const auto make_box = [&](std::uint32_t i) {
@@ -58,7 +58,7 @@ box_frames without_extent(int flat_axes, std::uint32_t seed) {
     return moving(boxes_of(80, make_box), /*shift=*/0.5F);
 }
 
-/// Boxes whose edges are of 13 magnitudes, from a millionth to a million.
+/// 39 boxes whose edges are of 13 magnitudes, from a millionth to a million.
 box_frames mixed_sizes() {
     draws random(13);
     const auto make_box = [&](std::uint32_t i) {
@@ -78,7 +78,7 @@ box_frames one_huge() {
     return moving(boxes_of(60, make_box), /*shift=*/1e-3F);
 }
 
-/// Boxes with their centres in one point or on a line; exactly, since coordinates are integers.
+/// 70 boxes with their centres in the origin or on the x axis; exactly, since coordinates are integers.
 box_frames concentric(bool on_a_line) {
     const auto make_box = [&](std::uint32_t i) {
         const float x = on_a_line ? static_cast<float>(3 * i) : 0;
@@ -111,7 +111,7 @@ box_frames independent_frames(std::uint32_t count, Make make) {
     return {std::move(first), boxes_of(count, make)};
 }
 
-/// Two frames of boxes with all coordinates among `ends`.
+/// Two independent frames of boxes whose coordinates are drawn from `ends`, so that many of them are equal.
 box_frames with_ends(const std::vector<float>& ends, std::uint32_t objects, std::uint32_t seed) {
     draws random(seed);
     const auto end = [&] { return ends[random.below(static_cast<std::uint32_t>(ends.size()))]; };
@@ -166,7 +166,7 @@ box_frames huge_and_tiny() {
     return frames;
 }
 
-/// Boxes that appear and disappear; `is_present` states whether an object is present in a frame.
+/// A scene whose objects appear and disappear: `is_present(frame, i)` states whether object i is present in a frame.
 template <class IsPresent>
 extreme_scene population(std::string name, std::string summary, IsPresent is_present) {
     extreme_scene scene{.name = std::move(name), .summary = std::move(summary)};
@@ -186,7 +186,8 @@ extreme_scene population(std::string name, std::string summary, IsPresent is_pre
 
 }  // namespace
 
-/// Boxes of extreme shapes and arrangements, then of extreme coordinates, then with extreme motion and changes.
+/// All extreme scenes of valid boxes: of extreme shapes and arrangements, then of extreme coordinates, then with
+/// extreme motion and with objects that leave and return.
 std::vector<extreme_scene> box_scenes() {
     return {
         scene_of_boxes("identical", "60 copies of one box",

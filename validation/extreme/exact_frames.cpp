@@ -30,7 +30,8 @@ void for_each_true_pair(const mesh& a, const mesh& b, const pose_pair& poses, Vi
             if (judge_intersection(poses, a.given_triangle(s), b.given_triangle(t)) && visit(index_pair{s, t})) return;
 }
 
-/// The ground truth for two objects, by a double loop over their triangles.
+/// The ground truth for two objects, by a double loop over their triangles. For `first_pair` it only records whether
+/// they intersect, and ends at the first pair.
 exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>& poses, index_pair objects,
                                extreme_query query) {
     exact_objects result{.a = objects.a, .b = objects.b, .pairs = {}};
@@ -47,13 +48,14 @@ exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>&
 
 }  // namespace
 
-/// Plays the scene, and finds the pairs of each frame by a double loop over the present objects.
+/// The ground truth of a scene of boxes: the pairs of each frame, by a double loop over the present objects, and the
+/// objects that arrived and departed before it.
 exact_boxes exact_boxes_of(box_scene& scene) {
     exact_boxes frames;
     std::vector<std::uint8_t> previously_present;
     for (exact_box_frame frame; scene.next(frame.boxes); frame = {}) {
         std::vector<std::uint8_t> present(scene.present().begin(), scene.present().end());
-        if (present.empty()) present.assign(frame.boxes.size(), 1);
+        if (present.empty()) present.assign(frame.boxes.size(), 1);  // all objects are always present
         add_changes(frame, std::exchange(previously_present, present), present);
         for (std::uint32_t a = 0; a < frame.boxes.size(); ++a)
             for (std::uint32_t b = a + 1; b < frame.boxes.size(); ++b)
@@ -64,7 +66,8 @@ exact_boxes exact_boxes_of(box_scene& scene) {
     return frames;
 }
 
-/// Plays the scene, and finds the pairs of each two objects, then for `all_pairs` those within a single mesh.
+/// The ground truth of a scene of meshes: the pairs of triangles of each two objects in each frame, as far as the query
+/// needs them, and, for all queries on a scene of one mesh, the pairs within that mesh.
 exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query query) {
     exact_meshes truth;
     for (exact_mesh_frame frame; scene.next(frame.poses); frame = {}) {
@@ -73,7 +76,7 @@ exact_meshes exact_meshes_of(mesh_scene& scene, extreme_query query) {
                 frame.objects.push_back(exact_objects_of(scene, frame.poses, {a, b}, query));
         truth.frames.push_back(frame);
     }
-    if (scene.meshes.size() != 1 || query != extreme_query::all_pairs) return truth;
+    if (scene.meshes.size() != 1 || query != extreme_query::all_pairs) return truth;  // `all_pairs` runs all queries
     const mesh& m = scene.meshes[0];
     for (std::uint32_t a = 0; a < m.triangle_count(); ++a)
         for (std::uint32_t b = a + 1; b < m.triangle_count(); ++b)

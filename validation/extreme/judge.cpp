@@ -22,8 +22,8 @@ void make_rejected(extreme_result& result, const input_error& rejection) {
     result.reason = rejection.what();
 }
 
-/// Counts the differences of a result from the ground truth; the first one makes the result wrong.
-/// @param where "frame 2"
+/// Adds the false negatives and false positives of a result to its counts; the first one is the reason why it is wrong.
+/// @param where begins that reason, as in "frame 2"
 void record_difference(extreme_result& result, const pair_comparison& difference, const std::string& where) {
     const auto text_of = [](const index_pair& pair) { return std::to_string(pair.a) + " " + std::to_string(pair.b); };
     result.false_negatives += difference.false_negatives.size();
@@ -36,7 +36,7 @@ void record_difference(extreme_result& result, const pair_comparison& difference
                                                     : " is reported, but is not in the ground truth"));
 }
 
-/// Runs a broad phase over all frames, and compares each result with the ground truth.
+/// Runs a broad phase over all frames, and compares the pairs of each with the ground truth.
 void run(const exact_boxes& exact, global_stage& stage, extreme_result& result) {
     std::vector<index_pair> pairs;
     for (std::size_t frame = 0; frame < exact.size(); ++frame) {
@@ -67,7 +67,8 @@ void add_classes(const mesh_scene& scene, pair_comparison difference, index_pair
                                              scene.meshes[scene.mesh_of[objects.b]], pose_b);
 }
 
-/// Runs both stages on a frame, and compares the contacts of each two objects with the ground truth.
+/// Runs both stages on a frame, and compares the contacts of each two objects with the ground truth. Wrong pairs of
+/// triangles are also counted by class, such as touching or coplanar (`add_classes`).
 void judge_all_pairs(const judged_frame& current, pipeline& stages, extreme_result& result) {
     stages.search();
     stages.detect();
@@ -114,7 +115,8 @@ void judge_self_pairs(const mesh_scene& scene, const exact_meshes& exact, local_
     add_classes(scene, difference, /*objects=*/{0, 0}, /*pose_a=*/{}, /*pose_b=*/{}, result);
 }
 
-/// Runs every query of a narrow phase over all frames; of invalid scenes only the search, which must be rejected.
+/// Runs the scene's queries of a narrow phase over all frames. A scene with a `rejection` is invalid: for it only
+/// contacts are requested, and the stage must throw an error that contains this text.
 void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& stage, extreme_result& result) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();
     // Objects with overlapping boxes are candidates, so that a box that is too small causes false negatives.
@@ -123,7 +125,7 @@ void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& sta
     if (scene.rejection.empty())
         stages.emplace(*meshes, *boxes, stage);
     else
-        stages.emplace(*meshes, stage);
+        stages.emplace(*meshes, stage);  // without a broad phase: all objects are candidates
     std::vector<pose> poses;
     for (std::size_t frame = 0; meshes->next(poses); ++frame) {
         stages->update(poses);
@@ -143,7 +145,8 @@ void run(const extreme_scene& scene, const exact_meshes& exact, local_stage& sta
         judge_self_pairs(*meshes, exact, stage, result);
 }
 
-/// Runs a query in the scene's arithmetic, which must be rejected with the expected message.
+/// Runs the work in the scene's floating-point mode, in which it must be rejected with the scene's message.
+/// @param query names the work in messages
 void require_rejection(const extreme_scene& scene, const std::string& query, const std::function<void()>& work,
                        extreme_result& result) {
     try {
@@ -156,7 +159,8 @@ void require_rejection(const extreme_scene& scene, const std::string& query, con
     }
 }
 
-/// Checks that a stage that was made in IEEE arithmetic rejects each call in the scene's arithmetic.
+/// Checks that a broad phase rejects each call in the scene's floating-point mode, such as rounding upward. The stage
+/// is made and updated in IEEE arithmetic, so that only the mode is at fault.
 void require_rejections(const extreme_scene& scene, const std::function<std::unique_ptr<global_stage>()>& make,
                         extreme_result& result) {
     std::vector<box> boxes;
@@ -169,7 +173,8 @@ void require_rejections(const extreme_scene& scene, const std::function<std::uni
     require_rejection(scene, "update", [&] { stage->update(boxes); }, result);
 }
 
-/// Checks that a narrow phase that was made in IEEE arithmetic rejects each call in the scene's arithmetic.
+/// Checks that a narrow phase rejects each call in the scene's floating-point mode, such as rounding upward. The stage
+/// is made in IEEE arithmetic, so that only the mode is at fault.
 void require_rejections(const extreme_scene& scene, const std::function<std::unique_ptr<local_stage>()>& make,
                         extreme_result& result) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();
@@ -190,8 +195,9 @@ void require_rejections(const extreme_scene& scene, const std::function<std::uni
     require("add_model", [&] { stage->add_model(m); });
 }
 
-/// Makes and runs a stage, and turns exceptions into a result.
-/// @param run_frames runs all frames of the scene, and adds to the result
+/// Makes a stage, runs the scene, and turns exceptions into a result: an input_error is a rejection, any other is
+/// wrong. A scene in another floating-point mode has no results, only calls that must be rejected.
+/// @param run_frames called as (stage, result): runs all frames, and adds differences from the ground truth
 template <class Stage, class RunFrames>
 extreme_result result_of(const extreme_scene& scene, const std::function<std::unique_ptr<Stage>()>& make,
                          RunFrames run_frames) {

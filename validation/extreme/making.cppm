@@ -81,7 +81,7 @@ private:
     std::mt19937 engine_;
 };
 
-/// A mesh in which no two triangles share vertices.
+/// The mesh of these triangles, in which no two share vertices.
 [[nodiscard]] inline mesh soup_of(const std::vector<triangle3f>& triangles) {
     mesh m;
     for (const triangle3f& t : triangles) {
@@ -113,7 +113,7 @@ private:
     return m;
 }
 
-/// The mesh with its coordinates times a factor, plus an offset, in double.
+/// The mesh with its coordinates times a factor, plus an offset. The mesh gets doubles, which need not be floats.
 [[nodiscard]] inline mesh in_double(mesh m, double factor, const vec3d& offset) {
     std::vector<vec3d> vertices;
     for (std::size_t v = 0; v < m.vertices.size(); ++v) {

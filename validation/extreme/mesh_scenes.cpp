@@ -30,7 +30,8 @@ std::unique_ptr<mesh_scene> corner_on_face() {
 constexpr triangle3f flat_triangle{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}};
 constexpr triangle3f crossing_triangle{{{0.5F, 0.5F, -1}, {0.5F, 0.5F, 1}, {0.25F, 3, 0}}};
 
-/// Triangles around the origin, which no build can separate by their centroids.
+/// Two copies of a mesh in three frames. The centroid of each of its triangles is the origin, exactly, since
+/// coordinates are integers: no build of a tree can separate them by their centroids.
 std::unique_ptr<mesh_scene> same_centroid() {
     draws random(41);
     std::vector<triangle3f> triangles;
@@ -42,7 +43,8 @@ std::unique_ptr<mesh_scene> same_centroid() {
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1, 0, 0)}, {{}, turned(1, {0, 0, 5})}});
 }
 
-/// Each triangle four times, and once more with permuted corners: no build can separate these, and all of them count.
+/// Two copies of a mesh that has each triangle four times, and once more with permuted corners: no build of a tree can
+/// separate these, and each of them must be reported.
 std::unique_ptr<mesh_scene> duplicates() {
     mesh m = cube();
     // One face and a half.
@@ -64,8 +66,8 @@ mesh coincident(std::uint32_t count) {
     return m;
 }
 
-/// Thin triangles in random directions, of lengths about 1. @param height the greatest distance of the third corner
-/// from the middle of the long edge, on each axis
+/// Two copies of a mesh of thin triangles of lengths about 1, in random directions; at one pose, then almost at one.
+/// @param height the greatest distance of the third corner from the middle of the long edge, on each axis
 std::unique_ptr<mesh_scene> needles(float height) {
     draws random(51);
     std::vector<triangle3f> triangles;
@@ -78,7 +80,8 @@ std::unique_ptr<mesh_scene> needles(float height) {
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1e-7, 0, 0)}, {{}, turned(1e-6, {0, 0, 0})}});
 }
 
-/// Triangles, segments and points with integer coordinates, so that they intersect.
+/// Two copies of a mesh of triangles, segments and points (i % 3 = 0, 1, 2). Coordinates are integers from 0 to 4, so
+/// that many of them touch exactly.
 std::unique_ptr<mesh_scene> zero_areas() {
     draws random(52);
     std::vector<triangle3f> triangles;
@@ -121,7 +124,8 @@ std::unique_ptr<mesh_scene> cubes_apart(const vec3d& place, double gap) {
                  {{{}, {}}, {anywhere, anywhere}, {anywhere, turned(0.7, {0.3, -0.2, 0.1 + 1e-9})}});
 }
 
-/// Two cubes flush under rotations, whose rounding decides which of their triangles touch.
+/// Two cubes of edge 2, face to face under a common rotation: the second is shifted along an axis of the first, a
+/// column of the rotation matrix, by 2. Rounding of the matrix decides which of their triangles touch.
 std::unique_ptr<mesh_scene> flush_turned() {
     draws random(54);
     std::vector<std::vector<pose>> frames;
@@ -136,8 +140,8 @@ std::unique_ptr<mesh_scene> flush_turned() {
 
 }  // namespace
 
-/// Meshes that touch, that consist of degenerate triangles, or that are small, large or far away. Coincident triangles
-/// cannot be separated by any split, so their scenes also limit the memory of trees.
+/// All extreme scenes of valid meshes: they touch, consist of degenerate triangles, or are small, large or far away.
+/// `many` coincident triangles cannot be separated by any split, so their scenes also limit the memory of trees.
 std::vector<extreme_scene> mesh_scenes(extreme_size size) {
     const std::uint32_t many = size == extreme_size::small ? 300U : size == extreme_size::quick ? 20'000U : 1'000'000U;
     extreme_scene against_one = scene_of_meshes(

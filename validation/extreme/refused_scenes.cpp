@@ -9,7 +9,7 @@ namespace {
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// A valid frame, then one in which box 7 is invalid.
+/// A scene that must be rejected with this message: a valid frame of 20 boxes, then one in which box 7 is `bad`.
 extreme_scene with_box(const char* name, const char* summary, const box& bad, const char* rejection) {
     const auto make = [bad] {
         std::vector<box> boxes(20, {{0, 0, 0}, {1, 1, 1}});
@@ -20,7 +20,7 @@ extreme_scene with_box(const char* name, const char* summary, const box& bad, co
     return rejected(scene_of_boxes(name, summary, make), rejection);
 }
 
-/// A cube, and a copy that `spoil` makes invalid.
+/// A scene that must be rejected with this message: a cube, and a copy that `spoil` makes invalid.
 template <class Spoil>
 extreme_scene with_mesh(const char* name, const char* summary, Spoil spoil, const char* rejection) {
     const auto make = [spoil] {
@@ -57,7 +57,8 @@ pose stretched(double scale) {
     return p;
 }
 
-/// Valid scenes of boxes and of meshes in a wrong floating-point mode.
+/// A scene of boxes and a scene of meshes, both valid, that must be rejected with this message since they are computed
+/// in this floating-point mode.
 std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name, const std::string& summary,
                                        const std::string& rejection) {
     const auto boxes = [] {
@@ -82,7 +83,8 @@ std::vector<extreme_scene> invalid_box_scenes() {
     };
 }
 
-/// Poses that are no rotations, and invalid ones and meshes.
+/// Scenes of two meshes with a pose or mesh at the limit of what is valid: those with a message must be rejected with
+/// it. Poses need not be rotations, so the ones without a message are valid.
 std::vector<extreme_scene> invalid_mesh_scenes() {
     extreme_scene beyond_float =
         with_pose("beyond_float", "1e39 from the other mesh, beyond the greatest float", shifted(1e39, 0, 0),
@@ -115,7 +117,8 @@ std::vector<extreme_scene> invalid_mesh_scenes() {
     };
 }
 
-/// Scenes in a thread that rounds upward and, if the processor can, in one that flushes denormals, those first.
+/// Scenes that must be rejected in a thread that flushes denormals, if this processor can do so, and in one that rounds
+/// upward.
 std::vector<extreme_scene> other_arithmetic_scenes() {
     std::vector<extreme_scene> scenes = computed_in(arithmetic::rounded_upward, "upward", "a thread that rounds upward",
                                                     "this thread does not round to nearest");
