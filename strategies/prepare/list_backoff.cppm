@@ -22,12 +22,12 @@ public:
     /// A list served as long as planned, so the next back-off is short again.
     void shorten() noexcept { next_ = shortest; }
 
-    /// Advances by one frame. In the last eight of a back-off, the motion of a sample of boxes is observed, and the
-    /// back-off ends once a list seems worth its cost. If the sample already moves too far for any list, so does the
-    /// whole scene, and the rest of the eight frames is skipped.
+    /// Advances a back-off by one frame; `left_` frames remain. In the last eight, the displacement of a random sample
+    /// of boxes is measured, and the back-off ends early once a Verlet list seems worth its cost. If the sample already
+    /// moves too far for any list, so does the whole scene, and these frames need no further measurement.
     /// @param estimate its law becomes that of the sample
-    /// @param ids_drawn as in `draw_id`
-    /// @returns whether all eight frames passed without a list; another sample is watched next
+    /// @param ids_drawn the state of the random numbers, see `draw_id`
+    /// @returns whether all eight frames passed without a list; then the back-off continues, until another sample
     bool advance_frame(std::span<const box> boxes, const membership& objects, list_estimate& estimate,
                        std::uint32_t& ids_drawn) {
         --left_;

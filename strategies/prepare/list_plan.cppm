@@ -27,7 +27,9 @@ export namespace aabb {
 class growth_of_pairs {
 public:
     growth_of_pairs() = default;
-    /// Sums, over pairs of neighbours in a random sample of boxes, the polynomial by which their overlaps grow.
+    /// Sums the polynomial (e0 + x) (e1 + x) (e2 + x) over pairs of successive boxes in a random sample. Here ek is the
+    /// sum of both extents of a pair on axis k, and x its growth by the margin. An axis on which boxes lie closer than
+    /// their extents has no factor: they overlap there anyway.
     explicit growth_of_pairs(std::span<const box> sample) {
         vec3d lengths{};
         box lower_corners = empty_box();
@@ -39,9 +41,9 @@ public:
         longest_margin_ = 4 * (lengths[0] + lengths[1] + lengths[2]) / (3.0 * static_cast<double>(sample.size()));
         for (std::size_t i = 1; i < sample.size(); ++i) {
             std::array<double, 4> product{1, 0, 0, 0};
-            // The coefficients of (e0 + x) (e1 + x) (e2 + x) for the summed extents of the pair on the axes.
+            // product[i] is the coefficient of x^i; each axis multiplies the polynomial by (extents + x).
             for (int k = 0; k < 3; ++k) {
-                if (spacing(k) <= lengths[k] / static_cast<double>(sample.size())) continue;  // they overlap anyway
+                if (spacing(k) <= lengths[k] / static_cast<double>(sample.size())) continue;
                 double extents = 0;
                 for (const box& b : {sample[i - 1], sample[i]}) extents += double{b.max[k]} - double{b.min[k]};
                 for (std::size_t power = 3; power > 0; --power)
@@ -146,8 +148,8 @@ inline constexpr double worth_a_list = 0.9;
            worth_a_list * cost_of_search(n, static_cast<double>(pairs), cost);
 }
 
-/// Whether shortening a list is worth its cost, assuming that it removes half of the tests: the shortening itself takes
-/// time, and the shorter list ends sooner, so that the next one is made sooner.
+/// Whether shortening a Verlet list is worth its cost, assuming that it saves half of the tests in each further frame:
+/// the shortening itself takes time, and the shorter list ends sooner, so that the next one is made sooner.
 /// @param pairs number of overlapping pairs
 /// @param tested number of listed pairs that each frame tests
 /// @param frames number of frames that the list still serves
@@ -169,9 +171,9 @@ inline constexpr double worth_a_list = 0.9;
     return certain * frames_left > 2 * static_cast<double>(listed);
 }
 
-/// The plan of a Verlet list with the least cost per frame, or the longest within 1% of it, since motion may be
-/// underestimated. A list that serves more frames is made less often, but needs a greater margin, so that it has more
-/// pairs to test in each.
+/// The plan of a Verlet list with the least cost per frame; of plans within 1% of it, the one for the most frames,
+/// since motion may be underestimated. A list that serves more frames is made less often, but needs a greater margin,
+/// so that it has more pairs to test in each. Costs are relative to searching a frame without a list.
 /// @param worth a list must cost less than this share of a search per frame
 [[nodiscard]] inline list_plan plan_list(const list_estimate& estimate, double worth = worth_a_list,
                                          const cost_model& cost = machine_costs()) {

@@ -19,8 +19,9 @@ public:
         of.sum += extent;
     }
 
-    /// The mean extent of the boxes in the octave of the median, in the four above it and in all below; 0 if no box was
-    /// added. Extents of 0 (octave 0) count for the mean only: if they were the median, all others would be outliers.
+    /// The mean extent of the boxes without outliers; 0 if no box was added. Boxes are counted by octave, a range of
+    /// extents from 2^i to 2^(i+1); those more than four octaves above the median are outliers. Extents of 0 (octave 0)
+    /// count for the mean only: if they were the median, all others would be outliers.
     [[nodiscard]] double operator()() const noexcept {
         std::size_t longer = 0;  // number of boxes in octaves above `median`
         for (std::size_t i = 1; i < octaves_.size(); ++i) longer += octaves_[i].boxes;

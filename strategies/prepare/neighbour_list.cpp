@@ -61,7 +61,8 @@ public:
         search_->remove(id);
     }
 
-    /// Chooses how to find the pairs of this frame by what is kept and how boxes have moved, and updates the search.
+    /// Chooses how to find the pairs of this frame: by a search, or from a Verlet list made in an earlier frame. The
+    /// table `actions` states it by what is kept (`state_`) and how boxes have moved since (`observation`).
     void update(std::span<const box> boxes) override {
         frame_.begin();
         require_ieee_arithmetic();
@@ -77,7 +78,7 @@ public:
             list_.erase_if([&](index_pair p) { return !objects_.contains(p.a) || !objects_.contains(p.b); });
         record_arrivals(any_arrivals);
         if (is_below_list_threshold()) {
-            state_ = state::nothing;
+            state_ = state::nothing;  // for so few boxes, searching is cheapest
             search_->update(boxes);
         } else {
             const observation seen = observe_motion(boxes, any_arrivals);
@@ -173,7 +174,10 @@ private:
     /// Whether the pairs marked as certain are guaranteed to overlap in this frame.
     [[nodiscard]] bool certain_pairs_hold() const noexcept { return moved_.in_both_directions <= margin_; }
 
-    /// An arrival ends every list. The next one is expected after the interval between the last two, or is overdue.
+    /// Estimates how many frames the next list can serve: until an object is inserted, which ends every list, or until
+    /// the last expected frame. The next insertion is expected after the interval between the last two or, if that has
+    /// passed, after as many frames as have passed since the last one.
+    /// @param any whether an object was inserted for this frame
     void record_arrivals(bool any) noexcept {
         if (any && frames_ > 0) between_arrivals_ = since_arrival_;
         since_arrival_ = any ? 1 : since_arrival_ + 1;
@@ -185,7 +189,8 @@ private:
                              .in_new_memory = grown_.capacity() == 0};
     }
 
-    /// What the motion since boxes were kept means for the kept pairs. It is measured only where that depends on it.
+    /// What the motion of the boxes since they were kept means for the kept pairs: above all whether these are still
+    /// complete. The motion is measured only where this result or the next list depends on it.
     [[nodiscard]] observation observe_motion(std::span<const box> boxes, bool any_arrivals) {
         if (state_ == state::nothing) return observation::changed;
         if (state_ == state::searching) return observe_sample(boxes);
@@ -197,7 +202,7 @@ private:
         ++age_;
         // While watching no result depends on the motion, so it is measured at power-of-two ages only.
         if (state_ == state::watching && !std::has_single_bit(age_)) return observation::complete;
-        const bool has_fixed_age = config_.every > 0;
+        const bool has_fixed_age = config_.every > 0;  // a new list every so many frames, whatever moves
         const observation at_fixed_age = age_ >= config_.every ? observation::changed : observation::complete;
         if (has_fixed_age && config_.margin) return at_fixed_age;
         const relative_motion before = std::exchange(moved_, motion_between(kept_, boxes, objects_));
@@ -213,11 +218,13 @@ private:
         return age_ > 1 && moved_ == before ? observation::settled : observation::complete;
     }
 
-    /// Watches a sample during a back-off, whose end may allow a list again.
+    /// During a back-off, in which no list is worth its cost: watches a sample of boxes, whose motion may end it.
+    /// @returns `changed` if a list may be worth its cost again, else `complete`
     [[nodiscard]] observation observe_sample(std::span<const box> boxes) {
         if (!backoff_.is_active()) return observation::changed;
         if (backoff_.advance_frame(boxes, objects_, estimate_, ids_drawn_)) {
             estimate_.correction = 1;  // learned from lists that are too old to predict the next one
+            // No list is expected soon, so the memory of the last one is released.
             release(kept_);
             release(grown_);
             list_.release();
@@ -249,9 +256,11 @@ private:
         return next_list{.frames = 0, .margin = is_far_too_long(boxes, margin) ? 0 : margin};
     }
 
-    /// Plans the cheapest list from the observed displacement, or repeats the last plan if its list lasted as planned.
-    /// Returns nullopt if no list is worth its cost, or if boxes moved much farther than estimated and must be watched.
-    /// @param is_motion_known whether the motion since the boxes were kept is known, and has ended what was kept
+    /// Plans the next list: repeats the last plan if its list lasted as planned, or else plans the cheapest list for
+    /// the displacement observed since the boxes were kept.
+    /// @param is_motion_known whether this displacement is known, and has ended what was kept
+    /// @returns nullopt if no list is worth its cost, or if the last one ended before half of its planned frames: then
+    /// boxes moved much farther than estimated, and must be watched before the next plan
     [[nodiscard]] std::optional<next_list> planned_list(std::span<const box> boxes, bool is_motion_known) {
         const bool had_list = state_ == state::listing;
         const std::size_t frames_served = age_ - age_when_made_;
@@ -282,8 +291,9 @@ private:
         return next;
     }
 
-    /// Starts a list with the configured, estimated or default margin. If none is worth its cost, watches boxes that
-    /// moved farther than expected for some frames, and then gives lists up for a back-off.
+    /// Starts a list with the configured, estimated or default margin. If none is worth its cost, this frame is
+    /// searched, and the next ones are too: for up to `longest_watch` frames while the motion of the boxes is observed,
+    /// and after that for a back-off.
     /// @param is_motion_known whether the motion since the boxes were kept is known, and has ended what was kept
     void plan(std::span<const box> boxes, bool is_motion_known) {
         std::optional<next_list> next;
@@ -309,7 +319,8 @@ private:
         search_->update(boxes);
     }
 
-    /// Starts a list. In adaptive mode a list without margin keeps the pairs of these boxes until one of them moves.
+    /// Starts a list: gives the boxes, grown by the margin, to the search; the pairs that it finds become the list.
+    /// With a margin of 0 that was not configured, the list is the result itself until a box moves (`resting`).
     void start_list(std::span<const box> boxes, next_list next) {
         state_ = state::nothing;
         margin_ = margin_when_made_ = next.margin;
@@ -341,7 +352,8 @@ private:
             list_.mark_certain_pairs(kept_, margin_);
     }
 
-    /// Reduces the list to the overlapping pairs, which are the result of every frame until a box moves.
+    /// Called when all boxes have come to rest: reduces the list to the overlapping pairs, which are the result of
+    /// every frame until a box moves.
     void settle(std::span<const box> boxes) {
         require_valid(boxes);
         if (!certain_pairs_hold()) list_.forget_certain();
@@ -356,8 +368,9 @@ private:
         state_ = state::resting;
     }
 
-    /// Reduces the list to a smaller margin without a search if boxes move much less than the current one allows, so
-    /// that many listed pairs are tested in vain. It is planned for four times the current age, a power of two.
+    /// Reduces the list to a smaller margin, without a search, if boxes move much less than the current one allows, so
+    /// that many listed pairs are tested in vain. Considered at power-of-two ages of the list; the smaller margin is to
+    /// suffice until four times this age.
     void shorten_if_worth_it() {
         constexpr std::size_t least_age = 8;
         constexpr std::size_t times_as_long = 4;

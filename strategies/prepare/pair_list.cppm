@@ -31,12 +31,13 @@ using corner = float __attribute__((vector_size(16)));
     return (std::bit_cast<std::uint8_t>(__builtin_convertvector(overlapping, bools)) & 7U) == 7U;
 }
 
-/// Stores the overlapping pairs of a list by compress-stores of one vector of pairs each, without branches, since the
-/// outcome of a test is hard to predict.
+/// Stores the pairs of a list whose boxes overlap, one after another. The tests of a vector of pairs yield a mask, and
+/// one compress-store writes the pairs selected by it; without branches, since the outcome of a test is hard to
+/// predict.
 /// @param to may equal the list; writes up to one vector beyond the list's length
 /// @return the number of overlapping pairs
 inline std::size_t store_overlapping(std::span<const box> boxes, std::span<const index_pair> list, index_pair* to) {
-    constexpr std::size_t at_a_time = simd::width / 2;
+    constexpr std::size_t at_a_time = simd::width / 2;  // pairs in a vector of words
     std::size_t end = 0;
     std::size_t i = 0;
     for (; i + at_a_time <= list.size(); i += at_a_time) {
@@ -55,11 +56,12 @@ inline std::size_t store_overlapping(std::span<const box> boxes, std::span<const
     return end;
 }
 
-/// Appends the overlapping pairs of a list, by blocks: the buffer stays in the cache, the output grows as needed.
+/// Appends the pairs of a list whose boxes overlap, by blocks of 1024: each is first written to a buffer, which stays
+/// in the cache, so that the output grows only by the overlapping pairs.
 inline void append_overlapping(std::span<const box> boxes, std::span<const index_pair> list,
                                std::vector<index_pair>& pairs) {
     constexpr std::size_t at_a_time = 1024;
-    std::array<index_pair, at_a_time + simd::width / 2> overlaps;
+    std::array<index_pair, at_a_time + simd::width / 2> overlaps;  // a compress-store may write a vector too many
     for (std::size_t i = 0; i < list.size(); i += at_a_time) {
         const std::size_t count =
             store_overlapping(boxes, list.subspan(i, std::min(at_a_time, list.size() - i)), overlaps.data());
@@ -81,8 +83,9 @@ public:
         return uncertain_;
     }
 
-    /// Moves the certain pairs out of those that each frame tests: they overlap by more than two margins, so that they
-    /// still do while no box has moved by more than the margin.
+    /// Moves the certain pairs from `uncertain_`, which each frame tests, to `certain_`: they overlap by more than two
+    /// margins, so that they still do while no box has moved by more than the margin. Both lists are written by
+    /// compress-stores as in `store_overlapping`, the uncertain one in place.
     /// @param kept the boxes from which the list was made
     void mark_certain_pairs(std::span<const box> kept, double margin) {
         const float depth = certain_depth(margin);
@@ -90,10 +93,10 @@ public:
         constexpr std::size_t at_a_time = simd::width / 2;
         constexpr std::uint32_t all_words = (1U << simd::width) - 1;
         const std::size_t count = uncertain_.size();
-        std::size_t end = certain_.size();
+        std::size_t end = certain_.size();  // of the certain pairs
         // A compress-store may write one vector beyond the last pair.
         certain_.resize(end + count + at_a_time);
-        std::size_t uncertain = 0;
+        std::size_t uncertain = 0;  // number of pairs that stay uncertain
         std::size_t i = 0;
         for (; i + at_a_time <= count; i += at_a_time) {
             std::uint32_t both_words = 0;  // two bits per pair, one for each of its indices
@@ -142,8 +145,8 @@ public:
         return uncertain_;
     }
 
-    /// Appends the overlapping pairs.
-    /// @param hold whether boxes are still within the margin, so that certain pairs need no test
+    /// Appends the pairs of the list that overlap in this frame.
+    /// @param certain_hold whether boxes are still within the margin, so that certain pairs need no test
     /// @returns the number of tests
     std::size_t append_to(std::vector<index_pair>& pairs, std::span<const box> boxes, bool certain_hold) const {
         if (certain_hold)

@@ -33,7 +33,7 @@ struct plane_motion {
     motion_range lower;
     motion_range upper;
 
-    /// Extends the ranges by the displacements of a box's planes.
+    /// Extends the ranges of displacements by those of one box, whose planes moved from `from` to `to`.
     void take(const box& from, const box& to) noexcept {
         const auto widen = [](motion_range& range, int k, float moved) {
             range.least[k] = std::min(range.least[k], moved);
@@ -46,12 +46,15 @@ struct plane_motion {
     }
 };
 
-/// The ranges over all boxes, by vectors: three vectors hold an integer number of boxes (six floats) at any width.
+/// The least and the greatest displacement of the lower and of the upper planes of all boxes, on each axis. Boxes are
+/// read as vectors of floats: at any width, three vectors hold a whole number of boxes (`block`), of six floats each,
+/// so that a lane has the same plane in each block.
 [[nodiscard]] inline plane_motion plane_motion_between(std::span<const box> from, std::span<const box> to) noexcept {
     constexpr std::size_t block = simd::width / 2;
     plane_motion motion;
     const std::size_t in_vectors = to.size() / block * block;
     if (in_vectors > 0) {
+        // The displacements in vector v of the block that begins at box `row`.
         const auto moved = [&](std::size_t row, std::size_t v) {
             simd::floats a, b;
             const std::size_t at = row * sizeof(box) + v * sizeof a;
@@ -70,7 +73,7 @@ struct plane_motion {
         float down[3 * simd::width], up[3 * simd::width];
         std::memcpy(down, least, sizeof down);
         std::memcpy(up, most, sizeof up);
-        // Reduce the rows to one by halves.
+        // Reduces the boxes of the block to one, halving their number in each step.
         for (std::size_t half = 3 * simd::width / 2; half >= 6; half /= 2)
             for (std::size_t i = 0; i < half; ++i) {
                 down[i] = std::min(down[i], down[half + i]);
@@ -92,8 +95,9 @@ struct plane_motion {
     return (most - least + 0x1p-23 * (std::abs(most) + std::abs(least))) / 2;
 }
 
-/// The margins by which the earlier boxes must grow to contain the later ones, apart from a common shift. If planes
-/// move between `least` and `most`, a shift by the middle of this range leaves half of it as margin.
+/// The margin by which the earlier boxes must grow to contain the later ones, if all are also shifted by one vector. If
+/// planes move by `least` to `most` on an axis, a shift by the middle of this range leaves half of it as margin. The
+/// margin `in_both_directions` also suffices for the converse: the earlier boxes, shrunk by it, lie in the later ones.
 [[nodiscard]] inline relative_motion motion_of(const plane_motion& motion) noexcept {
     relative_motion moved{};
     for (int k = 0; k < 3; ++k) {
@@ -131,9 +135,9 @@ export namespace aabb {
     return detail::motion_of(motion);
 }
 
-/// Grows valid boxes on every side by at least a margin, in float: the added 2^-22 of the margin and of the coordinate
-/// exceeds the rounding errors of the margin, the product and the two sums, which total 2^-23 of the one and 2^-24 of
-/// the other. Results are clamped to the greatest float.
+/// Grows valid boxes on every side by at least a margin. All rounding errors total at most 2^-23 of the margin and
+/// 2^-24 of the coordinate, so 2^-22 of both is added: lower ends fall and upper ends rise by (1 + 2^-22) margin +
+/// 2^-22 |coordinate|, computed in float. Results are clamped to the greatest float.
 /// @param margin at least 0
 /// @param grown output, as long as `boxes`
 inline void grow(std::span<const box> boxes, double margin, std::span<box> grown) {
@@ -144,6 +148,7 @@ inline void grow(std::span<const box> boxes, double margin, std::span<box> grown
     constexpr std::size_t block = simd::width / 2;
     constexpr std::size_t numbers = 3 * simd::width;
     simd::floats sign[3];
+    // A box is three lower ends, which fall, and three upper ends, which rise.
     for (std::size_t i = 0; i < numbers; ++i) sign[i / simd::width][i % simd::width] = i % 6 < 3 ? -1.0F : 1.0F;
     for (std::size_t begin = 0; begin < boxes.size(); begin += block) {
         const std::size_t bytes = std::min(block, boxes.size() - begin) * sizeof(box);

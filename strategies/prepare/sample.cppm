@@ -18,9 +18,9 @@ export namespace aabb {
     return static_cast<std::uint32_t>((hash >> 32U) * count >> 32U);
 }
 
-/// Draws boxes at random, to estimate how the number of overlapping pairs grows with the boxes.
-/// @param ids_drawn as in `draw_id`
-/// @return boxes in `buffer`, which it fills unless some objects are absent
+/// Draws the boxes of random ids, to estimate how the number of overlapping pairs grows with the boxes.
+/// @param ids_drawn the state of the random numbers, see `draw_id`
+/// @return the drawn boxes in `buffer`: as many as fit, less those of absent objects
 [[nodiscard]] inline std::span<const box> draw_boxes(std::span<const box> boxes, const membership& objects,
                                                      std::uint32_t& ids_drawn, std::span<box> buffer) {
     std::size_t count = 0;
@@ -37,8 +37,9 @@ struct pair_estimate {
     double within_margin = 0;  ///< pairs that overlap when both boxes are grown by the margin
     std::size_t counted = 0;   ///< number of such pairs in the sample
 };
-/// Estimates the length of a Verlet list before it is made: tests a few boxes against a sample of all.
-/// @param ids_drawn as in `draw_id`
+/// Estimates the length of a Verlet list before it is made: tests eight random boxes, as they are and grown by the
+/// margin, against one in 32 of all boxes, and extrapolates to all pairs.
+/// @param ids_drawn the state of the random numbers, see `draw_id`
 [[nodiscard]] inline pair_estimate estimate_pairs(std::span<const box> boxes, const membership& objects,
                                                   std::uint32_t& ids_drawn, double margin) {
     constexpr std::size_t tested = 8, one_in = 32;
@@ -53,7 +54,7 @@ struct pair_estimate {
     for (std::size_t k = 0; k < others && !boxes.empty(); ++k) {
         const box& b = boxes[draw_id(ids_drawn, boxes.size())];
         for (std::size_t i = 0; i < sample.size(); ++i) {
-            if (!overlap_at_once(b, grown[i]) || b == sample[i]) continue;
+            if (!overlap_at_once(b, grown[i]) || b == sample[i]) continue;  // not a pair, or the same box
             ++estimate.counted;
             overlapping += static_cast<std::size_t>(overlap_at_once(b, sample[i]));
         }
@@ -81,7 +82,8 @@ public:
         }
     }
 
-    /// A lower bound on `motion_between` the kept frame and this one; 0 if no sampled object is left.
+    /// How far the boxes of the sample have moved relative to each other since `keep`: a lower bound on
+    /// `motion_between` for all boxes. 0 if no object of the sample is left.
     [[nodiscard]] double least_motion(std::span<const box> boxes, const membership& objects) const {
         std::array<box, few> from{}, to{};
         std::size_t count = 0;

@@ -19,10 +19,11 @@ public:
     split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
         : search_(std::move(search)), size_(size), counted_(counted) {}
 
+    /// Inserts an object. In the inner search, ids from `first_slot_` on are those of pieces, so if the new id is one
+    /// of these, all pieces are removed first; the next update makes them anew.
     void insert(std::uint32_t id) override {
         objects_.insert(id);
         frame_.change([&] {
-            // The id of a new object may be that of a piece.
             if (id >= first_slot_) drop_pieces();
             search_->insert(id);
         });
@@ -32,7 +33,8 @@ public:
         search_->remove(id);
     }
 
-    /// Divides the large boxes of a frame, and updates the search with the pieces.
+    /// Divides the boxes of a frame that are longer than `size_` mean extents, and updates the inner search with the
+    /// pieces: a large box would overlap many others on every axis.
     void update(std::span<const box> boxes) override {
         frame_.begin();
         objects_.require_boxes_for_all(boxes.size());
@@ -52,7 +54,8 @@ public:
         frame_.taken();
     }
 
-    /// Searches the pieces, and appends the objects of each pair of pieces that owns its pair of objects.
+    /// Searches the pieces, and appends the objects of the pairs found. Two objects may have several pairs of
+    /// overlapping pieces, of which exactly one owns the pair of objects and reports it.
     void search(std::vector<index_pair>& pairs) override {
         frame_.require_taken();
         if (splits_.empty()) return search_->search(pairs);
@@ -99,7 +102,7 @@ private:
         friend bool operator==(const split&, const split&) = default;
     };
 
-    /// Cuts an interval into equal pieces no longer than `longest`.
+    /// Cuts an interval into equal pieces no longer than `longest`, but into `most_pieces` at most (`piece_count`).
     [[nodiscard]] static cut_interval cut(float lower, float upper, double longest) {
         const double extent = double{upper} - double{lower};
         cut_interval interval{.pieces = piece_count(extent, longest), .at = {lower}};
@@ -114,7 +117,8 @@ private:
         return interval;
     }
 
-    /// Finds the objects to divide in this frame, and their numbers of pieces.
+    /// Finds the objects to divide in this frame, those with boxes longer than `longest`, and their numbers of pieces
+    /// on each axis: `splits_now_`, in ascending order of objects.
     void find_splits(std::span<const box> boxes, double longest) {
         splits_now_.clear();
         std::size_t total = 0;
@@ -131,14 +135,16 @@ private:
         }
     }
 
-    /// Gives each further piece of a divided object a slot, its id in the inner search. Merges the new splits with the
-    /// known ones: an unchanged split keeps its slots, and with them its places in sorted lists.
+    /// Gives each piece of a divided object but the first a slot: its id in the inner search is `first_slot_` + slot.
+    /// The splits of this frame are merged with those of the last one, both sorted by object: an unchanged split keeps
+    /// its slots, and with them its places in sorted lists.
     void assign_slots() {
+        // Slots freed in the last frame can be reused now, since the search has removed their pieces.
         free_slots_.insert(free_slots_.end(), left_slots_.begin(), left_slots_.end());
         left_slots_.clear();
         slots_now_.clear();
-        std::size_t known = 0;
-        std::size_t first = 0;  // first slot of the known split
+        std::size_t known = 0;  // index of a split of the last frame
+        std::size_t first = 0;  // index in `slots_` of its first slot
         const auto pass_known = [&](auto use) {
             for (std::size_t end = first + splits_[known].further_pieces(); first < end; ++first) use(slots_[first]);
             ++known;
@@ -164,7 +170,7 @@ private:
         slots_.swap(slots_now_);
     }
 
-    /// A free slot, or a new one.
+    /// A slot for a piece: a free one or, if there is none, a new one behind all others.
     [[nodiscard]] std::uint32_t take_slot() {
         if (free_slots_.empty()) {
             object_of_slot_.push_back(0);
@@ -181,8 +187,8 @@ private:
         splits_.clear();
     }
 
-    /// Cuts the boxes of divided objects into grids of pieces, the boxes of the inner search: the first piece takes the
-    /// place of its object, the others their slots, which follow the objects.
+    /// Fills `pieces_`, the boxes of the inner search by id: cuts the box of each divided object into a grid of pieces.
+    /// The first one takes the id of its object, the others those of their slots, which follow the objects.
     void make_pieces(std::span<const box> boxes, double longest) {
         pieces_.assign(boxes.begin(), boxes.end());
         pieces_.resize(boxes.size() + object_of_slot_.size(), box{});
@@ -200,9 +206,10 @@ private:
         }
     }
 
-    /// Whether a pair of overlapping pieces reports its objects, so that each pair is reported once: exactly one pair
-    /// of half-open pieces contains the corner of the objects' overlap with the least coordinates (the reference point
-    /// method of Dittrich and Seeger, "Data redundancy and duplicate detection in spatial join processing", 2000).
+    /// Whether this pair of overlapping pieces is the one that reports its objects. It is the one whose pieces both
+    /// contain the lower corner of the objects' overlap (the reference point method of Dittrich and Seeger, "Data
+    /// redundancy and duplicate detection in spatial join processing", 2000). Only one does, since pieces count as open
+    /// at their upper ends, except for the last ones.
     [[nodiscard]] bool owns_pair(std::uint32_t piece_a, std::uint32_t piece_b) const {
         const std::uint32_t a = object_of(piece_a);
         const std::uint32_t b = object_of(piece_b);

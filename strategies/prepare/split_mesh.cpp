@@ -20,7 +20,8 @@ public:
     }
 
     [[nodiscard]] std::size_t size() const { return cells_[0] * cells_[1] * cells_[2]; }
-    /// The number of the cell that contains the triangle's centroid.
+    /// The number of the cell that contains the triangle's centroid, in row-major order. Clamped, since rounding may
+    /// place a centroid beyond the grid.
     [[nodiscard]] std::size_t cell_of(const triangle3f& t) const {
         std::size_t cell = 0;
         for (int k = 0; k < 3; ++k) {
@@ -42,7 +43,9 @@ private:
     std::array<std::size_t, 3> cells_{};
 };
 
-/// The triangles of each part; empty if the mesh is not divided.
+/// Divides the triangles of a mesh into parts, by the cells of a grid that contain their centroids.
+/// @param longest the limit on the edges of a cell
+/// @returns indices of triangles by part; empty if there would be only one part
 std::vector<std::vector<std::uint32_t>> parts_of(const mesh& m, const box& bounds, double longest) {
     const cell_grid grid(bounds, longest);
     if (grid.size() == 1) return {};
@@ -59,7 +62,8 @@ public:
         : search_(std::move(search)), size_(size), counted_(counted) {}
 
     /// Divides meshes longer than `size_` mean extents of the objects into parts, by the centroids of their triangles,
-    /// since the box of a long object overlaps many others. Returns null if no mesh is so long.
+    /// since the box of a long object overlaps many others. Bounds are in units of a mesh's `frame.scale`.
+    /// @returns null if no mesh is so long
     [[nodiscard]] std::unique_ptr<scene_parts> divide(const mesh_scene& scene) override {
         std::vector<box> bounds;
         for (const mesh& m : scene.meshes) {
