@@ -15,8 +15,8 @@ struct part {
     std::vector<std::uint32_t> triangles;  // the same for triangles
 };
 
-/// Copies the vertices of a part from the scene's mesh: the floats, in the frame to which they are rounded, and the
-/// doubles that the user gave, which a mesh has only if they are not floats.
+/// Copies the vertices of a part from its mesh, by the indices in `to.vertices`. A mesh has its vertices as floats in a
+/// frame (an offset and a scale) and, if the given doubles are not floats, also as these doubles (`given`).
 void copy_vertices(const mesh& m, part& to) {
     to.own_mesh.frame = m.frame;
     const auto copy = [&to](const auto& of_mesh, auto& of_part) {
@@ -27,7 +27,8 @@ void copy_vertices(const mesh& m, part& to) {
     copy(m.given, to.own_mesh.given);
 }
 
-/// Copies triangles of a mesh, with the vertices that they use in the same order, to a mesh of their own.
+/// A mesh of its own for these triangles of a mesh, so that it can be a model of the narrow phase. It has only the
+/// vertices that they use, in the order of the mesh; `vertices` and `triangles` have their indices in the mesh.
 part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
     assert(!triangles.empty());
     part result;
@@ -52,25 +53,18 @@ part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
 
 class divided_scene final : public scene_parts {
 public:
-    /// Makes a model of each part and undivided mesh, and for the broad phase a piece per object and model of it.
+    /// Makes the models of all meshes for the narrow phase, and the pieces of all objects for the broad phase: one for
+    /// each model of the object's mesh.
     divided_scene(const mesh_scene& scene, mesh_division division) : scene_(scene) {
         division.resize(scene.meshes.size());
         std::size_t parts = 0;
         for (const auto& of_mesh : division) parts += of_mesh.size();
-        parts_.reserve(parts);  // models keep pointers to them
-        std::vector<std::uint32_t> first_model;
+        parts_.reserve(parts);                   // models keep pointers to them
+        std::vector<std::uint32_t> first_model;  // by mesh; those of mesh m end where those of m + 1 begin
         for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
             triangle_counts_.push_back(scene.meshes[m].triangles.size());
             first_model.push_back(models());
-            if (division[m].size() < 2) {
-                models_.push_back({.source = m, .part = no_part, .bounds = bounds_of(scene.meshes[m])});
-                continue;
-            }
-            for (std::vector<std::uint32_t>& triangles : division[m]) {
-                parts_.push_back(part_of(scene.meshes[m], std::move(triangles)));
-                const auto part_index = static_cast<std::uint32_t>(parts_.size() - 1);
-                models_.push_back({.source = m, .part = part_index, .bounds = bounds_of(parts_.back().own_mesh)});
-            }
+            add_models(m, division[m]);
         }
         first_model.push_back(models());
         for (std::uint32_t object = 0; object < scene.mesh_of.size(); ++object)
@@ -91,7 +85,8 @@ public:
         return part == no_part ? scene_.meshes[source] : parts_[part].own_mesh;
     }
     [[nodiscard]] bool deforms(std::uint32_t model) const override { return scene_.deforms(models_[model].source); }
-    /// Copies the vertices of deforming meshes to their parts, and recomputes the bounds.
+    /// Called when vertices of the scene have moved: copies those of deforming meshes to the parts, and recomputes
+    /// bounds.
     void follow() override {
         for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m)
             if (scene_.deforms(m)) require_still_valid(scene_.meshes[m], triangle_counts_[m]);
@@ -139,6 +134,20 @@ private:
         std::uint32_t object;
         std::uint32_t model;
     };
+
+    /// Adds the models of mesh m of the scene: one of each part, or of the whole mesh if it is not divided.
+    /// @param parts the triangles of each part
+    void add_models(std::uint32_t m, mesh_division::value_type& parts) {
+        if (parts.size() < 2) {
+            models_.push_back({.source = m, .part = no_part, .bounds = bounds_of(scene_.meshes[m])});
+            return;
+        }
+        for (std::vector<std::uint32_t>& triangles : parts) {
+            parts_.push_back(part_of(scene_.meshes[m], std::move(triangles)));
+            const auto part_index = static_cast<std::uint32_t>(parts_.size() - 1);
+            models_.push_back({.source = m, .part = part_index, .bounds = bounds_of(parts_.back().own_mesh)});
+        }
+    }
 
     /// Maps a triangle of the model to the scene's mesh.
     [[nodiscard]] std::uint32_t triangle_of(std::uint32_t model, std::uint32_t triangle) const noexcept {
