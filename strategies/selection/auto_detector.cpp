@@ -4,7 +4,7 @@ namespace aabb {
 
 namespace {
 
-/// The kind of this name; throws input_error with the nearest name if there is none.
+/// The kind of strategy of this name; throws input_error with the nearest name if there is none.
 strategy_kind kind_named(std::string_view name) {
     std::vector<std::string> names;
     for (const strategy_kind kind : strategy_kinds) {
@@ -109,11 +109,10 @@ std::uint64_t auto_detector::count_contacts(std::span<const pose> poses) {
 
 std::vector<part_bytes> auto_detector::bytes() const {
     std::vector<part_bytes> parts = global_->bytes();
-    std::size_t buffers = bytes_of(pairs_);
-    if (meshes_) {
+    if (meshes_)
         for (part_bytes& part : meshes_->local->bytes()) parts.push_back(std::move(part));
-        buffers += meshes_->stages.bytes() + meshes_->stages.division_bytes();
-    }
+    const std::size_t of_stages = meshes_ ? meshes_->stages.bytes() + meshes_->stages.division_bytes() : 0;
+    const std::size_t buffers = bytes_of(pairs_) + of_stages;
     parts.push_back({"buffers", buffers});
     return parts;
 }

@@ -10,9 +10,10 @@ struct fitting {
     scene_fit fit;
 };
 
-/// Finds the first strategy of a kind whose rule (`fit`) says that it serves the scene. Of kinds that are compiled
-/// together, considers only the strategy in the composition, since another might be rejected beside the others.
-/// @returns its name and reason; if none serves the scene, no name, and the reason of the last that was considered
+/// Finds the first strategy of a kind whose rule (`fit`) states that it serves the scene. Only a kind that is compiled
+/// alone has a choice here: of others, the composition's strategy is kept, since another might be rejected beside the
+/// strategies that are compiled together with it.
+/// @returns its name and the reason; if none serves the scene, no name, and the reason of the last that was considered
 fitting fitting_of(strategy_kind kind, const composition& completed, const scene_traits& scene) {
     fitting last;
     for (const strategy_info& info : strategies(kind)) {
@@ -25,9 +26,10 @@ fitting fitting_of(strategy_kind kind, const composition& completed, const scene
     return last;
 }
 
-/// Completes the named strategies with the fastest ones, but with a named sort without a partition, since columns are
-/// sorted from scratch in each frame, for which only `bucket` is fast. If that combination is rejected, the strategies
-/// usual beside the named ones are tried, and then the first accepted combination.
+/// Completes the named strategies of each stage to an accepted combination. In order of preference, the other kinds get
+/// the fastest strategies (the defaults), those usual beside the named ones, or the first combination that is accepted.
+/// A named sort other than the fastest gets no partition: columns are sorted anew in each frame, for which only
+/// `bucket` is fast.
 composition completed(const named_strategies& named) {
     const composition usual(named);
     composition result;
@@ -36,6 +38,7 @@ composition completed(const named_strategies& named) {
         sort && sort->name != fastest[strategy_kind::sort].name)
         fastest[strategy_kind::partition] = {std::string(info_of(strategy_kind::partition).default_with), {}};
     for (const stage of : {stage::global_search, stage::local_detection}) {
+        // Takes the named strategies and those of `others` for the other kinds; returns whether they are accepted.
         const auto take = [&](const composition& others) {
             for (const strategy_kind kind : kinds_of(of))
                 if (named[kind] || !info_of(kind).is_compiled_alone) result[kind] = named[kind].value_or(others[kind]);
@@ -73,8 +76,9 @@ composition complete_composition(const named_strategies& named) {
     return any ? completed(named) : composition();
 }
 
-/// Selects, for each kind that depends on the scene and is not named, the strategy that serves it, or the default.
-/// @param completed has a strategy of every kind, by which the selected ones are judged
+/// Selects a strategy for each kind that has rules for scenes and is not named: the first that serves the scene, or the
+/// default.
+/// @param completed input and output: has a strategy of every kind, among which the selected ones are accepted
 void select_for_scene(composition& completed, const named_strategies& named, const scene_traits& scene) {
     scene_traits traits = scene;
     for (const strategy_kind kind : strategy_kinds) {
@@ -82,6 +86,7 @@ void select_for_scene(composition& completed, const named_strategies& named, con
         strategy_choice& choice = completed[kind];
         choice.settings.clear();
         if (info_of(kind).is_compiled_alone) choice.name = info_of(kind).fallback;
+        // Some rules require that the other strategies of the narrow phase are exact.
         traits.exact_triangles = scene.triangles == 0 || is_exact(completed, stage::local_detection);
         fitting best = fitting_of(kind, completed, traits);
         if (!best.fit.serves) continue;
@@ -95,7 +100,8 @@ composition select_composition(const named_strategies& named, const scene_traits
     return selected;
 }
 
-/// Selects the composition for the scene, and states for each kind the rule that led to its strategy.
+/// Selects the composition for the scene, and states for each kind why it has its strategy: the reasons of the rule
+/// that selected it, or that it was named, is the default, or is compatible with the named ones.
 std::vector<selected_strategy> select_strategies(const named_strategies& named, const scene_traits& scene) {
     const composition selected_composition = select_composition(named, scene);
     scene_traits traits = scene;
