@@ -16,9 +16,10 @@ struct column_group {
 /// than the first are marked. A group has boxes that begin there first, in the order of the input, on any threads.
 class column_groups {
 public:
-    /// The grid of groups: as many as planned, in the proportion of the columns, and no more than those on each axis.
-    /// If fewer than half as many result, as for boxes along a line, groups are cut along the columns instead of across
-    /// the axis with fewer, and `plan.axis` changes.
+    /// The plan of a grid of groups, each of which is later cut into columns. The grid has about `plan.groups` cells,
+    /// on the two axes across the columns, in the proportion of the numbers of columns, and no more than those. If
+    /// fewer than half as many result, as for boxes along a line, the grid is cut along the columns instead of on the
+    /// axis with fewer of them, which becomes `plan.axis`, the axis without cuts.
     [[nodiscard]] static column_plan group_grid(column_plan plan) {
         const double groups = plan.groups;
         const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;  // the axis with fewer columns
@@ -33,7 +34,7 @@ public:
             const int axis_of_columns = plan.axis;
             const std::uint32_t across_other = across[1 - fewer];
             plan.axis = plan.axis_across(fewer);
-            const std::size_t along = plan.axis_across(0) == axis_of_columns ? 0 : 1;
+            const std::size_t along = plan.axis_across(0) == axis_of_columns ? 0 : 1;  // its index in `across`
             across[along] = rounded(groups / across_other, std::min(plan.most_along, most_groups / across_other));
             across[1 - along] = across_other;
         }
@@ -43,11 +44,13 @@ public:
 
     void clear() noexcept { starts_.resize(1); }
 
-    /// Copies each box into all groups of the grid that it overlaps, by a parallel counting sort: the threads count the
-    /// boxes of their parts by group, prefix sums turn counts into start indices, and the threads copy their parts.
+    /// Copies each box into all groups, cells of the grid `plan`, that it overlaps, by a parallel counting sort: the
+    /// threads count the boxes of their parts by group, prefix sums turn counts into start indices, and the threads
+    /// copy their parts.
     /// @param ids ids of the boxes; empty if the index is the id
     /// @param most_in_group limit on the boxes of a group, copies included
-    /// @returns `complete`, or else there are no groups: `not_worthwhile` above this limit or that on all copies
+    /// @returns `complete`, or else there are no groups: `invalid` if a box is, `not_worthwhile` above this limit or
+    /// that on all copies
     [[nodiscard]] fill_result distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                          const column_plan& plan, std::size_t most_in_group, worker_threads& threads) {
         clear();
@@ -80,7 +83,8 @@ public:
 
     /// Total number of boxes over all groups.
     [[nodiscard]] std::size_t copies() const noexcept { return starts_.back(); }
-    /// Number of ordered pairs of boxes within groups, including each box with itself.
+    /// Number of ordered pairs of boxes within groups, including each box with itself: n² of them without groups, so
+    /// that the difference measures what groups separate.
     [[nodiscard]] double pairs() const noexcept {
         double sum = 0;
         for (std::size_t g = 0; g + 1 < starts_.size(); ++g) {
@@ -135,8 +139,10 @@ private:
     /// The limit on copies above which groups are not worth their cost.
     [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept { return 65'536 + 4 * boxes; }
 
-    /// Quantizes the boxes of a part to find the first group of each and, of boxes in several groups, the last one.
-    /// Counts the part's boxes and copies by group, so that prefix sums over the parts yield the indices to write to.
+    /// The first pass of the counting sort, over one part of the boxes. By vectors, finds the cells of each box's lower
+    /// and upper corner, its first and its last group, and lists boxes for which these differ: they span several
+    /// groups. Then counts by group the boxes that begin there (`next`) and the copies of spanning boxes (`next_copy`),
+    /// which `allocate_groups` turns into the indices to write to.
     void find_groups(std::span<const box> boxes, std::size_t part_index) {
         part& p = parts_[part_index];
         const std::size_t length = (boxes.size() / parts_.size() + simd::width) / simd::width * simd::width;
@@ -147,7 +153,8 @@ private:
         p.spanning_begin = p.spanning_end = p.begin + part_index * simd::width;
         p.copies = 0;
         const int u = plan_.axis_across(0), v = plan_.axis_across(1);
-        // In each word u is low and v high. A quantized coordinate times the number of groups, >> 16, is its group.
+        // Each u32 word holds two u16, that of axis u low and that of axis v high; c has three lower, three upper ends.
+        // A quantized coordinate times the number of groups, >> 16, is its group.
         const simd::words across = simd::broadcast(plan_.across[0] | plan_.across[1] << 16);
         simd::flags invalid{};
         for_each_vector(boxes.subspan(p.begin, p.end - p.begin), [&](std::size_t i, const simd::floats(&c)[6],
@@ -168,7 +175,8 @@ private:
         p.result = simd::bits(invalid) == 0 ? fill_result::complete : fill_result::invalid;
         if (p.result == fill_result::invalid) return;
         std::size_t* const counts = p.next.data();
-        for (const std::uint16_t key : std::span(first_group_of_box_).subspan(p.begin, p.end - p.begin)) ++counts[key];
+        for (const std::uint16_t group : std::span(first_group_of_box_).subspan(p.begin, p.end - p.begin))
+            ++counts[group];
         for (std::size_t s = p.spanning_begin; s < p.spanning_end; ++s) {
             for_each_later_group(s, [&](std::uint32_t group, std::uint32_t) {
                 ++p.next_copy[group];
@@ -181,8 +189,9 @@ private:
         }
     }
 
-    /// Turns the parts' counts by group into the indices where each part writes, by a prefix sum, and makes room.
-    /// @returns whether no group exceeds the limit
+    /// The second step of the counting sort: turns the parts' counts by group into the indices where each part writes,
+    /// by a prefix sum. Within a group, the boxes that begin in it precede the copies of others.
+    /// @returns whether no group exceeds the limit; if one does, all groups are discarded
     [[nodiscard]] bool allocate_groups(std::size_t most_in_group) {
         const std::uint32_t groups = plan_.columns();
         starts_.resize(groups + 1);
@@ -212,11 +221,13 @@ private:
         return true;
     }
 
-    /// Reads each box of a part once and writes it to all its groups, with marked ids to those after the first.
+    /// The last pass of the counting sort, over one part: reads each box once, in ascending order, and writes it to all
+    /// its groups. In groups after its first, bits in its id mark the axes on which it begins in an earlier one.
+    /// @param ids by index in `boxes`; empty if the index is the id
     void copy_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids, part& p) {
         std::size_t* const next = p.next.data();
         std::size_t* const next_copy = p.next_copy.data();
-        const std::uint16_t* const keys = first_group_of_box_.data();
+        const std::uint16_t* const first_group = first_group_of_box_.data();
         box* const to = boxes_.data();
         std::uint32_t* const to_ids = ids_.data();
         const auto write = [&](std::size_t at, std::size_t i, std::uint32_t begins_earlier) {
@@ -226,8 +237,10 @@ private:
             to[at] = boxes[i];
             to_ids[at] = (ids.empty() ? static_cast<std::uint32_t>(i) : ids[i]) | begins_earlier;
         };
-        const auto write_to_first_group = [&](std::size_t i) { write(next[keys[i]]++, i, /*begins_earlier=*/0); };
-        std::size_t i = p.begin;
+        const auto write_to_first_group = [&](std::size_t i) {
+            write(next[first_group[i]]++, i, /*begins_earlier=*/0);
+        };
+        std::size_t i = p.begin;  // all boxes before i are written
         for (std::size_t s = p.spanning_begin; s < p.spanning_end; ++s) {
             const std::size_t spanning = spanning_boxes_[s];
             for (; i <= spanning; ++i) write_to_first_group(i);
@@ -238,8 +251,9 @@ private:
         for (; i < p.end; ++i) write_to_first_group(i);
     }
 
-    /// Visits the groups of box `s` of `spanning_boxes_` except its first, as `visit(group, bits)`: the bits mark the
-    /// axes on which the box begins in an earlier group, so that only one group reports a pair.
+    /// Calls `visit(group, bits)` for the groups of box `s` of `spanning_boxes_` except its first: the cells
+    /// from (u0, v0), its first, to (u1, v1). The bits mark the axes on which the box begins in an earlier group: where
+    /// both boxes of a pair have the same bit, an earlier group reports the pair, so that only one group does.
     template <class Visit>
     void for_each_later_group(std::size_t s, Visit visit) const {
         const std::uint32_t u0 = first_cells_[s] & 0xffffU;

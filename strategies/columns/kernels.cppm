@@ -11,9 +11,11 @@ import aabb.std;
 
 namespace aabb::simd::detail {
 
-using pairs = double __attribute__((vector_size(4 * width)));  // each lane holds two floats
+/// Each lane holds two floats.
+using pairs = double __attribute__((vector_size(4 * width)));
 
-/// Collects pair `K` (two floats) of each of `width / 2` rows of three pairs, which fill `a`, `b` and `c` in a row.
+/// A step in transposing boxes, rows of six floats or three pairs: `a`, `b` and `c` hold `width / 2` such rows, one
+/// after another. Collects pair `K` of each row.
 template <std::size_t K>
 [[nodiscard, gnu::always_inline]] inline pairs every_third(pairs a, pairs b, pairs c) noexcept {
     constexpr std::size_t half = width / 2;
@@ -24,7 +26,9 @@ template <std::size_t K>
     return shuffled<pairs, of_all>(from_first_two, c, std::make_index_sequence<half>{});
 }
 
-/// Transposes columns 2 `K` and 2 `K` + 1 of `width` rows of six floats: collects their pairs, then separates these.
+/// Transposes columns 2 `K` and 2 `K` + 1 of `width` rows of six floats: collects pair `K` of each row, and separates
+/// it into its two floats.
+/// @param columns output: columns[j] has float j of each row
 template <std::size_t K>
 [[gnu::always_inline]] inline void transpose_pair(const pairs (&rows)[6], floats* columns) noexcept {
     const auto low = __builtin_bit_cast(floats, every_third<K>(rows[0], rows[1], rows[2]));
@@ -61,7 +65,8 @@ export namespace aabb::simd {
     detail::transpose_pair<2>(rows, columns);
 }
 
-/// Transposes `width` rows of four u32 into columns, by shuffles of two vectors at a time.
+/// Loads `width` rows of four u32, one after another, as columns: columns[K] has element K of each row. A shuffle takes
+/// two vectors, so that `low` has the elements of the first half of the rows, and `high` those of the second.
 [[gnu::always_inline]] inline void load_rows_of_four(const std::uint32_t* from, words (&columns)[4]) noexcept {
     words vectors[4];
     std::memcpy(vectors, from, sizeof vectors);
@@ -126,7 +131,7 @@ using narrow_halves = std::uint16_t __attribute__((vector_size(2 * width)));
         __builtin_elementwise_sub_sat(reinterpret_cast<halves>(a), reinterpret_cast<halves>(b)));
 }
 
-/// Loads the elements at these indices.
+/// Loads the elements at these indices: lane i is from[places[i]].
 [[nodiscard, gnu::always_inline]] inline words gather(const std::uint32_t* from, words places) noexcept {
     words v;
 #if defined(__AVX512F__)

@@ -11,7 +11,8 @@ export namespace aabb {
 /// behind the boxes of its column that begin earlier.
 class column_lists {
 public:
-    /// Puts boxes into the columns of the plan by a counting sort, and sorts each column if buckets do not suffice.
+    /// Puts boxes into the columns of the plan by a counting sort. Within a column it orders them by buckets, intervals
+    /// of the axis along the column; if the sort policy requires more, each column is then sorted by exact keys.
     /// @param ids by index in `boxes`; empty if the index is the id
     /// @param by_keys whether to sort by exact keys even if the sort policy would accept unsorted buckets
     /// @param most_copies limit on the copies; beyond it the result is `not_worthwhile`
@@ -58,8 +59,9 @@ private:
         std::uint32_t buckets;  ///< offset to the bucket in the first column
     };
 
-    /// Quantizes the boxes, counts them by bucket and lists copies, in blocks that stay in the L1 cache meanwhile. The
-    /// counts are in `ends_`; `allocate_columns` turns them into start indices, and `write_entries` these into ends.
+    /// The first pass of the counting sort: quantizes the boxes, counts them by bucket, and lists the copies of those
+    /// that overlap several columns, in blocks that stay in the L1 cache meanwhile. The counts are in `ends_`;
+    /// `allocate_columns` turns them into start indices, and `write_entries` these into ends.
     [[nodiscard]] fill_result count_boxes(std::size_t most_copies) {
         quantized_.resize(block_.boxes.size() + width);
         copies_.clear();
@@ -77,8 +79,9 @@ private:
         return fill_result::complete;
     }
 
-    /// Quantizes boxes to the entries of their first columns, which run along `Axis`, and lists those in several
-    /// columns.
+    /// Quantizes boxes to the entries of their first columns, which run along `Axis`, by vectors: the quantized
+    /// corners, and the buckets of the column in which the box begins and ends. Boxes in several columns are listed in
+    /// `spanning_boxes_`.
     /// @param begin index of the first of these boxes
     /// @returns whether all boxes are valid
     template <int Axis>
@@ -87,7 +90,8 @@ private:
         constexpr int v = (Axis + 2) % 3;
         const column_plan plan = plan_;
         const std::uint32_t bits = bucket_bits_;
-        // In each word u is low and v high. A quantized coordinate times the number of columns, >> 16, is its column.
+        // Each u32 word holds two u16, that of axis u low and that of axis v high; c has three lower, three upper ends.
+        // A quantized coordinate times the number of columns, >> 16, is its column.
         const simd::words across = simd::broadcast(plan.across[0] | plan.across[1] << 16);
         simd::flags invalid{};
         std::size_t spanning = 0;
@@ -97,6 +101,7 @@ private:
             const simd::words upper = plan.quantized(c[3 + u], u) | plan.quantized(c[3 + v], v) << 16;
             const simd::words first = simd::high_products(lower, across);
             const simd::words last = simd::high_products(upper, across);
+            // Columns have 2^bits buckets; the high bits of the coordinate along the column select one.
             const simd::words first_bucket = ((first & 0xffffU) + (first >> 16) * plan.across[0]) << bits;
             const simd::words begin_bucket = first_bucket + (plan.quantized(c[Axis], Axis) >> (16 - bits));
             const simd::words end_bucket = first_bucket + (plan.quantized(c[3 + Axis], Axis) >> (16 - bits));
@@ -109,13 +114,16 @@ private:
         return simd::bits(invalid) == 0;
     }
 
-    /// Records a copy for each further column of the boxes that overlap several columns.
+    /// Lists a copy of each box in `spanning_boxes_` for each of its columns but the first, and counts it in its
+    /// bucket. Bits in its index mark the axes on which the box begins in an earlier column, so that only one column
+    /// reports a pair.
     /// @returns whether the number of copies is within the limit
     [[nodiscard]] bool add_copies(std::size_t most_copies) {
         const std::uint32_t begins_earlier[2] = {column_entry::begins_earlier(plan_.axis_across(0)),
                                                  column_entry::begins_earlier(plan_.axis_across(1))};
         const std::uint32_t buckets_of_column = std::uint32_t{1} << bucket_bits_;
         const std::uint32_t buckets_of_row = plan_.across[0] << bucket_bits_;
+        // On axis k across: the number of columns after the first that a box overlaps.
         const auto further_columns = [&](const quantized_box& b, std::size_t k) {
             const auto column_of = [&](std::uint32_t packed) {
                 return (packed >> 16 * k & 0xffffU) * plan_.across[k] >> 16;
@@ -129,6 +137,7 @@ private:
         for (const std::uint32_t i : std::span(spanning_boxes_).first(spanning_count_)) {
             const quantized_box b = quantized_[i];
             const std::uint32_t nu = further_columns(b, 0), nv = further_columns(b, 1);
+            // Adds the copy in the column that is u and v columns after the first.
             const auto add = [&](std::uint32_t u, std::uint32_t v, std::uint32_t times) {
                 const std::uint32_t buckets = u * buckets_of_column + v * buckets_of_row;
                 buffer[n] = {i | (u ? begins_earlier[0] : 0) | (v ? begins_earlier[1] : 0), buckets};
@@ -154,8 +163,10 @@ private:
         return copies_.size() <= most_copies;
     }
 
-    /// Places the columns one after another: turns the counts of their buckets into start indices, and pads each column
-    /// to a whole number of vectors. @returns the number of entries, including padding
+    /// Makes room for the entries, boxes in columns, and places the columns one after another: turns the counts of
+    /// their buckets (`ends_`) into start indices, and pads each column to a whole number of vectors with entries that
+    /// overlap nothing.
+    /// @returns the number of entries, including padding
     std::uint32_t allocate_columns() {
         const std::uint32_t columns = plan_.columns();
         const std::size_t most = block_.boxes.size() + copies_.size() + std::size_t{columns} * (width - 1);
@@ -181,9 +192,9 @@ private:
     /// Turns the counts of a column's buckets into start indices from `next` on. @returns the end of the last bucket.
     static std::uint32_t bucket_starts(std::uint32_t* counts, std::uint32_t buckets, std::uint32_t next) noexcept {
         for (std::uint32_t b = 0; b < buckets; b += width) {
-            const simd::words own = simd::load(counts + b);
-            const simd::words ends = simd::prefix_sum(own) + next;
-            simd::store(counts + b, ends - own);
+            const simd::words sizes = simd::load(counts + b);
+            const simd::words ends = simd::prefix_sum(sizes) + next;
+            simd::store(counts + b, ends - sizes);
             next = ends[width - 1];
         }
         return next;
@@ -196,7 +207,8 @@ private:
         else
             write_entries([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_mask; });
     }
-    /// `ends_` has the index of each bucket's next entry, and in the end that behind its last.
+    /// The last pass of the counting sort: writes an entry for each box, in its first column, and for each copy.
+    /// `ends_[bucket]` is the index of the bucket's next entry, so that in the end it is the one behind its last.
     /// @param group_bits returns the bits of `begins_earlier` that box i has in its group
     template <class GroupBits>
     void write_entries(GroupBits group_bits) {
@@ -213,9 +225,9 @@ private:
         }
     }
 
-    /// Sorts each column by exact keys with the sort policy. A sweep tests an entry against those after it, up to the
-    /// end of the bucket in which its box ends: `ends_[end_bucket]`. Before, a column is one bucket; now each entry
-    /// becomes its own bucket, which ends at the first entry that begins after the box ends.
+    /// Sorts each column by the exact lower ends of its boxes, with the sort policy. A sweep tests an entry against
+    /// those after it, up to the index `ends_[end_bucket]`. Here each entry i gets a bucket of its own: its
+    /// `end_bucket` is i, and `ends_[i]` is the index of the first entry of the column that begins after its box ends.
     template <class Sort, CounterPolicy Counters>
     void sort_columns(Sort& sort, Counters& counters) {
         column_ends_.assign(ends_.begin(), ends_.begin() + plan_.columns());
@@ -233,7 +245,7 @@ private:
                 ends_[i] = begin + static_cast<std::uint32_t>(
                                        std::ranges::upper_bound(list_, upper, {}, &projection::key) - list_.begin());
             }
-            begin = (end + width - 1) / width * width;
+            begin = (end + width - 1) / width * width;  // of the next column, after the padding of this one
             for (std::uint32_t i = end; i < begin; ++i)
                 entries_[i].end_bucket = static_cast<std::uint32_t>(entries_.size());
         }

@@ -69,7 +69,7 @@ private:
 /// Brute-force search for few boxes: testing all pairs by vectors is faster than sorting or cutting.
 class brute_force_batch {
 public:
-    /// Loads the boxes into vectors and validates them.
+    /// Loads the boxes into vectors of coordinates, one box per lane, and validates them.
     /// @param group boxes in ascending order of ids
     /// @returns whether all boxes are valid; otherwise `search` must not be called.
     [[nodiscard]] bool fill(const column_group& group) {
@@ -83,8 +83,9 @@ public:
         return simd::bits(invalid) == 0;
     }
 
-    /// Appends the overlapping pairs: tests each vector against all boxes before it, and each of its own boxes against
-    /// those that follow in it, so that each pair is tested once.
+    /// Appends the overlapping pairs: tests each vector of boxes against all boxes before it, and each box of the
+    /// vector against those that follow in it, so that each pair is tested once. A test of one box against a vector
+    /// yields a mask of lanes, stored as a row if it is not 0.
     template <CounterPolicy Counters>
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         const std::size_t n = group_.boxes.size();
@@ -95,6 +96,7 @@ public:
             const vector_of_boxes vector = vectors_[v];
             const std::size_t first = v * width;
             const std::uint32_t present = simd::lanes_below(n - first);
+            // Tests box i against the lanes of the mask `wanted`.
             const auto test = [&](std::size_t i, std::uint32_t wanted) {
                 const std::uint32_t lanes = vector.overlap_mask(group_.boxes[i]) & wanted;
                 // Stored without a branch, which would be hard to predict.
@@ -132,7 +134,8 @@ private:
         std::uint32_t lanes;
     };
 
-    /// Appends the pairs of these rows, as ids, after one resize to the exact number of pairs.
+    /// Appends the pairs of these rows, as ids, after one resize to the exact number of pairs. A row is a box and a
+    /// mask: if bit l is set, the box overlaps box `first` + l.
     void append_pairs(std::span<const lane_overlaps> rows, std::vector<index_pair>& pairs) const {
         std::size_t next = pairs.size();
         std::size_t end = next;
@@ -159,16 +162,17 @@ private:
 template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
 class column_search {
 public:
+    /// Makes one worker per thread, all alike.
     column_search(Sort sort, Partition partition, Sweep sweep)
-        : partition_(std::move(partition)), threads_(partition_.threads()) {
-        workers_.push_back({.own = {std::move(sort), std::move(sweep)}, .pairs = {}});
-        workers_.resize(threads_.count(), workers_.front());  // one per thread, all alike
-    }
+        : partition_(std::move(partition)),
+          threads_(partition_.threads()),
+          workers_(threads_.count(), worker{.searcher = {std::move(sort), std::move(sweep)}, .pairs = {}}) {}
     // Not copyable: spans would refer to the original's vectors. A move takes the memory of the vectors along.
     column_search(column_search&&) = default;
     column_search& operator=(column_search&&) = default;
 
-    /// Starts a frame: keeps the pairs if nothing moved, prepares brute force for few boxes, or cuts the boxes.
+    /// Starts a frame: keeps the pairs if nothing moved, prepares brute force for few boxes, or cuts the boxes into
+    /// columns. These follow a plan, which is made anew once it is old or the bounds of the scene have changed.
     /// @throws input_error as `global_search::update`.
     void update(std::span<const box> boxes, const membership& objects, Counters& counters) {
         boxes_ = boxes;
@@ -196,7 +200,7 @@ public:
     /// Appends the overlapping pairs: those of an earlier frame if nothing has moved since, or else by brute force, in
     /// columns over the whole scene, or in groups of columns, as `update` chose.
     void search(std::vector<index_pair>& pairs, Counters& counters) {
-        for (worker& w : workers_) w.own.times.clear();
+        for (worker& w : workers_) w.searcher.times.clear();
         if (is_static_) {
             pairs.insert(pairs.end(), static_frame_.pairs().begin(), static_frame_.pairs().end());
             return;
@@ -205,7 +209,7 @@ public:
         if (uses_brute_force_)
             batch_.search(pairs, counters);
         else if (groups_.size() == 0)
-            workers_.front().own.sweep(partition_, present_, everywhere, cut_.columns, pairs);
+            workers_.front().searcher.sweep(partition_, present_, everywhere, cut_.columns, pairs);
         else
             search_groups(pairs);
         collect_counters(counters);
@@ -238,29 +242,30 @@ public:
     }
     /// The share of the last search's time that belongs to the update: `search` also cuts and sorts the groups.
     [[nodiscard]] double share_of_update() const {
-        const double total = sum_of([](const worker& w) { return w.own.times.total(); });
-        return total > 0 ? sum_of([](const worker& w) { return w.own.times.cut(); }) / total : 0;
+        const double total = sum_of([](const worker& w) { return w.searcher.times.total(); });
+        return total > 0 ? sum_of([](const worker& w) { return w.searcher.times.cut(); }) / total : 0;
     }
     [[nodiscard]] std::size_t sort_bytes() const noexcept {
-        return sum_of([](const worker& w) { return w.own.sort_bytes(); });
+        return sum_of([](const worker& w) { return w.searcher.sort_bytes(); });
     }
     [[nodiscard]] std::size_t partition_bytes() const noexcept {
         return bytes_of(partition_, groups_, cut_, present_boxes_, present_ids_, batch_, static_frame_) +
-               sum_of([](const worker& w) { return w.own.column_bytes(); });
+               sum_of([](const worker& w) { return w.searcher.column_bytes(); });
     }
     [[nodiscard]] std::size_t sweep_bytes() const noexcept {
-        return bytes_of(group_pairs_) + sum_of([](const worker& w) { return w.own.sweep_bytes() + bytes_of(w.pairs); });
+        return bytes_of(group_pairs_) +
+               sum_of([](const worker& w) { return w.searcher.sweep_bytes() + bytes_of(w.pairs); });
     }
 
 private:
     /// A plan is replaced after this many frames.
     static constexpr unsigned frames_per_plan = 32;
 
-    using own_counters = std::conditional_t<Counters::enabled, work_counters, no_counters>;
+    using worker_counters = std::conditional_t<Counters::enabled, work_counters, no_counters>;
 
     // Aligned to pairs of cache lines, which are prefetched together, to prevent false sharing between workers.
     struct alignas(128) worker {
-        column_worker<Sort, Partition, Sweep, own_counters> own;
+        column_worker<Sort, Partition, Sweep, worker_counters> searcher;
         std::vector<index_pair> pairs;
     };
     /// The location of a group's pairs if a worker other than the first one searched it; else empty.
@@ -270,7 +275,8 @@ private:
         std::size_t end = 0;
     };
 
-    /// Sets `present_`, with copies of the boxes only if some objects are absent.
+    /// Sets `present_`, the boxes of the present objects with their ids, which refers to copies only if some objects
+    /// are absent. Without ids, the index of a box is its id.
     void select_present(std::span<const box> boxes, const membership& objects) {
         present_ = {boxes, {}};
         if (objects.size() == boxes.size()) return;
@@ -291,7 +297,8 @@ private:
         return planned == 0 || plan_age_ + 1 == frames_per_plan || 8 * change > planned;
     }
 
-    /// Bounds of a sample of boxes, which is the same in every frame with the same number of boxes.
+    /// Bounds of about 16 boxes at equal strides, by which a change of the scene is noticed. The strides are the same
+    /// in every frame with the same number of boxes.
     [[nodiscard]] box bounds_of_sample() const noexcept {
         constexpr std::size_t sample_size = 16;
         box bounds = empty_box();
@@ -301,9 +308,9 @@ private:
         return bounds;
     }
 
-    /// Whether a plan no longer suits the scene: on any axis, the extent has grown by half or shrunk by a third since,
-    /// or the centre has moved by half of the extent. Short axes count as a 64th of the longest one, as any motion
-    /// would be large relative to a flat scene.
+    /// Whether a plan made for the bounds `planned` no longer suits the scene: on any axis, the extent has grown by
+    /// half or shrunk by a third since, or the centre has moved by half of the extent. Short axes count as a 64th of
+    /// the longest one, as any motion would be large relative to a flat scene.
     [[nodiscard]] static bool bounds_have_changed(const box& current, const box& planned) noexcept {
         const auto width_of = [](const box& b, int k) { return double{b.max[k]} - double{b.min[k]}; };
         const double longest = width_of(planned, longest_axis(planned));
@@ -325,7 +332,7 @@ private:
         // `put_into_groups` calls it, too, if the kept groups have become too full.
         const auto make_plan = [&] {
             plan_age_ = 0;
-            kept_plan planned = workers_.front().own.make_plan(partition_, present_, everywhere);
+            kept_plan planned = workers_.front().searcher.make_plan(partition_, present_, everywhere);
             const std::size_t n = present_.boxes.size();
             const double groups_by_size = static_cast<double>(n) / static_cast<double>(partition_.group_size(n));
             planned.plan.groups = std::max(planned.plan.groups, groups_by_size);
@@ -339,10 +346,10 @@ private:
         if (result == fill_result::complete) counters.add(work::moves, groups_.copies());
         if (result != fill_result::not_worthwhile) return result == fill_result::complete;
         groups_.clear();
-        auto& own = workers_.front().own;
-        if (!own.fill(partition_, present_, everywhere, cut_.columns)) return false;
+        auto& searcher = workers_.front().searcher;
+        if (!searcher.fill(partition_, present_, everywhere, cut_.columns)) return false;
         // A scene that is not cut has no copies, as without a partition.
-        if (cut_.columns.plan.columns() > 1) counters.add(work::subset_copies, own.copies());
+        if (cut_.columns.plan.columns() > 1) counters.add(work::subset_copies, searcher.copies());
         return true;
     }
 
@@ -352,7 +359,8 @@ private:
             for (std::uint32_t g = 0; g < groups_.size(); ++g) search_group(g, workers_.front(), pairs);
             return;
         }
-        // The first worker takes groups in ascending order, to append their pairs to the result; the others descending.
+        // The first worker takes groups in ascending order, and appends their pairs to the result; the others take them
+        // in descending order, until all are taken.
         for (worker& w : workers_) w.pairs.clear();
         group_pairs_.assign(groups_.size(), {});
         std::atomic<std::uint64_t> taken = 0;  // low u32: groups taken in ascending order; high u32: in descending
@@ -373,7 +381,8 @@ private:
         append_worker_pairs(pairs);
     }
 
-    /// Appends the pairs of the other workers by group, so that their order does not depend on the scheduling.
+    /// Appends the pairs that all workers but the first have found, by group. The first worker has appended those of
+    /// the groups before, so the order of all pairs is that of the groups, whichever worker took them.
     void append_worker_pairs(std::vector<index_pair>& pairs) {
         std::size_t total = pairs.size();
         for (const worker& w : workers_) total += w.pairs.size();
@@ -386,16 +395,17 @@ private:
     }
 
     void search_group(std::uint32_t g, worker& w, std::vector<index_pair>& pairs) {
-        w.own.search(partition_, groups_.group(g), groups_.region(g, everywhere), cut_.groups[g], pairs);
+        w.searcher.search(partition_, groups_.group(g), groups_.region(g, everywhere), cut_.groups[g], pairs);
     }
 
-    /// Moves the workers' counts of work, which they keep apart while they run in parallel, to the search's counters.
+    /// Adds the workers' counts of work to `counters` and resets them. Each worker counts for itself, as they run in
+    /// parallel.
     void collect_counters(Counters& counters) {
         if constexpr (Counters::enabled)
             for (worker& w : workers_) {
-                const work_counters own_work = w.own.take_counters();
+                const work_counters counted = w.searcher.take_counters();
                 for (std::size_t k = 0; k < work_names.size(); ++k)
-                    if (const auto kind = static_cast<work>(k); own_work[kind] > 0) counters.add(kind, own_work[kind]);
+                    if (const auto kind = static_cast<work>(k); counted[kind] > 0) counters.add(kind, counted[kind]);
             }
     }
 

@@ -39,10 +39,13 @@ struct cut_plan {
     }
 };
 
-/// Puts boxes into groups if these are planned, and plans new ones if the fullest group has outgrown the kept grid.
+/// Puts boxes into groups, each of which is then cut into columns, if the plan has any: into the grid of an earlier
+/// frame or, if there is none or its fullest group has more than doubled, into a new one.
 ///
 /// Groups are nested, so the recursion must terminate: each level must separate at least an eighth of all pairs of
 /// boxes. The work over all levels is then at most eight times that of brute force.
+/// @param kept the plan of an earlier frame, and then that of this one
+/// @param make_plan returns a new plan
 /// @returns `not_worthwhile` if there are no groups
 template <class MakePlan>
 [[nodiscard]] fill_result put_into_groups(const column_group& boxes, cut_plan& kept, MakePlan make_plan,
@@ -73,8 +76,9 @@ template <class MakePlan>
 /// Measures how long groups take to be cut and sorted, which counts as update, and to be swept.
 class phase_times {
 public:
-    /// Cuts and sweeps a group. Reading a clock takes as long as processing a small group, so only one group per 1024
-    /// boxes is timed, and its time is extrapolated to the untimed groups before it, by their numbers of boxes.
+    /// Calls `cut` and `sweep` for a group, and adds their times. Reading a clock takes as long as processing a small
+    /// group, so only one group per 1024 boxes is timed, and its time is extrapolated to the untimed groups before it,
+    /// by their numbers of boxes.
     template <class Cut, class Sweep>
     void run(std::size_t boxes, const Cut& cut, const Sweep& sweep) {
         untimed_boxes_ += boxes;
@@ -116,7 +120,11 @@ public:
         return {.plan = partition.plan(group.boxes, within)};
     }
 
-    /// Finds the pairs of a group of valid boxes: cuts it into columns and sweeps these, or into nested groups first.
+    /// Finds the pairs of a group of valid boxes: cuts it into columns and sweeps these or, if it is large, cuts it
+    /// into nested groups and searches each of them.
+    /// @param within the region of the group, to which the plan is fitted
+    /// @param kept the plan of an earlier frame, if there is one, and then that of this one
+    /// @param depth of the nesting
     void search(const Partition& partition, const column_group& group, const box& within, cut_plan& kept,
                 std::vector<index_pair>& pairs, std::size_t depth = 0) {
         if (group.boxes.size() < 2) return count(/*subsets=*/1, /*copies=*/group.boxes.size());
@@ -143,8 +151,10 @@ public:
         count(/*subsets=*/0, copies());  // `fill` has counted the columns
     }
 
-    /// Puts a group into columns. If there are too many copies, makes a new plan, and if that has too many, one column.
-    /// @returns whether all boxes are valid; otherwise there is nothing to sweep.
+    /// Puts a group into columns. Boxes are copied to all columns that they overlap; if these copies are too many, a
+    /// new plan is made, and if they still are, a single column, which has none.
+    /// @param kept the plan, perhaps of an earlier frame
+    /// @returns whether all boxes are valid; otherwise there is nothing to sweep
     [[nodiscard]] bool fill(const Partition& partition, const column_group& group, const box& within, kept_plan& kept) {
         is_filled_ = false;
         for (;;) {
@@ -163,8 +173,9 @@ public:
         return true;
     }
 
-    /// Sweeps the filled columns, and fills and sweeps again if the sweep stops early at its limit of tests:
-    /// under a new plan, and then by exact keys, which bounds the cost by about that of a sweep along one axis.
+    /// Sweeps the columns. If a sweep needs far more tests than the plan's first one, it stops early, and columns are
+    /// filled and swept again: under a new plan, and if that also fails, sorted by exact keys instead of buckets. The
+    /// last resort has no limit; it costs about as much as a sweep along one axis.
     void sweep(const Partition& partition, const column_group& group, const box& within, kept_plan& kept,
                std::vector<index_pair>& pairs) {
         const std::size_t before = pairs.size();
