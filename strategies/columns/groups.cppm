@@ -16,10 +16,10 @@ struct column_group {
 /// than the first are marked. A group has boxes that begin there first, in the order of the input, on any threads.
 class column_groups {
 public:
-    /// The plan of a grid of groups, each of which is later cut into columns. The grid has about `plan.groups` cells,
-    /// on the two axes across the columns, in the proportion of the numbers of columns, and no more than those. If
-    /// fewer than half as many result, as for boxes along a line, the grid is cut along the columns instead of on the
-    /// axis with fewer of them, which becomes `plan.axis`, the axis without cuts.
+    /// Plans a grid whose cells are groups, each of which is later cut into columns. It divides the same two axes as
+    /// the columns (`plan.across`), in the same proportion, into about `plan.groups` cells, and no more than columns.
+    /// If fewer than half as many cells result, as for boxes along a line, the grid divides the axis along the columns
+    /// instead of the axis with fewer of them, which becomes `plan.axis`, the undivided axis.
     [[nodiscard]] static column_plan group_grid(column_plan plan) {
         const double groups = plan.groups;
         const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;  // the axis with fewer columns
@@ -141,8 +141,7 @@ private:
 
     /// The first pass of the counting sort, over one part of the boxes. By vectors, finds the cells of each box's lower
     /// and upper corner, its first and its last group, and lists boxes for which these differ: they span several
-    /// groups. Then counts by group the boxes that begin there (`next`) and the copies of spanning boxes (`next_copy`),
-    /// which `allocate_groups` turns into the indices to write to.
+    /// groups. Then counts the boxes by group.
     void find_groups(std::span<const box> boxes, std::size_t part_index) {
         part& p = parts_[part_index];
         const std::size_t length = (boxes.size() / parts_.size() + simd::width) / simd::width * simd::width;
@@ -173,7 +172,13 @@ private:
                                                    simd::places() + static_cast<std::uint32_t>(p.begin + i), spanning);
         });
         p.result = simd::bits(invalid) == 0 ? fill_result::complete : fill_result::invalid;
-        if (p.result == fill_result::invalid) return;
+        if (p.result == fill_result::complete) count_boxes(p, boxes.size());
+    }
+
+    /// Counts by group the boxes of a part that begin there (`next`), and the copies of spanning boxes (`next_copy`).
+    /// `allocate_groups` turns these counts into the indices to write to. If there are too many copies, the result of
+    /// the part becomes `not_worthwhile`.
+    void count_boxes(part& p, std::size_t boxes) {
         std::size_t* const counts = p.next.data();
         for (const std::uint16_t group : std::span(first_group_of_box_).subspan(p.begin, p.end - p.begin))
             ++counts[group];
@@ -182,7 +187,7 @@ private:
                 ++p.next_copy[group];
                 ++p.copies;
             });
-            if (p.copies > most_copies(boxes.size())) {
+            if (p.copies > most_copies(boxes)) {
                 p.result = fill_result::not_worthwhile;
                 return;
             }

@@ -11,8 +11,9 @@ export namespace aabb {
 /// behind the boxes of its column that begin earlier.
 class column_lists {
 public:
-    /// Puts boxes into the columns of the plan by a counting sort. Within a column it orders them by buckets, intervals
-    /// of the axis along the column; if the sort policy requires more, each column is then sorted by exact keys.
+    /// Puts boxes into columns, the cells of a grid on two axes, by a counting sort. A box has a copy in each column
+    /// that it overlaps. Within a column boxes are ordered by buckets, intervals of the third axis, along the column;
+    /// if the sort policy requires more, each column is then sorted by exact keys.
     /// @param ids by index in `boxes`; empty if the index is the id
     /// @param by_keys whether to sort by exact keys even if the sort policy would accept unsorted buckets
     /// @param most_copies limit on the copies; beyond it the result is `not_worthwhile`

@@ -28,7 +28,8 @@ struct column_plan {
         return std::min(16U, static_cast<std::uint32_t>(std::bit_width(buckets - 1)));
     }
 
-    /// Sets the range that is quantized to u16; on an axis without extent every coordinate becomes 0.
+    /// Sets the range that is quantized to u16, from 0 to 65,535, as (x - origin) * scale. On an axis without extent
+    /// the scale is 0, so that every coordinate becomes 0.
     constexpr void fit(const box& bounds) noexcept {
         origin = bounds.min;
         for (int k = 0; k < 3; ++k) {

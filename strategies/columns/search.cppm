@@ -11,8 +11,9 @@ export namespace aabb {
 /// at rest but other boxes move, exponential back-off keeps ever fewer frames, down to one in 64.
 class static_frame {
 public:
-    /// Compares a new frame with the kept one, or decides by a sample whether the new one is worth keeping. Copying a
-    /// frame costs time, so after each that was kept in vain, more frames whose sample rests are skipped (back-off).
+    /// Detects a frame in which nothing has moved. Compares it with the kept frame or, if there is none, decides
+    /// whether it is to be kept: if a sample of its boxes has not moved since the previous frame. Copying a frame costs
+    /// time, so after each that was kept in vain, ever more such frames are skipped (exponential back-off).
     /// @returns whether no box has moved since the kept frame, so that `pairs` is still the result
     [[nodiscard]] bool is_still_valid(std::span<const box> boxes, const membership& objects) {
         const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;

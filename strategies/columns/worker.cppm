@@ -180,7 +180,7 @@ public:
                std::vector<index_pair>& pairs) {
         const std::size_t before = pairs.size();
         const std::size_t n = group.boxes.size();
-        const std::uint64_t most_in_buckets = 64 * n + 4096;  // more: too many boxes share buckets
+        const std::uint64_t most_in_buckets = 64 * n + 4096;  // under a new plan; more: too many boxes share buckets
         for (;;) {
             // The boxes were validated when the columns were first filled.
             if (!is_filled_) static_cast<void>(fill(partition, group, within, kept));
