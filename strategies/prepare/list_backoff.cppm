@@ -27,7 +27,7 @@ public:
     /// moves too far for any list, so does the whole scene, and these frames need no further measurement.
     /// @param estimate its law becomes that of the sample
     /// @param ids_drawn the state of the random numbers, see `draw_id`
-    /// @returns whether all eight frames passed without a list; then the back-off continues, until another sample
+    /// @returns whether all eight frames passed without a list; then another sample is watched later
     bool advance_frame(std::span<const box> boxes, const membership& objects, list_estimate& estimate,
                        std::uint32_t& ids_drawn) {
         --left_;

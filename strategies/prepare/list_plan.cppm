@@ -37,13 +37,14 @@ public:
             lower_corners = merged(lower_corners, box{b.min, b.min});
             for (int k = 0; k < 3; ++k) lengths[k] += double{b.max[k]} - double{b.min[k]};
         }
-        const auto spacing = [&](int k) { return double{lower_corners.max[k]} - double{lower_corners.min[k]}; };
+        const auto spread = [&](int k) { return double{lower_corners.max[k]} - double{lower_corners.min[k]}; };
+        // Four mean extents, beyond which the polynomial is not reliable.
         longest_margin_ = 4 * (lengths[0] + lengths[1] + lengths[2]) / (3.0 * static_cast<double>(sample.size()));
         for (std::size_t i = 1; i < sample.size(); ++i) {
             std::array<double, 4> product{1, 0, 0, 0};
             // product[i] is the coefficient of x^i; each axis multiplies the polynomial by (extents + x).
             for (int k = 0; k < 3; ++k) {
-                if (spacing(k) <= lengths[k] / static_cast<double>(sample.size())) continue;
+                if (spread(k) <= lengths[k] / static_cast<double>(sample.size())) continue;
                 double extents = 0;
                 for (const box& b : {sample[i - 1], sample[i]}) extents += double{b.max[k]} - double{b.min[k]};
                 for (std::size_t power = 3; power > 0; --power)
@@ -177,7 +178,7 @@ inline constexpr double worth_a_list = 0.9;
 /// @param worth a list must cost less than this share of a search per frame
 [[nodiscard]] inline list_plan plan_list(const list_estimate& estimate, double worth = worth_a_list,
                                          const cost_model& cost = machine_costs()) {
-    constexpr double as_little = 1.01;
+    constexpr double about_as_little = 1.01;
     constexpr std::size_t longest = 1024;  // frames
     const auto n = static_cast<double>(estimate.boxes);
     list_plan best;
@@ -192,12 +193,12 @@ inline constexpr double worth_a_list = 0.9;
         const double margin = estimate.law.displacement_after(after, exponent);
         if (!(margin <= estimate.growth.longest_margin())) break;
         const double listed = estimate.listed_pairs(margin);
-        const double served = cost_of_service(n, listed, cost) / search;
-        if (served >= std::min(best.cost, worth)) break;  // and longer lists, of greater margins, cost even more
+        const double serving = cost_of_service(n, listed, cost) / search;
+        if (serving >= std::min(best.cost, worth)) break;  // and longer lists, of greater margins, cost even more
         const double making = cost_of_making(n, listed, cost) / static_cast<double>(after + 1) +
                               cost_of_new_memory(n, listed, estimate.horizon, cost);
-        const double per_frame = served + making / search;
-        if (per_frame <= as_little * best.cost) best = {after + 1, margin, std::min(per_frame, best.cost)};
+        const double per_frame = serving + making / search;
+        if (per_frame <= about_as_little * best.cost) best = {after + 1, margin, std::min(per_frame, best.cost)};
         if (after == frames_left - 1) break;
     }
     if (best.cost >= worth) best.frames = 1;

@@ -61,8 +61,9 @@ public:
         search_->remove(id);
     }
 
-    /// Chooses how to find the pairs of this frame: by a search, or from a Verlet list made in an earlier frame. The
-    /// table `actions` states it by what is kept (`state_`) and how boxes have moved since (`observation`).
+    /// Chooses how to find the pairs of this frame: by a search, or from a Verlet list, the pairs of an earlier frame
+    /// whose boxes, grown by a margin, overlapped. The table `actions` states the choice by what is kept (`state_`) and
+    /// how boxes have moved since (`observation`).
     void update(std::span<const box> boxes) override {
         frame_.begin();
         require_ieee_arithmetic();
@@ -150,12 +151,7 @@ public:
     /// For `explain`: what the search leaves out, and why no list is kept, if none is.
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
-        if (!keeps_pairs())
-            absent.push_back({absence::neighbour_list, is_below_list_threshold()
-                                                           ? "none yet, not worth its cost for so few boxes"
-                                                       : expected_ < fewest_frames_of_first_list
-                                                           ? "none yet, not worth its cost in so few frames"
-                                                           : "none yet, boxes move too far or arrive too often"});
+        if (!keeps_pairs()) absent.push_back({absence::neighbour_list, why_no_list()});
         return absent;
     }
 
@@ -170,6 +166,11 @@ private:
     [[nodiscard]] bool is_adaptive() const noexcept { return !config_.margin && config_.every == 0; }
     [[nodiscard]] bool is_below_list_threshold() const noexcept {
         return is_adaptive() && objects_.size() < fewest_boxes;
+    }
+    [[nodiscard]] std::string_view why_no_list() const noexcept {
+        if (is_below_list_threshold()) return "none yet, not worth its cost for so few boxes";
+        if (expected_ < fewest_frames_of_first_list) return "none yet, not worth its cost in so few frames";
+        return "none yet, boxes move too far or arrive too often";
     }
     /// Whether the pairs marked as certain are guaranteed to overlap in this frame.
     [[nodiscard]] bool certain_pairs_hold() const noexcept { return moved_.in_both_directions <= margin_; }
@@ -203,13 +204,19 @@ private:
         // While watching no result depends on the motion, so it is measured at power-of-two ages only.
         if (state_ == state::watching && !std::has_single_bit(age_)) return observation::complete;
         const bool has_fixed_age = config_.every > 0;  // a new list every so many frames, whatever moves
-        const observation at_fixed_age = age_ >= config_.every ? observation::changed : observation::complete;
-        if (has_fixed_age && config_.margin) return at_fixed_age;
-        const relative_motion before = std::exchange(moved_, motion_between(kept_, boxes, objects_));
-        estimate_.law.observe(age_, moved_.margin);
-        if (has_fixed_age) return at_fixed_age;
+        const relative_motion before = moved_;
+        if (!has_fixed_age || !config_.margin) {
+            moved_ = motion_between(kept_, boxes, objects_);
+            estimate_.law.observe(age_, moved_.margin);
+        }
+        if (has_fixed_age) return age_ >= config_.every ? observation::changed : observation::complete;
         if (state_ != state::listing || moved_.margin > margin_) return observation::changed;
-        if (!is_adaptive()) return observation::complete;
+        return is_adaptive() ? observe_list(before) : observation::complete;
+    }
+
+    /// Decides whether a list that is still complete is worth keeping, and whether its boxes have come to rest.
+    /// @param before the motion from the kept boxes to those of the previous frame
+    [[nodiscard]] observation observe_list(const relative_motion& before) {
         if (age_ == age_when_made_ + 1 && !is_list_worth_it(objects_.size(), estimate_.pairs, list_.size())) {
             planned_frames_ = 0;  // the list ends because of its length, not because boxes moved too far
             return observation::changed;
@@ -277,8 +284,15 @@ private:
             return next_list{.frames = planned_frames_, .margin = margin_};
         }
         repeated_ = 0;
+        return cheapest_list(boxes, is_motion_known);
+    }
+
+    /// Plans the list with the least cost per frame for the displacement observed since the boxes were kept.
+    /// @param is_motion_known as for `planned_list`
+    /// @returns nullopt if no list is worth its cost
+    [[nodiscard]] std::optional<next_list> cheapest_list(std::span<const box> boxes, bool is_motion_known) {
         estimate_.resample(boxes, objects_, ids_drawn_);
-        if (had_list) estimate_.learn(margin_, list_.size());
+        if (state_ == state::listing) estimate_.learn(margin_, list_.size());
         const list_plan best = plan_list(estimate_);
         // Below the exponent of a random walk, boxes oscillate. Their displacement is known relative to the kept boxes,
         // but not relative to those of this frame, which may be at an extreme of the oscillation.
@@ -356,10 +370,11 @@ private:
     /// every frame until a box moves.
     void settle(std::span<const box> boxes) {
         require_valid(boxes);
+        // Certain pairs overlap without a test, unless boxes have moved too far: then they are tested like the others.
         if (!certain_pairs_hold()) list_.forget_certain();
         count_tests(list_.tests_per_frame());
         list_.keep_overlapping(boxes);
-        list_.forget_certain();
+        list_.forget_certain();  // the pairs at rest are a list without certain ones
         kept_.assign(boxes.begin(), boxes.end());
         margin_ = 0;
         age_ = age_when_made_ = planned_frames_ = 0;

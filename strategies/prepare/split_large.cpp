@@ -19,11 +19,12 @@ public:
     split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
         : search_(std::move(search)), size_(size), counted_(counted) {}
 
-    /// Inserts an object. In the inner search, ids from `first_slot_` on are those of pieces, so if the new id is one
-    /// of these, all pieces are removed first; the next update makes them anew.
+    /// Inserts an object. In the inner search, the ids from `first_slot_` on are those of pieces, which follow the
+    /// objects.
     void insert(std::uint32_t id) override {
         objects_.insert(id);
         frame_.change([&] {
+            // If the new id is that of a piece, all pieces are removed; the next update makes them anew.
             if (id >= first_slot_) drop_pieces();
             search_->insert(id);
         });
