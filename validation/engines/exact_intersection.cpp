@@ -107,6 +107,34 @@ void add_errors(corner_errors& errors, const vec3d& computed, const exact_point&
     }
 }
 
+/// A way to match computed with exact corners, and their greatest distance on an axis, halved.
+struct alignment {
+    double distance = 0;
+    std::array<std::size_t, 6> order{};  // indices of exact corners by computed corner
+};
+
+/// All alignments of the corners of a polygon, from the nearest one in double on: computed corners may begin at any
+/// exact corner and run in either direction.
+std::vector<alignment> alignments_of(const triangle_intersection& computed, const std::vector<exact_point>& exact) {
+    const std::size_t size = exact.size();
+    std::array<vec3d, 6> approximate{};
+    for (std::size_t i = 0; i < size; ++i)
+        for (std::size_t k = 0; k < 3; ++k) approximate[i][static_cast<int>(k)] = CGAL::to_double(exact[i][k]);
+    std::vector<alignment> alignments;
+    for (std::size_t first = 0; first < size; ++first)
+        for (const std::size_t step : {std::size_t{1}, size - 1}) {
+            alignment& a = alignments.emplace_back();
+            for (std::size_t i = 0; i < size; ++i) {
+                a.order[i] = (first + i * step) % size;
+                for (int k = 0; k < 3; ++k)  // halves, since a difference of greatest doubles would overflow
+                    a.distance =
+                        std::max(a.distance, std::abs(computed.corners[i][k] / 2 - approximate[a.order[i]][k] / 2));
+            }
+        }
+    std::ranges::sort(alignments, {}, &alignment::distance);
+    return alignments;
+}
+
 }  // namespace
 
 struct exact_intersection::construction {
@@ -151,9 +179,8 @@ triangle_intersection exact_intersection::rounded() const {
     return common;
 }
 
-/// The errors of computed corners, which may begin at any corner of the exact polygon and run in either direction. All
-/// these alignments are tried, from the nearest one in double on, until one is within the stated errors; otherwise the
-/// errors are those of the alignment with the least ratio to the stated ones.
+/// The errors of computed corners, under the nearest alignment with the exact corners that is within the stated errors;
+/// if there is none, under the alignment with the least ratio to the stated errors.
 corner_errors exact_intersection::errors_of(const triangle_intersection& computed) const {
     corner_errors best;
     const std::size_t size = construction_->corners.size();
@@ -161,27 +188,7 @@ corner_errors exact_intersection::errors_of(const triangle_intersection& compute
     best.within = best.same && size == 0;
     if (!best.same || size == 0) return best;
     best.of_bound = std::numeric_limits<double>::infinity();
-    std::array<vec3d, 6> approximate{};
-    for (std::size_t i = 0; i < size; ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-            approximate[i][static_cast<int>(k)] = CGAL::to_double(construction_->corners[i][k]);
-    struct alignment {
-        double distance = 0;
-        std::array<std::size_t, 6> order{};  // indices of exact corners by computed corner
-    };
-    std::vector<alignment> alignments;
-    for (std::size_t first = 0; first < size; ++first)
-        for (const std::size_t step : {std::size_t{1}, size - 1}) {
-            alignment& a = alignments.emplace_back();
-            for (std::size_t i = 0; i < size; ++i) {
-                a.order[i] = (first + i * step) % size;
-                for (int k = 0; k < 3; ++k)  // halves, since a difference of greatest doubles would overflow
-                    a.distance =
-                        std::max(a.distance, std::abs(computed.corners[i][k] / 2 - approximate[a.order[i]][k] / 2));
-            }
-        }
-    std::ranges::sort(alignments, {}, &alignment::distance);
-    for (const alignment& a : alignments) {
+    for (const alignment& a : alignments_of(computed, construction_->corners)) {
         corner_errors errors{.same = true, .within = true};
         for (std::size_t i = 0; i < size; ++i)
             add_errors(errors, computed.corners[i], construction_->corners[a.order[i]], computed.error);

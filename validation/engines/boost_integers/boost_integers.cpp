@@ -69,7 +69,8 @@ struct world_mesh {
     std::vector<world_triangle> triangles;
     int unit;
 
-    /// Computes R v + t for each corner. The unit divides all products and t, so that the integers are exact.
+    /// Computes R v + t for each corner. `unit` is an exponent: 2^unit divides all products and t, so that the integers
+    /// are exact.
     world_mesh(const pose& p, std::span<const triangle3d> given) {
         std::vector<double> coordinates;
         for (const triangle3d& t : given)

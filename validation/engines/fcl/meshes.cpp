@@ -19,7 +19,7 @@ class fcl_tree {
 public:
     /// Builds the tree, or refits it if it has the same triangles.
     void build(const mesh& m, std::span<const vec3d> vertices) {
-        // Removed during the refit: after a failure, FCL would continue it and write beyond the vertices.
+        // `tree_` is null until this succeeds: FCL would continue a failed refit, and write beyond the vertices.
         std::unique_ptr<tree> built = std::move(tree_);
         if (built && has_same_triangles(*built, m)) {
             require_done(built->beginReplaceModel());
