@@ -30,8 +30,8 @@ std::unique_ptr<mesh_scene> corner_on_face() {
 constexpr triangle3f flat_triangle{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}};
 constexpr triangle3f crossing_triangle{{{0.5F, 0.5F, -1}, {0.5F, 0.5F, 1}, {0.25F, 3, 0}}};
 
-/// Two copies of a mesh in three frames. The centroid of each of its triangles is the origin, exactly, since
-/// coordinates are integers: no build of a tree can separate them by their centroids.
+/// Two copies of a mesh in three frames, each a pair of poses. The centroid of each of its triangles is the origin,
+/// exactly, since coordinates are integers: no build of a tree can separate them by their centroids.
 std::unique_ptr<mesh_scene> same_centroid() {
     draws random(41);
     std::vector<triangle3f> triangles;
@@ -66,7 +66,8 @@ mesh coincident(std::uint32_t count) {
     return m;
 }
 
-/// Two copies of a mesh of thin triangles of lengths about 1, in random directions; at one pose, then almost at one.
+/// Two copies of a mesh of thin triangles of lengths about 1, in random directions. In three frames, each a pair of
+/// poses, the second copy is at the pose of the first, then almost.
 /// @param height the greatest distance of the third corner from the middle of the long edge, on each axis
 std::unique_ptr<mesh_scene> needles(float height) {
     draws random(51);
