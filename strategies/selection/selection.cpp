@@ -10,9 +10,9 @@ struct fitting {
     scene_fit fit;
 };
 
-/// Finds the first strategy of a kind whose rule (`fit`) states that it serves the scene. Only a kind that is compiled
-/// alone has a choice here: of others, the composition's strategy is kept, since another might be rejected beside the
-/// strategies that are compiled together with it.
+/// Finds the first strategy of a kind whose rule (`fit`) states that it serves the scene. Strategies that are template
+/// arguments of one stage (not `is_compiled_alone`) may be rejected beside each other, so of such a kind only the
+/// composition's strategy is considered.
 /// @returns its name and the reason; if none serves the scene, no name, and the reason of the last that was considered
 fitting fitting_of(strategy_kind kind, const composition& completed, const scene_traits& scene) {
     fitting last;

@@ -38,6 +38,7 @@ part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
     const auto repeated = std::ranges::unique(result.vertices);
     result.vertices.erase(repeated.begin(), repeated.end());
     result.vertices.shrink_to_fit();
+    // The index in the part of a vertex of the mesh.
     const auto own_index = [&](std::uint32_t vertex) {
         return static_cast<std::uint32_t>(std::ranges::lower_bound(result.vertices, vertex) - result.vertices.begin());
     };
