@@ -28,8 +28,8 @@ class growth_of_pairs {
 public:
     growth_of_pairs() = default;
     /// Sums the polynomial (e0 + x) (e1 + x) (e2 + x) over pairs of successive boxes in a random sample. Here ek is the
-    /// sum of both extents of a pair on axis k, and x its growth by the margin. An axis on which boxes lie closer than
-    /// their extents has no factor: they overlap there anyway.
+    /// sum of both extents of a pair on axis k, and x the growth of that sum, four margins. An axis on which boxes lie
+    /// closer than their extents has no factor: they overlap there anyway.
     explicit growth_of_pairs(std::span<const box> sample) {
         vec3d lengths{};
         box lower_corners = empty_box();

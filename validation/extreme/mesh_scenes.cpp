@@ -81,8 +81,8 @@ std::unique_ptr<mesh_scene> needles(float height) {
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1e-7, 0, 0)}, {{}, turned(1e-6, {0, 0, 0})}});
 }
 
-/// Two copies of a mesh of triangles, segments and points (i % 3 = 0, 1, 2). Coordinates are integers from 0 to 4, so
-/// that many of them touch exactly.
+/// Two copies of a mesh of triangles, segments (two corners coincide: any two) and points (all three do). Coordinates
+/// are integers from 0 to 4, so that many of them touch exactly.
 std::unique_ptr<mesh_scene> zero_areas() {
     draws random(52);
     std::vector<triangle3f> triangles;
