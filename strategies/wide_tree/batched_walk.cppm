@@ -36,7 +36,9 @@ public:
         find_all_pairs(test, m, m, pose_relative_to(m, {}, m, {}), query_kind::one_mesh, emit);
     }
 
-    /// Appends the BVTT front: pairs of leaves with triangles within a margin, less rounding (`rounding_bound`).
+    /// Appends the BVTT front of this pose, from which later queries start instead of the roots: the pairs of leaves
+    /// with triangles within a margin of each other, up to the rounding of B's vertices (`rounding_bound`), each with a
+    /// mask of these pairs of triangles.
     /// @returns false if there are more than `most_pairs`, where it stops
     [[nodiscard]] bool collect_front(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                      double margin, std::size_t most_pairs, std::vector<front_pair>& pairs) {
@@ -52,7 +54,10 @@ public:
         return !descend_to_leaves(a, b, to_a, query_kind::two_meshes, margin, collect);
     }
 
-    /// Passes intersecting pairs of triangles to `emit` as `find_pairs`, but tests only the pairs of leaves of a front.
+    /// Passes intersecting pairs of triangles to `emit` as `find_pairs`, but tests only the pairs of triangles in a
+    /// front.
+    /// @param pairs the front: pairs of leaves, each with a mask of the pairs of triangles to test
+    /// @param leaves reads these leaves, and caches them during the query
     template <class Emit>
     void find_pairs_in_front(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                              std::span<const front_pair> pairs, front_leaves<Tree>& leaves, walk_goal goal, Emit emit) {
@@ -62,7 +67,7 @@ public:
         const auto test_pair = [&](const front_pair& p, const triangle_block& block_a, const triangle_block& block_b) {
             queue_pairs(a.tree(), b.tree(), p, block_a, block_b);
             // If any pair will do, waiting for a full queue would read more leaves than necessary.
-            return (any_pair || queue_.is_full()) && queue_.test_queued(test, any_pair, triangles_at, emit);
+            return (any_pair || queue_.is_full()) && queue_.test_queued(test, /*flush=*/any_pair, triangles_at, emit);
         };
         if (!leaves.for_each_pair(a, b, to_a, pairs, leaf_pairs_.reader(), test_pair))
             static_cast<void>(queue_.test_queued(test, /*flush=*/true, triangles_at, emit));
@@ -100,7 +105,7 @@ private:
         }
     };
 
-    /// Descends to the leaves and tests all pairs. The caches of leaves are reset only if the descent comes to leaves.
+    /// Descends to the leaves, and tests all pairs of triangles whose boxes overlap, in batches.
     template <class Emit>
     void find_all_pairs(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                         query_kind kind, const Emit& emit) {
@@ -108,11 +113,7 @@ private:
         queue_.clear();
         bool reached_leaves = false;
         const auto test_batch = [&](std::span<const std::uint32_t> leaves_a, std::span<const std::uint32_t> leaves_b) {
-            if (!std::exchange(reached_leaves, true))
-                leaf_pairs_.begin(
-                    a, b, to_a,
-                    {.shares_corners = kind == query_kind::one_mesh, .rejects_by_exact_boxes = !is_filtered},
-                    test.greatest_error());
+            if (!std::exchange(reached_leaves, true)) begin_leaves(test, a, b, to_a, kind);
             return test_leaves(test, a, b, to_a, kind, leaves_a, leaves_b, triangles_at, emit);
         };
         if (!descend_to_leaves(a, b, to_a, kind, /*margin=*/0, test_batch))
@@ -127,18 +128,29 @@ private:
         const auto triangles_at = triangle_lookup(a, b);
         queue_.clear();
         bool reached_leaves = false;
-        nearest_.for_each_leaf_pair(
-            a, b, to_a, counters_, [&](const std::uint32_t& leaf_a, const std::uint32_t& leaf_b) {
-                if (!std::exchange(reached_leaves, true))
-                    leaf_pairs_.begin(a, b, to_a, {.rejects_by_exact_boxes = !is_filtered}, test.greatest_error());
-                return test_leaves(test, a, b, to_a, query_kind::two_meshes, {&leaf_a, 1}, {&leaf_b, 1}, triangles_at,
-                                   emit) ||
-                       queue_.test_queued(test, /*flush=*/true, triangles_at, emit);
-            });
+        constexpr query_kind kind = query_kind::two_meshes;
+        const auto test_pair = [&](const std::uint32_t& leaf_a, const std::uint32_t& leaf_b) {
+            if (!std::exchange(reached_leaves, true)) begin_leaves(test, a, b, to_a, kind);
+            return test_leaves(test, a, b, to_a, kind, {&leaf_a, 1}, {&leaf_b, 1}, triangles_at, emit) ||
+                   queue_.test_queued(test, /*flush=*/true, triangles_at, emit);
+        };
+        nearest_.for_each_leaf_pair(a, b, to_a, counters_, test_pair);
     }
 
-    /// Descends to the pairs of leaves whose boxes overlap. Each iteration takes a batch of the lowest step that has
-    /// pending pairs, so that few pairs are pending at a time; of leaves it takes all.
+    /// Prepares the caches of leaves, when a query comes to the first leaves: one of distant meshes needs none. An
+    /// inexact test gets only triangles whose boxes in float overlap: its result must not depend on the rounding of
+    /// quantised boxes.
+    void begin_leaves(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
+                      query_kind kind) {
+        leaf_pairs_.begin(a, b, to_a,
+                          {.shares_corners = kind == query_kind::one_mesh, .rejects_by_exact_boxes = !is_filtered},
+                          test.greatest_error());
+    }
+
+    /// Descends both trees at once to the pairs of leaves whose boxes overlap. `pairs_` has the pending pairs by step
+    /// of the descent; those of the last step are pairs of leaves. Each iteration takes a batch of the last step that
+    /// has pending pairs, so that few are pending at a time, and opens their nodes for the next step; of leaves it
+    /// takes all.
     /// @param margin the distance up to which boxes count as overlapping
     /// @param at_leaves called with a batch of pairs, as leaves of A and leaves of B; returns whether to stop
     /// @returns whether `at_leaves` stopped the walk
@@ -147,12 +159,8 @@ private:
                            double margin, const AtLeaves& at_leaves) {
         begin(a, b, to_a, margin);
         for (std::size_t step = 0;;) {
-            if (pairs_[step].size == 0) {
-                step = steps_.size();
-                while (step > 0 && pairs_[step - 1].size == 0) --step;
-                if (step == 0) return false;
-                --step;
-            }
+            while (pairs_[step].size == 0)  // and so are all later steps
+                if (step-- == 0) return false;
             node_pairs& from = pairs_[step];
             const std::size_t end = from.size;
             const bool is_last = step + 1 == steps_.size();
@@ -188,7 +196,9 @@ private:
         };
     }
 
-    /// Opens the node pairs `begin` to `end` of a step: pushes their overlapping pairs of children to the next step.
+    /// Opens the node pairs `begin` to `end` of a step: appends their overlapping pairs of children to the next step. A
+    /// step opens both nodes of a pair or only the higher one; the other one stays in place of its children. Child i of
+    /// node n is node 8 n + i of the level below.
     void open_nodes(const Tree& a, const Tree& b, query_kind kind, std::size_t step, std::size_t begin,
                     std::size_t end) {
         const wide_node* const nodes_a = a.level(steps_[step].a - 1);
@@ -203,7 +213,8 @@ private:
             to.make_room();
             const std::uint32_t node_a = batch_a[pair];
             const std::uint32_t node_b = batch_b[pair];
-            if (kind == query_kind::one_mesh && node_a == node_b) mask &= each_pair_once;  // children i <= j
+            // A node against itself has each pair of children twice.
+            if (kind == query_kind::one_mesh && node_a == node_b) mask &= each_pair_once;
             const std::uint64_t to_open = steps_.pairs_to_open(step, mask);
             const std::uint32_t first_a = opens_a ? children * node_a : node_a;
             const std::uint32_t first_b = opens_b ? children * node_b : node_b;
@@ -211,7 +222,7 @@ private:
             simd::store_set_bits(bits.data(), to_open);
             const auto count = static_cast<std::size_t>(std::popcount(to_open));
             std::size_t p = 0;
-            do {  // almost always one iteration, so that the branch is predicted
+            do {  // eight pairs; almost always one iteration, so that the branch is predicted
                 const auto bit =
                     __builtin_convertvector(simd::load_eight<simd::eight_bytes>(&bits[p]), simd::eight_words);
                 simd::store_eight(&to.a[to.size + p], first_a + (bit & 7U));
@@ -222,8 +233,9 @@ private:
         }
     }
 
-    /// Queues the pairs of triangles of these leaves whose boxes overlap, and tests them when a batch is full.
-    /// @returns whether to stop
+    /// Queues the pairs of triangles of these leaves whose boxes overlap, and tests the queue whenever it is full.
+    /// @param leaves_a,leaves_b each leaf of A is paired with the leaf of B at the same index
+    /// @returns whether `emit` wants to stop
     template <class TrianglesAt, class Emit>
     [[nodiscard]] bool test_leaves(const query& test, const model<Tree>& a, const model<Tree>& b,
                                    const relative_pose& to_a, query_kind kind, std::span<const std::uint32_t> leaves_a,
@@ -233,6 +245,7 @@ private:
         const auto test_pair = [&](std::size_t p, const read_leaf& leaf_a, const read_leaf& leaf_b,
                                    std::uint64_t mask) __attribute__((always_inline)) {
             if (kind == query_kind::one_mesh) {
+                // A leaf against itself: each pair once, and no triangle with itself.
                 if (leaves_a[p] == leaves_b[p]) mask &= each_pair_once & distinct_children;
                 if (emit_adjacent(mask, leaves_a[p], leaves_b[p], triangles_at, emit)) return true;
                 if (mask == 0) return false;
@@ -258,7 +271,7 @@ private:
     template <class TrianglesAt, class Emit>
     [[nodiscard]] bool emit_adjacent(std::uint64_t& mask, std::uint32_t leaf_a, std::uint32_t leaf_b,
                                      const TrianglesAt& triangles_at, const Emit& emit) const {
-        if constexpr (is_filtered) {
+        if constexpr (is_filtered) {  // the test is exact
             const std::uint64_t sharing = leaf_pairs_.pairs_sharing_corners(leaf_a, leaf_b);
             std::array<index_pair, most_children_of_pair> adjacent;
             std::size_t count = 0;

@@ -58,9 +58,13 @@ public:
         bool is_valid;                 ///< whether the pairs are valid for this query
         std::optional<double> margin;  ///< the margin of a new front, if one is worth its cost
     };
-    /// Records a query. A front that is not valid for it is dropped. A new one is worth its cost if the last two such
-    /// queries moved B little and changed neither mesh, unless earlier fronts were of no use. A larger margin lasts
-    /// longer but has more pairs, so that the margin grows with the square root of the step, B's motion since then.
+    /// Records a query, and decides whether the front serves it, or a new front is worth its cost; otherwise the caller
+    /// walks from the roots. An invalid front is dropped. A new one needs two such queries in a row that moved B little
+    /// and changed neither mesh, and a wait after fronts that served too few queries. A front of margin m lasts about m
+    /// / step queries, where `step` is B's motion between two queries, and has the more pairs the larger m is: the best
+    /// m grows with the square root of the step.
+    /// @param motion the pose of B in A's frame
+    /// @param bounds the box of B's vertices, in B's frame
     /// @param leaf_size the edge length of a leaf
     [[nodiscard]] decision record_query(const model_pair& models, const box_motion& motion, const box& bounds,
                                         double leaf_size) noexcept {
@@ -169,8 +173,10 @@ private:
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])};
     }
 
-    /// Finds the front of a query, or adds one. The front behind the last one is tried first, since objects are mostly
-    /// queried in the same order. Of the others, B's centres are compared eight at a time, and near fronts in full.
+    /// Finds the front of a query, or adds one, and returns its index. The front behind the last one is tried first,
+    /// since objects are mostly queried in the same order. Of the others, the centres of B's boxes are compared, eight
+    /// at a time, and those that have moved by no more than `near` on any axis are compared in full.
+    /// @param centre the centre of B's box in A's frame
     [[nodiscard]] std::size_t index_of(const model_pair& models, const box_motion& motion, const box& bounds,
                                        double near, const std::array<float, 3>& centre) {
         const auto matches = [&](std::size_t i) {
@@ -178,16 +184,16 @@ private:
         };
         const std::size_t next = last_ + 1 < fronts_.size() ? last_ + 1 : 0;
         if (next < fronts_.size() && matches(next)) return mark_used(next);
-        for (std::size_t eight = 0; eight < centres_.size(); ++eight) {
-            simd::eight_floats furthest{};
+        for (std::size_t group = 0; group < centres_.size(); ++group) {  // of eight fronts
+            simd::eight_floats greatest{};
             for (std::size_t k = 0; k < 3; ++k) {
-                const auto away = __builtin_elementwise_abs(
-                    simd::load_eight<simd::eight_floats>(centres_[eight][k].data()) - centre[k]);
-                furthest = away > furthest ? away : furthest;
+                const auto distance = __builtin_elementwise_abs(
+                    simd::load_eight<simd::eight_floats>(centres_[group][k].data()) - centre[k]);
+                greatest = distance > greatest ? distance : greatest;
             }
-            for (std::uint32_t near_fronts = simd::bits_of_eight(furthest <= static_cast<float>(near));
+            for (std::uint32_t near_fronts = simd::bits_of_eight(greatest <= static_cast<float>(near));
                  near_fronts != 0; near_fronts &= near_fronts - 1) {
-                const std::size_t i = eight * width + static_cast<std::size_t>(std::countr_zero(near_fronts));
+                const std::size_t i = group * width + static_cast<std::size_t>(std::countr_zero(near_fronts));
                 if (i < fronts_.size() && matches(i)) return mark_used(i);
             }
         }
@@ -199,7 +205,8 @@ private:
         return front;
     }
 
-    /// Adds a front. If the cache is full, it evicts one that was not reused lately, by the clock algorithm.
+    /// Adds a front, and returns its index. A full cache evicts one by the clock algorithm: the hand passes fronts that
+    /// were reused since it last passed them, and takes the first that was not.
     [[nodiscard]] std::size_t add_front(const model_pair& models) {
         std::size_t added = fronts_.size();
         if (added < most) {

@@ -37,10 +37,10 @@ public:
     }
 
 private:
-    /// Tests only the pairs of the front, the pairs of leaves within a margin at an earlier pose. They include every
-    /// pair that meets now while B has moved by no more than the margin; a new front is made if that is worth its cost.
-    /// Otherwise walks from the roots. A query for any one pair tries the last hit first, and builds a front only if
-    /// none is found.
+    /// Finds pairs by BVTT front tracking. A front is the list of the pairs of leaves within a margin at an earlier
+    /// pose: while B has moved by no more than the margin since, it has every pair that meets now, and only these are
+    /// tested. Otherwise a new front is built if that is worth its cost, or the walk starts at the roots. A query for
+    /// any one pair tries the last hit first, and builds a front only if there is no hit.
     template <class Emit>
     void find_pairs_with_front(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                walk_goal goal, const Emit& emit) {
@@ -69,15 +69,7 @@ private:
                 walk_.find_pairs(test, a, b, to_a, goal, emit);
             return;
         }
-        if (front.hit) {
-            walk_.counters().add(work::triangle_tests);
-            if (test.intersects([&] { return *front.hit; }, a.triangles().triangle(front.hit->a),
-                                to_a(b.triangles().triangle(front.hit->b)))) {
-                emit(std::span<const index_pair>(&*front.hit, 1));
-                return;
-            }
-            front.hit.reset();
-        }
+        if (emit_last_hit(test, a, b, to_a, front, emit)) return;
         const auto emit_and_keep = [&](std::span<const index_pair> hits) {
             front.hit = hits.front();
             return emit(hits);
@@ -85,6 +77,22 @@ private:
         if (decision.is_valid) return test_front(test, a, b, to_a, front, goal, emit_and_keep);
         walk_.find_pairs(test, a, b, to_a, goal, emit_and_keep);
         if (!front.hit) static_cast<void>(builds_front());
+    }
+
+    /// Emits the pair of triangles that the last first-pair query reported, if it still intersects, or forgets it.
+    /// @returns whether it was emitted
+    template <class Emit>
+    [[nodiscard]] bool emit_last_hit(const query& test, const model<Tree>& a, const model<Tree>& b,
+                                     const relative_pose& to_a, bvtt_front& front, const Emit& emit) {
+        if (!front.hit) return false;
+        const index_pair hit = *front.hit;
+        walk_.counters().add(work::triangle_tests);
+        if (!test.intersects([&] { return hit; }, a.triangles().triangle(hit.a), to_a(b.triangles().triangle(hit.b)))) {
+            front.hit.reset();
+            return false;
+        }
+        emit(std::span<const index_pair>(&hit, 1));
+        return true;
     }
 
     template <class Emit>
