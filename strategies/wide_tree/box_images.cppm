@@ -10,7 +10,8 @@ export namespace aabb {
 /// Transforms the boxes of a node's children into another frame: each box contains the image of the child's box.
 class box_images {
 public:
-    /// Sets the motion of the boxes, as rows of the rotation.
+    /// Sets the motion of the boxes, a rotation and a shift. Its margin, by which each image grows along axis k, gets
+    /// an allowance for underflow: `least` for the shift and for each coordinate, as the rotation stretches it.
     void begin(const box_motion& motion) noexcept {
         for (std::size_t k = 0; k < 3; ++k) {
             const auto axis = static_cast<int>(k);
@@ -24,10 +25,11 @@ public:
         }
     }
 
-    /// Stores boxes in the other frame that contain the images of a node's children, as boxes of rotated boxes.
-    /// Rounding to nearest is monotone, so the margin of the motion, which is for vertices, nearly suffices. Planes lie
-    /// further out than the vertices, by a 60th of the node, 2^-22 of the coordinate or the smallest step; the
-    /// additional errors stay within the rest of the margin, or within `least`.
+    /// Stores for each child of a node a box in the other frame that contains the image of the child's box: R c + shift
+    /// is its centre, |R| h + margin are its half extents, for the centre c and the half extents h of the child's box.
+    /// The motion's margin covers the rounding of vertices, and nearly that of boxes, as rounding to nearest is
+    /// monotone. A child's planes lie further out than its vertices, by a 60th of the node, 2^-22 of the coordinate or
+    /// the smallest step; the additional errors stay within the rest of the margin, or within `least`.
     void store(const wide_node& n, eight_boxes& to) const noexcept {
 #pragma clang fp contract(fast)
         // Centres and half extents are exact: (half) codes times powers of two. Upper planes are stored as 255 - code.

@@ -27,10 +27,12 @@ public:
         std::uint64_t mask;
     };
 
-    /// Returns, in order, those of up to `most_at_once` pairs of nodes that have overlapping children. There are no
-    /// false negatives. All nodes are prefetched first, so that their cache misses overlap, and each test runs over all
-    /// pairs before the next one starts, which avoids branch mispredictions.
-    /// @param nodes_a the nodes of a level, which `a` indexes
+    /// Returns, in order, those of up to `most_at_once` pairs of nodes that have overlapping children, with a bit mask
+    /// of the pairs of children. There are no false negatives. All nodes are prefetched first, so that their cache
+    /// misses overlap, and each test runs over all pairs before the next one starts, which avoids branch
+    /// mispredictions.
+    /// @param nodes_a,nodes_b the nodes of a level of each tree
+    /// @param a,b pair p is of the nodes at the indices a[p] and b[p]
     template <class Counters>
     [[nodiscard]] std::span<const overlap> find_overlapping(const wide_node* nodes_a, std::span<const std::uint32_t> a,
                                                             const wide_node* nodes_b, std::span<const std::uint32_t> b,
@@ -46,10 +48,12 @@ public:
             const wide_node& node_b = nodes_b[b[p]];
             tests += std::uint64_t{node_a.children} * node_b.children;
             const std::uint64_t mask = node_a.planes.overlaps(node_a.grid(), images_in_a_.of(node_b));
+            // No branch: a pair without overlapping children is overwritten by the next one.
             in_a_[count] = {p, mask};
             count += mask != 0;
         }
         std::span<const overlap> overlapping = std::span(in_a_).first(count);
+        // The rotation inflates the boxes of B's children much: those of A's children are tested in B's frame, too.
         if (tests_in_b_) {
             count = 0;
             for (const auto& [p, mask_in_a] : overlapping) {

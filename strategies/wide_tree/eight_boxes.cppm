@@ -50,8 +50,8 @@ struct quantized_aabbs {
     std::array<row, 3> lower;
     std::array<row, 3> upper;  ///< 255 minus the plane's code, so that both need the same comparison
 
-    /// Tests 64 pairs at once: sets bit 8 j + i where box i may overlap box j of `others`, after coding its floats.
-    /// Both ends are compared alike, since upper codes are stored as 255 minus the code.
+    /// Tests 64 pairs at once: sets bit 8 j + i where box i may overlap box j of `others`, whose floats are rounded to
+    /// codes of the grid. On each axis, lower[i] <= upper[j] and 255 - upper[i] <= 255 - lower[j], in codes.
     [[nodiscard]] inline std::uint64_t overlaps(const code_grid& grid, const eight_boxes& others) const noexcept {
         const auto on_grid = [&](std::size_t k, const eight_boxes::row& x) {
             return simd::load_eight<simd::eight_floats>(x.data()) * grid.scale[k] - grid.offset[k];
@@ -74,7 +74,8 @@ struct quantized_aabbs {
 /// clamped outside. The number of x is monotone in x, as on a `code_grid`.
 class leaf_grid {
 public:
-    /// Spans the grid over the intersection of the meshes' boxes: triangles beyond it meet none of the other mesh.
+    /// Spans the grid over the intersection of the meshes' boxes: triangles beyond it meet none of the other mesh. On
+    /// each axis, the number of x is x * scale - offset: -half_range at the lower end and half_range at the upper one.
     /// @param a,b boxes of the meshes, in A's frame
     void begin(const box& a, const box& b) noexcept {
         rows scale{};
@@ -85,11 +86,12 @@ public:
             const float high = std::min(a.max[axis], b.max[axis]);
             const float steps = 2 * half_range / (high - low);
             edges_[k] = std::max(a.max[axis], b.max[axis]) - std::min(a.min[axis], b.min[axis]);
-            // Otherwise all numbers of the axis are 0, so that it separates nothing.
+            // Without an extent, or if numbers could overflow, all are 0: the axis separates nothing.
             if (!(steps > 0) || !(steps * (edges_[k] + std::abs(low) + std::abs(high)) < most_number)) continue;
             scale[k] = scale[3 + k] = simd::eight_floats{} + steps;
             offset[k] = offset[3 + k] = simd::eight_floats{} + (low * steps + half_range);
         }
+        // `numbers` computes two rows at a time.
         for (std::size_t i = 0; i < 3; ++i) {
             scale_[i] = simd::joined(scale[2 * i], scale[2 * i + 1]);
             offset_[i] = simd::joined(offset[2 * i], offset[2 * i + 1]);

@@ -12,7 +12,7 @@ import aabb.std;
 namespace aabb::simd::detail {
 
 #if defined(__AVX512VBMI2__)
-/// Stores the positions of the set bits, in order: compresses the bytes 0 to 63 by the set.
+/// Stores the positions of the set bits as bytes, in order: compresses the bytes 0 to 63 by the set.
 [[gnu::always_inline]] inline void store_set_bits_of_sixty_four(std::uint64_t set, void* to) noexcept {
     static constexpr auto identity = [] {
         std::array<std::uint8_t, 64> positions{};
@@ -26,7 +26,8 @@ namespace aabb::simd::detail {
 /// Unpacks `count` numbers of 1 to 4 bytes each to u32, padded to sixteen with the first, by one permutation of bytes.
 [[gnu::always_inline]] inline void unpack_sixteen_numbers(void* to, const void* from, std::size_t bytes,
                                                           std::uint32_t count) noexcept {
-    // Byte b < bytes of number i is at bytes * i + b.
+    // Byte b of number i comes from byte n * i + b, for numbers of n bytes: at[n] has the source of each of the 64
+    // bytes, present[n] those with b < n. The others are 0.
     static constexpr auto patterns = [] {
         struct {
             alignas(64) std::uint8_t at[5][64];
@@ -53,8 +54,9 @@ using eight_selected_floats = float __attribute__((vector_size(32)));
     return _mm512_castps512_ps256(_mm512_permutexvar_ps(at, _mm512_loadu_ps(from)));
 }
 
-/// Sets bit 8 j + i where column i of `a` and column j of `b`, of three rows of eight, share a number. Each comparison
-/// is of two copies of a row of `a` with two numbers of `b`, each broadcast to eight lanes.
+/// Sets bit 8 j + i where column i of `a` and column j of `b` share a number; both have three rows of eight, as the
+/// vertices of eight triangles by corner. Each comparison is of two copies of a row of `a` with two numbers of `b`,
+/// each broadcast to eight lanes.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t columns_with_shared_number(const void* a,
                                                                                   const void* b) noexcept {
     const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
@@ -78,6 +80,7 @@ using eight_selected_floats = float __attribute__((vector_size(32)));
     const auto twice = [](const float* row) {
         return _mm512_castpd_ps(_mm512_broadcast_f64x4(_mm256_loadu_pd(reinterpret_cast<const double*>(row))));
     };
+    // The pairs with boxes 2 t and 2 t + 1 of `b`, which overlap on all axes so far.
     __mmask16 met[4] = {0xffff, 0xffff, 0xffff, 0xffff};
     for (int k = 0; k < 3; ++k) {
         const __m512 lower = twice(a + 8 * k);
@@ -123,10 +126,12 @@ using two_points_of_four = float __attribute__((vector_size(32)));
 
 export namespace aabb::simd {
 
-/// Transposes eight points to a structure of arrays: returns their x, y and z as three vectors.
+/// Transposes eight points to a structure of arrays: returns their x, y and z as three vectors. It joins four vectors
+/// of two points each, x y z 0, in two levels of shuffles; both halves of a vector are shuffled alike.
 [[nodiscard, gnu::always_inline]] inline std::array<eight_floats, 3> transpose_eight_points(
     const float* const* points) noexcept {
     const auto row = [&](int i) { return detail::two_points(points[i], points[i + 4]); };
+    // In each half, `low` makes x x y y of two rows, and `high` z z 0 0.
     const auto low = [](eight_floats p, eight_floats q) {
         return __builtin_shufflevector(p, q, 0, 8, 1, 9, 4, 12, 5, 13);
     };
@@ -170,6 +175,7 @@ export namespace aabb::simd {
 #else
     std::array<float, 16> numbers;
     std::memcpy(numbers.data(), &from, sizeof from);
+    // Bit 3 of an index chooses the half, the lower three bits the number in it.
     const eight_floats low = permuted(numbers.data(), at);
     const eight_floats high = permuted(numbers.data() + 8, at);
     return (at & 8U) != 0 ? high : low;
@@ -205,7 +211,7 @@ export namespace aabb::simd {
 #else
     std::uint64_t shared = 0;
     for (std::size_t j = 0; j < 8; ++j) {
-        auto any = load_eight<eight_words>(a) == b[j];
+        auto any = load_eight<eight_words>(a) == b[j];  // repeated below, but gives the flags their type
         for (std::size_t c = 0; c < 3; ++c)
             for (std::size_t d = 0; d < 3; ++d) any |= load_eight<eight_words>(a + 8 * c) == b[8 * d + j];
         shared |= std::uint64_t{bits_of_eight(any)} << 8 * j;
@@ -252,8 +258,9 @@ export namespace aabb::simd {
                                                                          const std::int16_t* b) noexcept {
     using eight_halves = std::int16_t __attribute__((vector_size(16)));
     using four_rows = std::int16_t __attribute__((vector_size(64)));
-    // Rows of pairs with even j and with odd j hold differences; one is negative where two boxes are disjoint. AVX-512
-    // packs the signs of two vectors by taking eight of each in turn, so rows that alternate end up in their order.
+    // Boxes i and j are disjoint if a difference upper - lower is negative. A row of eight pairs collects the signs of
+    // its differences by OR: `even` has the rows with even j, `odd` those with odd j, since AVX-512 packs the signs of
+    // two vectors by taking eight of each in turn. Differences saturate, so that none overflows to the other sign.
     four_rows even{};
     four_rows odd{};
     const auto indices = std::make_index_sequence<32>{};
