@@ -26,14 +26,15 @@ public:
     /// Releases all claims. The missing leaves of the previous group must have been read.
     void begin_group() noexcept { ++group_, missing_count_ = 0; }
 
-    /// Reserves the leaf's slot for the current group of pairs, and lists the leaf as missing if it is not cached.
-    /// @returns false if another leaf of the group occupies the slot
+    /// Reserves a slot of the cache for a leaf that the current group of pairs needs. A leaf that is not cached is
+    /// listed as missing, to be read into the slot afterwards.
+    /// @returns false if another leaf of the group occupies the slot, which ends the group
     [[nodiscard]] inline bool claim(std::uint32_t leaf) noexcept {
         const std::size_t slot = slot_of(leaf);
         const std::uint64_t key = std::uint64_t{epoch_} << 32U | leaf;
         const bool is_missing = keys_of_slots_[slot] != key;
-        // One condition is mostly false, the other is hard to predict. Marked as unpredictable, the conjunction stays a
-        // single branch; otherwise the compiler makes two.
+        // Fails if the group has claimed the slot for another leaf. The first condition is mostly false, the second
+        // hard to predict: marked as unpredictable, the conjunction compiles to one branch instead of two.
         if (__builtin_unpredictable(static_cast<int>(is_missing) & static_cast<int>(claimants_[slot] == group_)))
             return false;
         missing_[missing_count_] = leaf;
@@ -90,8 +91,8 @@ public:
         return begin;
     }
 
-    /// Reads the leaves of the group that are missing in the cache of a model: their vertex lists, and then by steps.
-    /// The first step reads vertices, which are prefetched some leaves ahead.
+    /// Reads the leaves of the group that are missing in a model's cache, by steps. Before the first step reads a
+    /// leaf's vertices, its vertex list is read and the vertices are prefetched, `ahead` leaves earlier.
     /// @param first,others called as `step(leaf, number, vertices)`; each step runs over all leaves before the next one
     /// starts, so that no leaf stalls on its own previous step
     template <class Leaf, class First, class... Others>
@@ -127,6 +128,7 @@ public:
     /// Passes on the pairs of a front in order, a group of pairs at a time whose leaves fit into the caches.
     /// @param reader a reader, which others may share
     /// @param take called with a pair and the triangles of both leaves; returns whether to stop
+    /// @returns whether `take` stopped
     template <class Take>
     [[nodiscard]] bool for_each_pair(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                      std::span<const front_pair> pairs, leaf_reader<Tree>& reader, const Take& take) {
@@ -147,6 +149,7 @@ public:
                                 [&](triangle_block& leaf, std::uint32_t number, const vertex_list& vertices) {
                                     leaf.load(b.triangles(), b.tree(), number, vertices, to_a);
                                 });
+            // Vertex lists of the next group are prefetched while this one is tested.
             const std::size_t next = claim(end);
             for (const front_pair& p : pairs.subspan(begin, end - begin))
                 if (take(p, cache_a_[p.leaf_a], cache_b_[p.leaf_b])) return true;

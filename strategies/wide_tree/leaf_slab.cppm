@@ -11,12 +11,14 @@ export namespace aabb {
 /// it is much thinner than their boxes. A triangle outside intersects none of them.
 class leaf_slab {
 public:
-    /// Fits the slab to a leaf: the range of its corners' heights along the mean normal, inflated by the errors of all
-    /// heights. It stays infinite if arithmetic could overflow.
+    /// Fits the slab to a leaf: the range of its corners' heights along the mean normal, relative to a corner of the
+    /// leaf, inflated by the errors of the leaf's heights and of those that are compared. It stays infinite if these
+    /// could overflow.
     /// @param edges extents of a box around the leaf's vertices and all that are compared with the slab
     /// @param margin by which the slab is inflated along each axis
     void fit(const triangle_block& block, const std::array<float, 3>& edges, float margin = 0) noexcept {
         set_normal(block);
+        // A bound on all heights: |normal| · edges.
         float magnitude = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             origin_[k] = block.corner[0][k][0];
@@ -52,7 +54,7 @@ private:
         simd::eight_floats low;
         simd::eight_floats high;
 
-        /// The range of each triangle's corners along the slab's normal, relative to its origin.
+        /// Computes the least and the greatest height of each triangle's three corners: (corner - origin) · normal.
         inline heights(const leaf_slab& slab, const triangle_block& block) noexcept {
 #pragma clang fp contract(fast)
             for (std::size_t c = 0; c < 3; ++c) {
@@ -69,6 +71,7 @@ private:
     /// Sets the mean normal: the sum of the cross products of edges, which weights each normal by its triangle's area.
     void set_normal(const triangle_block& block) noexcept {
 #pragma clang fp contract(fast)
+        // Two edges of each of the eight triangles.
         std::array<simd::eight_floats, 3> p;
         std::array<simd::eight_floats, 3> q;
         for (std::size_t k = 0; k < 3; ++k) {

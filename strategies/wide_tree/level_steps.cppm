@@ -17,7 +17,8 @@ public:
         friend bool operator==(const heights&, const heights&) = default;
     };
 
-    /// Computes the steps from these roots, which open the higher node or both, unless the last query had them.
+    /// Lists the heights of both nodes at each step, from these roots to two leaves: each step opens the higher node,
+    /// or both if they have equal height. The list is kept if the last query had roots of the same heights.
     void begin(heights roots) {
         if (!steps_.empty() && steps_.front() == roots) return;
         // Reserves first, so that a failed allocation leaves the old steps intact.
@@ -38,13 +39,13 @@ public:
     /// Maps overlapping pairs of children (bit 8 j + i for child i of A's node and j of B's) to the pairs that the next
     /// step opens: a node that is not opened takes the place of its first child.
     [[nodiscard]] inline std::uint64_t pairs_to_open(std::size_t step, std::uint64_t mask) const noexcept {
-        if (!opens_a(step)) {
+        if (!opens_a(step)) {  // collects each row of eight bits in its first bit: i becomes 0
             mask |= mask >> 4U;
             mask |= mask >> 2U;
             mask |= mask >> 1U;
             mask &= 0x0101010101010101;
         }
-        if (!opens_b(step)) {
+        if (!opens_b(step)) {  // collects all rows in the first one: j becomes 0
             mask |= mask >> 32U;
             mask |= mask >> 16U;
             mask |= mask >> 8U;

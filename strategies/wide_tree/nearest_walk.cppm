@@ -28,17 +28,18 @@ struct nearest_places {
         return __builtin_convertvector(simd::load_eight<simd::eight_bytes>(codes.data()), simd::eight_floats);
     };
     for (std::size_t k = 0; k < 3; ++k) {
-        // Twice the coordinates of the centres, so that nothing is halved.
+        // Twice the coordinates of the centres, so that nothing is halved. Upper codes are stored as 255 - code.
         const auto step = static_cast<float>(node.step(k));
         const float twice_origin = 2 * static_cast<float>(node.origin[k]) + 255;
         node_centres[k] = (floats_of(node.planes.lower[k]) - floats_of(node.planes.upper[k]) + twice_origin) * step;
         simd::store_eight(box_centres[k].data(), simd::load_eight<simd::eight_floats>(boxes.lower[k].data()) +
                                                      simd::load_eight<simd::eight_floats>(boxes.upper[k].data()));
     }
-    // Non-negative floats compare like their bits; the last six hold the pair. NaN compares greater than any number.
+    // A key is a squared distance whose last six bits are replaced by the pair 8 j + i. Keys compare like the
+    // distances, as non-negative floats compare like their bits; NaN compares greater than any number.
     constexpr simd::eight_words indices{0, 1, 2, 3, 4, 5, 6, 7};
     constexpr simd::eight_words none = ~simd::eight_words{};
-    simd::eight_words least = none;  // of each column
+    simd::eight_words least = none;  // by child i: its least key, and its second least
     simd::eight_words next = none;
     for (std::uint32_t j = 0; j < eight_boxes::most; ++j) {
         simd::eight_floats distance{};
@@ -47,6 +48,7 @@ struct nearest_places {
             distance += difference * difference;
         }
         const simd::eight_words key = (__builtin_bit_cast(simd::eight_words, distance) & ~63U) | indices | 8 * j;
+        // Pairs that the mask lacks get the greatest key.
         const simd::eight_words candidate = key | ~simd::flags_of_eight(static_cast<std::uint8_t>(mask >> (8 * j)));
         next = __builtin_elementwise_min(next, __builtin_elementwise_max(least, candidate));
         least = __builtin_elementwise_min(least, candidate);
@@ -62,14 +64,16 @@ struct nearest_places {
 template <WideTreePolicy Tree>
 class nearest_walk {
 public:
-    /// Visits pairs of leaves whose boxes may overlap, those first that most likely intersect.
+    /// Visits pairs of leaves whose boxes may overlap, those first that most likely intersect: descends to the nearest
+    /// pair of children, postpones the other pairs, by step, and goes some steps back after leaves that do not
+    /// intersect.
     /// @param at_leaves called with a leaf of A and one of B; returns whether to stop
     template <class Counters, class AtLeaves>
     void for_each_leaf_pair(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, Counters& counters,
                             const AtLeaves& at_leaves) {
         begin(a.tree(), b.tree(), to_a);
-        const std::size_t leaves = steps_.size() - 1;
-        std::size_t missed = 0;  // pairs of leaves without an intersection
+        const std::size_t leaves = steps_.size() - 1;  // the step at which both nodes are leaves
+        std::size_t missed = 0;                        // number of pairs of leaves without an intersection
         std::size_t step = 0;
         node_pair nodes{.a = 0, .b = 0};  // the roots
         for (;;) {
@@ -80,11 +84,12 @@ public:
                 if (goes_on) continue;
             } else {
                 if (at_leaves(nodes.a, nodes.b)) return;
-                // Near surfaces may be parallel everywhere. So the walk restarts, mostly a few levels up, sometimes at
-                // the root, with the frequencies of the universal restart strategy (Luby, Sinclair, Zuckerman, "Optimal
-                // speedup of Las Vegas algorithms", 1993), and takes the highest pairs from there on.
+                // Near surfaces may be parallel everywhere, so that the next nearest leaves would not intersect,
+                // either. So the walk restarts at the highest postponed pairs from two steps back on; after every
+                // second miss from three steps back on, after every fourth from four: the frequencies of the universal
+                // restart strategy (Luby, Sinclair, Zuckerman, "Optimal speedup of Las Vegas algorithms", 1993).
                 step -= std::min(step, least_back + static_cast<std::size_t>(std::countr_zero(++missed)));
-                const std::uint64_t below = postponed_steps_ >> step;
+                const std::uint64_t below = postponed_steps_ >> step;  // bit s: step + s has postponed pairs
                 step = below == 0 ? leaves : step + static_cast<std::size_t>(std::countr_zero(below));
             }
             if (postponed_steps_ == 0) return;
@@ -168,7 +173,8 @@ private:
         return {first.a + (pair & 7U), first.b + (pair >> 3U)};
     }
 
-    /// Pushes the pairs of children in the mask onto the step's stack.
+    /// Pushes the pairs of children in a mask (bit 8 j + i) onto the step's stack, to be opened later by `pop`.
+    /// @param first the pair of the first children, to which i and j are added
     /// @param next the pair to open next, if the mask has it
     inline void postpone(std::size_t step, const node_pair& first, std::uint64_t mask, std::uint32_t next) {
         postponed_stack& stack = stacks_[step];
@@ -180,8 +186,8 @@ private:
         postponed_steps_ |= bit(step);
     }
 
-    /// Pops a pair of nodes from the step's most recent entry, the pairs (bits of a mask) of children of two nodes.
-    /// Drops the entry if it has no other pair.
+    /// Pops one pair of nodes that `postpone` has stored for the step, from its last entry: a mask of pairs of children
+    /// of two nodes. An entry without further pairs is dropped.
     [[nodiscard]] inline node_pair pop(std::size_t step) noexcept {
         postponed_stack& stack = stacks_[step];
         postponed_children& entry = stack.entries[stack.size - 1];

@@ -15,7 +15,8 @@ public:
     [[nodiscard]] bool is_full() const noexcept { return pairs_ + most_per_leaf_pair > capacity; }
 
     /// Adds the pairs in the mask (bit 8 j + i for triangle i of `a` and j of `b`), not zero: copies their corners to
-    /// the rows of the queue, eight pairs at a time, by permutations. `is_full` must not hold.
+    /// the rows of the queue, eight pairs at a time, by permutations, and stores where they come from, for `emit`.
+    /// `is_full` must not hold.
     inline void add(std::uint64_t mask, std::uint32_t leaf_a, const triangle_block& a, std::uint32_t leaf_b,
                     const triangle_block& b) noexcept {
         alignas(64) std::array<std::uint8_t, most_per_leaf_pair> bits{};
@@ -39,7 +40,8 @@ public:
         pairs_ += count;
     }
 
-    /// Tests the queued pairs and passes those that intersect to `emit`, in one call.
+    /// Tests the queued pairs, a vector at a time, and passes those that intersect to `emit`, in one call. A
+    /// floating-point filter decides most pairs of a vector, and the test itself the undecided ones.
     /// @param flush whether to test all pairs, instead of full vectors only
     /// @param triangles_at maps triangles i and j of two leaves to those of the meshes, as `(leaf_a, i, leaf_b, j)`
     /// @returns what `emit` returned: whether to stop
@@ -48,7 +50,7 @@ public:
         std::size_t done = 0;
         std::size_t hit_count = 0;
         for (; done + simd::width <= pairs_ || (flush && done < pairs_); done += simd::width) {
-            const std::uint32_t present = simd::lanes_below(pairs_ - done);
+            const std::uint32_t present = simd::lanes_below(pairs_ - done);  // fewer than all in the last vector
             const filtered_pairs by_filter = filter(done, test.image_error());
             std::uint32_t hits = by_filter.hits & present;
             for (std::uint32_t open = by_filter.undecided & present; open != 0; open &= open - 1) {
@@ -93,7 +95,7 @@ private:
         return t;
     }
 
-    /// Drops the tested pairs and moves the rest to the front: less than a vector, so that one vector per row suffices.
+    /// Drops the tested pairs and moves the rest, less than a vector, to the beginning of each row.
     void drop_first(std::size_t done) noexcept {
         pairs_ -= done;
         if (pairs_ == 0) return clear();
@@ -101,7 +103,8 @@ private:
             std::copy_n(&a_[row][done], simd::width, a_[row].data());
             std::copy_n(&b_[row][done], simd::width, b_[row].data());
         }
-        // Origins refer to pairs of leaves by index: those before the first one that is still needed are dropped, too.
+        // An origin has the index of a pair of leaves. Pairs of leaves before that of the first remaining pair are
+        // dropped, too, and the indices shifted.
         const std::uint32_t first = origin_[done] >> pair_bits;
         simd::store(origin_.data(), simd::load(&origin_[done]) - (first << pair_bits));
         leaf_pairs_ -= first;

@@ -48,13 +48,15 @@ struct triangle_block {
 private:
     using columns = std::array<simd::eight_floats, 3>;
 
-    /// Reads the leaf's vertices, transforms each once, and distributes them to the triangles' corners by permutations.
+    /// Reads the leaf's distinct vertices, at most sixteen, transforms each once, and distributes them to the
+    /// triangles' corners by permutations: `list.positions[c]` has the positions of the triangles' corners c in the
+    /// list.
     /// @param change transforms eight points, given as three vectors of coordinates
     template <class Tree, class Change>
     inline void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,
                      Change change) noexcept {
         triangles = static_cast<std::uint32_t>(std::min(width, m.triangles.size() - width * leaf));
-        if (list.count == 0) return load_from_mesh(m, tree, leaf, change);  // it has more vertices than a list takes
+        if (list.count == 0) return load_from_mesh(m, tree, leaf, change);  // the leaf has no list
         const auto eight_from = [&](std::size_t first) __attribute__((always_inline)) {
             std::array<const float*, width> from;
             for (std::size_t i = 0; i < width; ++i) from[i] = m.vertices[list.vertices[first + i]].at;
@@ -72,7 +74,8 @@ private:
         }
     }
 
-    /// Loads the triangles without a vertex list, corner by corner.
+    /// Loads the triangles of a leaf without a vertex list, as it has more than sixteen vertices or the tree has no
+    /// lists: corner by corner, so that a shared vertex is transformed several times.
     template <class Tree, class Change>
     void load_from_mesh(const mesh& m, const Tree& tree, std::uint32_t leaf, Change change) noexcept {
         std::array<const std::uint32_t*, width> vertices;

@@ -31,9 +31,12 @@ public:
     static constexpr std::size_t triangles = balanced_order::leaf_triangles;
 
     vertex_lists() = default;
-    /// Writes the list of each leaf, in parallel, to parts that are concatenated afterwards: lists differ in length.
+    /// Writes the list of each leaf. Threads take shares of `leaves_per_share` leaves, and write the lists of each
+    /// share to a part of its own; the parts are concatenated afterwards, as lists differ in length. `begins_` has the
+    /// byte at which the list of each leaf begins, at first within its part.
     /// @param order the mesh's triangles in the order of the leaves
     vertex_lists(const mesh& m, std::span<const std::uint32_t> order, worker_threads& workers) {
+        // As many bytes per vertex index as the number of vertices needs.
         while (index_bytes_ < 4 && m.vertices.size() > std::uint64_t{1} << 8 * index_bytes_) ++index_bytes_;
         begins_.resize((order.size() + triangles - 1) / triangles);
         const std::size_t most_bytes_of_part = leaves_per_share * (header + index_bytes_ * vertex_list::most);
@@ -78,12 +81,13 @@ public:
     }
 
     /// Whether the list still has the corners of the leaf's triangles: a mesh may renumber its vertices.
+    /// @param of_leaf the leaf's triangles
     [[nodiscard]] bool matches(const mesh& m, std::uint32_t leaf,
                                std::span<const std::uint32_t> of_leaf) const noexcept {
         vertex_list list;
         read(leaf, list);
+        if (list.count == 0) return true;  // vertices are read from the mesh
         bool same = true;
-        if (list.count == 0) return same;
         for (std::size_t i = 0; i < of_leaf.size(); ++i)
             for (std::size_t c = 0; c < 3; ++c)
                 same &= list.vertices[list.positions[c] >> 4 * i & 15U] == m.triangles[of_leaf[i]][c];
@@ -100,7 +104,9 @@ private:
     static constexpr std::size_t leaves_per_share = 1024;  // fewer are not worth another thread
 
     /// Writes the list of one leaf: one byte for the number of vertices, 0 if there are more than sixteen; for each
-    /// corner, the positions of eight triangles in the list, in 4 bits each; and the indices of the vertices.
+    /// corner, the positions of the eight triangles' vertices in the list, in 4 bits each; and the indices of the
+    /// vertices, ascending.
+    /// @param of_leaf the leaf's triangles, the last of which pads them to eight
     /// @returns the end of the list
     std::byte* write_list(const mesh& m, std::span<const std::uint32_t> of_leaf, std::byte* to) const {
         constexpr std::size_t corners = 3 * triangles;
@@ -114,7 +120,7 @@ private:
             return bits;
         };
         // Finds all first occurrences before any position, so that no iteration depends on the previous one.
-        std::array<std::uint8_t, corners> first;
+        std::array<std::uint8_t, corners> first;  // by corner: where its vertex occurs first
         std::uint32_t is_new = 0;
         for (std::size_t at = 0; at < corners; ++at) {
             const std::uint32_t same = bits_where([](auto x, std::uint32_t v) { return x == v; }, vertices[at]);
@@ -124,7 +130,7 @@ private:
         const auto count = static_cast<std::size_t>(std::popcount(is_new));
         *to = static_cast<std::byte>(count > vertex_list::most ? 0 : count);
         if (count > vertex_list::most) return to + 1;
-        std::array<std::uint32_t, corners> position;  // of first occurrences
+        std::array<std::uint32_t, corners> position;  // of first occurrences: the number of lesser vertices
         for (std::uint32_t left = is_new; left != 0; left &= left - 1) {
             const auto at = static_cast<std::size_t>(std::countr_zero(left));
             const std::uint32_t less = bits_where([](auto x, std::uint32_t v) { return x < v; }, vertices[at]);

@@ -27,17 +27,18 @@ struct wide_node {
     }
 
     [[nodiscard]] inline double step(std::size_t axis) const noexcept { return power_of_two(exponent[axis]); }
-    /// Maps coordinates to codes. Planes are exact and rounding is monotone: no coordinate is rounded past a plane.
+    /// The grid that maps a coordinate x to its code, x / 2^exponent - origin on each axis. Planes are exact and
+    /// rounding is monotone: no coordinate is rounded past a plane.
     [[nodiscard]] inline code_grid grid() const noexcept {
         code_grid g;
         for (std::size_t k = 0; k < 3; ++k) {
-            g.scale[k] = std::bit_cast<float>(static_cast<std::uint32_t>(127 - exponent[k]) << 23U);
+            g.scale[k] = std::bit_cast<float>(static_cast<std::uint32_t>(127 - exponent[k]) << 23U);  // 2^-exponent
             g.offset[k] = static_cast<float>(origin[k]);
         }
         return g;
     }
 
-    /// Decodes the box of child i.
+    /// Decodes the box of child i. Upper codes are stored as 255 - code.
     [[nodiscard]] inline box child(std::size_t i) const noexcept {
         box b;
         for (int k = 0; k < 3; ++k) {
@@ -60,7 +61,8 @@ private:
         return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52U);
     }
 
-    /// Encodes axis k with the finest grid, by powers of two, on which all planes have codes, rounded outward.
+    /// Encodes the boxes on axis k, rounded outward, on the finest grid on which all planes have codes from 1 to 254.
+    /// The step of the grid is a power of two.
     void encode_axis(std::span<const box> boxes, int k) noexcept {
         // In double, products with powers of 2 are exact, and so are their integer parts.
         simd::eight_doubles least = simd::eight_doubles{} + boxes[0].min[k];
