@@ -42,8 +42,9 @@ struct sampled {
         return *middle;
     }
 
-    /// The cost of a subset of `count` boxes within bounds: entries, and tests of a sweep along its best swept axis, on
-    /// which two mean boxes overlap for about twice the share of one in the width.
+    /// The cost of a subset of `count` boxes within bounds: its entries, and a test for each pair of boxes that overlap
+    /// on the best swept axis. That is a share of about 2 e / w of all pairs, for boxes of mean extent e in bounds of
+    /// width w.
     [[nodiscard]] double cost(double count, const box& within, axis_set swept) const {
         const cost_model& ns = machine_costs();
         double share = 1;
@@ -73,7 +74,7 @@ bool lies_right(const box& b, std::uint32_t axis, float plane) {
 
 }  // namespace
 
-/// Collects the present objects, and discards a tree for other swept axes, on which the costs of splits depend.
+/// Collects the present objects. A tree for other swept axes is discarded, since the costs of splits depend on them.
 /// @returns the axes whose sorted lists the partition needs: none
 axis_set kd_tree_partition::axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
     is_tree_valid_ &= swept == swept_;
@@ -127,7 +128,8 @@ void kd_tree_partition::rebuild_all(std::span<const box> boxes) {
     build_subtree(boxes, /*first=*/0, ids_.size(), /*cell=*/all_space, /*depth=*/0);
 }
 
-/// Rebuilds the stale subtrees, which hold many more or fewer copies than when built, from the boxes that were in them.
+/// Replaces the tree by a copy in which the subtrees at `stale_roots_` are rebuilt from their boxes: some of their
+/// nodes have many more or fewer boxes now than when they were built.
 void kd_tree_partition::rebuild_stale(std::span<const box> boxes) {
     collect_stale_boxes();
     old_.swap(nodes_);
@@ -135,7 +137,7 @@ void kd_tree_partition::rebuild_stale(std::span<const box> boxes) {
     leaves_ = 0;
     extra_copies_ = 0;
     for (const std::uint32_t copies : copies_in_leaf_) extra_copies_ += copies;
-    extra_copies_ -= std::min<std::uint64_t>(extra_copies_, present_.size());  // the first copy of each box
+    extra_copies_ -= std::min<std::uint64_t>(extra_copies_, present_.size());  // those beyond the first of each box
     initial_pairs_ = 0;
     new_index_.resize(old_.size());
     copy_or_rebuild(boxes, /*old=*/0, /*depth=*/0);
@@ -143,11 +145,13 @@ void kd_tree_partition::rebuild_stale(std::span<const box> boxes) {
     stale_roots_.clear();
 }
 
-/// Copies a subtree of the old tree, except stale parts, which are rebuilt.
+/// Appends to `nodes_` a copy of the old subtree at node `old`, in which the subtrees at `stale_roots_` are rebuilt
+/// from their boxes. Notes the new index of each old node in `new_index_`; for all nodes of a rebuilt subtree, that is
+/// its new root.
 void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_t old, std::size_t depth) {
     const auto self = static_cast<std::uint32_t>(nodes_.size());
     const auto root = std::ranges::lower_bound(stale_roots_, old);
-    if (root != stale_roots_.end() && *root == old) {
+    if (root != stale_roots_.end() && *root == old) {  // a subtree to rebuild
         const auto r = static_cast<std::size_t>(root - stale_roots_.begin());
         // Copy its boxes to the top of the stack: building overwrites what is above them, which is still needed.
         const std::size_t first = ids_.size();
@@ -157,7 +161,7 @@ void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_
                     ids_.begin() + static_cast<std::ptrdiff_t>(first));
         build_subtree(boxes, first, count, old_[old].cell, depth);
         ids_.resize(first);
-        std::uint32_t last = old;  // then the last of its descendants, which follow it in preorder
+        std::uint32_t last = old;  // becomes the last of its descendants, which follow it in preorder
         while (old_[last].axis != is_leaf) last = old_[last].children[1];
         std::fill(new_index_.begin() + old, new_index_.begin() + last + 1, self);
         return;
@@ -174,7 +178,9 @@ void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_
     copy_or_rebuild(boxes, old_[old].children[1], depth + 1);
 }
 
-/// Builds the subtree of the boxes ids_[first .. first + count), a single leaf if no split is cheaper.
+/// Appends to `nodes_` a subtree of the boxes ids_[first .. first + count), the top of the stack `ids_`: a single leaf
+/// if no split is cheaper, or else a node, for whose children the boxes are pushed onto the stack.
+/// @param cell the half-open region of the root
 void kd_tree_partition::build_subtree(std::span<const box> boxes, std::size_t first, std::size_t count, const box& cell,
                                       std::size_t depth) {
     const std::size_t self = nodes_.size();
@@ -240,7 +246,9 @@ bool kd_tree_partition::divide(std::span<const box> boxes, std::size_t first, st
     return true;
 }
 
-/// The cheapest split at a median of the sample's centres; none if it costs more than no split.
+/// The cheapest split, by the cost of both sides, of a node's boxes ids_[first .. first + count) at the median of a
+/// sample's centres on one of the axes. No split (the axis is `is_leaf`) if that is cheaper, or the configured leaf
+/// size is not exceeded.
 kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxes, std::size_t first,
                                                        std::size_t count) const {
     constexpr double never = std::numeric_limits<double>::infinity();
@@ -267,7 +275,8 @@ kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxe
     return best;
 }
 
-/// Finds the leaves of all boxes, each from the lowest node that contained it in the last frame, if it still does.
+/// Finds the leaves that each box overlaps. The search starts at the lowest node that contained the box in the last
+/// frame, if it still does. The entries of box `id` are entries_[starts_[id] .. starts_[id + 1]).
 /// @returns false if there are too many copies, which requires a full rebuild
 bool kd_tree_partition::place_boxes(std::span<const box> boxes) {
     const std::size_t most = 2 * most_copies * present_.size();
@@ -286,8 +295,10 @@ bool kd_tree_partition::place_boxes(std::span<const box> boxes) {
     return true;
 }
 
-/// Puts a box into all leaves that it overlaps below a node whose cell contains it.
-/// @returns the lowest such node
+/// Adds entries for all leaves that a box overlaps below node `from`, whose cell contains it. An entry has the leaf
+/// and, as bits, the axes on which the box's lower end lies in the leaf: of the leaves that two boxes share, the one
+/// where each axis is set for at least one of them reports the pair.
+/// @returns the lowest node whose cell contains the box
 inline std::uint32_t kd_tree_partition::place_box(const box& b, std::uint32_t from) {
     struct waiting {
         std::uint32_t at;
@@ -319,8 +330,8 @@ inline std::uint32_t kd_tree_partition::place_box(const box& b, std::uint32_t fr
     }
 }
 
-/// Compares the number of copies below each node with that at its construction, and collects the roots of the subtrees
-/// to rebuild.
+/// Counts the copies of boxes below each node. A subtree is stale if their number has much changed since it was built:
+/// collects the roots of the subtrees to rebuild in `stale_roots_`.
 void kd_tree_partition::find_stale_nodes() {
     copies_below_.resize(nodes_.size());
     for (std::size_t at = nodes_.size(); at-- > 0;) {
@@ -338,7 +349,7 @@ void kd_tree_partition::find_stale_nodes() {
     if (is_stale(0))
         stale_roots_.push_back(0);
     else
-        collect_stale_nodes(0);
+        collect_stale_roots(0);
 }
 
 /// Whether a node is stale: its number of copies has more than doubled or halved, with a tolerance for small numbers.
@@ -348,16 +359,17 @@ bool kd_tree_partition::is_stale(std::uint32_t at) const noexcept {
     return current > 2 * initial + 16 || 2 * current + 16 < initial;
 }
 
-/// Collects the lowest nodes that are not stale but have a stale child: they can redistribute boxes among children.
-void kd_tree_partition::collect_stale_nodes(std::uint32_t at) {
+/// Collects the subtrees to rebuild below a node that is not stale: their roots are the lowest nodes that are not stale
+/// but have a stale child, so that they can redistribute boxes among their children.
+void kd_tree_partition::collect_stale_roots(std::uint32_t at) {
     if (nodes_[at].axis == is_leaf) return;
     const auto [left, right] = nodes_[at].children;
     if (is_stale(left) || is_stale(right)) {
         stale_roots_.push_back(at);
         return;
     }
-    collect_stale_nodes(left);
-    collect_stale_nodes(right);
+    collect_stale_roots(left);
+    collect_stale_roots(right);
 }
 
 /// The first or the last leaf below a node.
@@ -366,7 +378,9 @@ std::uint32_t kd_tree_partition::outermost_leaf(std::uint32_t at, std::size_t si
     return nodes_[at].children[0];
 }
 
-/// Collects the boxes below each stale root, ascending by id. Leaves of a box ascend, so those of a root are adjacent.
+/// Lists the boxes below each stale root r, ascending by id, in ids_[boxes_begin_[r] .. boxes_end_[r]). A box has
+/// entries of several leaves, which ascend: those below a root are adjacent, so that comparison with the last root
+/// lists it once.
 void kd_tree_partition::collect_stale_boxes() {
     root_of_leaf_.assign(leaves_, 0);
     boxes_begin_.resize(stale_roots_.size());
@@ -374,7 +388,7 @@ void kd_tree_partition::collect_stale_boxes() {
     std::size_t total = 0;
     for (std::size_t r = 0; r < stale_roots_.size(); ++r) {
         boxes_begin_[r] = boxes_end_[r] = total;
-        total += copies_below_[stale_roots_[r]];
+        total += copies_below_[stale_roots_[r]];  // room for all: a box has at least one copy
         const std::uint32_t last = outermost_leaf(stale_roots_[r], /*side=*/1);
         for (std::uint32_t leaf = outermost_leaf(stale_roots_[r], /*side=*/0); leaf <= last; ++leaf)
             root_of_leaf_[leaf] = static_cast<std::uint32_t>(r) + 1;

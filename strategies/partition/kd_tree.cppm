@@ -89,7 +89,7 @@ private:
     [[nodiscard]] bool place_boxes(std::span<const box> boxes);
     void find_stale_nodes();
     [[nodiscard]] bool is_stale(std::uint32_t at) const noexcept;
-    void collect_stale_nodes(std::uint32_t at);
+    void collect_stale_roots(std::uint32_t at);
     void collect_stale_boxes();
 
     config config_;
