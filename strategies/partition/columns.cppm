@@ -55,7 +55,8 @@ public:
     columns_partition() = default;
     explicit columns_partition(const config& c) : config_(c) {}
 
-    /// The axis and the numbers of columns that are cheapest in the model, for boxes clipped to the bounds.
+    /// Plans the columns of some boxes: the axis along which columns run, and their numbers on the other two axes, u
+    /// and v, that are cheapest in the model. Boxes are clipped to `within`.
     [[nodiscard]] column_plan plan(std::span<const box> boxes, const box& within) const {
         if (boxes.empty()) return {};
         const sample seen = sample_of(boxes, within);
@@ -133,7 +134,8 @@ private:
         [[nodiscard]] box kept_box(std::size_t i) const {
             return {{ends[0][i], ends[1][i], ends[2][i]}, {ends[3][i], ends[4][i], ends[5][i]}};
         }
-        /// Adds the extents of a box and their products to the sums, from which the means are computed.
+        /// Adds the extents of a box, the areas of its faces and its volume to the sums, from which the means are
+        /// computed.
         void add_extents(const box& b) {
             vec3d e{};
             for (int k = 0; k < 3; ++k) e[k] = std::max(0.0, double{b.max[k]} - double{b.min[k]});
@@ -150,10 +152,11 @@ private:
         }
     };
 
-    /// Draws one pseudorandom box from each stride, so that the sample does not depend on periodic orders of the boxes.
+    /// Measures a sample of the boxes: bounds without outliers, and mean extents, face areas and volume. Draws one
+    /// pseudorandom box from each stride, so that the sample does not depend on periodic orders of the boxes.
     [[nodiscard]] static sample sample_of(std::span<const box> boxes, const box& within) {
         sample seen;
-        std::array<std::array<float, samples + 1>, 6> ends;
+        std::array<std::array<float, samples + 1>, 6> ends;  // by axis: lower ends, then upper ends
         const std::size_t step = std::max<std::size_t>(1, (boxes.size() + samples - 1) / samples);
         std::size_t count = 0;
         std::uint64_t random = 1;
@@ -192,8 +195,9 @@ private:
         return seen;
     }
 
-    /// Bounds the lower and upper ends without outliers, which belong to the columns at the border. The outermost 64th
-    /// or 8th on either side is excluded if that makes the bounds at least four times as short.
+    /// Sets the bounds on axis k around the lower and upper ends of the sampled boxes, without outliers, which will
+    /// belong to the columns at the border. The outermost 64th or 8th on either side counts as outliers if the bounds
+    /// are less than a quarter as long without it.
     /// @returns whether outliers were excluded
     static bool set_bounds(box& bounds, int k, std::span<float> lower, std::span<float> upper) {
         const std::array<float, outlier_divisors.size()> first = bounds_without_outliers(lower, std::ranges::less());
@@ -207,7 +211,8 @@ private:
         return chosen > 0;
     }
 
-    /// The outermost values if no outliers, one value in 64, or one in 8 is excluded.
+    /// The outermost values if no outliers, one value in 64, or one in 8 is excluded. The values are reordered.
+    /// @param before orders values from the outermost one inward
     template <class Before>
     [[nodiscard]] static std::array<float, outlier_divisors.size()> bounds_without_outliers(std::span<float> values,
                                                                                             Before before) {
@@ -241,8 +246,9 @@ private:
                                   : column_counts.back();
     }
 
-    /// The cost per box in nanoseconds: placing its entries, one in each column that it overlaps, and testing each of
-    /// them by vectors against the entries of its column that it overlaps along the column.
+    /// The cost per box in nanoseconds of a plan, for uniformly spread boxes like the sample: placing a box's entries,
+    /// one in each column that it overlaps, and testing each of them by vectors against the entries of its column that
+    /// it overlaps along the column.
     [[nodiscard]] static double cost_of(const sample& seen, const column_plan& p, std::size_t boxes) {
         const cost_model& ns = machine_costs();
         const int u = p.axis_across(0), v = p.axis_across(1);
@@ -302,9 +308,43 @@ private:
         }
     };
 
-    /// Whether the boxes are clustered: the tests, extrapolated from pairs of the sample, cost more than the whole plan
-    /// for uniformly spread boxes plus the cost of grouping. Switching only at that point is 2-competitive: it takes at
-    /// most about twice the time of the better choice, whichever that is.
+    /// Numbers of pairs of sampled boxes that share a column and a range of buckets in it, and of those among them that
+    /// only the exact test rejects.
+    struct pair_counts {
+        int met = 0;
+        int rejected = 0;
+    };
+
+    /// Tests some of the kept boxes, at a regular stride, against all others; each pair counts from both sides.
+    /// @param tested the number of these boxes: few, so that the estimate takes a small share of the search
+    [[nodiscard]] static pair_counts count_pairs(const sample& seen, const column_plan& plan, std::uint32_t bucket_bits,
+                                                 std::size_t tested) {
+        std::array<sampled_entries, kept_samples / simd::width> entries;
+        for (std::size_t i = 0; i < seen.kept; i += simd::width)
+            entries[i / simd::width].fill(seen, i, plan, bucket_bits);
+        pair_counts counts;
+        for (std::size_t k = 0; k < tested; ++k) {
+            const std::size_t i = k * seen.kept / tested;
+            const sampled_entries& others = entries[i / simd::width];
+            const std::size_t other = i % simd::width;
+            for (std::size_t first = 0; first < seen.kept; first += simd::width) {
+                std::uint32_t lanes = simd::lanes_below(seen.kept - first);
+                if (first == i - other) lanes &= ~(std::uint32_t{1} << other);  // not against itself
+                lanes &= entries[first / simd::width].overlap_mask(others, other);
+                if (lanes == 0) continue;
+                counts.met += std::popcount(lanes);
+                counts.rejected +=
+                    std::popcount(lanes & entries[first / simd::width].rejected_by_exact_test(others, other));
+            }
+        }
+        return counts;
+    }
+
+    /// Whether the boxes are clustered, so that groups of boxes get plans of their own: their tests, extrapolated from
+    /// pairs of the sample, cost more than the whole plan for uniformly spread boxes plus the cost of grouping.
+    /// Switching only at that point is 2-competitive: it takes at most about twice the time of the better choice,
+    /// whichever that is.
+    /// @param planned the cost per box of the plan
     [[nodiscard]] static bool are_clustered(const sample& seen, const column_plan& plan, std::size_t boxes,
                                             double planned) {
         const cost_model& ns = machine_costs();
@@ -314,26 +354,10 @@ private:
         const auto cost = [&](double met, double rejected) { return ns.column_test * (met / simd::width + rejected); };
         const auto n = static_cast<double>(boxes);
         if (cost(n / 2, n / 2) <= most) return false;  // not even if every box met every other
-        std::array<sampled_entries, kept_samples / simd::width> entries;
-        for (std::size_t i = 0; i < seen.kept; i += simd::width)
-            entries[i / simd::width].fill(seen, i, plan, plan.bucket_bits(boxes));
-        // Only some of the sample are tested against the rest, so that the estimate takes a small share of the search.
         const std::size_t tested = std::min(seen.kept, std::max<std::size_t>(boxes / boxes_per_tested, 1));
-        int met = 0, rejected = 0;
-        for (std::size_t k = 0; k < tested; ++k) {
-            const std::size_t i = k * seen.kept / tested;
-            const sampled_entries& others = entries[i / simd::width];
-            const std::size_t other = i % simd::width;
-            for (std::size_t first = 0; first < seen.kept; first += simd::width) {
-                std::uint32_t lanes = simd::lanes_below(seen.kept - first);
-                if (first == i - other) lanes &= ~(std::uint32_t{1} << other);
-                lanes &= entries[first / simd::width].overlap_mask(others, other);
-                if (lanes == 0) continue;
-                met += std::popcount(lanes);
-                rejected += std::popcount(lanes & entries[first / simd::width].rejected_by_exact_test(others, other));
-            }
-        }
-        // Each pair is counted from both sides. Counts are Poisson-like: three deviations less are hardly too many.
+        const auto [met, rejected] = count_pairs(seen, plan, plan.bucket_bits(boxes), tested);
+        // Each pair is counted from both sides. The deviation of a Poisson-like count is its square root, so that a
+        // count less three deviations hardly overestimates.
         const double pairs = 2 * static_cast<double>(tested) * (static_cast<double>(seen.kept) - 1);
         const auto at_least = [&](int count) {
             return std::max(0.0, count - 3 * std::sqrt(double(count))) * n / pairs;
