@@ -48,15 +48,18 @@ public:
     axial_cut_partition() = default;
     explicit axial_cut_partition(const config& c) : config_(c) {}
 
-    /// Chooses the axes with hysteresis, since similar axes would replace each other as boxes move, and a new list is
-    /// sorted from scratch: a cut axis is replaced only if the variance on another is 50% greater, and their number
-    /// changes only if that costs 10% less. Axes without variance are not cut.
+    /// Chooses the axes to cut: the n axes of greatest variance, for the n that costs least. Axes without variance are
+    /// not cut. There is hysteresis, since similar axes would replace each other as boxes move, and a new list is
+    /// sorted from scratch: an axis is replaced only if the variance on another is 50% greater, and n changes only if
+    /// that costs 10% less.
+    /// @param swept the axes along which the sweep needs sorted lists
+    /// @returns the axes along which `fit` needs sorted lists
     axis_set axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
         const spread along = spread_of(boxes, objects);
         const std::array<int, 3> order = axes_by_variance(along, swept);
-        const bool may_leave_out = !config_.axes && !config_.segments;
-        candidate_cut best{.cut = 0, .segments = 1, .cost = may_leave_out ? cost_without_cuts(along, swept) : never};
-        if (cut_ == 0) best.cost *= cost_bonus;
+        const bool may_cut_none = !config_.axes && !config_.segments;
+        candidate_cut best{.cut = 0, .segments = 1, .cost = may_cut_none ? cost_without_cuts(along, swept) : never};
+        if (cut_ == 0) best.cost *= cost_bonus;  // `cut_` is still that of the last frame
         axis_set cut = 0;
         for (std::uint32_t n = 1; n <= config_.axes.value_or(3); ++n) {
             const int k = order[n - 1];
@@ -94,7 +97,8 @@ public:
         return segments_on(0) * segments_on(1) * segments_on(2);
     }
 
-    /// The wanted and the actual number of segments over all cut axes; equal ends and the limit make fewer.
+    /// The numbers of segments, summed over all cut axes: `wanted`, and `got`, as equal lower ends and the limit (no
+    /// box is cut twice on an axis) make fewer.
     [[nodiscard]] segment_counts segments() const noexcept {
         segment_counts counts{0, 0};
         for (std::size_t k = 0; k < 3; ++k)
@@ -111,7 +115,8 @@ public:
         return count;
     }
 
-    /// Visits the subsets that a box overlaps, with the axes on which the box begins in them.
+    /// Visits the subsets that a box overlaps, one for each combination of its segments on the three axes. Passes the
+    /// number of the subset, and the axes on which the box begins in it.
     template <class Visit>
     void for_each_subset(std::uint32_t id, const box&, Visit visit) const {
         const std::array<range, 3> ranges = ranges_of(id);
@@ -148,14 +153,15 @@ private:
         return ranges;
     }
 
-    /// Places cuts at quantiles of the lower ends; with the limit, moves or drops those that would cut a box twice.
+    /// Places cuts at quantiles of the lower ends. With the limit (no box is cut twice on an axis), a cut that would
+    /// break it moves up to the first lower end beyond all boxes that begin before the previous cut, or is dropped.
     void choose_cuts(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         std::vector<float>& cuts = cuts_[k];
-        // The greatest upper end of the boxes that begin before the last cut.
+        // The greatest upper end of the boxes that begin before the last cut, which are the first `begun` of the list.
         float reached = -std::numeric_limits<float>::infinity();
         std::size_t begun = 0;
         for (std::uint64_t i = 1; i < wanted_ && !list.empty(); ++i) {
-            std::size_t at = i * list.size() / wanted_;
+            std::size_t at = i * list.size() / wanted_;  // the quantile
             // Cuts ascend from the first lower end: equal ends drop this one, or an earlier cut that moved beyond it.
             if (!(list[at].key > (cuts.empty() ? list[0].key : cuts.back()))) continue;
             if (config_.limit == limit_choice::on && !cuts.empty()) {
@@ -170,7 +176,8 @@ private:
         assert(std::ranges::adjacent_find(cuts, std::ranges::greater_equal{}) == cuts.end());
     }
 
-    /// Finds the first and last segment of each box; the list is sorted, so one pass finds those of all lower ends.
+    /// Finds the first and last segment of each box on axis k: the numbers of cuts at or below its lower and its upper
+    /// end. The list is sorted by lower ends, so that one pass finds all first segments.
     void find_ranges(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         const std::vector<float>& cuts = cuts_[k];
         std::size_t first = 0;
@@ -210,8 +217,8 @@ private:
     static constexpr double never = std::numeric_limits<double>::infinity();
     static constexpr double cost_bonus = 0.9, variance_bonus = 1.5;  // factors for what is cut already
 
-    /// The extent of a mean box relative to that of the scene: a uniform distribution is sqrt(12) deviations wide, here
-    /// twice that, as the variance is that of doubled centres (times their number).
+    /// The extent of a mean box relative to that of the scene, by axis. For uniformly distributed centres, the scene is
+    /// sqrt(12) standard deviations and an extent wide. (`variance` is that of doubled centres, times their number.)
     [[nodiscard]] static vec3d shares_of(const spread& along) {
         vec3d share{};
         for (int k = 0; k < 3; ++k) {
@@ -227,7 +234,8 @@ private:
         return machine_costs().list_entry * static_cast<double>(along.objects) * std::popcount(needed);
     }
 
-    /// The cost of the whole scene as one subset. Two mean boxes overlap on an axis for about twice the share of one.
+    /// The cost of the whole scene as one subset: its lists, and a test for each pair of boxes that overlap on the best
+    /// swept axis. That is a share of about 2 e / w of all pairs, for boxes of extent e in a scene of width w.
     [[nodiscard]] static double cost_without_cuts(const spread& along, axis_set swept) {
         const vec3d share = shares_of(along);
         const auto objects = static_cast<double>(along.objects);
@@ -237,10 +245,11 @@ private:
         return cost_of_lists(along, swept) + machine_costs().cut_test * objects * objects / 2 * swept_share;
     }
 
-    /// The number of segments per axis, if not configured, that minimizes the total cost of lists, copies, subsets and
-    /// box tests for n uniformly spread boxes of the mean size: S segments of an axis make 1 + x copies of a box, x = S
-    /// · extent / width, and within a subset each box is tested against those that overlap it on the swept axis. The
-    /// limit bounds x by 1. There are never more subsets than boxes, so that no cost model can get a frame rejected.
+    /// The cheapest number of segments per axis, if it is not configured, in a model of n uniformly spread boxes of the
+    /// mean size. S segments of an axis make 1 + S · extent / width copies of a box, at most 2 with the limit. Within a
+    /// subset, each box is tested against those that overlap it on the swept axis. There are never more subsets than
+    /// boxes, so that no cost model can get a frame rejected.
+    /// @param cut the axes to cut
     [[nodiscard]] candidate_cut cheapest_cut(const spread& along, axis_set cut, axis_set swept) const {
         const auto objects = static_cast<double>(along.objects);
         const vec3d share = shares_of(along);
@@ -258,6 +267,7 @@ private:
                 if (has_axis(swept, index(k))) swept_share = std::min(swept_share, 2 * share[k] * (is_cut ? s : 1));
             }
             if (!config_.segments && s > 1 && subsets > objects) break;
+            // In a subset of c copies, c^2 / 2 pairs, times the share of those that overlap on the swept axis.
             const double tests = copies / subsets * copies / 2 * std::min(1.0, swept_share);
             const double cost = ns.cut_entry * copies + ns.cut_subset * subsets + ns.cut_test * tests;
             if (cost <= best.cost) best = {.cut = cut, .segments = static_cast<std::uint32_t>(s), .cost = cost};

@@ -31,7 +31,8 @@ public:
     /// Needs no sorted lists: cells follow from the boxes alone.
     static axis_set axes(std::span<const box>, const membership&, axis_set) noexcept { return 0; }
 
-    /// Sets the cells: of the configured size, or of twice the mean longest extent, enlarged until they are few enough.
+    /// Sets the cells: of the configured size, or of twice the mean longest extent, enlarged until there are at most
+    /// four per object.
     /// @throws input_error if there would be more than 2^26 cells.
     void fit(const whole_subset& scene) {
         // Every list that is kept has all present objects; the others are empty.
@@ -57,7 +58,7 @@ public:
         }
         const int longest = longest_axis(world);
         const double span = double{world.max[longest]} - double{world.min[longest]};
-        constexpr double most_per_axis = 0x1p20;
+        constexpr double most_per_axis = 0x1p20;  // bounds the number of enlargements if boxes are points
         double size = std::max(2 * extents / objects, span / most_per_axis);
         if (size == 0) return;  // all objects lie at one point
         while (set_cells(world, size) > std::min(4 * objects, most_cells)) size *= 1.25;
@@ -72,7 +73,7 @@ public:
         return count;
     }
 
-    /// Visits the cells that a box overlaps, with the axes on which the box begins in them.
+    /// Visits the cells that a box overlaps. Passes the number of the cell, and the axes on which the box begins in it.
     template <class Visit>
     void for_each_subset(std::uint32_t, const box& b, Visit visit) const {
         std::array<std::uint32_t, 3> first{}, last{};
