@@ -19,7 +19,9 @@ public:
 
     using leafless_layout::leafless_layout;
 
-    /// Lays out the nodes with planes, then those above two leaves, which need none, and encodes the planes.
+    /// Lays out the internal nodes, and encodes the planes of their children. Nodes above two leaves need no planes,
+    /// since leaves have no boxes: they are stored behind the others. packed[i] is the new index of node i, or the
+    /// triangle of a leaf.
     void pack(std::span<const build_node> nodes) {
         // In preorder, the left child of node i is i + 1.
         const auto holds_leaves_only = [&](std::size_t i) {
@@ -40,7 +42,7 @@ public:
             child_pair& child =
                 packed[i] < with_planes ? nodes_[packed[i]].child : leaf_pairs_[packed[i] - with_planes];
             child = {packed[i + 1], packed[right]};
-            if (packed[i] >= with_planes) continue;
+            if (packed[i] >= with_planes) continue;  // above two leaves
             encode_siblings(nodes[i + 1].bounds, nodes[right].bounds, nodes_[packed[i]].planes, symbols_[packed[i]]);
             if (nodes[i + 1].is_leaf()) symbols_[packed[i]] |= leaf_flag(0);
             if (nodes[right].is_leaf()) symbols_[packed[i]] |= leaf_flag(1);
@@ -48,7 +50,8 @@ public:
         root_ = nodes[0].bounds;
     }
 
-    /// Recomputes all boxes bottom-up, and encodes their planes anew.
+    /// Recomputes all boxes bottom-up from the mesh, and encodes their planes anew.
+    /// @param boxes working memory: the boxes of the internal nodes
     void refit(const mesh& m, std::vector<box>& boxes) {
         boxes.resize(nodes_.size() + leaf_pairs_.size());
         const auto bounds_at = [&](std::size_t parent, std::size_t side) {
@@ -71,7 +74,8 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() && leaf_pairs_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
-    /// Decodes the boxes of the children from the box of their parent.
+    /// Decodes the boxes of an internal node's children from its own box. A leaf gets the box of its parent or, if the
+    /// leaf test needs it, of its triangle.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, m); };
         if (at.index >= nodes_.size()) {

@@ -17,7 +17,8 @@ public:
 
     using leafless_layout::leafless_layout;
 
-    /// Lays out the internal nodes, siblings side by side behind their parent, and encodes each box relative to that's.
+    /// Lays out the internal nodes in preorder of their parents, siblings side by side, and encodes each box relative
+    /// to its parent's. packed[i] is the new index of node i, or the triangle of a leaf.
     void pack(std::span<const build_node> nodes) {
         nodes_.assign(nodes.size() / 2, {});
         symbols_.assign(nodes_.size(), 0);
@@ -40,13 +41,15 @@ public:
         encode(boxes);
     }
 
-    /// Recomputes all boxes bottom-up, and encodes them anew.
+    /// Recomputes all boxes bottom-up from the mesh, and encodes them anew.
+    /// @param boxes working memory: the boxes of the internal nodes
     void refit(const mesh& m, std::vector<box>& boxes) {
         boxes.resize(nodes_.size());
         const auto bounds_at = [&](std::size_t parent, std::size_t side) {
             const std::uint32_t child = nodes_[parent].child[side];
             return holds_leaf(parent, side) ? bounds_of(m.triangle(child)) : boxes[child];
         };
+        // Children are stored behind their parents, so that a reverse pass is bottom-up.
         for (std::size_t i = nodes_.size(); i-- > 0;) boxes[i] = merged(bounds_at(i, 0), bounds_at(i, 1));
         root_ = boxes.empty() ? bounds_of(m.triangle(0)) : boxes[0];
         encode(boxes);
@@ -55,7 +58,8 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
-    /// Decodes the boxes of the children from the box of their parent.
+    /// Decodes the boxes of an internal node's children from its own box. A leaf gets the box of its parent or, if the
+    /// leaf test needs it, of its triangle.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto child = [&](std::size_t side) {
             const std::uint32_t index = nodes_[at.index].child[side];
@@ -103,7 +107,8 @@ private:
                 if (!holds_leaf(i, side)) encode_child(nodes_[i].child[side], exact[i], exact[nodes_[i].child[side]]);
     }
 
-    /// Encodes a node: of its six planes, keeps the three that make the smallest box; the rest are its parent's.
+    /// Encodes a node: of its six planes, keeps the three that make the smallest box; the other three are its parent's.
+    /// The symbol has a bit for each plane that is kept.
     /// @param bounds the exact box, which the decoded one replaces
     void encode_child(std::size_t at, const box& parent, box& bounds) noexcept {
         double least = std::numeric_limits<double>::infinity();

@@ -42,10 +42,11 @@ public:
     template <class Triangle, class Counters>
     using walk = front_walk<implicit_tree, Triangle, Counters>;
 
-    /// Vertices are fetched if there are few queries and the meshes are not large. Vertex lists take about half as long
-    /// to write as `sah` takes longer than `median`. They speed up a query by a tenth if the two meshes have 150,000
-    /// triangles, whose vertices exceed the L2 cache, by less for fewer triangles, and hardly if these fit into it.
-    /// Fronts are kept over several frames, unless a frame has more pairs of objects than fronts: these would thrash.
+    /// Chooses the settings for a scene. Vertices are fetched if there are few queries and the meshes are not large.
+    /// Vertex lists take about half as long to write as `sah` takes longer than `median`. They speed up a query by a
+    /// tenth if the two meshes have 150,000 triangles, whose vertices exceed the L2 cache, by less for fewer triangles,
+    /// and hardly if these fit into it. Fronts are kept over several frames, unless a frame has more pairs of objects
+    /// than the cache has fronts.
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         constexpr double most_fetched_of_two = 200'000;
         constexpr std::size_t least_of_front = least_leaves_of_front * balanced_order::leaf_triangles;
@@ -77,7 +78,9 @@ public:
         std::uint32_t index;
     };
 
-    /// Stores triangle indices and vertex lists in the order of the leaves, and encodes the levels of nodes.
+    /// Builds the tree from an order of the triangles, eight per leaf: packs the triangles' indices in the mesh, writes
+    /// the vertex lists, and encodes the nodes, level by level from the leaves up. Indices are not stored if the order
+    /// is the mesh's.
     void pack(const mesh& m, balanced_order order) {
         worker_threads workers(order.threads);
         triangles_ = static_cast<std::uint32_t>(order.triangles.size());
@@ -94,6 +97,7 @@ public:
         if (config_.vertices == vertex_choice::listed) vertices_ = vertex_lists(m, order.triangles, workers);
         std::size_t total = 0;
         levels_ = 0;
+        // A level has an eighth of the nodes of the level below, rounded up.
         for (std::size_t below = order.bounds.size(); levels_ == 0 || below > 1;) {
             below = groups_of(below);
             begins_[levels_++] = total;
@@ -103,11 +107,13 @@ public:
         encode_nodes(order.bounds, workers);
     }
 
-    /// Encodes all nodes anew, and rewrites the vertex lists if triangles have other vertices now.
+    /// Recomputes all boxes and encodes the nodes anew, and rewrites the vertex lists if triangles have other vertices
+    /// now.
+    /// @param boxes working memory: the boxes of the triangles
     void refit(const mesh& m, std::vector<box>& boxes) {
         constexpr std::uint32_t in_leaf = balanced_order::leaf_triangles;
         boxes.resize(triangles_);
-        bool same = true;
+        bool lists_match = true;
         for (std::uint32_t leaf = 0; in_leaf * leaf < triangles_; ++leaf) {
             std::array<std::uint32_t, in_leaf> numbers;
             const std::uint32_t count = std::min(in_leaf, triangles_ - in_leaf * leaf);
@@ -115,10 +121,10 @@ public:
                 numbers[i] = triangle_at(in_leaf * leaf + i);
                 boxes[in_leaf * leaf + i] = bounds_of(m.triangle(numbers[i]));
             }
-            same &= vertices_.empty() || vertices_.matches(m, leaf, std::span(numbers).first(count));
+            lists_match &= vertices_.empty() || vertices_.matches(m, leaf, std::span(numbers).first(count));
         }
         worker_threads single_thread(1);
-        if (!same) {  // the mesh's vertices were renumbered
+        if (!lists_match) {  // the mesh's vertices were renumbered
             std::vector<std::uint32_t> order(triangles_);
             for (std::uint32_t i = 0; i < triangles_; ++i) order[i] = triangle_at(i);
             vertices_ = vertex_lists(m, order, single_thread);
@@ -136,8 +142,9 @@ public:
         return {skip_single_children({at.height - 1, 2 * at.index}),
                 skip_single_children({at.height - 1, 2 * at.index + 1})};
     }
-    /// The box of a binary node, which is not stored: merges those children of a wide node that the binary node
-    /// consists of. Wide nodes are every third level of the binary tree.
+    /// The box of a node of the binary tree, which has no box of its own: merges the children of a wide node that it
+    /// consists of. A wide node replaces three levels of the binary tree, so that a binary node consists of one, two,
+    /// four or eight of its children.
     [[nodiscard]] inline box bounds(const cursor& at) const noexcept {
         const std::uint32_t height = std::max(at.height, leaf_height) - leaf_height;  // above the leaves
         const std::uint32_t index = at.height < leaf_height ? at.index >> (leaf_height - at.height) : at.index;
@@ -192,8 +199,8 @@ private:
         return (count + wide_node::most_children - 1) / wide_node::most_children;
     }
 
-    /// Writes a range of triangle indices in as many bits each as the largest needs. Ranges begin at multiples of eight
-    /// indices, which fill whole bytes, so that threads write disjoint bytes.
+    /// Writes a range of triangle indices to `packed_indices_`, in as many bits each as the largest needs. Ranges begin
+    /// at multiples of eight indices, which fill whole bytes, so that threads write disjoint bytes.
     void pack_triangle_indices(std::span<const std::uint32_t> order, std::size_t begin, std::size_t end) noexcept {
         std::byte* to = &packed_indices_[begin * index_bits_ / 8];
         std::uint64_t unwritten = 0;

@@ -31,8 +31,10 @@ public:
     quantized_tree() = default;
     explicit quantized_tree(const config& c) : leafless_layout(c), planes_(c.bits) {}
 
-    /// Lays out the nodes in one pass, and encodes them in a second one, parents first, to whose boxes codes are
-    /// relative.
+    /// Lays out the nodes in one pass, and encodes them in a second one. Codes are relative to the decoded box of the
+    /// parent, which comes first. packed[i] is the first byte of node i, or the triangle of a leaf. A node above two
+    /// leaves (`pair_bytes`) has two triangles, marked by `pair_bit`; any other node is a record of an index, a symbol
+    /// and codes.
     /// @throws input_error if the nodes take more than 2 GiB
     void pack(std::span<const build_node> nodes) {
         // In preorder, the left child of node i is i + 1.
@@ -74,6 +76,7 @@ public:
     }
 
     /// Recomputes all boxes bottom-up, and encodes them again from the root down, since codes are relative to parents.
+    /// @param boxes working memory: for each block of `pair_bytes` bytes, the box of the node that begins in it
     void refit(const mesh& m, std::vector<box>& boxes) {
         const auto bounds_at = [&](const child& c) {
             return c.is_leaf ? bounds_of(m.triangle(c.index)) : boxes[box_index(c.index)];
@@ -103,7 +106,8 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return bytes_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
-    /// Decodes the boxes of the children from the box of their parent; nodes above two leaves have none.
+    /// Decodes the boxes of an internal node's children from its own box. A leaf gets the box of its parent or, if the
+    /// leaf test needs it, of its triangle.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto [left, right] = children_at(at.index);
         const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, m); };
@@ -147,8 +151,8 @@ private:
     /// The index of a node's box in a refit: nodes have at least 8 bytes, so that no two begin in the same eight.
     [[nodiscard]] static std::size_t box_index(std::size_t at) noexcept { return at / pair_bytes; }
 
-    /// The children of the node at a byte, which stores one index: of the right child, or of the left one if that is a
-    /// leaf. The other child follows the node, or, above two leaves, its index is the second word.
+    /// The children of the node at a byte. It stores one index: the first byte of the right child, or the triangle of
+    /// the left one if that is a leaf. The other child is the next node. A node above two leaves stores both triangles.
     [[nodiscard]] inline std::array<child, 2> children_at(std::size_t at) const noexcept {
         const std::uint32_t first = word(at);
         if (first & pair_bit)
@@ -167,7 +171,8 @@ private:
     }
 
     /// Writes the six planes that only one of a node's two children has, as codes relative to the node's box, and the
-    /// symbol, which says which child has each; its leaf flags stay. @returns the children's decoded boxes.
+    /// symbol: a bit per plane says which child has it. The symbol's leaf flags stay.
+    /// @returns the children's decoded boxes
     std::array<box, 2> encode(std::size_t at, const box& parent, const box& left, const box& right) noexcept {
         sibling_planes planes{};
         auto symbol = static_cast<std::uint8_t>(symbol_at(at));

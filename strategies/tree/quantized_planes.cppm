@@ -28,9 +28,12 @@ public:
 
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
-    /// Packs the codes of the six planes, each the greatest number of steps inward that does not cut a child.
+    /// Encodes six planes as codes of `bits_` bits. A code is the greatest number of steps inward from the parent's
+    /// plane that does not cut a child; a step is 2^-bits of the parent's extent.
     /// @param parent the decoded box of the parent, which contains both children
+    /// @param codes gets the packed codes, `bytes()` bytes
     void encode(const box& parent, const sibling_planes& planes, std::byte* codes) const noexcept {
+        // words[0] has the codes of the lower planes, words[1] those of the upper planes.
         std::array<std::uint64_t, 2> words{};
         for (int k = 0; k < 3; ++k) {
             const float step = step_on(parent, k);
@@ -48,7 +51,8 @@ public:
         std::copy_n(packed.begin(), bytes_, codes);
     }
 
-    /// The planes of codes, relative to the decoded box of the parent.
+    /// Decodes six planes: a code is the number of steps inward from the plane of the parent's decoded box.
+    /// @param codes packed by `encode`; some bytes beyond are read and ignored
     [[nodiscard]] inline sibling_planes decode(const box& parent, const std::byte* codes) const noexcept {
         std::uint64_t lower = 0;
         std::uint64_t upper = 0;

@@ -17,7 +17,8 @@ public:
 
     using cursor = box_cursor;
 
-    /// Lays out internal nodes and leaves in two arrays, and encodes the planes of each two siblings.
+    /// Lays out internal nodes and leaves in two arrays, and encodes the planes of each two siblings. packed[i] is the
+    /// index of node i in its array.
     void pack(std::span<const build_node> nodes) {
         const std::size_t internals = nodes.size() / 2;  // a binary tree of n leaves has n - 1
         nodes_.assign(internals, {});
@@ -45,6 +46,7 @@ public:
 
     /// Recomputes all boxes bottom-up, and encodes the planes of each two siblings anew. A node's symbol says which
     /// child has which of these planes (the other child inherits its parent's), and which children are leaves.
+    /// @param boxes working memory: the boxes of the internal nodes
     void refit(const mesh& m, std::vector<box>& boxes) {
         boxes.resize(nodes_.size());
         const auto bounds_at = [&](std::size_t parent, std::size_t side) {
@@ -65,7 +67,7 @@ public:
         return {root_, nodes_.empty() ? cursor::leaf_bit : 0};
     }
     [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
-    /// Decodes the boxes of the children from the box of their parent.
+    /// Decodes the boxes of an internal node's children from its own box.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh&) const noexcept {
         const node& parent = nodes_[at.index];
         const std::uint32_t symbol = symbols_[at.index];

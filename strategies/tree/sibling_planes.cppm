@@ -32,8 +32,9 @@ inline constexpr std::uint8_t plane_bits = 0b11'1111;
     return static_cast<std::uint8_t>(64U << side);
 }
 
-/// Encodes the boxes of two siblings, whose union is the parent's: one of them inherits each plane of the parent's box.
-/// Stores the other's plane, and in the symbol whose it is; the symbol's leaf flags stay.
+/// Encodes the boxes of two siblings. Their union is the parent's box, so that each plane of the parent is also one of
+/// a child, which inherits it: only the other child's plane is stored. Bit k of the symbol is set if the left child has
+/// its own plane k; the symbol's leaf flags stay.
 constexpr void encode_siblings(const box& left, const box& right, sibling_planes& planes,
                                std::uint8_t& symbol) noexcept {
     symbol &= static_cast<std::uint8_t>(~plane_bits);
