@@ -25,8 +25,9 @@ public:
         return separating_axes(separation_of(boxes, objects));
     }
 
-    /// Reports the pairs that overlap on all lists, of which there may be one, two or three. With three, the pairs that
-    /// overlap on the first two are marked in a bitmap, for one block of rows at a time.
+    /// Reports the pairs that overlap on all lists, of which there may be one, two or three. A rank is an index in the
+    /// first list: the pair of ranks i < j overlaps there if j < end_[i]. With three lists, the pairs that overlap on
+    /// the first two are marked in a bitmap, row i and column j, for one block of rows at a time to limit its size.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         std::array<std::span<const typename Subset::entry>, 3> lists;
@@ -44,6 +45,7 @@ public:
         const auto report = [&](std::size_t i, std::size_t j) {
             const auto& a = lists[0][i];
             const auto& b = lists[0][j];
+            // Of all subsets that both boxes overlap, one owns the pair.
             if (Subset::owns(Subset::owned(a), Subset::owned(b))) pairs.push_back(ordered_pair(a.id, b.id));
         };
         if (n_lists == 1) {
@@ -88,7 +90,8 @@ private:
         std::uint32_t rank;
     };
 
-    /// Ranks the objects by their index in the first list, and finds for each the end of its overlaps there.
+    /// Ranks the objects by their index in the first list. For rank i, end_[i] is the first rank whose box begins after
+    /// box i ends, so that box i overlaps those of ranks i + 1 to end_[i] - 1 on the axis.
     template <class Entry>
     void rank_objects(std::span<const box> boxes, std::span<const Entry> list, int axis) {
         if (rank_.size() < boxes.size()) rank_.resize(boxes.size());
@@ -102,8 +105,9 @@ private:
         }
     }
 
-    /// Visits every pair that overlaps on the axis, by ranks i < j, where first <= i < last. Pairs with both ranks
-    /// above the block are skipped, so that no two blocks visit the same pair.
+    /// Visits every pair that overlaps on an axis, by ranks i < j, where i lies in the block of ranks first <= i <
+    /// last. Pairs with both ranks above the block are skipped, so that no two blocks visit the same pair: an interval
+    /// above the block is compared only with those within it.
     template <class Entry, CounterPolicy Counters, class Visit>
     void for_each_overlap(std::span<const box> boxes, std::span<const Entry> list, int axis, std::size_t first,
                           std::size_t last, Counters& counters, Visit visit) {
@@ -117,7 +121,7 @@ private:
             if (i.rank >= first) swept_.push_back(i);
             if (i.rank >= first && i.rank < last) within_.push_back(i);
         }
-        std::size_t within_met = 0;
+        std::size_t within_met = 0;  // the intervals of `within_` up to and including the current one
         for (std::size_t p = 0; p < swept_.size(); ++p) {
             const interval a = swept_[p];
             const bool is_within = a.rank < last;

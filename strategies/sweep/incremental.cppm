@@ -27,22 +27,23 @@ public:
     static constexpr std::string_view summary =
         "keeps the overlapping pairs between frames and follows the swaps of insertion sort";
 
-    /// Updates the lists and pairs to a frame: by the swaps of insertion sort, which begin and end overlaps. Once these
-    /// have taken as many steps as a restart would (`steps_left_`), sorts and sweeps from scratch.
+    /// Updates the lists and pairs to a frame: sorts the lists by insertion sort, whose swaps of two ends begin or end
+    /// overlaps. Once this has taken as many steps as a restart would (`steps_left_` is 0), sorts and sweeps from
+    /// scratch.
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         if (boxes.size() > most_interval_objects)
             throw input_error("incremental takes at most 2^31 objects, not " + std::to_string(boxes.size()));
         if (objects.any_departures()) forget_departures(objects);
-        const axis_set before = axes_;
+        const axis_set known_axes = axes_;  // those with a list of the last frame
         steps_left_ = restart_steps();
         for (std::size_t k = 0; k < 3; ++k)
-            if (has_axis(before, k)) sort_known(boxes, k, sort, counters);
+            if (has_axis(known_axes, k)) sort_known(boxes, k, sort, counters);
         const vec3d separation = separation_of(boxes, objects);
         axes_ = separating_axes(separation);
         for (std::size_t k = 0; k < 3; ++k) {
-            if (has_axis(axes_ & ~before, k)) build_list(boxes, objects, k);
-            if (has_axis(axes_ & before, k)) merge_arrivals(boxes, objects, k);
+            if (has_axis(axes_ & ~known_axes, k)) build_list(boxes, objects, k);
+            if (has_axis(axes_ & known_axes, k)) merge_arrivals(boxes, objects, k);
             if (!has_axis(axes_, k)) release(ends_[k]);
         }
         if (steps_left_ == 0) {  // following more swaps would take longer than a restart
@@ -51,7 +52,7 @@ public:
             restart_tests_ = 0;
             find_pairs(boxes, longest_axis(separation), counters, /*is_new=*/[](std::uint32_t) { return true; });
         } else {
-            apply_unreported_changes(axes_ & ~before, boxes, objects, separation, counters);
+            apply_unreported_changes(axes_ & ~known_axes, boxes, objects, separation, counters);
         }
         before_.assign(boxes.begin(), boxes.end());
         assert(are_of_one_length());
@@ -66,7 +67,8 @@ private:
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
     }
 
-    /// Sorts the list of an axis, except arrivals: by swaps, or from scratch if the frame restarts.
+    /// Updates the keys of an axis and sorts its list, which has no arrivals yet: by swaps, or from scratch if the
+    /// frame restarts.
     template <class Sort, CounterPolicy Counters>
     void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         bool moved = false;
@@ -87,7 +89,7 @@ private:
         return steps;
     }
 
-    /// Whether the lists of the active axes have the same length and the others are empty.
+    /// Whether the lists of the active axes (`axes_`) have the same length and the others are empty.
     [[nodiscard]] bool are_of_one_length() const {
         const std::size_t ends = ends_[static_cast<std::size_t>(std::countr_zero(axes_))].size();
         bool same = true;
@@ -105,7 +107,8 @@ private:
         sort_ends(list);
     }
 
-    /// Merges the ends of arriving objects into the list of an axis, from the back.
+    /// Merges the sorted ends of arriving objects into the list of an axis, from the back, so that no further list is
+    /// needed.
     void merge_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         arriving_.clear();
         objects.for_each_arrival([&](std::uint32_t id) { append_ends(arriving_, boxes, id, static_cast<int>(axis)); });
@@ -127,7 +130,7 @@ private:
         return longest;
     }
 
-    /// Applies the changes of the pairs that no swap reports: those of new axes and arrivals.
+    /// Applies the changes of the pairs that no swap reports: on new axes some pairs end, and arrivals have new pairs.
     /// @param begun axes that have a list from this frame on
     template <CounterPolicy Counters>
     void apply_unreported_changes(axis_set begun, std::span<const box> boxes, const membership& objects,
@@ -144,6 +147,7 @@ private:
                        [&](std::uint32_t id) { return objects.is_arrival(id); });
     }
 
+    /// Sweeps the list of an axis for all pairs with at least one object that `is_new`, and inserts those that overlap.
     template <CounterPolicy Counters>
     void find_pairs(std::span<const box> boxes, std::size_t axis, Counters& counters, auto is_new) {
         const std::uint64_t tests = sweep_.find(ends_[axis], boxes, pairs_, is_new);

@@ -34,8 +34,9 @@ public:
     }
 
     /// Sweeps columns, a vector of entries at a time: tests it against the active entries, which begin before it and
-    /// have not ended, and against itself. Pairs whose quantized boxes overlap are candidates, which are tested exactly
-    /// later.
+    /// have not ended, and against itself. Pairs whose quantised boxes overlap are candidates, which are tested exactly
+    /// later. A candidate is an entry, and the number of a vector with a bit per lane that it may overlap; vectors are
+    /// numbered from the entry `window` on, since few bits are left for the number.
     /// @param most_tests the sweep stops early after this many vector tests
     /// @returns the number of vector tests
     template <CounterPolicy Counters>
@@ -47,7 +48,7 @@ public:
         std::uint64_t tests = 0;
         std::size_t active = 0;
         candidate_count_ = 0;
-        std::size_t window = 0;  // the entry from which candidates number vectors, in the bits beside the lanes
+        std::size_t window = 0;
         for (std::size_t first = 0; first < n && tests <= most_tests; first += width) {
             if (candidate_count_ > most_waiting || first - window >= most_vectors * width) {
                 append_overlapping(block, window, pairs);
@@ -82,7 +83,8 @@ private:
         simd::words ends;
         simd::words begins_earlier;
 
-        /// Transposes entries, and looks up the ends of the buckets in which they end.
+        /// Transposes entries, and looks up where each one's overlaps along the column end: behind the bucket in which
+        /// it ends.
         vector_of_entries(const column_entry* from, std::span<const std::uint32_t> bucket_ends) noexcept {
             simd::words fields[4];
             simd::load_rows_of_four(&from->lower, fields);
@@ -110,7 +112,12 @@ private:
         met_.resize(candidates);
     }
 
-    /// Stores the entries that may overlap any lane as candidates, branch-free since that is hard to predict.
+    /// Stores as candidates the entries that may overlap any lane of a vector, branch-free since that is hard to
+    /// predict.
+    /// @param present the lanes of `entries` in use
+    /// @param met by entry: the lanes of the vector that it may overlap
+    /// @param lanes by entry: the lanes that it is to be tested against
+    /// @param vector the number of the vector
     inline void keep_candidates(simd::words entries, std::uint32_t present, const lane_overlaps& met, simd::words lanes,
                                 std::uint32_t vector) noexcept {
         const simd::words overlapped = simd::load_halves(met.data()) & lanes;
@@ -122,6 +129,7 @@ private:
     /// Tests the active entries against the vector, and updates the active entries. Of the lanes that an entry
     /// overlaps, only those before the entry's end count.
     /// @param number the number of the vector, and `first` the index of its first entry
+    /// @param active the number of active entries
     /// @returns the number of entries that stay active beyond the vector
     [[nodiscard]] std::size_t test_active(const column_block& block, const vector_of_entries& vector,
                                           std::uint32_t number, std::size_t first, std::size_t active) noexcept {
@@ -159,7 +167,8 @@ private:
         keep_candidates(simd::places() + static_cast<std::uint32_t>(first), simd::every_lane, met, lanes, number);
     }
 
-    /// Tests the candidates exactly and appends the overlapping pairs.
+    /// Tests the candidates exactly, appends the overlapping pairs, and empties the list of candidates.
+    /// @param window the entry from which the candidates number vectors
     void append_overlapping(const column_block& block, std::size_t window, std::vector<index_pair>& pairs) {
         std::size_t next = pairs.size(), most = next;
         for (std::size_t c = 0; c < candidate_count_; ++c)
@@ -167,13 +176,14 @@ private:
         if (most > pairs.capacity()) pairs.reserve(std::max(most, 2 * pairs.capacity()));
         pairs.resize(most);
         for (std::size_t c = 0; c < candidate_count_; ++c) {
-            const std::uint32_t met = met_[c];
+            const std::uint32_t met = met_[c];  // the number of a vector, then a bit per lane
             const std::uint32_t i = block.entries[candidates_[c]].index & column_entry::index_mask;
             const box a = block.boxes[i];
             const std::uint32_t id = block.id_of(i);
             const column_entry* const vector = &block.entries[window + (met >> width) * width];
             for (std::uint32_t lanes = met & simd::every_lane; lanes != 0; lanes &= lanes - 1) {
                 const std::uint32_t j = vector[std::countr_zero(lanes)].index & column_entry::index_mask;
+                // No branch: a pair that does not overlap is overwritten by the next one.
                 pairs[next] = ordered_pair(id, block.id_of(j));
                 next += overlaps(a, block.boxes[j]);
             }
@@ -182,7 +192,9 @@ private:
         candidate_count_ = 0;
     }
 
-    /// Converts a sorted list to entries of one column, quantized over its bounds, so that it is swept like columns.
+    /// Converts a sorted list to the entries of one column, quantised over its bounds, so that it is swept like
+    /// columns. Each entry is a bucket of its own, whose end in `list_ends_` is the first entry that begins after its
+    /// box ends.
     template <class Subset, class List>
     void convert_to_entries(const Subset& subset, const List& list) {
         column_plan plan;

@@ -35,7 +35,7 @@ public:
     explicit subdivided_sweep(const config& c) : config_(c) {}
 
     /// Updates the lists and pairs to a frame. Restarts with a new grid if more than half of the objects are new, or
-    /// their number has doubled or halved, or the update has taken as many steps as a restart, so that none are left.
+    /// their number has doubled or halved since the last restart, or the update has taken as many steps as a restart.
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         if (boxes.size() > most_interval_objects)
@@ -49,7 +49,7 @@ public:
         } else {
             steps_left_ = restart_steps_;
             update_lists(boxes, objects, sort, counters);
-            if (steps_left_ == 0) {
+            if (steps_left_ == 0) {  // the update stopped early
                 counters.add(work::restarts);
                 restart(boxes, objects, counters);
             }
@@ -120,7 +120,8 @@ private:
         for (auto& list : r.ends) std::erase_if(list, [&](const interval_end& e) { return is_leaving(e.id); });
     }
 
-    /// Removes departed objects from the pairs and from the lists of their regions.
+    /// Removes departed objects from the pairs and from the lists of their regions. Collects these regions first, so
+    /// that each list is cleaned once, however many objects leave it.
     void forget_departures(const membership& objects) {
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
         for (std::uint32_t id = 0; id < ranges_.size(); ++id) {
@@ -136,7 +137,7 @@ private:
     }
 
     /// Updates lists and pairs to the frame: moves objects into and out of the lists of regions, then sorts those of
-    /// all regions with moved objects. Stops early when `spend` has taken the last step.
+    /// all regions with moved objects (`touched_`). Stops early when `spend` has taken the last step.
     template <class Sort, CounterPolicy Counters>
     void update_lists(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         moved_.assign(boxes.size(), 0);
@@ -147,7 +148,7 @@ private:
             spend(regions_in(range));
             if (steps_left_ == 0) return;
             for_each_region(range, /*except=*/{}, [&](std::uint32_t r) { touch(r); });
-            if (range == ranges_[id]) continue;
+            if (range == ranges_[id]) continue;  // it has stayed in the regions of the last frame
             for_each_region(ranges_[id], range, [&](std::uint32_t r) { leave_region(r, id, boxes, counters); });
             for_each_region(range, ranges_[id], [&](std::uint32_t r) { enter_region(r, id, boxes); });
             ranges_[id] = range;
@@ -159,8 +160,9 @@ private:
         touched_.clear();
     }
 
-    /// Removes an object from a region's lists. Pairs normally end when two ends swap in a list, but here the object's
-    /// ends are gone: those of its pairs that overlapped in the last frame (`before_`) are tested.
+    /// Removes an object from a region's lists, and erases its pairs there that have ended. Pairs normally end when two
+    /// ends swap in a list, but here the object's ends are gone. So its pairs of the last frame (boxes `before_`) are
+    /// tested.
     template <CounterPolicy Counters>
     void leave_region(std::uint32_t r, std::uint32_t id, std::span<const box> boxes, Counters& counters) {
         spend(regions_[r].ends[0].size());
@@ -221,14 +223,17 @@ private:
         restart_steps_ += tests;
     }
 
-    /// Cuts the two axes with the greatest variance of the boxes' centres.
+    /// Plans the grid: cuts the two axes with the greatest variance of the boxes' centres into regions of about
+    /// `objects_per_region` objects, not narrower than `extents_per_region` mean extents, or into the configured
+    /// number.
     void plan_grid(std::span<const box> boxes, const membership& objects) {
         planned_ = objects.size();
         const spread along = spread_of(boxes, objects);
         int least = 2;
         for (int k = 1; k >= 0; --k)
             if (along.variance[k] < along.variance[least]) least = k;
-        cut_ = {least == 0 ? 1 : 0, least == 2 ? 1 : 2};  // the other two
+        // The other two axes.
+        cut_ = {least == 0 ? 1 : 0, least == 2 ? 1 : 2};
         box world = empty_box();
         for (std::uint32_t id = 0; id < boxes.size(); ++id)
             if (objects.contains(id)) world = merged(world, boxes[id]);

@@ -23,13 +23,15 @@ public:
     static constexpr std::string_view summary =
         "sweeps along one axis and keeps the active boxes in the order of a second one";
 
-    /// Chooses the two axes with the greatest variance: one to sweep, and one that orders the active boxes.
+    /// Chooses the two axes with the greatest variance: one to sweep, and one whose list orders the active boxes, the
+    /// kept axis. Boxes longer there than four mean extents are kept apart: they would widen the range of candidates of
+    /// all boxes.
+    /// @returns the axes that need sorted lists
     axis_set axes(std::span<const box> boxes, const membership& objects) {
         const spread along = spread_of(boxes, objects);
         swept_axis_ = swept_.choose(along, every_axis);
         const axis_set swept = axis_set{1} << swept_axis_;
         kept_axis_ = kept_.choose(along, every_axis & ~swept);
-        // Boxes above four mean extents have a list of their own: they would widen the range of candidates of all.
         longest_short_ =
             static_cast<float>(std::min(4 * along.extent[kept_axis_], double{std::numeric_limits<float>::max()}));
         return swept | axis_set{1} << kept_axis_;
@@ -80,7 +82,9 @@ private:
         pair_count_ = 0;
     }
 
-    /// Ranks boxes by their index in the kept list, and finds the first word of the bitmap that may hold candidates.
+    /// Ranks boxes by their index in the list of the kept axis, and finds for each box the first word of the bitmap of
+    /// active boxes that may hold candidates. Boxes of lower ranks may overlap it on the kept axis only from the rank
+    /// on at which the greatest upper end so far (`reached_`) is not below the box's lower end.
     template <class Subset, class List>
     void rank_boxes(const Subset& subset, const List& list) {
         const std::size_t n = list.size();
@@ -100,6 +104,7 @@ private:
         std::size_t first = 0;
         for (std::size_t i = 0; i < n; ++i) {
             const box& b = subset.boxes[list[i].id];
+            // Lower ends are negated, so that one comparison of vectors tests both axes.
             ranked_[i] = {{b.max[kept_axis_], b.max[third], -b.min[kept_axis_], -b.min[third]},
                           b.min[swept_axis_],
                           b.max[swept_axis_],
@@ -114,8 +119,10 @@ private:
         }
     }
 
-    /// Lists the active boxes from a word up to the last word that begins at or below `last`. Most words have up to
-    /// three bits, which are extracted without branches, since their number is hard to predict.
+    /// Lists the ranks of the active boxes, the set bits of the bitmap, from a word up to the last one that begins at
+    /// or below `last` on the kept axis. Most words have up to three bits, which are extracted without branches, since
+    /// their number is hard to predict.
+    /// @returns the number of candidates
     std::size_t list_candidates(std::size_t word, float last) noexcept {
         std::size_t count = 0;
         for (; word < active_.size() && word_begins_[word] <= last; ++word) {
@@ -134,8 +141,9 @@ private:
         return count;
     }
 
-    /// Compares a box with its active candidates, and activates it. Tests are branch-free, since both overlaps and
-    /// ended boxes are hard to predict.
+    /// Tests a box against the active boxes near it on the kept axis, and against all long ones, and activates it.
+    /// Active boxes that have ended are removed. Tests are branch-free, since overlaps and ended boxes are hard to
+    /// predict: every pair is stored, and overwritten by the next one if it does not overlap.
     /// @returns the number of tests
     template <class Subset>
     std::size_t test_and_activate(std::uint32_t rank) {
