@@ -139,7 +139,7 @@ private:
 
     /// Prepares the caches of leaves, when a query comes to the first leaves: one of distant meshes needs none. An
     /// inexact test gets only triangles whose boxes in float overlap: its result must not depend on the rounding of
-    /// quantised boxes.
+    /// quantized boxes.
     void begin_leaves(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                       query_kind kind) {
         leaf_pairs_.begin(a, b, to_a,

@@ -27,9 +27,8 @@ public:
 
     /// Stores for each child of a node a box in the other frame that contains the image of the child's box: R c + shift
     /// is its centre, |R| h + margin are its half extents, for the centre c and the half extents h of the child's box.
-    /// The motion's margin covers the rounding of vertices, and nearly that of boxes, as rounding to nearest is
-    /// monotone. A child's planes lie further out than its vertices, by a 60th of the node, 2^-22 of the coordinate or
-    /// the smallest step; the additional errors stay within the rest of the margin, or within `least`.
+    /// The margin covers all rounding errors. The motion's part of it is for vertices, and has room for planes, which
+    /// lie further out by a 60th of the node, 2^-22 of the coordinate or the smallest step; `least` covers the rest.
     void store(const wide_node& n, eight_boxes& to) const noexcept {
 #pragma clang fp contract(fast)
         // Centres and half extents are exact: (half) codes times powers of two. Upper planes are stored as 255 - code.
@@ -79,7 +78,8 @@ public:
         cached_nodes_.fill(no_node);
     }
 
-    /// The boxes of the node's children in the other frame, from the cache or transformed now.
+    /// The boxes of the node's children in the other frame, from the cache or transformed now. A node's slot in the
+    /// cache is its number modulo the number of slots, a power of two.
     [[nodiscard]] inline const eight_boxes& of(const wide_node& n) {
         const auto number = static_cast<std::uint32_t>(&n - first_);
         const std::size_t slot = number & (boxes_.size() - 1);

@@ -80,7 +80,7 @@ using eight_selected_floats = float __attribute__((vector_size(32)));
     const auto twice = [](const float* row) {
         return _mm512_castpd_ps(_mm512_broadcast_f64x4(_mm256_loadu_pd(reinterpret_cast<const double*>(row))));
     };
-    // The pairs with boxes 2 t and 2 t + 1 of `b`, which overlap on all axes so far.
+    // met[t] has a bit for each pair with box 2 t or 2 t + 1 of `b`, set while they overlap on all axes so far.
     __mmask16 met[4] = {0xffff, 0xffff, 0xffff, 0xffff};
     for (int k = 0; k < 3; ++k) {
         const __m512 lower = twice(a + 8 * k);
@@ -194,6 +194,7 @@ export namespace aabb::simd {
     using signed_bytes = std::int8_t __attribute__((vector_size(64)));
     using bools = bool __attribute__((ext_vector_type(64)));
     using rows = std::uint64_t __attribute__((vector_size(64)));
+    // The numbers of `a` are repeated in turn, and each number of `b` eight times in a row.
     std::uint64_t row = 0;
     std::memcpy(&row, a, sizeof row);
     const auto left = reinterpret_cast<bytes>(rows{} + row);

@@ -13,7 +13,7 @@ inline constexpr std::size_t most_claims = 128;  ///< pairs per group
 template <class Leaf>
 class leaf_cache {
 public:
-    /// Invalidates the cache, by a new epoch, and grows it if the tree has many leaves.
+    /// Invalidates the cache, by a new epoch, and grows it if the tree has many leaves, to a power of two of slots.
     void begin(std::size_t leaves_of_tree) {
         if (leaves_.size() < most_slots && 2 * leaves_.size() <= leaves_of_tree)
             leaves_.resize(std::min(most_slots, std::bit_floor(leaves_of_tree)));
@@ -69,8 +69,9 @@ private:
 template <WideTreePolicy Tree>
 class leaf_reader {
 public:
-    /// Claims the leaves of the next group and prefetches the vertex lists of the missing ones. The previous group must
-    /// have been read; its leaves stay valid until the next group is read.
+    /// Forms the next group of pairs: reserves slots in both caches for its leaves, up to the first leaf that finds no
+    /// slot, and prefetches the vertex lists of the leaves that are not cached. The previous group must have been read;
+    /// its leaves stay valid until the next group is read.
     /// @param begin the first pair of the group
     /// @param end the end of all pairs
     /// @param pair_at returns the leaves of pair i, in A's tree and in B's

@@ -125,7 +125,7 @@ private:
         for (std::size_t at = 0; at < corners; ++at) {
             const std::uint32_t same = bits_where([](auto x, std::uint32_t v) { return x == v; }, vertices[at]);
             first[at] = static_cast<std::uint8_t>(std::countr_zero(same));
-            is_new |= same & -same;
+            is_new |= same & -same;  // the first occurrence
         }
         const auto count = static_cast<std::size_t>(std::popcount(is_new));
         *to = static_cast<std::byte>(count > vertex_list::most ? 0 : count);
