@@ -58,8 +58,8 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
-    /// Decodes the boxes of an internal node's children from its own box. A leaf gets the box of its parent or, if the
-    /// leaf test needs it, of its triangle.
+    /// Decodes the boxes of a node's two children, from the node's box and the planes that each child stores. A leaf
+    /// gets the box of its parent or, if the leaf test needs it, of its triangle.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto child = [&](std::size_t side) {
             const std::uint32_t index = nodes_[at.index].child[side];

@@ -42,11 +42,11 @@ public:
     template <class Triangle, class Counters>
     using walk = front_walk<implicit_tree, Triangle, Counters>;
 
-    /// Chooses the settings for a scene. Vertices are fetched if there are few queries and the meshes are not large.
-    /// Vertex lists take about half as long to write as `sah` takes longer than `median`. They speed up a query by a
-    /// tenth if the two meshes have 150,000 triangles, whose vertices exceed the L2 cache, by less for fewer triangles,
-    /// and hardly if these fit into it. Fronts are kept over several frames, unless a frame has more pairs of objects
-    /// than the cache has fronts.
+    /// Chooses the settings for a scene. Vertices are fetched if there are few queries and the meshes are not large. To
+    /// write vertex lists takes about half as long as the build `sah` takes longer than `median`. They speed up a query
+    /// by a tenth if the two meshes have 150,000 triangles, whose vertices exceed the L2 cache, by less for fewer
+    /// triangles, and hardly if these fit into it. Fronts are kept over several frames, unless a frame has more pairs
+    /// of objects than the cache has fronts.
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         constexpr double most_fetched_of_two = 200'000;
         constexpr std::size_t least_of_front = least_leaves_of_front * balanced_order::leaf_triangles;
@@ -144,7 +144,7 @@ public:
     }
     /// The box of a node of the binary tree, which has no box of its own: merges the children of a wide node that it
     /// consists of. A wide node replaces three levels of the binary tree, so that a binary node consists of one, two,
-    /// four or eight of its children.
+    /// four or eight of its children. A node within a leaf has the leaf's box.
     [[nodiscard]] inline box bounds(const cursor& at) const noexcept {
         const std::uint32_t height = std::max(at.height, leaf_height) - leaf_height;  // above the leaves
         const std::uint32_t index = at.height < leaf_height ? at.index >> (leaf_height - at.height) : at.index;

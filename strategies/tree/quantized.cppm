@@ -106,8 +106,8 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return bytes_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
-    /// Decodes the boxes of an internal node's children from its own box. A leaf gets the box of its parent or, if the
-    /// leaf test needs it, of its triangle.
+    /// Decodes the boxes of a node's two children, from the node's box and the planes that it stores; nodes above two
+    /// leaves store none. A leaf gets the box of its parent or, if the leaf test needs it, of its triangle.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto [left, right] = children_at(at.index);
         const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, m); };

@@ -67,7 +67,7 @@ public:
         return {root_, nodes_.empty() ? cursor::leaf_bit : 0};
     }
     [[nodiscard]] static inline bool is_leaf(const cursor& at) noexcept { return at.is_leaf(); }
-    /// Decodes the boxes of an internal node's children from its own box.
+    /// Decodes the boxes of a node's two children, from the node's box and the planes that it stores.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh&) const noexcept {
         const node& parent = nodes_[at.index];
         const std::uint32_t symbol = symbols_[at.index];

@@ -47,18 +47,19 @@ constexpr void encode_siblings(const box& left, const box& right, sibling_planes
     }
 }
 
-/// Decodes the boxes of the left and the right child: one inherits each plane of the parent, the other has its own.
+/// Decodes the boxes of the left and the right child: one inherits each plane of the parent, the other has its own. Bit
+/// k of the symbol is set if the left child has its own plane k.
 [[nodiscard]] constexpr std::array<box, 2> decode_siblings(const box& parent, const sibling_planes& planes,
                                                            unsigned symbol) noexcept {
     std::array<box, 2> boxes{};
     for (int k = 0; k < 3; ++k) {
         const auto low = static_cast<std::size_t>(k);
-        const bool right_below = symbol >> low & 1;
-        const bool right_above = symbol >> (low + 3) & 1;
-        boxes[0].min[k] = right_below ? planes.own[low] : parent.min[k];
-        boxes[1].min[k] = right_below ? parent.min[k] : planes.own[low];
-        boxes[0].max[k] = right_above ? planes.own[low + 3] : parent.max[k];
-        boxes[1].max[k] = right_above ? parent.max[k] : planes.own[low + 3];
+        const bool left_owns_lower = symbol >> low & 1;
+        const bool left_owns_upper = symbol >> (low + 3) & 1;
+        boxes[0].min[k] = left_owns_lower ? planes.own[low] : parent.min[k];
+        boxes[1].min[k] = left_owns_lower ? parent.min[k] : planes.own[low];
+        boxes[0].max[k] = left_owns_upper ? planes.own[low + 3] : parent.max[k];
+        boxes[1].max[k] = left_owns_upper ? parent.max[k] : planes.own[low + 3];
     }
     return boxes;
 }
