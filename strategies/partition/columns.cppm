@@ -277,7 +277,8 @@ private:
         simd::words first, last;   ///< column numbers, packed like the coordinates in `lower`
         simd::words begin, end;    ///< bucket numbers
 
-        /// Quantizes a vector of sampled boxes from index `first_box` on, and finds their columns and buckets.
+        /// Quantizes a vector of sampled boxes from index `first_box` on, and finds the columns that each overlaps and
+        /// its range of buckets, which divide a column along its axis.
         void fill(const sample& seen, std::size_t first_box, const column_plan& plan, std::uint32_t bucket_bits) {
             for (std::size_t k = 0; k < 6; ++k) std::memcpy(&ends[k], &seen.ends[k][first_box], sizeof ends[k]);
             const int u = plan.axis_across(0), v = plan.axis_across(1);

@@ -34,7 +34,7 @@ public:
     }
 
     /// Sweeps columns, a vector of entries at a time: tests it against the active entries, which begin before it and
-    /// have not ended, and against itself. Pairs whose quantised boxes overlap are candidates, which are tested exactly
+    /// have not ended, and against itself. Pairs whose quantized boxes overlap are candidates, which are tested exactly
     /// later. A candidate is an entry, and the number of a vector with a bit per lane that it may overlap; vectors are
     /// numbered from the entry `window` on, since few bits are left for the number.
     /// @param most_tests the sweep stops early after this many vector tests
@@ -83,8 +83,8 @@ private:
         simd::words ends;
         simd::words begins_earlier;
 
-        /// Transposes entries, and looks up where each one's overlaps along the column end: behind the bucket in which
-        /// it ends.
+        /// Transposes entries: their quantized bounds across the column, where their overlaps along it end (behind the
+        /// bucket in which each box ends), and the axes on which each begins in an earlier column.
         vector_of_entries(const column_entry* from, std::span<const std::uint32_t> bucket_ends) noexcept {
             simd::words fields[4];
             simd::load_rows_of_four(&from->lower, fields);
@@ -158,6 +158,7 @@ private:
     /// Tests the entries of the vector against each other: each against the later ones that begin before it ends.
     void test_within(const column_block& block, const vector_of_entries& vector, std::uint32_t number,
                      std::size_t first) noexcept {
+        // By lane: a mask of the lanes behind it.
         const simd::words later = simd::broadcast(~std::uint32_t{1}) << simd::places();
         const simd::words lanes = simd::lanes_below(vector.ends - static_cast<std::uint32_t>(first)) & later;
         lane_overlaps met{};
@@ -192,7 +193,7 @@ private:
         candidate_count_ = 0;
     }
 
-    /// Converts a sorted list to the entries of one column, quantised over its bounds, so that it is swept like
+    /// Converts a sorted list to the entries of one column, quantized over its bounds, so that it is swept like
     /// columns. Each entry is a bucket of its own, whose end in `list_ends_` is the first entry that begins after its
     /// box ends.
     template <class Subset, class List>

@@ -193,7 +193,8 @@ private:
         follow_swaps(list, boxes, sort, counters);
     }
 
-    /// Plans a new grid, fills and sorts all lists, and sweeps those of one axis for all pairs.
+    /// Plans a new grid, fills and sorts all lists, and sweeps those of one axis for all pairs. Counts its steps in
+    /// `restart_steps_`, by which later updates decide whether to restart.
     template <CounterPolicy Counters>
     void restart(std::span<const box> boxes, const membership& objects, Counters& counters) {
         plan_grid(boxes, objects);

@@ -24,8 +24,8 @@ public:
         "sweeps along one axis and keeps the active boxes in the order of a second one";
 
     /// Chooses the two axes with the greatest variance: one to sweep, and one whose list orders the active boxes, the
-    /// kept axis. Boxes longer there than four mean extents are kept apart: they would widen the range of candidates of
-    /// all boxes.
+    /// kept axis. Boxes longer there than four mean extents get a list of their own (`long_active_`): they would widen
+    /// the range of candidates of all boxes.
     /// @returns the axes that need sorted lists
     axis_set axes(std::span<const box> boxes, const membership& objects) {
         const spread along = spread_of(boxes, objects);
