@@ -148,9 +148,9 @@ private:
     }
 
     /// Descends both trees at once to the pairs of leaves whose boxes overlap. `pairs_` has the pending pairs by step
-    /// of the descent; those of the last step are pairs of leaves. Each iteration takes a batch of the last step that
-    /// has pending pairs, so that few are pending at a time, and opens their nodes for the next step; of leaves it
-    /// takes all.
+    /// of the descent; at the last step they are pairs of leaves. Each iteration takes a batch of the last step that
+    /// has pending pairs, so that few are pending at a time: it opens the nodes for the next step, or passes on all
+    /// pairs of leaves.
     /// @param margin the distance up to which boxes count as overlapping
     /// @param at_leaves called with a batch of pairs, as leaves of A and leaves of B; returns whether to stop
     /// @returns whether `at_leaves` stopped the walk

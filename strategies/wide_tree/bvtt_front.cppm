@@ -59,10 +59,10 @@ public:
         std::optional<double> margin;  ///< the margin of a new front, if one is worth its cost
     };
     /// Records a query, and decides whether the front serves it, or a new front is worth its cost; otherwise the caller
-    /// walks from the roots. An invalid front is dropped. A new one needs two such queries in a row that moved B little
-    /// and changed neither mesh, and a wait after fronts that served too few queries. A front of margin m lasts about m
-    /// / step queries, where `step` is B's motion between two queries, and has the more pairs the larger m is: the best
-    /// m grows with the square root of the step.
+    /// walks from the roots. An invalid front is dropped. A new one is built after two such queries in a row that moved
+    /// B little and changed neither mesh, but later after fronts that served too few queries. A front of margin m lasts
+    /// about m / step queries (`step`: B's motion between two queries), and has more pairs if m is larger: the best m
+    /// grows with sqrt(step).
     /// @param motion the pose of B in A's frame
     /// @param bounds the box of B's vertices, in B's frame
     /// @param leaf_size the edge length of a leaf
