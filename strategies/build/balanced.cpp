@@ -16,44 +16,52 @@ struct part {
     std::size_t begin;
     std::size_t end;
     box bounds;
-    bool in_second;  ///< whether the items are in the second of the two arrays
+    std::size_t array;  ///< 0 or 1: the index of the array that holds the items
 
     [[nodiscard]] std::size_t size() const noexcept { return end - begin; }
 };
 
 class balanced_order_builder {
 public:
+    /// Allocates the result and the scratch memory. The items of a build are the triangles with their boxes; they are
+    /// in two arrays, since each split moves its items from one array to the other.
+    /// @param rule how a split chooses its axis
     balanced_order_builder(const mesh& m, axis_rule rule) : mesh_(m), rule_(rule) {
         const std::size_t n = m.triangles.size();
-        memory_.resize(2 * n);  // for two arrays: each split moves items from one to the other
-        items_ = {std::span(memory_).first(n), std::span(memory_).last(n)};
+        both_arrays_.resize(2 * n);
+        items_ = {std::span(both_arrays_).first(n), std::span(both_arrays_).last(n)};
         bin_of_item_.resize(n);
         order_.triangles.resize(n);
-        order_.bounds.resize((n + leaf_triangles - 1) / leaf_triangles);
+        order_.bounds.resize((n + leaf_triangles - 1) / leaf_triangles);  // one box per leaf
     }
 
-    /// Reads the triangles and splits them recursively down to leaves.
+    /// Reads the triangles and splits them recursively down to leaves of eight.
+    /// @param threads number of threads, on which the result does not depend
+    /// @returns the triangles in the order of the leaves, and the leaves' boxes
     [[nodiscard]] balanced_order build(std::uint32_t threads) {
         worker_threads workers(threads);
         const std::size_t n = mesh_.triangles.size();
-        std::vector<box> bounds((n + share_size - 1) / share_size);
+        // Each thread reads `share_size` triangles at a time, and computes the box of these.
+        std::vector<box> share_bounds((n + share_size - 1) / share_size);
         workers.for_each_range(n, share_size, [&](std::size_t begin, std::size_t end) {
-            bounds[begin / share_size] = read_items(begin, end).as_box();
+            share_bounds[begin / share_size] = read_items(begin, end).as_box();
         });
         box root = empty_box();
-        for (const box& b : bounds) root = merged(root, b);
+        for (const box& b : share_bounds) root = merged(root, b);
         split_recursively(
-            workers, part{.begin = 0, .end = n, .bounds = root, .in_second = false},
-            // The threads share a part while there are fewer parts than threads.
+            workers, part{.begin = 0, .end = n, .bounds = root, .array = 0},
+            // Splits a large part: with all threads while there are fewer parts than threads, then with one per part.
             [&](const part& p) { return split(p, p.size() > n / workers.count() ? workers : single_thread_); },
+            // Finishes a small part in one thread.
             [&](const part& p) { split_to_leaves(p); });
         order_.threads = threads;
         return std::move(order_);
     }
 
 private:
-    /// Fills the items of a range of triangles: each gets the triangle's box in the form of one SIMD vector.
-    /// @returns the box of the range
+    /// Fills the items of the triangles from `begin` to `end`. Each holds the triangle's box as one SIMD vector; the
+    /// upper ends are negated, so that one minimum of two vectors merges two boxes.
+    /// @returns the box of these triangles
     item_bounds read_items(std::size_t begin, std::size_t end) noexcept {
         item_bounds range;
         for (std::size_t t = begin; t < end; ++t) {
@@ -64,50 +72,53 @@ private:
                 item.negated_upper[static_cast<std::size_t>(k)] = -b.max[k];
             }
             item.triangle = static_cast<std::uint32_t>(t);
-            item.unused = 0;
+            item.unused = 0;  // pads the item to a vector
             range.take(item);
         }
         return range;
     }
 
-    /// Splits a part down to leaves and writes these to the order. Halving bounds the depth of the recursion.
+    /// Splits a range of triangles recursively down to leaves of eight, and writes each leaf to its place in the result
+    /// `order_`. The depth of the recursion is logarithmic, since the larger side of a split is a power of two.
     void split_to_leaves(const part& p) {
         if (p.size() > leaf_triangles) {
-            for (const part& half : split(p, single_thread_)) split_to_leaves(half);
+            for (const part& side : split(p, single_thread_)) split_to_leaves(side);
             return;
         }
-        for (std::size_t i = p.begin; i < p.end; ++i) order_.triangles[i] = items_[p.in_second][i].triangle;
+        for (std::size_t i = p.begin; i < p.end; ++i) order_.triangles[i] = items_[p.array][i].triangle;
         order_.bounds[p.begin / leaf_triangles] = p.bounds;
     }
 
-    /// Splits a part by the centres of its items, and moves these to the other array. The left side gets the greatest
-    /// power of two below the part's size, since a tree without indices must have full subtrees except the last.
+    /// Splits a part by the centres of its items along an axis, and moves these to the same range of the other array,
+    /// those of the left side first. The left side gets the greatest power of two below the part's size: the tree
+    /// computes the indices of children instead of storing them, so that every subtree but the last must be full.
     [[nodiscard]] std::array<part, 2> split(const part& p, worker_threads& workers) {
         const std::size_t left_count = std::bit_ceil(p.size()) / 2;
         const std::size_t middle = p.begin + left_count;
-        const std::span from = items_[p.in_second].subspan(p.begin, p.size());
-        const bool in_second = !p.in_second;
-        const std::span to = items_[in_second].subspan(p.begin, p.size());
+        const std::size_t other = 1 - p.array;
+        const std::span from = items_[p.array].subspan(p.begin, p.size());
+        const std::span to = items_[other].subspan(p.begin, p.size());
         if (p.size() <= few_items::most)
             split_few(from, to, p.bounds, left_count);
         else
             split_many(from, to, p.bounds, left_count, &bin_of_item_[p.begin], workers);
-        return {part{p.begin, middle, bounds_of_items(to.first(left_count), workers), in_second},
-                part{middle, p.end, bounds_of_items(to.subspan(left_count), workers), in_second}};
+        return {part{p.begin, middle, bounds_of_items(to.first(left_count), workers), other},
+                part{middle, p.end, bounds_of_items(to.subspan(left_count), workers), other}};
     }
 
-    /// Merges the boxes of items after they were moved, when most are cached: merging while they are moved is slower.
+    /// The box of one side of a split. It is merged after the items were moved, when most are in a cache: merging while
+    /// they are moved is slower. Several threads merge `share_size` items at a time.
     [[nodiscard]] static box bounds_of_items(std::span<const balanced_item> items, worker_threads& workers) {
         item_bounds bounds;
         if (workers.count() == 1) {
             bounds.take(items);
             return bounds.as_box();
         }
-        std::vector<item_bounds> partial((items.size() + share_size - 1) / share_size);
+        std::vector<item_bounds> share_bounds((items.size() + share_size - 1) / share_size);
         workers.for_each_range(items.size(), share_size, [&](std::size_t begin, std::size_t end) {
-            partial[begin / share_size].take(items.subspan(begin, end - begin));
+            share_bounds[begin / share_size].take(items.subspan(begin, end - begin));
         });
-        for (const item_bounds& b : partial) bounds.take(b);
+        for (const item_bounds& b : share_bounds) bounds.take(b);
         return bounds.as_box();
     }
 
@@ -117,7 +128,9 @@ private:
         std::uint64_t left_mask;
     };
 
-    /// Splits few items along the longest axis, or if the rule is least area, along that with the least exact cost.
+    /// The split of at most 64 items into the first `left_count` along an axis and the others: along the longest axis
+    /// of their box, or if the rule is least area, along the axis whose split has the least surface-area cost.
+    /// @returns the axis, and a mask in which bit i is set if item i goes to the left
     [[nodiscard]] few_split best_split(const few_items& items, const box& bounds,
                                        std::size_t left_count) const noexcept {
         const auto longest = static_cast<std::size_t>(longest_axis(bounds));
@@ -134,7 +147,9 @@ private:
         return best;
     }
 
-    /// Splits few items, in their order within each side. Exact centres resolve ties, which make the left too large.
+    /// Moves at most 64 items from `from` to `to`: the `left_count` of the left side first, then the others, each side
+    /// in its order in `from`. The mask of the split compares centres rounded to 16 bits; ties may put too many items
+    /// into it, of which the last by exact centres are then removed.
     void split_few(std::span<const balanced_item> from, std::span<balanced_item> to, const box& bounds,
                    std::size_t left_count) const noexcept {
         auto [axis, left_mask] = best_split(few_items(from), bounds, left_count);
@@ -148,18 +163,19 @@ private:
         }
     }
 
-    /// The bit of the last item in the mask, in the order of exact centres along the axis.
+    /// The bit of the last item in the order of centres along the axis, among the items whose bit is set in the mask.
     [[nodiscard]] static std::uint64_t last_item(std::span<const balanced_item> items, std::uint64_t mask,
                                                  std::size_t axis) noexcept {
         auto last = static_cast<std::size_t>(std::countr_zero(mask));
-        for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1)
+        for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1)  // clears the lowest bit
             if (const auto i = static_cast<std::size_t>(std::countr_zero(rest));
                 centre_order{axis}(items[last], items[i]))
                 last = i;
         return std::uint64_t{1} << last;
     }
 
-    /// The axis along which to split many items: the longest, or by the other rule that with the least estimated cost.
+    /// The axis along which to split many items: the longest, or if the rule is least area, the one whose split has the
+    /// least surface-area cost, estimated from a sample of every `step`-th item, at most 256.
     [[nodiscard]] std::size_t best_axis(std::span<const balanced_item> items, const box& bounds,
                                         std::size_t left_count) const noexcept {
         const auto longest = static_cast<std::size_t>(longest_axis(bounds));
@@ -180,7 +196,9 @@ private:
         std::array<std::size_t, 3> next{};  // output positions below, in and above the bin that is split
     };
 
-    /// Splits many items by a histogram; several threads take shares of `share_size` items, or the rest, in turn.
+    /// Moves many items from `from` to `to`, the `left_count` of the left side first. A single thread takes all items
+    /// as one share; several threads take shares of `share_size` items, of which the last is shorter.
+    /// @param bin_of_item scratch memory, one byte per item
     void split_many(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
                     std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers) const {
         if (workers.count() == 1) {
@@ -193,16 +211,18 @@ private:
         split_by_histogram(from, to, bounds, left_count, bin_of_item, workers, shares);
     }
 
-    /// Assigns items to bins of equal width by their centres along the axis, from `low` on, at `scale` bins per length.
+    /// Assigns each item to the bin floor((centre - low) * scale), clamped to the first and the last bin.
+    /// @param scale bins per unit of length
     /// @param bin_of_item receives the bin of each item
-    /// @returns the histogram
+    /// @returns the histogram: the number of items in each bin
     static std::array<std::uint32_t, bins> count_in_bins(std::span<const balanced_item> items, std::size_t axis,
                                                          float low, float scale, std::uint8_t* bin_of_item) noexcept {
-        // Several histograms: adjacent items mostly share a bin, so that increments of a single one would stall.
+        // Four histograms, used in turn: adjacent items mostly share a bin, so that increments of a single counter
+        // would wait for each other.
         constexpr std::size_t turns = 4;
         std::array<std::array<std::uint32_t, bins>, turns> counts{};
         const auto take = [&](std::size_t i, std::size_t turn) {
-            // NaN if all centres are equal.
+            // NaN if all centres are equal; the comparison below then chooses bin 0.
             const float at = (items[i].centre(axis) - low) * scale;
             bin_of_item[i] = static_cast<std::uint8_t>(at > 0 ? std::min(at, float{bins - 1}) : 0);
             ++counts[turn][bin_of_item[i]];
@@ -216,8 +236,11 @@ private:
         return counts[0];
     }
 
-    /// Splits in two passes over the items: the histogram yields the bin in which the split lies, then each item is
-    /// moved below, into or above that bin, and only the items of that bin are sorted. Each side keeps its order.
+    /// Splits in two passes over the items. The first counts a histogram of their centres, which yields the bin that
+    /// contains item `left_count` in the order of centres. The second moves each item below, into or above that bin.
+    /// Only the items of that bin are then split by comparisons. Each side keeps the order of `from`.
+    /// @param bin_of_item scratch memory, one byte per item
+    /// @param shares the items of each unit of multithreaded work
     void split_by_histogram(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
                             std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers,
                             std::span<share> shares) const {
@@ -225,19 +248,20 @@ private:
         const float low = bounds.min[static_cast<int>(axis)];
         const float scale = bins / (bounds.max[static_cast<int>(axis)] - low);
         workers.for_each_index(shares.size(), [&](std::size_t s, std::size_t) {
-            share& own = shares[s];
-            own.count =
-                count_in_bins(from.subspan(own.begin, own.end - own.begin), axis, low, scale, bin_of_item + own.begin);
+            const std::size_t first = shares[s].begin;
+            const std::span items = from.subspan(first, shares[s].end - first);
+            shares[s].count = count_in_bins(items, axis, low, scale, bin_of_item + first);
         });
         std::array<std::uint32_t, bins> count{};
         for (const share& s : shares)
             for (std::size_t b = 0; b < bins; ++b) count[b] += s.count[b];
-        std::size_t begin = 0;
+        std::size_t begin = 0;  // number of items below the bin
         std::size_t split_bin = 0;
         while (begin + count[split_bin] <= left_count) begin += count[split_bin++];
-        const std::size_t end = begin + count[split_bin];
+        const std::size_t size = count[split_bin];
 
-        std::array<std::size_t, 3> next{0, begin, end};  // where the next items below, in and above that bin go
+        // Where the next items below, in and above the bin go; each share gets a range of its own in all three.
+        std::array<std::size_t, 3> next{0, begin, begin + size};
         for (share& s : shares) {
             s.next = next;
             std::size_t below = 0;
@@ -258,24 +282,30 @@ private:
                 within += !is_below && !is_above;
             }
         });
-        // Restores the original order, so that the result does not depend on the library; `from` is free by now.
-        const std::span between = to.subspan(begin, end - begin);
-        const std::span original = from.subspan(begin, end - begin);
-        std::ranges::copy(between, original.begin());
-        const auto middle = between.begin() + static_cast<std::ptrdiff_t>(left_count - begin);
-        std::ranges::nth_element(between, middle, centre_order{axis});
+        split_by_selection(to.subspan(begin, size), from.subspan(begin, size), left_count - begin, axis);
+    }
+
+    /// Splits items in place, the `left_count` first along the axis before the others, by selection of the element at
+    /// `left_count`. The order within each side is restored from a copy, since that of `nth_element` depends on the
+    /// standard library.
+    /// @param copy scratch memory for as many items
+    static void split_by_selection(std::span<balanced_item> items, std::span<balanced_item> copy,
+                                   std::size_t left_count, std::size_t axis) {
+        std::ranges::copy(items, copy.begin());
+        const auto middle = items.begin() + static_cast<std::ptrdiff_t>(left_count);
+        std::ranges::nth_element(items, middle, centre_order{axis});
         const balanced_item first_of_right = *middle;
-        std::array<std::size_t, 2> next_of_side{begin, left_count};
-        for (const balanced_item& item : original) {
+        std::array<std::size_t, 2> next_of_side{0, left_count};
+        for (const balanced_item& item : copy) {
             const bool is_right = !centre_order{axis}(item, first_of_right);
-            to[next_of_side[is_right]++] = item;
+            items[next_of_side[is_right]++] = item;
         }
     }
 
     const mesh& mesh_;
     axis_rule rule_;
-    large_vector<balanced_item> memory_;
-    std::array<std::span<balanced_item>, 2> items_;
+    large_vector<balanced_item> both_arrays_;
+    std::array<std::span<balanced_item>, 2> items_;  // the two arrays, in this memory
     large_vector<std::uint8_t> bin_of_item_;
     balanced_order order_;
     worker_threads single_thread_{1};
