@@ -27,11 +27,11 @@ inline constexpr std::size_t share_size = 2048;
 /// Balanced splits need no more than 14 levels for 2^31 triangles and 256 threads.
 inline constexpr std::size_t most_shared_levels = 64;
 
-/// Splits the whole recursively until there are enough parts to balance the load; then each thread finishes one part
-/// after the other, adjacent parts first, which are in its caches. A single thread finishes the whole at once.
-/// Unbalanced splits stop at `most_shared_levels`, since each level costs stack.
-/// @param split returns the two parts of a part; runs in several threads, like `finish`, on disjoint parts
-/// @param finish completes a part
+/// Splits a range of triangles recursively until there are 16 parts per thread, enough to balance the load; then each
+/// thread finishes one part after the other, adjacent parts first, which are in its caches. A single thread finishes
+/// the whole at once. Unbalanced splits end after `most_shared_levels`, since each level of recursion costs stack.
+/// @param split returns the two sides of a part; runs in several threads, like `finish`, on disjoint parts
+/// @param finish builds the whole subtree of a part
 template <class Part, class Split, class Finish>
 void split_recursively(worker_threads& workers, const Part& whole, const Split& split, const Finish& finish) {
     constexpr std::size_t parts_per_thread = 16;
@@ -39,8 +39,8 @@ void split_recursively(worker_threads& workers, const Part& whole, const Split& 
         workers.count() > 1 ? std::max(share_size, whole.size() / (parts_per_thread * workers.count())) : whole.size();
     const auto split_part = [&](const auto& self, const Part& p, std::size_t levels) -> void {
         if (p.size() <= size_to_finish || levels == 0) return finish(p);
-        const auto halves = split(p);
-        workers.both([&] { self(self, halves[0], levels - 1); }, [&] { self(self, halves[1], levels - 1); });
+        const auto sides = split(p);
+        workers.both([&] { self(self, sides[0], levels - 1); }, [&] { self(self, sides[1], levels - 1); });
     };
     split_part(split_part, whole, most_shared_levels);
 }

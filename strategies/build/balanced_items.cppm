@@ -44,7 +44,8 @@ class item_bounds {
 public:
     inline void take(const balanced_item& item) noexcept { at_ = lesser(item); }
     inline void take(const item_bounds& other) noexcept { at_ = other.at_ < at_ ? other.at_ : at_; }
-    /// Merges the boxes of all items. Two accumulators halve the chain of dependent minima.
+    /// Grows this box to contain all items. Those at odd indices are merged into a second box, so that the two minima
+    /// of an iteration do not depend on each other.
     inline void take(std::span<const balanced_item> items) noexcept {
         item_bounds odd;
         std::size_t i = 0;
@@ -77,7 +78,9 @@ public:
     /// The sample size; trees built from larger samples are not faster to query.
     static constexpr std::size_t most = 256;
 
-    /// Puts the centre of every `step`-th of `items`, which must outlive the sample, into a bin along each axis.
+    /// Samples every `step`-th item, and puts the centre of each along each axis into the bin
+    /// floor((centre - low) * bins / edge), where `low` is the lower end of the box and `edge` its length on that axis.
+    /// @param items must outlive the sample
     /// @param bounds the box of all items
     binned_items(std::span<const balanced_item> items, std::size_t step, const box& bounds) noexcept
         : items_(items), step_(step) {
@@ -90,7 +93,7 @@ public:
             bins_per_length[k] = edge > 0 ? bins / edge : 0;
         }
         for (std::size_t i = 0; i < items.size(); i += step, ++count_) {
-            // `whole_bytes` truncates, and clamps a centre on the upper bound to the last bin.
+            // Truncates, and clamps a centre on the upper end of the box to the last bin.
             const simd::eight_bytes bin = simd::whole_bytes((items[i].centre() - low) * bins_per_length);
             for (std::size_t k = 0; k < 3; ++k) {
                 bin_of_item_[k][count_] = bin[k];
@@ -102,9 +105,9 @@ public:
     /// For each axis, the surface-area cost of a split at the border between bins that leaves about `left_count`
     /// sampled items on the left: the sum over both sides of area times number of items.
     [[nodiscard]] std::array<double, 3> costs(std::size_t left_count) const noexcept {
-        std::array<std::size_t, 3> end{};
-        std::array<std::size_t, 3> in_left{};
-        // A bin goes to the left if that comes nearer to the desired number.
+        std::array<std::size_t, 3> end{};      // on each axis the first bin of the right side
+        std::array<std::size_t, 3> in_left{};  // and the number of sampled items in the bins before it
+        // Adds bins to the left while more than half of the items of the next bin are wanted there.
         for (std::size_t k = 0; k < 3; ++k)
             while (end[k] < bins && in_left[k] + count_in_bin_[k][end[k]] / 2U < left_count)
                 in_left[k] += count_in_bin_[k][end[k]++];
@@ -141,14 +144,17 @@ class few_items {
 public:
     static constexpr std::size_t most = 64;
 
-    /// Copies the bounds of the items to rows, padded to full vectors with the last item, and quantises their centres.
+    /// Copies each bound of the items to an array of its own, for SIMD loads, and rounds their centres to 16 bits. The
+    /// arrays are padded with the last item, which changes no box of a side that contains it.
+    /// @param items 1 to 64
     explicit few_items(std::span<const balanced_item> items) noexcept : count_(items.size()) {
         for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = items[i].lower[k];
                 negated_upper_[k][i] = items[i].negated_upper[k];
             }
-        const std::size_t filled = std::max(std::bit_ceil(count_), lanes);  // vectors are read by 1, 2 or 4
+        // 1, 2 or 4 vectors, as `mask_by_vectors` reads them.
+        const std::size_t filled = std::max(std::bit_ceil(count_), lanes);
         for (std::size_t i = count_; i < filled; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = lower_[k][count_ - 1];
@@ -163,26 +169,28 @@ public:
         return mask_by_vectors<1>(static_cast<std::int16_t>(number), axis);
     }
 
-    /// The surface-area cost of a split into the items in the mask and the others: the sum of area times number.
+    /// The surface-area cost of a split into the items whose bit is set in the mask and the others: the sum over both
+    /// sides of half the area of the side's box times the number of its items.
     [[nodiscard]] inline double cost_of(std::uint64_t mask) const noexcept {
-        // Padding repeats the last item, so that it enlarges no box on that item's side.
+        // The padding repeats the last item, so it belongs to that item's side, whose box it does not enlarge.
         const std::uint64_t fill = count_ < most && (mask >> (count_ - 1) & 1) != 0 ? ~std::uint64_t{0} << count_ : 0;
+        // By side and bound (three lower ends, three negated upper ends): in each lane the least value so far.
         std::array<std::array<eight_floats, 6>, 2> sides;
         for (auto& side : sides) side.fill(eight_floats{} + std::numeric_limits<float>::infinity());
         for (std::size_t v = 0; v < vectors(); ++v) {
-            const auto present = static_cast<std::uint8_t>((mask | fill) >> v * width);
-            const auto in_first = simd::flags_of_eight(present);
+            const auto bits_of_vector = static_cast<std::uint8_t>((mask | fill) >> v * width);
+            const auto in_first = simd::flags_of_eight(bits_of_vector);
             for (std::size_t row = 0; row < 6; ++row) {
                 const eight_floats x = row < 3 ? load(lower_[row], v) : load(negated_upper_[row - 3], v);
                 sides[0][row] = in_first ? lesser(x, sides[0][row]) : sides[0][row];
                 sides[1][row] = in_first ? sides[1][row] : lesser(x, sides[1][row]);
             }
         }
-        const auto in_first = static_cast<std::size_t>(std::popcount(mask));
+        const auto first_count = static_cast<std::size_t>(std::popcount(mask));
         const auto cost = [](const auto& side, std::size_t count) {
             return count == 0 ? 0 : half_area(side) * static_cast<double>(count);
         };
-        return cost(sides[0], in_first) + cost(sides[1], count_ - in_first);
+        return cost(sides[0], first_count) + cost(sides[1], count_ - first_count);
     }
 
 private:
@@ -192,8 +200,10 @@ private:
     static constexpr float half_range = 32500;  // of i16, less a margin for rounding
     using row = std::array<float, most>;
 
-    /// Quantises the centres on an axis to i16, the range from the least to the greatest: a vector holds twice the
-    /// number of floats. If a float cannot hold the scale, as for equal centres, all become equal.
+    /// Rounds the centres on an axis to 16 bits, since a vector then holds twice as many of them as of floats: the
+    /// least becomes -half_range, the greatest half_range, the others lie proportionally between. If a float cannot
+    /// hold the scale, as for equal centres, all become 0.
+    /// @param vectors number of vectors of 16 lanes that hold the items and the padding
     inline void quantize_centres(std::size_t axis, std::size_t vectors) noexcept {
         std::array<simd::sixteen_floats, most / lanes> centre;
         simd::sixteen_floats least = simd::sixteen_floats{} + std::numeric_limits<float>::infinity();
@@ -216,8 +226,9 @@ private:
         }
     }
 
-    /// Sets the bits of items with fewer than `number` items before them: counts these and moves none. `Vectors`,
-    /// enough for all, is constant to keep them in registers.
+    /// Sets bit i if fewer than `number` centres on the axis are less than that of item i. Each centre is compared with
+    /// 16 others at once, which is faster than sorting so few. The `Vectors` of 16 lanes that hold all centres stay in
+    /// registers, for which their number must be constant: beginning with 1, it is doubled until it suffices.
     template <std::size_t Vectors>
     [[nodiscard]] inline std::uint64_t mask_by_vectors(std::int16_t number, std::size_t axis) const noexcept {
         if constexpr (Vectors * lanes < most)

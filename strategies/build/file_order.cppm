@@ -22,7 +22,8 @@ struct file_order_build : threaded_build {
         return build_top_down(m, arrangement, halves, threads);
     }
 
-    /// Keeps the order of the mesh and computes the boxes of the leaves.
+    /// Keeps the order of the triangles in the mesh, and computes the boxes of the leaves, each of eight successive
+    /// triangles. Threads process shares of a multiple of eight triangles, so that no two of them write to one box.
     [[nodiscard]] balanced_order order(const mesh& m) const {
         constexpr std::size_t in_leaf = balanced_order::leaf_triangles;
         const std::size_t n = m.triangles.size();

@@ -8,13 +8,16 @@ import aabb.std;
 export namespace aabb {
 
 /// Splits at the mean of the centroids along the longest axis, or at the median if that leaves a side empty.
+/// @param range the elements of a node: its triangles with their boxes and centroids
+/// @param bounds the box of the node
+/// @returns the axis, and the number of elements on the left
 [[nodiscard]] split_choice mean_split(std::span<const build_element> range, const box& bounds) {
     const int axis = longest_axis(bounds);
     double sum = 0;
     for (const build_element& e : range) sum += e.centroid[axis];
     const double mean = sum / static_cast<double>(range.size());
-    const auto below = std::ranges::count_if(range, [&](const build_element& e) { return e.centroid[axis] < mean; });
-    const auto left = static_cast<std::size_t>(below);
+    const auto is_below = [&](const build_element& e) { return e.centroid[axis] < mean; };
+    const auto left = static_cast<std::size_t>(std::ranges::count_if(range, is_below));
     return left == 0 || left == range.size() ? median_split(range, bounds) : split_choice{axis, left};
 }
 

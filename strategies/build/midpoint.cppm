@@ -8,12 +8,15 @@ import aabb.std;
 export namespace aabb {
 
 /// Splits in the middle of the box along its longest axis, or at the median if that leaves a side empty.
+/// @param range the elements of a node: its triangles with their boxes and centroids
+/// @param bounds the box of the node
+/// @returns the axis, and the number of elements on the left
 [[nodiscard]] split_choice midpoint_split(std::span<const build_element> range, const box& bounds) {
     const int axis = longest_axis(bounds);
     // In double, so that the sum cannot overflow.
     const double middle = (double{bounds.min[axis]} + double{bounds.max[axis]}) / 2;
-    const auto below = std::ranges::count_if(range, [&](const build_element& e) { return e.centroid[axis] < middle; });
-    const auto left = static_cast<std::size_t>(below);
+    const auto is_below = [&](const build_element& e) { return e.centroid[axis] < middle; };
+    const auto left = static_cast<std::size_t>(std::ranges::count_if(range, is_below));
     return left == 0 || left == range.size() ? median_split(range, bounds) : split_choice{axis, left};
 }
 

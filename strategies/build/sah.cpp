@@ -28,8 +28,10 @@ private:
     double scale_;
 };
 
-/// Updates `best` and its cost if a split between two bins of centroids along the axis costs less: the sum over both
-/// sides of area times number of triangles (surface-area heuristic).
+/// Tries the splits between adjacent bins of centroids along the axis. If one costs less than `least_cost`, updates
+/// this and `best`. The cost is the sum over both sides of area times number of triangles (surface-area heuristic).
+/// @param range the elements of a node: its triangles with their boxes and centroids
+/// @param centroids the box of the centroids
 void try_sah_axis(std::span<const build_element> range, int axis, const box& centroids, double& least_cost,
                   split_choice& best) noexcept {
     const sah_binning bin_of(centroids.min[axis], centroids.max[axis]);
@@ -39,14 +41,14 @@ void try_sah_axis(std::span<const build_element> range, int axis, const box& cen
         bin.bounds = merged(bin.bounds, e.bounds);
         ++bin.count;
     }
-    std::array<double, sah_bins> cost_from{};  // of bins i and above
+    std::array<double, sah_bins> cost_from{};  // element i: the cost of a right side that consists of bins i and above
     sah_bin side;
     for (std::size_t i = sah_bins; i-- > 1;) {
         side.bounds = merged(side.bounds, bins[i].bounds);
         side.count += bins[i].count;
         cost_from[i] = side.count == 0 ? 0 : surface_area(side.bounds) * static_cast<double>(side.count);
     }
-    side = {};
+    side = {};  // the left side, bins 0 to i
     for (std::size_t i = 0; i + 1 < sah_bins; ++i) {
         side.bounds = merged(side.bounds, bins[i].bounds);
         side.count += bins[i].count;

@@ -43,7 +43,9 @@ public:
     top_down_builder(const mesh& m, leaf_arrangement arrangement, const split_rule& split)
         : mesh_(m), arrangement_(arrangement), split_(split) {}
 
-    /// Reads the triangles and splits them recursively down to one triangle per leaf.
+    /// Reads the triangles and splits them recursively down to one triangle per leaf. The result does not depend on the
+    /// number of threads.
+    /// @returns the nodes in preorder: n leaves and n - 1 internal nodes for n triangles
     [[nodiscard]] std::vector<build_node> build(std::uint32_t threads) {
         worker_threads workers(threads);
         const std::size_t n = mesh_.triangles.size();
@@ -54,15 +56,16 @@ public:
         });
         nodes_.resize(2 * n - 1);
         split_recursively(
-            workers, task{.begin = 0, .end = n, .node = 0}, [&](const task& t) { return split_task(t); },
+            workers, task{.begin = 0, .end = n, .node = 0}, [&](const task& t) { return split_node(t); },
             [&](const task& t) { build_subtree(t); });
         return std::move(nodes_);
     }
 
 private:
-    /// Writes the internal node of two or more elements and partitions them by the rule. Nodes are in preorder: the
+    /// Writes an internal node and partitions its elements, two or more, by the split rule. Nodes are in preorder: the
     /// left child follows its parent, and the right child the 2 n - 1 nodes of the left subtree of n triangles.
-    [[nodiscard]] std::array<task, 2> split_task(const task& t) {
+    /// @returns the elements and the places of both children, which are still to be built
+    [[nodiscard]] std::array<task, 2> split_node(const task& t) {
         const std::span range = std::span(elements_).subspan(t.begin, t.size());
         const box bounds = bounds_of(range);
         const split_choice chosen = split_(range, bounds);
@@ -76,7 +79,7 @@ private:
         return {task{t.begin, t.begin + left, t.node + 1}, task{t.begin + left, t.end, right}};
     }
 
-    /// Builds a subtree with an explicit stack, since trees may be too deep for recursion.
+    /// Builds the subtree of a range of elements, with an explicit stack, since trees may be too deep for recursion.
     void build_subtree(const task& whole) {
         std::vector<task> tasks{whole};
         while (!tasks.empty()) {
@@ -86,7 +89,7 @@ private:
                 const build_element& only = elements_[current.begin];
                 nodes_[current.node] = {.bounds = only.bounds, .right = 0, .triangle = only.triangle};
             } else {
-                const auto [left, right] = split_task(current);
+                const auto [left, right] = split_node(current);
                 tasks.push_back(right);
                 tasks.push_back(left);
             }
