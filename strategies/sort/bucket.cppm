@@ -16,7 +16,8 @@ public:
         "bucket sort with one bucket of equal width per entry: linear for uniformly spread entries";
     static constexpr bool is_done_by_columns = true;
 
-    /// Distributes the entries by a counting sort of their buckets, and sorts each bucket.
+    /// Distributes the entries over buckets of equal width by a counting sort, and sorts each bucket. There are about
+    /// as many buckets as entries, so that a bucket has few.
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {
         if (list.size() < 2) return;
@@ -27,24 +28,25 @@ public:
         const auto bucket_of = [&](const projection& p) {
             return static_cast<std::size_t>((double{p.key} - double{least.key}) * scale);
         };
-        starts_.assign(buckets + 1, 0);
-        for (const projection& p : list) ++starts_[bucket_of(p) + 1];
-        for (std::size_t b = 0; b < buckets; ++b) starts_[b + 1] += starts_[b];
+        next_.assign(buckets + 1, 0);
+        for (const projection& p : list) ++next_[bucket_of(p) + 1];
+        for (std::size_t b = 0; b < buckets; ++b) next_[b + 1] += next_[b];  // where bucket b + 1 begins
         from_.assign(list.begin(), list.end());
-        for (const projection& p : from_) list[starts_[bucket_of(p)]++] = p;
+        for (const projection& p : from_) list[next_[bucket_of(p)]++] = p;  // finally next_[b] is the end of bucket b
         counters.add(work::moves, list.size());
         sort_buckets(list, counters);
     }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(starts_, from_); }
+    [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(next_, from_); }
 
 private:
-    /// Sorts each bucket by insertion; those with many entries by std::sort, since insertion sort is quadratic.
+    /// Sorts each bucket of a list whose entries are distributed, in which bucket b ends at `next_[b]`: by insertion,
+    /// or if it has many entries by std::sort, since insertion sort is quadratic.
     template <CounterPolicy Counters>
     void sort_buckets(std::span<projection> list, Counters& counters) const {
         constexpr std::size_t most_to_insert = 64;
         std::size_t begin = 0;
-        for (const std::uint32_t end : std::span(starts_).first(starts_.size() - 1)) {
+        for (const std::uint32_t end : std::span(next_).first(next_.size() - 1)) {
             const std::span bucket = list.subspan(begin, end - begin);
             begin = end;
             if (bucket.size() > most_to_insert)
@@ -57,7 +59,7 @@ private:
         }
     }
 
-    std::vector<std::uint32_t> starts_;
+    std::vector<std::uint32_t> next_;  // by bucket: where its next entry goes
     std::vector<projection> from_;
 };
 

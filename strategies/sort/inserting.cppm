@@ -14,15 +14,16 @@ struct ignore_swaps {
 
 using gap_of_one = std::integral_constant<std::size_t, 1>;
 
-/// Insertion sort of the entries at a distance of a gap: n + d comparisons for d inversions of such entries.
+/// Insertion sort of each subsequence of entries whose distance is a multiple of `gap`, a pass of Shell sort. With the
+/// default gap, the constant 1, it is the usual insertion sort. It takes n + d comparisons, where d is the number of
+/// inversions in these subsequences.
 /// @param on_swap gets the entry that is passed and the one that moves before it; returning false ends the sort there
-/// @tparam Gap a number; by default the constant 1, the usual insertion sort
 template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps, class Gap = gap_of_one>
 constexpr void insert_each(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}, Gap gap = {}) {
     for (std::size_t i = gap; i < list.size(); ++i) {
         const Entry inserted = list[i];
         std::size_t hole = i;
-        bool goes_on = true;
+        bool goes_on = true;  // false once `on_swap` has ended the sort
         while (goes_on && hole >= gap) {
             counters.add(work::comparisons);
             if (!precedes(inserted, list[hole - gap])) break;

@@ -30,7 +30,7 @@ public:
     shell_sort() = default;
     explicit shell_sort(const config& c) : config_(c) {}
 
-    /// Sorts by insertion for each gap, in descending order.
+    /// Sorts by insertion the entries at a distance of a gap, for each gap of the sequence in descending order, to 1.
     template <CounterPolicy Counters>
     constexpr void sort(std::span<projection> list, Counters& counters) const {
         if (config_.gaps == gap_sequence::shell) {
@@ -74,7 +74,7 @@ private:
     };
     static_assert(more_than_double(ciura) && more_than_double(tokuda));
 
-    /// The gaps of a sequence that does not depend on the length of the list.
+    /// The ascending gaps of a sequence that does not depend on the length of the list; not for `shell`, whose does.
     [[nodiscard]] static constexpr std::span<const std::uint32_t> ascending(gap_sequence gaps) noexcept {
         switch (gaps) {
             case gap_sequence::tokuda: return tokuda;
