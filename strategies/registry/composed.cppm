@@ -7,7 +7,8 @@ import aabb.std;
 
 export namespace aabb::composed {
 
-/// The registry's entry of a strategy; what the strategy does not declare is empty.
+/// The registry's entry of a strategy: its name, summary and parameters, and the optional members that it declares;
+/// the others are empty in the entry. `check` throws input_error on invalid settings of a choice.
 template <Strategy S>
 [[nodiscard]] strategy_info strategy_info_of() {
     std::vector<absence> leaves_out;
@@ -61,7 +62,9 @@ template <class Make>
 /// A statically composed broad phase behind the interface of a stage.
 template <class... Parts>
 struct global_search_of {
-    /// Makes the stage from one choice per part, in order, with counters of work or without.
+    /// Makes a broad phase of the strategies `Parts` (sort, partition, sweep), which are fixed at compile time.
+    /// @param choices settings of each strategy, in the same order
+    /// @param wanted whether the stage counts its work
     [[nodiscard]] static std::unique_ptr<global_stage> make(std::span<const strategy_choice> choices,
                                                             instrumentation wanted) {
         return with_counters(wanted, [&]<class Counters>(Counters) -> std::unique_ptr<global_stage> {
@@ -79,11 +82,15 @@ using global_search_rows = std::vector<
 /// A statically composed narrow phase, whose tree builder is chosen separately.
 template <class... Parts>
 struct local_detection_of {
-    /// Makes the stage from one choice per part, in order, with counters of work or without.
+    /// Makes a narrow phase of the strategies `Parts` (tree, triangle test), which are fixed at compile time.
+    /// @param choices settings of each strategy, in the same order
+    /// @param builder builds the trees; chosen at run time
+    /// @param wanted whether the stage counts its work
     [[nodiscard]] static std::unique_ptr<local_stage> make(std::span<const strategy_choice> choices,
                                                            tree_builder builder, instrumentation wanted) {
         return with_counters(wanted, [&]<class Counters>(Counters) -> std::unique_ptr<local_stage> {
             auto choice = choices.begin();
+            // The elements of a braced list are evaluated from left to right.
             using detection = mesh_detection<tree_builder, Parts..., Counters>;
             return std::make_unique<detected_by<detection>>(
                 detection{std::move(builder), make_strategy<Parts>(configured<Parts>((choice++)->settings))...});
@@ -93,8 +100,10 @@ struct local_detection_of {
 using local_detection_rows = std::vector<row<std::unique_ptr<local_stage> (*)(
     std::span<const strategy_choice> choices, tree_builder builder, instrumentation wanted)>>;
 
-/// A table row for every combination of one strategy per list, also for those that a strategy rejects.
+/// The table of a stage: one row for every combination of strategies, one of each list. A row contains their names and
+/// the function that makes the stage, or if one of them rejects the combination, the reason and a null pointer.
 /// @tparam Stage `Stage<Parts...>::make` makes the stage from these strategies
+/// @param lists one `type_list` of strategies per kind
 template <class Rows, template <class... Parts> class Stage, class... Lists>
 [[nodiscard]] Rows rows_of(Lists... lists) {
     Rows rows;
@@ -107,7 +116,8 @@ template <class Rows, template <class... Parts> class Stage, class... Lists>
     return rows;
 }
 
-/// Concatenates the rows of these functions, one per generated unit.
+/// Concatenates the table rows that these functions return. Each function is in a generated source file of its own, so
+/// that a changed strategy recompiles few of them.
 template <class Rows>
 [[nodiscard]] Rows joined(std::initializer_list<Rows (*)()> functions) {
     Rows rows;
@@ -118,7 +128,8 @@ template <class Rows>
     return rows;
 }
 
-/// The result of `make` for the strategy with the name and settings of the choice, or an empty one.
+/// Calls `make` with the strategy that has the name of the choice, constructed with its settings.
+/// @returns the result of `make`; empty if none of the strategies has this name
 template <class Result, class... Strategies, class Make>
 [[nodiscard]] Result make_named(type_list<Strategies...>, const strategy_choice& choice, Make make) {
     Result result{};

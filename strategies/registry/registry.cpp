@@ -64,19 +64,21 @@ const auto& accepted_row(const Rows& rows, const composition& c, stage of) {
     return row;
 }
 
-/// All accepted combinations. Strategies compiled alone vary one by one, beside the defaults and the first of others.
+/// All accepted compositions of a stage, with default parameters. The rows of its table combine the kinds that are
+/// compiled together. A strategy of a kind that is compiled alone (`prepare`, `build`) works with every row, so it is
+/// combined with two only: that of the default strategies, and that of the first strategy of each kind.
 template <class Rows>
 std::vector<composition> every_composition(const Rows& rows, stage of) {
     std::vector<composition> compositions;
     const std::vector<strategy_kind> kinds = kinds_of(of, /*is_compiled_alone=*/false);
     for (const auto& row : rows) {
-        if (!row.make) continue;
+        if (!row.make) continue;  // rejected
         composition& c = compositions.emplace_back();
         for (std::size_t i = 0; i < kinds.size(); ++i) c[kinds[i]] = {std::string(row.names[i]), {}};
     }
     for (const strategy_kind kind : kinds_of(of, /*is_compiled_alone=*/true))
         for (const strategy_info& info : strategies(kind)) {
-            if (info.name == info_of(kind).fallback) continue;
+            if (info.name == info_of(kind).fallback) continue;  // the default, as in the rows
             composition c;
             c[kind] = {info.name, {}};
             compositions.push_back(c);
@@ -86,7 +88,7 @@ std::vector<composition> every_composition(const Rows& rows, stage of) {
     return compositions;
 }
 
-/// The kind of this strategy name, if it is unique.
+/// The kind that has a strategy of this name; nothing if no kind has one, or several have.
 std::optional<strategy_kind> only_kind_of(const std::string& name) {
     std::optional<strategy_kind> only;
     for (const strategy_kind kind : strategy_kinds) {
@@ -109,6 +111,7 @@ std::vector<strategy_kind> kinds_of(stage of) {
     return kinds;
 }
 
+/// The registry's entries of all strategies of a kind, made at the first call.
 std::span<const strategy_info> strategies(strategy_kind kind) {
     static const by_kind<std::vector<strategy_info>> infos = [] {
         by_kind<std::vector<strategy_info>> table;
@@ -124,7 +127,9 @@ std::vector<std::string> strategy_names(strategy_kind kind) {
     return names;
 }
 
-/// Rejects an unknown name, naming the kind to which it belongs, a parameter given twice, and invalid settings.
+/// Rejects a choice of a strategy of this kind if its name is unknown, a parameter is given twice, or a setting is
+/// invalid.
+/// @throws input_error that names the kind to which the name belongs, or the nearest valid name
 void require_known(strategy_kind kind, const strategy_choice& choice) {
     const std::vector<std::string> names = strategy_names(kind);
     if (std::ranges::find(names, choice.name) == names.end()) {
@@ -137,39 +142,42 @@ void require_known(strategy_kind kind, const strategy_choice& choice) {
     for (const setting& s : choice.settings) {
         if (!seen.insert(s.name).second) throw input_error(choice.name + ": " + s.name + " is given twice");
         // Earlier versions had parameters that are kinds of their own now.
-        const auto same_name = std::ranges::find(strategy_kind_infos, s.name, &strategy_kind_info::name);
-        const auto own = std::ranges::find(strategy_of(kind, choice).parameters, s.name, &parameter_info::name);
-        if (same_name != strategy_kind_infos.end() && own == strategy_of(kind, choice).parameters.end())
+        const auto kind_of_name = std::ranges::find(strategy_kind_infos, s.name, &strategy_kind_info::name);
+        const std::vector<parameter_info>& parameters = strategy_of(kind, choice).parameters;
+        const auto parameter = std::ranges::find(parameters, s.name, &parameter_info::name);
+        if (kind_of_name != strategy_kind_infos.end() && parameter == parameters.end())
             throw input_error(choice.name + " has no parameter " + s.name + ", which is a kind of its own: write " +
                               s.name + " = \"" + s.value + "\" or --" + s.name + " " + s.value);
     }
     strategy_of(kind, choice).check(choice);
 }
 
-/// Completes the named strategies of each stage: if any of them is compiled together with others, with the strategies
-/// usual beside named ones (`default_with`) if the stage accepts these; else with the defaults (`fallback`).
+/// Chooses a strategy of each kind: the one that the user names, else a default. A kind has two defaults: a plain one,
+/// `default_with`, for stages in which the user names another kind (kinds compiled alone do not count), and `fallback`
+/// for the others. A stage that rejects the former and accepts the latter uses the latter.
 composition::composition(const named_strategies& named) {
     const auto complete = [&](stage of, std::string_view strategy_kind_info::* usual) {
         for (const strategy_kind kind : kinds_of(of))
             choices_[kind] = named[kind].value_or(strategy_choice{std::string(info_of(kind).*usual), {}});
     };
     for (const stage of : {stage::global_search, stage::local_detection}) {
-        complete(of, &strategy_kind_info::default_with);
+        complete(of, &strategy_kind_info::fallback);
         const bool any_named = std::ranges::any_of(kinds_of(of, /*is_compiled_alone=*/false),
                                                    [&](strategy_kind kind) { return named[kind].has_value(); });
-        if (any_named && rejection_of(*this, of).empty()) continue;
-        const composition with_usual = *this;
-        complete(of, &strategy_kind_info::fallback);
-        if (any_named && !rejection_of(*this, of).empty()) *this = with_usual;
+        if (!any_named) continue;
+        const composition with_fallbacks = *this;
+        complete(of, &strategy_kind_info::default_with);
+        if (!rejection_of(*this, of).empty() && rejection_of(with_fallbacks, of).empty()) *this = with_fallbacks;
     }
 }
 
-/// The strategies joined by " + ", without the defaults of kinds that are compiled alone.
+/// The strategies of these kinds joined by " + ", as in "shell + axial_cut + one_axis". Kinds that are compiled alone,
+/// `prepare` and `build`, are left out if their strategy is the default.
 std::string text_in_line(const by_kind<std::string>& choices, std::span<const strategy_kind> kinds) {
     std::string text;
     for (const strategy_kind kind : kinds) {
-        const bool is_usual = info_of(kind).is_compiled_alone && choices[kind] == info_of(kind).fallback;
-        if (!is_usual && !choices[kind].empty()) text += (text.empty() ? "" : " + ") + choices[kind];
+        const bool is_left_out = info_of(kind).is_compiled_alone && choices[kind] == info_of(kind).fallback;
+        if (!is_left_out && !choices[kind].empty()) text += (text.empty() ? "" : " + ") + choices[kind];
     }
     return text;
 }
