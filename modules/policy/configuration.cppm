@@ -23,6 +23,7 @@ constexpr void for_each_parameter(const Take& take) {
         std::apply([&](const auto&... parameter) { (take(parameter), ...); }, S::parameters);
 }
 
+/// The parameters of a strategy or a scene: name, valid values, default and help, in the order of their declaration.
 template <Configurable S>
 [[nodiscard]] std::vector<parameter_info> parameters_of() {
     std::vector<parameter_info> infos;
@@ -33,7 +34,7 @@ template <Configurable S>
     return infos;
 }
 
-/// The configuration described by settings.
+/// The configuration of a strategy or a scene: the defaults of its parameters, changed by the settings of the user.
 /// @throws input_error on an unknown parameter, an invalid value, or a missing parameter without a default
 template <Configurable S>
 [[nodiscard]] config_of<S> configured(std::span<const setting> settings) {
@@ -54,6 +55,7 @@ template <Configurable S>
             throw input_error(std::string(S::name) + " takes no parameters, but '" + s.name + "' is set");
         throw input_error(unknown_name("parameter of " + std::string(S::name), s.name, names));
     }
+    // A parameter without a default is still empty if no setting gave it.
     for_each_parameter<S>([&](const auto& parameter) {
         if (parameter.show(config).empty())
             throw input_error(std::string(S::name) + ": " + std::string(parameter.name) + " must be given, " +

@@ -4,7 +4,9 @@ import aabb.std;
 
 export namespace aabb {
 
-/// The edit distance with transpositions (Damerau 1964): insert, delete, replace, and swap of neighbours cost 1 each.
+/// The edit distance of two words with transpositions (Damerau 1964): inserting, deleting or replacing a letter, and
+/// swapping two adjacent ones, cost 1 each. `row[j]` is the distance of the first i letters of `a` to the first j of
+/// `b`; `above` and `before` are the rows of i - 1 and i - 2.
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) above[j] = j;
@@ -21,28 +23,30 @@ export namespace aabb {
     return above[b.size()];
 }
 
-/// The known name closest to an unknown one, the first of equals; empty if in all of them more than a third of the
-/// letters of the longer name differ. A name that contains the unknown one ("grid" in "uniform_grid") counts as one
-/// edit, and so does one contained in it with at least half of its length.
+/// The known name with the least edit distance to an unknown one, the first of equals, to be suggested to the user.
+/// Empty if all distances exceed a third of the longer name's length. A name that contains the unknown one
+/// ("uniform_grid" for "grid"), or is contained in it and at least half as long, has the distance 1.
 [[nodiscard]] inline std::string nearest_name(std::string_view unknown, std::span<const std::string> known) {
     std::string_view nearest;
     std::size_t least = std::string_view::npos;
     for (const std::string_view name : known) {
-        const auto holds_other = [](std::string_view longer, std::string_view shorter) {
+        const auto contains = [](std::string_view longer, std::string_view shorter) {
             return shorter.size() > 2 && longer.find(shorter) != std::string_view::npos;  // two letters say little
         };
-        const bool holds =
-            holds_other(name, unknown) || (2 * name.size() >= unknown.size() && holds_other(unknown, name));
-        const std::size_t distance = holds ? 1 : edit_distance(unknown, name);
-        if (distance >= least || (!holds && distance > std::max(unknown.size(), name.size()) / 3)) continue;
+        const bool one_contains_other =
+            contains(name, unknown) || (2 * name.size() >= unknown.size() && contains(unknown, name));
+        const std::size_t distance = one_contains_other ? 1 : edit_distance(unknown, name);
+        if (distance >= least || (!one_contains_other && distance > std::max(unknown.size(), name.size()) / 3))
+            continue;
         least = distance;
         nearest = name;
     }
     return std::string(nearest);
 }
 
-/// The error message for an unknown name, with the nearest name; if none is near, with all names, or with the command
-/// that lists them if they do not fit into a line.
+/// The error message for an unknown name, with the nearest known name; if none is near, with all names, or with the
+/// command that lists them if they do not fit into a line of 120 characters.
+/// @param what what the name should denote, such as "sort"
 /// @param listing the command that lists the names, if there is one
 [[nodiscard]] inline std::string unknown_name(std::string_view what, std::string_view name,
                                               std::span<const std::string> known, std::string_view listing = {}) {

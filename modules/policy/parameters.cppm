@@ -31,7 +31,8 @@ struct text_values {
 };
 using parameter_values = std::variant<integer_values, number_values, name_values, text_values>;
 
-/// Completes "must be …": "a whole number from 1 to 8 or auto", "one of x, y".
+/// The valid values of a parameter in words that complete "must be …" in help and error messages: "a whole number from
+/// 1 to 8 or auto", "one of x, y".
 [[nodiscard]] inline std::string to_text(const parameter_values& values) {
     if (const auto* integers = std::get_if<integer_values>(&values))
         return "a whole number from " + std::to_string(integers->least) + " to " + std::to_string(integers->most) +
@@ -95,7 +96,9 @@ struct integer_parameter {
             return std::to_string(config.*field);
     }
 
-    /// Sets the field to the value of a text; returns false if it is none of `values()`.
+    /// Parses a text, and sets the parameter's field of the configuration; "auto" leaves it empty where that is
+    /// allowed.
+    /// @returns false if the text is none of the valid values (`values()`)
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
         if (or_auto && text == "auto") {
             config.*field = Value{};
@@ -128,7 +131,9 @@ struct number_parameter {
             return shortest(static_cast<double>(config.*field));
     }
 
-    /// Sets the field to the value of a text; returns false if it is none of `values()`.
+    /// Parses a text, and sets the parameter's field of the configuration; "auto" leaves it empty where that is
+    /// allowed.
+    /// @returns false if the text is none of the valid values (`values()`)
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
         if (or_auto && text == "auto") {
             config.*field = Value{};

@@ -30,14 +30,14 @@ struct strategy_choice {
     return text;
 }
 
-/// The inverse of `to_text`: parses "name" or "name:parameter=value,parameter=value".
+/// Parses a strategy and its settings as written on the command line: "name" or "name:parameter=value,parameter=value".
 /// @throws input_error on a setting without "=".
 [[nodiscard]] inline strategy_choice parse_strategy(std::string_view text) {
     const std::size_t colon = text.find(':');
     strategy_choice choice{std::string(text.substr(0, colon)), {}};
     if (colon == std::string_view::npos) return choice;
     text.remove_prefix(colon + 1);
-    while (true) {
+    while (true) {  // `text` is the rest of the settings
         const std::string_view item = text.substr(0, text.find(','));
         const std::size_t equals = item.find('=');
         if (equals == std::string_view::npos || equals == 0)
@@ -61,14 +61,15 @@ struct scene_traits {
     /// front takes about as long as two searches.
     static constexpr std::size_t fewest_frames_to_keep = 4;
 
-    /// The number of queries from which a slower build is worth its cost, if each query takes less by a share. A query
-    /// of two meshes visits about 21 pairs of nodes times the square root of their triangles, as counted with meshes of
-    /// 5,000 to 200,000 triangles. Meshes are assumed to be of equal size.
+    /// The number of queries of two meshes from which a slower build is worth its cost: the build time added to all
+    /// meshes divided by the time saved per query. A query visits about 21 sqrt(n) pairs of nodes, where n is the
+    /// number of triangles of both meshes, as counted with meshes of 5,000 to 200,000 triangles. Meshes are assumed to
+    /// be of equal size.
     /// @param longer additional build time per triangle in nanoseconds
-    /// @param share relative saving per query
+    /// @param share relative saving per query: 0.1 if queries take a tenth less
     [[nodiscard]] inline std::size_t queries_that_repay(double longer, double share) const {
         constexpr double visits_per_root = 21;
-        constexpr double never = 1e18;  // queries
+        constexpr double never = 1e18;  // more queries than any program makes, and less than 2^64
         if (triangles == 0) return static_cast<std::size_t>(never);
         const double least = longer * static_cast<double>(triangles) /
                              (machine_costs().node_visit * visits_per_root * share * std::sqrt(triangles_per_query()));
