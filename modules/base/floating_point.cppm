@@ -19,7 +19,9 @@ inline const volatile double least_double = std::numeric_limits<double>::denorm_
 inline const volatile double near_one = 1 + 0x1p-30;
 inline const volatile double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// @throws input_error with the fault of the arithmetic
+/// Reports that the arithmetic is not that of IEEE 754. If none of the conditions is false, products and sums are
+/// fused. Not inline in its only caller, `require_ieee_arithmetic`, which every query calls.
+/// @throws input_error with the first fault, and what to do
 [[noreturn]] void reject_arithmetic(bool keeps_denormals, bool rounds_to_nearest, bool knows_nan) {
     if (!keeps_denormals)
         throw input_error(
@@ -41,16 +43,18 @@ inline const volatile double not_a_number = std::numeric_limits<double>::quiet_N
 export namespace aabb {
 
 /// Rejects arithmetic other than that of IEEE 754, on which exact results depend. Every query calls this first, at the
-/// cost of a few additions. Always inline, so that it checks the options of the importer: `-ffp-contract=fast`
-/// overrides the pragmas, and no macro reveals it.
+/// cost of a few additions. It is always inline, so that it checks the options of the importer: `-ffp-contract=fast`
+/// overrides the pragmas, and no macro reveals it. The operands are volatile, so that it is not evaluated by the
+/// compiler.
 /// @throws input_error if the thread flushes denormals to zero, as a library linked with -ffast-math makes it do, or
 /// does not round to nearest; if products are fused into sums, or comparisons ignore NaN
 [[gnu::always_inline]] inline void require_ieee_arithmetic() {
-    const double least = detail::least_double;
-    const double root = detail::near_one;
+    const double least = detail::least_double;  // the least positive double, a denormal number
+    const double root = detail::near_one;       // 1 + 2^-30
     const bool keeps_denormals = least + least != 0;
-    const bool rounds_to_nearest = 1 + least == 1 - least;
-    const bool fuses = root * root - (1 + 0x1p-29) != 0;  // the exact square is greater by 2^-60
+    const bool rounds_to_nearest = 1 + least == 1 - least;  // both are 1; a directed rounding changes one of them
+    // The square is 1 + 2^-29 + 2^-60, whose last term is lost unless the product and the difference are fused.
+    const bool fuses = root * root - (1 + 0x1p-29) != 0;
     const double nan = detail::not_a_number;
     const bool knows_nan = nan != nan;
     if (!keeps_denormals || !rounds_to_nearest || !knows_nan || fuses) [[unlikely]]

@@ -32,7 +32,9 @@ void free_aligned(void* memory) noexcept {
 
 }  // namespace
 
-/// Memory for a long array, in huge pages if it fills two of them, so that scattered writes cause fewer TLB misses.
+/// Memory for a long array, in huge pages of 2 MiB if it fills two of them, so that scattered writes cause fewer TLB
+/// misses. Aligned to a page of that size, or else to a cache line.
+/// @throws std::bad_alloc
 void* allocate_large(std::size_t bytes) {
     const bool in_huge_pages = bytes >= 2 * huge_page;
     void* const memory = allocate_aligned(bytes, in_huge_pages ? huge_page : large_alignment);

@@ -24,10 +24,11 @@ worker_threads::worker_threads(worker_threads&&) noexcept = default;
 worker_threads& worker_threads::operator=(worker_threads&&) noexcept = default;
 worker_threads::~worker_threads() = default;
 
-/// `for_each_index` on several threads. The work is a function pointer, so that importers do not need TBB's headers.
+/// Calls `call(work, i, worker)` for each i < n on several threads, where `worker` is the number of the calling thread.
+/// A function pointer with its argument `work`, instead of a template, spares importers the headers of TBB.
 void worker_threads::run_in_arena(std::size_t n, void (*call)(void* work, std::size_t i, std::size_t worker),
                                   void* work) {
-    const auto share = [&] {
+    const auto call_for_each = [&] {
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, n, 1),
             [&](const tbb::blocked_range<std::size_t>& range) {
@@ -37,7 +38,7 @@ void worker_threads::run_in_arena(std::size_t n, void (*call)(void* work, std::s
             tbb::simple_partitioner());
     };
     // Isolated, so that a thread that waits for the rest of this work does not start another task, which may be long.
-    arena_->of.execute([&] { tbb::this_task_arena::isolate(share); });
+    arena_->of.execute([&] { tbb::this_task_arena::isolate(call_for_each); });
 }
 
 void worker_threads::run_both_in_arena(void (*first)(void*), void* of_first, void (*second)(void*), void* of_second) {

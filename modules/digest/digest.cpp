@@ -31,18 +31,19 @@ digest::~digest() = default;
 digest::digest(digest&&) noexcept = default;
 digest& digest::operator=(digest&&) noexcept = default;
 
-/// Hashes (frame, a, b) for each pair, in blocks, since short updates are copied into the buffer of the hash first.
+/// Adds the three numbers (frame, a, b) of each pair to the hash, 256 pairs at a time, since a short update of the hash
+/// is first copied into its buffer.
 void digest::add(std::uint32_t frame, std::span<const index_pair> sorted) {
     assert(std::ranges::is_sorted(sorted));
-    constexpr std::size_t at_once = 256;
-    std::array<std::uint32_t, 3 * at_once> records{};
+    constexpr std::size_t most_pairs = 256;
+    std::array<std::uint32_t, 3 * most_pairs> records{};
     while (!sorted.empty()) {
-        const auto rows = sorted.first(std::min(sorted.size(), at_once));
+        const auto block = sorted.first(std::min(sorted.size(), most_pairs));
         std::size_t end = 0;
-        for (const auto [a, b] : rows)
+        for (const auto [a, b] : block)
             for (const std::uint32_t number : {frame, a, b}) records[end++] = number;
         add(std::span(records).first(end));
-        sorted = sorted.subspan(rows.size());
+        sorted = sorted.subspan(block.size());
     }
 }
 

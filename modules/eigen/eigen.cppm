@@ -20,6 +20,7 @@ concept EigenTransform = requires(const T& from, T& to) {
     to.translation()(0) = from.translation()(0);
 };
 
+/// Converts an Eigen transform to a pose, whose matrix is stored by rows.
 /// @throws input_error if the transform is singular (`require_full_rank`)
 template <EigenTransform T>
 [[nodiscard]] inline pose to_pose(const T& transform) {
@@ -32,7 +33,7 @@ template <EigenTransform T>
     return p;
 }
 
-/// Converts a pose to an Eigen transform: `to_transform<Eigen::Isometry3d>(p)`.
+/// Converts a pose to an Eigen transform: `to_transform<Eigen::Isometry3d>(p)`. The pose's matrix is stored by rows.
 template <EigenTransform T>
 [[nodiscard]] inline T to_transform(const pose& p) {
     using scalar = typename T::Scalar;
@@ -74,7 +75,7 @@ using scalar_of = decltype(scalar_of_element(std::declval<const Element&>()));
 template <class Element, class Matrix>
 [[nodiscard]] inline std::span<const Element> columns_as(const Matrix& m) {
     static_assert(std::same_as<typename Matrix::Scalar, scalar_of<Element>>);
-    constexpr std::ptrdiff_t scalars = sizeof(Element) / sizeof(typename Matrix::Scalar);
+    constexpr std::ptrdiff_t scalars = sizeof(Element) / sizeof(typename Matrix::Scalar);  // per element
     const auto count = static_cast<std::size_t>(Matrix::IsRowMajor ? m.rows() : m.cols());
     if (count > 1 && (m.innerStride() != 1 || m.outerStride() != scalars))
         throw input_error("the matrix is not contiguous in memory");
@@ -85,7 +86,7 @@ template <class Element, class Matrix>
 
 export namespace aabb {
 
-/// An Eigen view of points, triangles or boxes, one per column:
+/// An Eigen view of a vector of points, triangles or boxes, one per column, or per row of a row-major matrix:
 /// `map_over<Eigen::Map<Eigen::Matrix3Xf>>(mesh.vertices)`, which are floats in the mesh's frame. The column of a box
 /// contains its lower ends, then its upper ones.
 /// @tparam Map map of a matrix of the elements' numbers, const if the elements are const
@@ -95,7 +96,8 @@ template <class Map, class Elements>
     using scalar = detail::scalar_of<element>;
     constexpr std::size_t rows = sizeof(element) / sizeof(scalar);
     static_assert(EigenColumns<Map, int{rows}> && std::same_as<typename Map::Scalar, scalar>);
-    // The first member of an element is an array of numbers, or begins with one.
+    // A pointer of the type that `Map` takes. The first member of an element is an array of numbers, or begins with
+    // one.
     auto* const numbers = reinterpret_cast<decltype(Map(nullptr, rows, 0).data())>(elements.data());
     const auto count = static_cast<std::ptrdiff_t>(elements.size());
     if constexpr (Map::IsRowMajor)
@@ -128,6 +130,7 @@ template <class Vertices, class Triangles>
         { triangles(0, 0) } -> std::convertible_to<std::int64_t>;
     }
 {
+    // Calls `take(at)` for each point or triangle of a matrix; `at(k)` is its coordinate or corner k.
     const auto for_each = [](const auto& m, auto take) {
         using matrix = std::remove_cvref_t<decltype(m)>;
         constexpr bool in_columns = int{matrix::RowsAtCompileTime} == 3;
