@@ -43,7 +43,8 @@ public:
     /// @throws input_error if the object is not present
     void remove(std::uint32_t id) { objects_.remove(id); }
 
-    /// Sorts and partitions the boxes of a frame, indexed by id. `search` reads them again.
+    /// Takes the boxes of a frame, indexed by object id: updates the sorted lists that the sweep and the partition
+    /// need, and distributes their entries over the subsets of the partition. `search` reads the boxes again.
     /// @throws input_error on a box that is not finite or inverted, if a present object has no box, if there are boxes
     /// but no object was ever inserted, or if the partition or `require_ieee_arithmetic` rejects the frame; then
     /// another update must succeed before the next search
@@ -53,10 +54,10 @@ public:
         objects_.require_boxes_for_all(boxes.size());
         require_valid(boxes);
         boxes_ = boxes;
-        axis_set swept = 0;
+        axis_set swept = 0;  // the axes whose lists the sweep reads
         // An exception in here leaves lists half updated, so that the search takes no more frames.
         frame_.change([&] {
-            lists_.settle(objects_);
+            lists_.settle(objects_);  // inserted and removed objects
             objects_.settle();
             swept = sweep_.axes(boxes, objects_);
             axis_set needed = swept;
@@ -70,7 +71,7 @@ public:
             if (partition_.subset_count() > 1)
                 subsets_.distribute(partition_, lists_.all(boxes), swept, counters_);
             else
-                counters_.add(work::subsets);
+                counters_.add(work::subsets);  // a single subset is swept without copies
         }
         if constexpr (SegmentingPartition<Partition>) {
             assert(partition_.segments().got <= partition_.segments().wanted);
@@ -80,12 +81,13 @@ public:
         frame_.taken();
     }
 
-    /// Appends every overlapping pair once, with a < b, in unspecified order.
+    /// Appends every overlapping pair of the last update's boxes once, with a < b, in unspecified order. Sweeps each
+    /// subset of the partition. If this throws, nothing is appended.
     /// @throws input_error if the last update failed or there was none, and as `require_ieee_arithmetic`
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
         require_ieee_arithmetic();
-        append_guard guard(pairs);
+        append_guard guard(pairs);  // removes what was appended, unless it is kept
         if constexpr (cuts)
             for (std::uint32_t s = 0; s < subsets_.size(); ++s)
                 sweep_.sweep(subsets_.subset(s, boxes_), pairs, counters_);
@@ -134,7 +136,8 @@ public:
     void insert(std::uint32_t id) { objects_.insert(id); }
     void remove(std::uint32_t id) { objects_.remove(id); }
 
-    /// Updates the sweep's lists and pairs to the boxes of a frame, indexed by id.
+    /// Updates the sweep's lists and the overlapping pairs that it keeps to the boxes of a frame, indexed by object id.
+    /// @throws input_error as the `update` of other sweeps
     void update(std::span<const box> boxes) {
         frame_.begin();
         require_ieee_arithmetic();
@@ -143,7 +146,7 @@ public:
         // An exception in here leaves lists half updated, so that the search takes no more frames.
         frame_.change([&] {
             sweep_.update(boxes, objects_, sort_, counters_);
-            objects_.settle();
+            objects_.settle();  // the insertions and removals are processed
         });
         frame_.taken();
     }
@@ -185,14 +188,14 @@ public:
     void insert(std::uint32_t id) { objects_.insert(id); }
     void remove(std::uint32_t id) { objects_.remove(id); }
 
-    /// Passes the boxes of a frame to the partition's search, which also validates them. After an exception the frame
-    /// does not count as taken, so that `search` rejects it.
+    /// Passes the boxes of a frame, indexed by object id, to the partition's own search, which also validates them.
+    /// After an exception the frame does not count as taken, so that `search` rejects it.
     void update(std::span<const box> boxes) {
         frame_.begin();
         require_ieee_arithmetic();
         objects_.require_boxes_for_all(boxes.size());
         search_.update(boxes, objects_, counters_);
-        objects_.settle();
+        objects_.settle();  // the insertions and removals are processed
         frame_.taken();
     }
 

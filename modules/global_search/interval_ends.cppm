@@ -43,7 +43,8 @@ inline void sort_ends(std::vector<interval_end>& list) {
 /// What such sweeps share: the kept pairs, their changes by swaps, and the rule which strategies can be combined.
 class kept_pairs {
 public:
-    /// Why the sweep rejects these strategies; empty if it accepts them.
+    /// Why a sweep that keeps its pairs cannot be combined with the strategies `All`, a sort and a partition among
+    /// them; empty if it can.
     template <class... All>
     static constexpr std::string_view rejects() {
         if (((CuttingPartition<All> || SearchingPartition<All>) || ...))
@@ -60,18 +61,20 @@ public:
     }
 
 protected:
-    /// Sorts a list of ends and updates the pairs after each swap: inserts a pair whose overlap begins, and erases one
-    /// whose overlap ends. Stops early when no steps are left.
+    /// Sorts the list of the intervals' ends on an axis, and updates the kept pairs (`pairs_`) at each swap of two
+    /// neighbours: a lower end that moves before an upper end can begin an overlap, an upper end that moves before a
+    /// lower end ends one. Stops when `steps_left_` reaches 0; then a restart from scratch takes fewer steps.
     template <class Sort, CounterPolicy Counters>
     void follow_swaps(std::vector<interval_end>& list, std::span<const box> boxes, Sort& sort, Counters& counters) {
         sort.sort(std::span(list), counters, [&](const interval_end& passed, const interval_end& mover) {
             counters.add(work::inversions);
-            if (--steps_left_ == 0) return false;
-            if (passed.is_upper == mover.is_upper) return true;
+            if (--steps_left_ == 0) return false;                // ends the sort
+            if (passed.is_upper == mover.is_upper) return true;  // no overlap begins or ends
             const index_pair pair = ordered_pair(passed.id, mover.id);
             counters.add(work::box_tests);
-            // Few pairs that stop overlapping on this axis overlapped on the others, so a test avoids most look-ups.
             if (mover.is_upper) {
+                // Most of these pairs did not overlap on the other axes. A test of their boxes in the previous frame is
+                // faster than a look-up.
                 if (overlaps(before_[pair.a], before_[pair.b])) pairs_.erase(pair);
             } else if (overlaps(boxes[pair.a], boxes[pair.b])) {
                 pairs_.insert(pair);
@@ -88,9 +91,11 @@ protected:
 /// Sweeps a list of ends for all pairs with at least one new object.
 class interval_sweep {
 public:
-    /// Inserts the overlapping pairs of a sorted list of ends, except those of two known objects: sweeps the list and
-    /// tests each object that begins against the active ones, which have begun and not ended. `active_[0]` has the
-    /// known ones, `active_[1]` the new ones, in any order.
+    /// Inserts into `pairs` the overlapping pairs with at least one new object: sweeps the sorted list of the
+    /// intervals' ends on an axis, and tests each object whose interval begins against the active ones, whose intervals
+    /// contain that point. `active_[0]` has the active objects that are known, `active_[1]` those that are new, in any
+    /// order.
+    /// @param is_new whether an object, by id, is new; pairs of known objects are already in `pairs`
     /// @returns the number of tested pairs
     std::uint64_t find(std::span<const interval_end> list, std::span<const box> boxes, pair_set& pairs, auto is_new) {
         std::uint64_t tests = 0;

@@ -8,7 +8,7 @@ export namespace aabb {
 /// The set of present objects, with the arrivals and departures since the previous frame. Ids are stable.
 class membership {
 public:
-    /// Makes an object present from the next frame on.
+    /// Makes an object present from the next frame on. It is `arriving` until that frame, then `known`.
     /// @throws input_error if the object is already present
     void insert(std::uint32_t id) {
         if (id == state_.size())
@@ -23,12 +23,12 @@ public:
         ++size_;
     }
 
-    /// Makes an object absent from the next frame on.
+    /// Makes an object absent from the next frame on. Until that frame it is `leaving`, since lists still contain it.
     /// @throws input_error if the object is not present
     void remove(std::uint32_t id) {
         if (!contains(id)) reject(id, " is removed but was never inserted");
         --size_;
-        if (state_[id] == state::arriving) {
+        if (state_[id] == state::arriving) {  // inserted since the last frame: no list contains it
             --arrivals_;
             state_[id] = state::absent;
         } else {
@@ -53,8 +53,10 @@ public:
             if (state_[id] == state::arriving) take(static_cast<std::uint32_t>(id));
     }
 
-    /// @throws input_error if a present object has no box, or if there are boxes but `insert` was never called, since
-    /// a program without that call would silently get no pairs
+    /// Rejects a frame in which a present object has no box, or which has boxes although `insert` was never called: a
+    /// program without that call would silently get no pairs.
+    /// @param boxes number of boxes in the frame, which are indexed by object id
+    /// @throws input_error
     void require_boxes_for_all(std::size_t boxes) const {
         if (state_.empty() && boxes > 0)
             throw input_error("no object was inserted; call insert(id) for each box first");

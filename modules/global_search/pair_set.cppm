@@ -14,7 +14,8 @@ class pair_set {
 public:
     [[nodiscard]] inline std::span<const index_pair> pairs() const noexcept { return pairs_; }
 
-    /// Has no effect if the pair is already present.
+    /// Inserts a pair unless it is present: appends it to the array, and stores its index there in the hash table. At
+    /// most half of the table is filled, so that probing ends soon.
     /// @throws input_error beyond 2^32 - 1 pairs
     inline void insert(index_pair pair) {
         if (2 * (pairs_.size() + 1) > table_.size()) grow();
@@ -25,13 +26,12 @@ public:
         table_[slot] = static_cast<std::uint32_t>(pairs_.size() - 1);
     }
 
-    /// Has no effect if the pair is absent.
+    /// Erases a pair if it is present. The last pair moves to its place in the array, which stays without gaps.
     inline void erase(index_pair pair) {
         if (pairs_.empty()) return;
         const std::size_t slot = slot_of(pair);
         const std::uint32_t index = table_[slot];
         if (index == none) return;
-        // The last pair replaces the erased one.
         table_[slot_of(pairs_.back())] = index;
         pairs_[index] = pairs_.back();
         pairs_.pop_back();
@@ -70,11 +70,14 @@ private:
     }
 
     [[nodiscard]] inline std::size_t next(std::size_t slot) const noexcept { return (slot + 1) & (table_.size() - 1); }
-    /// Shifts displaced entries back into the gap, so that probing needs no tombstones.
+
+    /// Empties a slot of the hash table. A linear probe for an entry goes from its home slot to the first empty one, so
+    /// entries behind the gap that were displaced from slots before it move into it, and leave the next gap. No deleted
+    /// slots need to be marked.
     inline void close_gap(std::size_t gap) {
         for (std::size_t at = next(gap); table_[at] != none; at = next(at)) {
             const std::size_t home = home_of(pairs_[table_[at]]);
-            const std::size_t mask = table_.size() - 1;
+            const std::size_t mask = table_.size() - 1;  // distances are modulo the size, a power of two
             // An entry whose home lies behind the gap stays: probing for it does not cross the gap.
             if (((at - home) & mask) < ((at - gap) & mask)) continue;
             table_[gap] = table_[at];

@@ -11,7 +11,8 @@ export namespace aabb {
 /// Counts the inversions of a list, the measure of "almost sorted", by merge sort in O(n log n).
 class inversion_counter {
 public:
-    /// The number of pairs of entries that are in the wrong order, which a merge sort counts in O(n log n).
+    /// The number of pairs of entries that are in the wrong order. A bottom-up merge sort counts them in O(n log n):
+    /// each round merges adjacent sorted runs of `width` keys.
     [[nodiscard]] std::uint64_t count(std::span<const projection> list) {
         keys_.clear();
         for (const projection& p : list) keys_.push_back(p.key);
@@ -30,7 +31,8 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(keys_, merged_); }
 
 private:
-    /// Merges two sorted runs of keys and counts inversions: a key of the second run passes the rest of the first run.
+    /// Merges two adjacent sorted runs of keys, [begin, middle) and [middle, end), into `merged_`.
+    /// @returns the inversions between them: each key of the second run passes what is left of the first
     [[nodiscard]] std::uint64_t merge(std::size_t begin, std::size_t middle, std::size_t end) {
         std::uint64_t inversions = 0;
         std::size_t left = begin, right = middle;
@@ -59,7 +61,8 @@ struct no_inversion_counter {
 template <CounterPolicy Counters>
 class projection_lists {
 public:
-    /// Applies arrivals and departures, and keeps the order of the other entries.
+    /// Removes the entries of removed objects from the lists, and appends entries of inserted ones, which `sort` sorts
+    /// in. The order of the other entries is kept.
     void settle(const membership& objects) {
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_axis(axes_, k)) continue;
@@ -68,16 +71,17 @@ public:
             make_room(lists_[k], lists_[k].size() + objects.arrivals());
             objects.for_each_arrival([&](std::uint32_t id) { lists_[k].push_back({.key = 0, .id = id}); });
         }
-        arrivals_ += objects.arrivals();  // whose keys `sort` sets
+        arrivals_ += objects.arrivals();  // number of appended entries
     }
 
-    /// Sorts the lists of these axes for the boxes of a frame, and drops the other lists.
+    /// Sorts the lists of these axes for the boxes of a frame, and frees the other lists. A list that was kept from the
+    /// previous frame (`axes_`) is almost sorted; one of a new axis is sorted from scratch.
     template <SortPolicy Sort>
     void sort(std::span<const box> boxes, axis_set axes, Sort& sort, Counters& counters) {
         assert(axes != 0 && (axes & ~every_axis) == 0);
         for (std::size_t k = 0; k < 3; ++k)
             if (has_axis(axes & ~axes_, k)) {
-                lists_[k] = members();
+                lists_[k] = members();  // a copy of another list, since all have the same objects
                 sort_new(boxes, k, lists_[k]);
             }
         for (std::size_t k = 0; k < 3; ++k) {
@@ -123,13 +127,14 @@ private:
         std::ranges::sort(list, [](const projection& p, const projection& q) { return precedes(p, q); });
     }
 
-    /// Sorts the entries whose key has changed, and merges them with the others, which are still in order.
+    /// Sorts a list that was sorted for the previous frame, except new entries at its end: takes out the entries whose
+    /// key has changed, sorts these by the policy, and merges them with the others, which are still in order.
     template <class Sort>
     void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         const std::span known = std::span(lists_[axis]).first(lists_[axis].size() - arrivals_);
         moved_.clear();
         make_room(moved_, known.size());
-        std::size_t unmoved = 0;
+        std::size_t unmoved = 0;  // number of entries with an unchanged key, which are gathered at the front
         for (const projection& p : known) {
             const float key = boxes[p.id].min[static_cast<int>(axis)];
             if (key == p.key)
@@ -146,7 +151,8 @@ private:
             merge_moved_into(known, unmoved, counters);
     }
 
-    /// Sorts the arrivals at the end of a list from scratch, and merges them with the known entries before them.
+    /// Sorts the last `arrivals_` entries of a list, of new objects, from scratch, and merges them with the sorted
+    /// entries before them.
     void sort_arrivals(std::span<const box> boxes, std::size_t axis) {
         if (arrivals_ == 0) return;
         const std::span list(lists_[axis]);
@@ -154,11 +160,13 @@ private:
         if (known == 0) return sort_new(boxes, axis, list);
         moved_.assign(list.begin() + static_cast<std::ptrdiff_t>(known), list.end());
         sort_new(boxes, axis, moved_);
-        no_counters uncounted;  // like the work of std::sort
+        no_counters uncounted;  // as is the work of std::sort on new entries
         merge_moved_into(list, known, uncounted);
     }
 
-    /// Merges `moved_` with the sorted entries at the front of a list, from the back and in place.
+    /// Merges the sorted entries `moved_` into a list in place; its first `sorted` entries are sorted, the places of
+    /// the others are free. For each entry, from the greatest on, the greater ones of the list move to the back, before
+    /// `out`, and the entry is placed before them.
     void merge_moved_into(std::span<projection> list, std::size_t sorted, CounterPolicy auto& counters) {
         assert(list.size() == sorted + moved_.size());
         std::size_t out = list.size();
@@ -175,7 +183,9 @@ private:
         assert(out == sorted);
     }
 
-    /// The upper bound of an entry in a sorted list, by galloping search from the back: few steps for a near one.
+    /// The index in a sorted list before which to insert an entry, after equal ones. Galloping search: doubles the step
+    /// from the back until an entry is not greater, then bisects the last step. It takes O(log d) comparisons if d
+    /// entries are greater.
     static std::size_t insertion_index(const projection& entry, std::span<const projection> list,
                                        CounterPolicy auto& counters) {
         std::size_t step = 1;

@@ -15,9 +15,9 @@ public:
     /// Removes all subsets: the frame is not partitioned.
     void clear() noexcept { starts_.resize(1); }
 
-    /// Copies the entries of sorted lists to all subsets that their boxes overlap, by a counting sort. With each copy
-    /// go the axes on which the box begins in the subset, so that only one subset reports a pair
-    /// (`partition_subset::owns`).
+    /// Copies each entry of the sorted lists to all subsets of the partition that its box overlaps, by a counting sort,
+    /// which keeps the order. A copy also states the axes on which the box begins in the subset: a subset reports a
+    /// pair only if on every axis one of the two boxes begins there, so that no pair is reported twice.
     /// @param axes axes whose lists are distributed; at least one
     /// @throws input_error if the partition makes more than 2^24 + 64 n copies of n objects
     template <CuttingPartition Partition, CounterPolicy Counters>
@@ -30,7 +30,7 @@ public:
                 continue;
             }
             entries_[k].resize(starts_.back());
-            next_.assign(starts_.begin(), starts_.end() - 1);
+            next_.assign(starts_.begin(), starts_.end() - 1);  // by subset: where its next entry goes
             for (const projection& p : scene.lists[k])
                 partition.for_each_subset(p.id, scene.boxes[p.id], [&](std::uint32_t s, axis_set begins_here) {
                     entries_[k][next_[s]++] = {.id = p.id, .owned = begins_here};
@@ -44,6 +44,7 @@ public:
 
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(starts_.size() - 1); }
 
+    /// Subset s: the boxes of the frame, and on each swept axis the entries of its objects, sorted.
     [[nodiscard]] partition_subset subset(std::uint32_t s, std::span<const box> boxes) const noexcept {
         assert(s < size());
         partition_subset part{boxes, {}};
@@ -62,7 +63,10 @@ private:
         return (std::uint64_t{1} << 24) + 64 * std::uint64_t{objects};
     }
 
-    /// Counts the copies in each subset, and sets `starts_`, the number of entries before each subset.
+    /// Counts the copies of entries in each subset, and sets `starts_`: subset s gets the places from `starts_[s]` to
+    /// `starts_[s + 1]`.
+    /// @param list the entries of all objects
+    /// @throws input_error if there are too many copies
     template <class Partition>
     void count(const Partition& partition, std::span<const box> boxes, std::span<const projection> list) {
         const std::uint32_t subsets = partition.subset_count();
@@ -79,6 +83,8 @@ private:
         for (std::size_t s = 0; s < subsets; ++s) starts_[s + 1] += starts_[s];
     }
 
+    /// Reports how many copies of entries the partition would make; `Partition::copies` computes the number of an
+    /// object's copies without visiting them.
     template <class Partition>
     [[noreturn]] static void reject_copies(const Partition& partition, std::span<const box> boxes,
                                            std::span<const projection> list) {
