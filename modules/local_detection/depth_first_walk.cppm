@@ -25,8 +25,9 @@ public:
         static_cast<void>(test_pending(test, a, b, to_a, emit));
     }
 
-    /// Passes each pair of intersecting triangles of one mesh to `emit`, in either order, until it returns true, by
-    /// testing the two children of each node against each other.
+    /// Passes each pair of intersecting triangles of one mesh to `emit`, in either order, until it returns true. Every
+    /// two triangles lie below different children of exactly one node, so the two children of each node are traversed
+    /// against each other.
     template <class Emit>
     void find_self_pairs(const query& test, const model<Tree>& m, Emit emit) {
         constexpr same_frame identity;
@@ -75,9 +76,11 @@ private:
         image_of_ = no_triangle;
     }
 
-    /// Opens the pending node pairs, the longer node first, and tests the triangles of two leaves, until no pair is
-    /// pending or `emit` returns true.
-    /// @returns whether it did
+    /// Opens the pending node pairs (`stack_`): of two leaves the triangles are tested, and of another pair the longer
+    /// node is replaced by each of its children, if their boxes overlap the other node's box. Ends when no pair is
+    /// pending or `emit`, called with each intersecting pair of triangles, returns true.
+    /// @param to_a maps boxes and triangles of B to A's frame
+    /// @returns whether `emit` returned true
     template <class Frame, class Emit>
     [[nodiscard]] bool test_pending(const query& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a,
                                     Emit& emit) {
@@ -123,8 +126,9 @@ private:
         return image_;
     }
 
-    /// The box of a child of B's node in A's frame. A leaf without a box uses its parent's, or its triangle's, grown by
-    /// the error of the triangle's image.
+    /// The box of a child of B's node in A's frame. For a leaf without a box, it is the parent's, or if the leaf test
+    /// `triangle_aabb` was chosen, that of its triangle, grown by the rounding error of the triangle in A's frame.
+    /// @param parent the parent's box in A's frame
     template <class Frame>
     [[nodiscard]] box bounds_in_a(const model<Tree>& b, const Frame& to_a, const cursor& child, const box& parent) {
         if constexpr (!Tree::has_leaf_boxes)
@@ -141,9 +145,10 @@ private:
         if (may_overlap(a, b, to_a, next, which_is_new)) stack_.push_back(next);
     }
 
-    /// Whether the boxes of two nodes overlap. In a layout without leaf boxes, `leaf_test` says what replaces a leaf's:
-    /// triangle_box its triangle, tested against the other box; triangle_aabb the box of its triangle, and none its
-    /// parent's, both of which `bounds` returns. The parent's has been tested already if the leaf is the new node.
+    /// Whether the boxes of two nodes overlap. In a layout without leaf boxes, `leaf_test` states what replaces the box
+    /// of a leaf: its triangle (triangle_box), the box of its triangle (triangle_aabb), or the box of its parent
+    /// (none). The last two are what `bounds` returns.
+    /// @param which_is_new the node of the pair that replaces its parent, which has been tested
     template <class Frame>
     [[nodiscard]] bool may_overlap(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
                                    new_node which_is_new) {
@@ -155,6 +160,7 @@ private:
                 test == leaf_test_choice::triangle_box || test == leaf_test_choice::moller_triangle_box;
             // Without a box on either side, only the test of the two triangles remains.
             if (a_is_leaf && b_is_leaf && test != leaf_test_choice::triangle_aabb) return true;
+            // The same box, the parent's, has been tested.
             if (test == leaf_test_choice::none && (which_is_new == new_node::a ? a_is_leaf : b_is_leaf)) return true;
             if (tests_triangle_in_box && a_is_leaf)
                 return intersects_box(a.triangles().triangle(a.tree().triangle(next.a)), grown(next.b_bounds), test);
@@ -165,12 +171,13 @@ private:
         return overlaps(a.tree().bounds(next.a), next.b_bounds);
     }
 
-    /// The box grown by the error of images: a box of images is rounded to nearest, which keeps overlaps with boxes of
-    /// floats only, not with triangles; and a true image may lie that far from its rounded one.
+    /// The box grown to cover rounding, so that a triangle meets it if the exact triangle meets the exact box. Both may
+    /// be off by `image_error_` on each axis: the corners of a triangle of B are rounded to floats in A's frame, and so
+    /// are the bounds of a box. Without that error, floats are exact.
     [[nodiscard]] box grown(box b) const noexcept {
         for (int k = 0; k < 3; ++k) {
             if (image_error_[k] == 0) continue;
-            // So much beyond the error that rounding the sum cannot undo it.
+            // The second term exceeds the error of rounding the sum.
             const auto margin = [&](float bound) { return 2 * image_error_[k] + 0x1p-22F * std::abs(bound); };
             b.min[k] -= margin(b.min[k]);
             b.max[k] += margin(b.max[k]);

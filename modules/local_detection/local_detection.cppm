@@ -36,49 +36,53 @@ public:
     = default;
     explicit local_detection(Triangle triangle) : triangle_(std::move(triangle)) {}
 
-    /// Appends every pair of intersecting triangles (a of A, b of B) once, in unspecified order.
+    /// Appends every pair of intersecting triangles (a of A, b of B) once, in unspecified order. If this throws,
+    /// nothing is appended.
     void all_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
         append_guard guard(pairs);
         walk(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
             pairs.insert(pairs.end(), batch.begin(), batch.end());
-            return false;
+            return false;  // continues
         });
         guard.keep();
     }
 
+    /// The number of pairs of intersecting triangles, without storing them.
     [[nodiscard]] std::uint64_t count_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                             const pose& pose_b) {
         std::uint64_t count = 0;
         walk(a, pose_a, b, pose_b, walk_goal::every_pair, [&](std::span<const index_pair> batch) {
             count += batch.size();
-            return false;
+            return false;  // continues
         });
         return count;
     }
 
-    /// Some intersecting pair, if there is one.
+    /// The first pair of intersecting triangles that the traversal finds, if there is one; it stops there.
     [[nodiscard]] std::optional<index_pair> first_pair(const model<Tree>& a, const pose& pose_a, const model<Tree>& b,
                                                        const pose& pose_b) {
         std::optional<index_pair> first;
         walk(a, pose_a, b, pose_b, walk_goal::first_pair, [&](std::span<const index_pair> batch) {
             first = batch.front();
-            return true;
+            return true;  // stops
         });
         return first;
     }
 
-    /// Appends every pair of intersecting triangles a < b of one mesh, including neighbours that share a vertex.
+    /// Appends every pair of intersecting triangles a < b of one mesh once, including neighbours that share a vertex.
+    /// If this throws, nothing is appended.
     void self_pairs(const model<Tree>& m, std::vector<index_pair>& pairs) {
         append_guard guard(pairs);
         each_self_pair(m, [&](index_pair pair) {
             pairs.push_back(pair);
-            return false;
+            return false;  // continues
         });
         guard.keep();
     }
 
-    /// Passes each of the same pairs to `take` as it is found, without storing any, until it returns true.
+    /// Passes each pair of intersecting triangles a < b of one mesh to `take` as it is found, without storing any,
+    /// until it returns true. The mesh is traversed with itself, at the same pose.
     template <class Take>
     void each_self_pair(const model<Tree>& m, const Take& take) {
         const relative_pose identity = pose_relative_to(m, {}, m, {});
@@ -93,11 +97,12 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return walk_.bytes(); }
 
 private:
-    /// Walks in A's frame, or in B's if B leaves the range of float in A's.
+    /// Traverses the trees of both meshes together, and passes pairs of intersecting triangles (a of A, b of B) to
+    /// `emit` in batches until it returns true. Works in A's frame, or in B's if B leaves the range of float in A's.
     template <class Emit>
     void walk(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b, walk_goal goal,
               Emit emit) {
-        std::optional<relative_pose> to_a;
+        std::optional<relative_pose> to_a;  // maps B to A's frame
         try {
             to_a.emplace(pose_relative_to(a, pose_a, b, pose_b));
         } catch (const input_error&) {
@@ -107,14 +112,15 @@ private:
         walk_.find_pairs(triangle_query<Tree, Triangle>(triangle_, a, b, poses, *to_a), a, b, *to_a, goal, emit);
     }
 
-    /// The same with the meshes swapped: a huge mesh can leave the range of float in the frame of a tiny one, but not
-    /// the other way round. So whether a query is refused does not depend on their order.
+    /// As `walk`, but in B's frame, and so with the meshes swapped: a huge mesh can leave the range of float in the
+    /// frame of a tiny one, but not the other way round. Therefore it does not depend on their order whether a query is
+    /// rejected.
     template <class Emit>
     void walk_in_frame_of_b(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                             walk_goal goal, Emit emit) {
         const relative_pose to_b = pose_relative_to(b, pose_b, a, pose_a);
         const pose_pair poses{pose_b, pose_a};
-        std::vector<index_pair> swapped;
+        std::vector<index_pair> swapped;  // a batch, in the order (a of A, b of B) again
         walk_.find_pairs(triangle_query<Tree, Triangle>(triangle_, b, a, poses, to_b), b, a, to_b, goal,
                          [&](std::span<const index_pair> batch) {
                              swapped.clear();

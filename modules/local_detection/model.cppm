@@ -30,7 +30,9 @@ private:
 template <TreePolicy Tree>
 class model {
 public:
-    /// @param builder builds the nodes or the order that the tree packs
+    /// Builds the tree of a mesh, which must outlive the model.
+    /// @param builder builds binary nodes, or for a balanced tree the order of its triangles
+    /// @param tree an empty tree, which packs these into its layout
     /// @throws input_error on a mesh that `require_valid` rejects, and as `require_ieee_arithmetic`
     template <TreeBuilder Builder>
     model(const mesh& m, const Builder& builder, Tree tree = {})
@@ -44,7 +46,8 @@ public:
         bounds_ = tree_.bounds(tree_.root(m));
     }
 
-    /// Must be called after vertices of the mesh have moved.
+    /// Updates the boxes of the tree. Must be called after vertices of the mesh have moved; if it throws, queries throw
+    /// until a refit succeeds.
     /// @param boxes scratch memory, one box per internal node or per triangle
     /// @throws input_error if the mesh is invalid or has another number of triangles, and as `require_ieee_arithmetic`
     void refit(std::vector<box>& boxes) {
@@ -53,7 +56,7 @@ public:
             require_still_valid(*mesh_, triangles_);
             tree_.refit(*mesh_, boxes);
             bounds_ = tree_.bounds(tree_.root(*mesh_));
-            state_ = next_number();
+            state_ = next_number();  // queries must not reuse results of the earlier boxes
         });
     }
 

@@ -46,23 +46,24 @@ struct balanced_order {
     std::uint32_t threads = 1;              ///< number of threads that may pack it
 };
 
-/// Reorders the triangles of a mesh by this order, and its vertices by their first use; unused vertices come last.
-/// Neighbours in space are then neighbours in memory, and a layout need not store triangle indices.
+/// A copy of a mesh with its triangles in the order of a tree's leaves, and its vertices in the order in which these
+/// use them; unused vertices come last. Neighbours in space are then neighbours in memory, and a layout need not store
+/// triangle indices.
 [[nodiscard]] inline mesh in_leaf_order(const mesh& m, const balanced_order& order) {
     constexpr std::uint32_t unseen = 0xffffffff;
-    std::vector<std::uint32_t> number(m.vertices.size(), unseen);
+    std::vector<std::uint32_t> new_index(m.vertices.size(), unseen);
     mesh reordered;
     reordered.frame = m.frame;
     reordered.vertices.reserve(m.vertices.size());
     reordered.given.reserve(m.given.size());
     reordered.triangles.reserve(m.triangles.size());
     const auto place = [&](std::uint32_t v) {
-        if (number[v] == unseen) {
-            number[v] = static_cast<std::uint32_t>(reordered.vertices.size());
+        if (new_index[v] == unseen) {
+            new_index[v] = static_cast<std::uint32_t>(reordered.vertices.size());
             reordered.vertices.push_back(m.vertices[v]);
-            if (!m.given.empty()) reordered.given.push_back(m.given[v]);
+            if (!m.given.empty()) reordered.given.push_back(m.given[v]);  // the vertex before rounding to floats
         }
-        return number[v];
+        return new_index[v];
     };
     for (const std::uint32_t t : order.triangles) {
         std::array<std::uint32_t, 3> corners = m.triangles[t];

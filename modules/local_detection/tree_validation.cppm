@@ -20,7 +20,10 @@ class tree_validator {
 public:
     tree_validator(const Tree& tree, const mesh& m) : tree_(tree), mesh_(m), seen_(m.triangles.size()) {}
 
-    /// Visits all nodes depth first, up to the first fault.
+    /// Validates the tree: each triangle must be in exactly one leaf, and each box contain the triangles below it.
+    /// Visits all nodes depth first, up to the first fault; `open_` is the path from the root to the current node.
+    /// @returns the fault, if any, and the measures of a valid tree: depth, and how much larger its boxes are than
+    /// tight ones
     [[nodiscard]] tree_validation validate_tree() {
         open_.push_back({.cursor = tree_.root(mesh_), .below = empty_box(), .opened = 0});
         // An explicit stack, since trees may be too deep for recursion.
@@ -51,6 +54,8 @@ private:
         unsigned opened;  // number of visited children
     };
 
+    /// Marks the triangle of a leaf as seen, and sets the leaf's `below` to its box. It is a fault if the mesh does not
+    /// have the triangle, or another leaf has it.
     void visit_leaf(node& leaf) {
         const std::uint32_t triangle = tree_.triangle(leaf.cursor);
         if (triangle >= seen_.size())
@@ -68,7 +73,8 @@ private:
             return Tree::has_leaf_boxes || !tree_.is_leaf(at);
     }
 
-    /// Compares a visited node's box with that of the triangles below it, and merges the latter with its parent's.
+    /// Leaves a node whose children have been visited: compares its box with the box of the triangles below it, its
+    /// tight box, adds the areas of both to their sums, and merges the tight box into that of the parent.
     void close(const node& closed) {
         result_.depth = std::max(result_.depth, open_.size() - 1);
         if (!result_.fault.empty()) return;

@@ -29,9 +29,10 @@ public:
         return intersects_unfiltered(pair_of, s, t);
     }
 
-    /// Tests a pair that a filter has left undecided: with the vertices and poses as given, if the floats in A's frame
-    /// are rounded and the test can.
-    /// @param pair_of returns the indices of the triangles
+    /// Decides whether two triangles intersect, without the floating-point filter. If their floats in A's frame are
+    /// rounded, an exact test uses the vertices and poses as the user gave them; another test uses the floats.
+    /// @param pair_of returns the indices of the triangles; called only if the test needs them
+    /// @param s,t the triangles in A's frame, that of B rounded to float
     template <class PairOf>
     [[nodiscard]] inline bool intersects_unfiltered(const PairOf& pair_of, const triangle3f& s,
                                                     const triangle3f& t) const {
@@ -40,7 +41,7 @@ public:
                 const index_pair pair = pair_of();
                 const triangle3d given_s = a_.triangles().given_triangle(pair.a);
                 const triangle3d given_t = b_.triangles().given_triangle(pair.b);
-                // One map of full rank for both changes nothing.
+                // Equal poses are one invertible map of both triangles, which keeps whether they intersect.
                 return are_posed_ ? test_.intersects(poses_, given_s, given_t) : test_.intersects(given_s, given_t);
             }
         return test_.intersects(s, t);
