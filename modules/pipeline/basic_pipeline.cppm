@@ -45,8 +45,9 @@ public:
     void insert(std::uint32_t object) { change_pieces_of(object, /*inserts=*/true); }
     void remove(std::uint32_t object) { change_pieces_of(object, /*inserts=*/false); }
 
-    /// A frame has three steps that can be timed separately. The first takes one pose per object and refits the trees
-    /// of deformed meshes.
+    /// A frame has three steps, `update`, `search` and `detect`, which can be timed separately. The first takes one
+    /// pose per object, refits the trees of deformed meshes, and passes the world boxes of the objects to the broad
+    /// phase.
     /// @throws input_error on a pose that is singular or moves an object beyond the range of float, with its number
     void update(std::span<const pose> poses) {
         frame_.begin();
@@ -58,6 +59,8 @@ public:
         if (searches()) global_->update(boxes());
         frame_.taken();
     }
+    /// Finds the candidates: the pairs of objects whose boxes overlap, or all pairs without a broad phase. If it
+    /// divides objects into pieces, it finds pairs of pieces, and each makes the pair of its objects a candidate.
     /// @throws input_error if the last update failed or there was none
     void search() {
         frame_.require_taken();
@@ -73,16 +76,17 @@ public:
             add_all_pairs();
         searched_ = true;
     }
+    /// Finds the contacts: the pairs of intersecting triangles of each candidate pair, in `contacts_`.
     /// @throws input_error if the last search failed or there was none since the last update
     void detect() {
         contacts_.clear();
         require_searched();
-        append_guard guard(contacts_);
+        append_guard guard(contacts_);  // removes what was appended, unless it is kept
         for (std::size_t i = 0; i < candidates_.size(); ++i) {
             const auto [a, b] = models_of(i);
             triangle_pairs_.clear();
             local_.all_pairs(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b], triangle_pairs_);
-            if (parts_) parts_->map_triangles({a, b}, triangle_pairs_);
+            if (parts_) parts_->map_triangles({a, b}, triangle_pairs_);  // to triangles of whole meshes
             // Resizing once is faster than `push_back`, whose capacity checks take longer than the writes.
             const std::size_t before = contacts_.size();
             contacts_.resize(before + triangle_pairs_.size());
@@ -93,19 +97,22 @@ public:
         guard.keep();
     }
 
-    /// Alternatives to `detect`, which throw likewise. Some contact, if there is one.
+    /// Some contact of the frame, if there is one, instead of all by `detect`: ends at the first pair of intersecting
+    /// triangles.
+    /// @throws input_error as `detect`
     [[nodiscard]] std::optional<contact> first_contact() {
         require_searched();
         for (std::size_t i = 0; i < candidates_.size(); ++i) {
             const auto [a, b] = models_of(i);
             if (auto pair = local_.first_pair(a, poses_[candidates_[i].a], b, poses_[candidates_[i].b])) {
-                if (parts_) parts_->map_triangles({a, b}, {&*pair, 1});
+                if (parts_) parts_->map_triangles({a, b}, {&*pair, 1});  // to triangles of whole meshes
                 return contact{candidates_[i].a, candidates_[i].b, pair->a, pair->b};
             }
         }
         return std::nullopt;
     }
-    /// The number of contacts, without storing them.
+    /// The number of contacts of the frame, without storing them as `detect` does.
+    /// @throws input_error as `detect`
     [[nodiscard]] std::uint64_t count_contacts() {
         require_searched();
         std::uint64_t count = 0;
@@ -155,7 +162,9 @@ private:
         return parts_ ? parts_->deforms(model) : scene_.deforms(model);
     }
 
-    /// Inserts or removes all pieces of an object, or none if one of these operations fails.
+    /// Inserts an object into the broad phase, or removes it: the whole object, or all pieces into which it is divided.
+    /// If one of these operations throws, those before it are undone.
+    /// @param inserts true to insert, false to remove
     void change_pieces_of(std::uint32_t object, bool inserts) {
         const auto change = [&](std::uint32_t id, bool insert) { insert ? global_->insert(id) : global_->remove(id); };
         assert(searches());

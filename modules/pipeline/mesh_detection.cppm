@@ -45,7 +45,8 @@ public:
     }
     [[nodiscard]] const Counters& counters() const noexcept { return detection_.counters(); }
 
-    /// Heap memory by part: the trees of all models, the stack of the traversal, and scratch memory of refits.
+    /// Heap bytes by part: nodes and indices of all models' trees, the stack of the traversal, and the scratch memory
+    /// of refits.
     [[nodiscard]] std::vector<part_bytes> bytes() const {
         tree_bytes trees{};
         for (const model<Tree>& m : models_) {

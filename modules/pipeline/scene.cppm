@@ -47,6 +47,7 @@ public:
 /// Meshes and their objects without frames: the poses come from the user.
 class given_scene final : public mesh_scene {
 public:
+    /// A scene of these meshes and of objects that are instances of them.
     /// @param objects index of each object's mesh
     /// @throws input_error on an invalid mesh index
     given_scene(std::vector<mesh> models, std::vector<std::uint32_t> objects) {

@@ -5,7 +5,7 @@ import :scene;
 
 export namespace aabb {
 
-/// Rejects poses that are not one affine map of full rank per object of the scene.
+/// Requires one pose per object of the scene, each an invertible affine map.
 /// @throws input_error with both numbers, or with the first object whose pose is singular
 void require_poses(const mesh_scene& scene, std::span<const pose> poses) {
     if (poses.size() != scene.mesh_of.size())
@@ -37,7 +37,8 @@ public:
         for (const mesh& m : scene.meshes) mesh_bounds_.push_back(bounds_of(m));
     }
 
-    /// Computes the boxes of a frame. Deforming meshes must still be valid.
+    /// Computes the world boxes of a frame's objects: each is the box of the object's mesh, moved by the object's pose.
+    /// The box of a deforming mesh is computed anew; such a mesh must still be valid.
     /// @param poses one per object
     /// @throws input_error as `require_poses`, and on an object beyond the range of float, with its number
     void update(std::span<const pose> poses) {

@@ -44,7 +44,8 @@ public:
             return 0;
     }
 
-    /// What this composition does without, and why, for `explain`.
+    /// The features that this composition of strategies lacks, with reasons, for the command `explain`: a partition,
+    /// the sorted lists of some axes, counters of work.
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent;
         if constexpr (!really_cuts<Partition>) absent.push_back({absence::partition, "no cells, no copies of objects"});

@@ -36,6 +36,8 @@ public:
             reject_doubles();
     }
 
+    /// Constructs the intersection of two triangles.
+    /// @throws input_error if the strategy `Triangle` only decides whether they intersect
     [[nodiscard]] triangle_intersection intersection(const triangle3d& s, const triangle3d& t) const override {
         require_ieee_arithmetic();
         if constexpr (ConstructingTrianglePolicy<Triangle>)
