@@ -66,7 +66,7 @@ private:
         item_bounds range;
         for (std::size_t t = begin; t < end; ++t) {
             const box b = bounds_of(mesh_.triangle(static_cast<std::uint32_t>(t)));
-            balanced_item& item = items_[0][t];
+            boxed_triangle& item = items_[0][t];
             for (int k = 0; k < 3; ++k) {
                 item.lower[static_cast<std::size_t>(k)] = b.min[k];
                 item.negated_upper[static_cast<std::size_t>(k)] = -b.max[k];
@@ -98,7 +98,7 @@ private:
         const std::size_t other = 1 - p.array;
         const std::span from = items_[p.array].subspan(p.begin, p.size());
         const std::span to = items_[other].subspan(p.begin, p.size());
-        if (p.size() <= few_items::most)
+        if (p.size() <= few_items::most)  // each of at most 64 items is compared with all
             split_few(from, to, p.bounds, left_count);
         else
             split_many(from, to, p.bounds, left_count, &bin_of_item_[p.begin], workers);
@@ -108,7 +108,7 @@ private:
 
     /// The box of one side of a split. It is merged after the items were moved, when most are in a cache: merging while
     /// they are moved is slower. Several threads merge `share_size` items at a time.
-    [[nodiscard]] static box bounds_of_items(std::span<const balanced_item> items, worker_threads& workers) {
+    [[nodiscard]] static box bounds_of_items(std::span<const boxed_triangle> items, worker_threads& workers) {
         item_bounds bounds;
         if (workers.count() == 1) {
             bounds.take(items);
@@ -150,7 +150,7 @@ private:
     /// Moves at most 64 items from `from` to `to`: the `left_count` of the left side first, then the others, each side
     /// in its order in `from`. The mask of the split compares centres rounded to 16 bits; ties may put too many items
     /// into it, of which the last by exact centres are then removed.
-    void split_few(std::span<const balanced_item> from, std::span<balanced_item> to, const box& bounds,
+    void split_few(std::span<const boxed_triangle> from, std::span<boxed_triangle> to, const box& bounds,
                    std::size_t left_count) const noexcept {
         auto [axis, left_mask] = best_split(few_items(from), bounds, left_count);
         while (std::popcount(left_mask) != static_cast<int>(left_count)) left_mask &= ~last_item(from, left_mask, axis);
@@ -164,7 +164,7 @@ private:
     }
 
     /// The bit of the last item in the order of centres along the axis, among the items whose bit is set in the mask.
-    [[nodiscard]] static std::uint64_t last_item(std::span<const balanced_item> items, std::uint64_t mask,
+    [[nodiscard]] static std::uint64_t last_item(std::span<const boxed_triangle> items, std::uint64_t mask,
                                                  std::size_t axis) noexcept {
         auto last = static_cast<std::size_t>(std::countr_zero(mask));
         for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1)  // clears the lowest bit
@@ -176,7 +176,7 @@ private:
 
     /// The axis along which to split many items: the longest, or if the rule is least area, the one whose split has the
     /// least surface-area cost, estimated from a sample of every `step`-th item, at most 256.
-    [[nodiscard]] std::size_t best_axis(std::span<const balanced_item> items, const box& bounds,
+    [[nodiscard]] std::size_t best_axis(std::span<const boxed_triangle> items, const box& bounds,
                                         std::size_t left_count) const noexcept {
         const auto longest = static_cast<std::size_t>(longest_axis(bounds));
         if (rule_ == axis_rule::longest) return longest;
@@ -199,7 +199,7 @@ private:
     /// Moves many items from `from` to `to`, the `left_count` of the left side first. A single thread takes all items
     /// as one share; several threads take shares of `share_size` items, of which the last is shorter.
     /// @param bin_of_item scratch memory, one byte per item
-    void split_many(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
+    void split_many(std::span<boxed_triangle> from, std::span<boxed_triangle> to, const box& bounds,
                     std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers) const {
         if (workers.count() == 1) {
             share all_items{0, from.size()};
@@ -215,7 +215,7 @@ private:
     /// @param scale bins per unit of length
     /// @param bin_of_item receives the bin of each item
     /// @returns the histogram: the number of items in each bin
-    static std::array<std::uint32_t, bins> count_in_bins(std::span<const balanced_item> items, std::size_t axis,
+    static std::array<std::uint32_t, bins> count_in_bins(std::span<const boxed_triangle> items, std::size_t axis,
                                                          float low, float scale, std::uint8_t* bin_of_item) noexcept {
         // Four histograms, used in turn: adjacent items mostly share a bin, so that increments of a single counter
         // would wait for each other.
@@ -236,12 +236,13 @@ private:
         return counts[0];
     }
 
-    /// Splits in two passes over the items. The first counts a histogram of their centres, which yields the bin that
-    /// contains item `left_count` in the order of centres. The second moves each item below, into or above that bin.
-    /// Only the items of that bin are then split by comparisons. Each side keeps the order of `from`.
+    /// Moves the items from `from` to `to`, the `left_count` first along an axis before the others, in two passes. The
+    /// first counts a histogram of their centres, which yields the bin that contains item `left_count` in the order of
+    /// centres. The second moves each item below, into or above that bin. Only the items of that bin are then split by
+    /// comparisons. Each side keeps the order of `from`.
     /// @param bin_of_item scratch memory, one byte per item
     /// @param shares the items of each unit of multithreaded work
-    void split_by_histogram(std::span<balanced_item> from, std::span<balanced_item> to, const box& bounds,
+    void split_by_histogram(std::span<boxed_triangle> from, std::span<boxed_triangle> to, const box& bounds,
                             std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers,
                             std::span<share> shares) const {
         const std::size_t axis = best_axis(from, bounds, left_count);
@@ -289,14 +290,14 @@ private:
     /// `left_count`. The order within each side is restored from a copy, since that of `nth_element` depends on the
     /// standard library.
     /// @param copy scratch memory for as many items
-    static void split_by_selection(std::span<balanced_item> items, std::span<balanced_item> copy,
+    static void split_by_selection(std::span<boxed_triangle> items, std::span<boxed_triangle> copy,
                                    std::size_t left_count, std::size_t axis) {
         std::ranges::copy(items, copy.begin());
         const auto middle = items.begin() + static_cast<std::ptrdiff_t>(left_count);
         std::ranges::nth_element(items, middle, centre_order{axis});
-        const balanced_item first_of_right = *middle;
+        const boxed_triangle first_of_right = *middle;
         std::array<std::size_t, 2> next_of_side{0, left_count};
-        for (const balanced_item& item : copy) {
+        for (const boxed_triangle& item : copy) {
             const bool is_right = !centre_order{axis}(item, first_of_right);
             items[next_of_side[is_right]++] = item;
         }
@@ -304,8 +305,8 @@ private:
 
     const mesh& mesh_;
     axis_rule rule_;
-    large_vector<balanced_item> both_arrays_;
-    std::array<std::span<balanced_item>, 2> items_;  // the two arrays, in this memory
+    large_vector<boxed_triangle> both_arrays_;
+    std::array<std::span<boxed_triangle>, 2> items_;  // the two arrays, in this memory
     large_vector<std::uint8_t> bin_of_item_;
     balanced_order order_;
     worker_threads single_thread_{1};

@@ -10,7 +10,7 @@ import aabb.std;
 export namespace aabb {
 
 /// A triangle as a build moves it: its box as one SIMD vector.
-struct alignas(32) balanced_item {
+struct alignas(32) boxed_triangle {
     std::array<float, 3> lower;
     std::uint32_t triangle;
     std::array<float, 3> negated_upper;  // so that one minimum merges both
@@ -32,7 +32,7 @@ struct alignas(32) balanced_item {
 struct centre_order {
     std::size_t axis;
 
-    [[nodiscard]] inline bool operator()(const balanced_item& p, const balanced_item& q) const noexcept {
+    [[nodiscard]] inline bool operator()(const boxed_triangle& p, const boxed_triangle& q) const noexcept {
         const float at_p = p.centre(axis);
         const float at_q = q.centre(axis);
         return at_p != at_q ? at_p < at_q : p.triangle < q.triangle;
@@ -42,11 +42,11 @@ struct centre_order {
 /// The box of several items. The lanes of their indices have no meaning.
 class item_bounds {
 public:
-    inline void take(const balanced_item& item) noexcept { at_ = lesser(item); }
+    inline void take(const boxed_triangle& item) noexcept { at_ = lesser(item); }
     inline void take(const item_bounds& other) noexcept { at_ = other.at_ < at_ ? other.at_ : at_; }
     /// Grows this box to contain all items. Those at odd indices are merged into a second box, so that the two minima
     /// of an iteration do not depend on each other.
-    inline void take(std::span<const balanced_item> items) noexcept {
+    inline void take(std::span<const boxed_triangle> items) noexcept {
         item_bounds odd;
         std::size_t i = 0;
         for (; i + 1 < items.size(); i += 2) {
@@ -57,14 +57,14 @@ public:
         take(odd);
     }
     /// Merges the item if `wanted`, without a branch.
-    inline void take_if(bool wanted, const balanced_item& item) noexcept {
+    inline void take_if(bool wanted, const boxed_triangle& item) noexcept {
         const simd::eight_words every = simd::eight_words{} - std::uint32_t{wanted};
         at_ = every ? lesser(item) : at_;
     }
     [[nodiscard]] box as_box() const noexcept { return {{at_[0], at_[1], at_[2]}, {-at_[4], -at_[5], -at_[6]}}; }
 
 private:
-    [[nodiscard]] inline simd::eight_floats lesser(const balanced_item& item) const noexcept {
+    [[nodiscard]] inline simd::eight_floats lesser(const boxed_triangle& item) const noexcept {
         const auto other = std::bit_cast<simd::eight_floats>(item);
         return other < at_ ? other : at_;
     }
@@ -82,7 +82,7 @@ public:
     /// floor((centre - low) * bins / edge), where `low` is the lower end of the box and `edge` its length on that axis.
     /// @param items must outlive the sample
     /// @param bounds the box of all items
-    binned_items(std::span<const balanced_item> items, std::size_t step, const box& bounds) noexcept
+    binned_items(std::span<const boxed_triangle> items, std::size_t step, const box& bounds) noexcept
         : items_(items), step_(step) {
         // Lanes 0 to 2 are the axes; the others are padding.
         eight_floats low{};
@@ -102,8 +102,8 @@ public:
         }
     }
 
-    /// For each axis, the surface-area cost of a split at the border between bins that leaves about `left_count`
-    /// sampled items on the left: the sum over both sides of area times number of items.
+    /// For each axis, the surface-area cost of a split at the border between bins that leaves about `left_count` of the
+    /// `count_` sampled items on the left: the sum over both sides of area times number of items.
     [[nodiscard]] std::array<double, 3> costs(std::size_t left_count) const noexcept {
         std::array<std::size_t, 3> end{};      // on each axis the first bin of the right side
         std::array<std::size_t, 3> in_left{};  // and the number of sampled items in the bins before it
@@ -132,7 +132,7 @@ private:
     using eight_floats = simd::eight_floats;
     static constexpr std::size_t bins = 255;  // the range of `whole_bytes`
 
-    std::span<const balanced_item> items_;
+    std::span<const boxed_triangle> items_;
     std::size_t step_;
     std::size_t count_ = 0;
     std::array<std::array<std::uint8_t, most>, 3> bin_of_item_;
@@ -147,7 +147,7 @@ public:
     /// Copies each bound of the items to an array of its own, for SIMD loads, and rounds their centres to 16 bits. The
     /// arrays are padded with the last item, which changes no box of a side that contains it.
     /// @param items 1 to 64
-    explicit few_items(std::span<const balanced_item> items) noexcept : count_(items.size()) {
+    explicit few_items(std::span<const boxed_triangle> items) noexcept : count_(items.size()) {
         for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t k = 0; k < 3; ++k) {
                 lower_[k][i] = items[i].lower[k];
@@ -241,7 +241,7 @@ private:
         std::uint64_t mask = 0;
         for (std::size_t v = 0; v < Vectors; ++v)
             mask |= std::uint64_t{simd::bits_of_sixteen(before[v] < number)} << v * lanes;
-        return mask & ~std::uint64_t{0} >> (most - count_);
+        return mask & ~std::uint64_t{0} >> (most - count_);  // without the padding
     }
 
     [[nodiscard]] static inline eight_floats lesser(eight_floats p, eight_floats q) noexcept { return p < q ? p : q; }
