@@ -16,8 +16,8 @@ public:
         "bucket sort with one bucket of equal width per entry: linear for uniformly spread entries";
     static constexpr bool is_done_by_columns = true;
 
-    /// Distributes the entries over buckets of equal width by a counting sort, and sorts each bucket. There are about
-    /// as many buckets as entries, so that a bucket has few.
+    /// Sorts a list of the lower ends of boxes on an axis: distributes the entries over buckets of equal width by a
+    /// counting sort, and sorts each bucket. There are about as many buckets as entries, so that a bucket has few.
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {
         if (list.size() < 2) return;

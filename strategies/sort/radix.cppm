@@ -13,9 +13,9 @@ public:
     static constexpr std::string_view name = "radix";
     static constexpr std::string_view summary = "radix sort of the keys' bits: linear for any order";
 
-    /// Distributes the entries between two arrays by each of the three digits of their keys, of 11 bits, from the
-    /// lowest on. One pass before counts the values of all digits. Ordered lists are left, short ones sorted by
-    /// insertion.
+    /// Sorts a list of the lower ends of boxes on an axis: moves the entries between two arrays, ordered by each of the
+    /// three digits of their keys, of 11 bits, from the lowest on. One pass before counts the values of all digits.
+    /// Ordered lists are left as they are, and short ones are sorted by insertion.
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {
         if (list.size() < 2) return;
@@ -32,9 +32,10 @@ public:
         std::span<projection> from = list;
         std::span<projection> to = other_;
         for (std::size_t pass = 0; pass < passes; ++pass) {
-            std::array<std::uint32_t, digits>& next = counts[pass];   // below: by digit, where its next entry goes
+            std::array<std::uint32_t, digits>& next = counts[pass];
             if (next[digit(from[0], pass)] == list.size()) continue;  // all keys share this digit
-            std::uint32_t before = 0;  // number of entries with lower digits, where those with a digit begin
+            // Replaces the number of entries with each digit by the place where the next one goes.
+            std::uint32_t before = 0;
             for (std::uint32_t& count : next) before += std::exchange(count, before);
             for (const projection& p : from) to[next[digit(p, pass)]++] = p;
             counters.add(work::moves, list.size());
