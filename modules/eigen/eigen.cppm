@@ -12,8 +12,7 @@ export namespace aabb {
 /// transforms are excluded, since a pose cannot represent their last row.
 template <class T>
 concept EigenTransform = requires(const T& from, T& to) {
-    requires int { T::Dim }
-    == 3 && int{T::Mode} < 32;  // Eigen::Projective
+    requires(int{T::Dim} == 3 && int{T::Mode} < 32);  // Eigen::Projective is 32
     { from.linear()(0, 0) } -> std::convertible_to<double>;
     { from.translation()(0) } -> std::convertible_to<double>;
     to.linear()(0, 0) = from.linear()(0, 0);
@@ -50,8 +49,7 @@ template <EigenTransform T>
 /// Eigen::Map of it, Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>.
 template <class Matrix, int Rows>
 concept EigenColumns = requires(const Matrix& m) {
-    requires int { Matrix::IsRowMajor ? Matrix::ColsAtCompileTime : Matrix::RowsAtCompileTime }
-    == Rows;
+    requires(int{Matrix::IsRowMajor ? Matrix::ColsAtCompileTime : Matrix::RowsAtCompileTime} == Rows);
     { *m.data() } -> std::convertible_to<typename Matrix::Scalar>;
     { m.outerStride() } -> std::convertible_to<std::ptrdiff_t>;
 };
