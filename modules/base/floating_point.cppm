@@ -20,7 +20,7 @@ inline const volatile double near_one = 1 + 0x1p-30;
 inline const volatile double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Reports that the arithmetic is not that of IEEE 754. If none of the conditions is false, products and sums are
-/// fused. Not inline in its only caller, `require_ieee_arithmetic`, which every query calls.
+/// fused. Out of line, so that `require_ieee_arithmetic`, which every query calls, stays small.
 /// @throws input_error with the first fault, and what to do
 [[noreturn]] void reject_arithmetic(bool keeps_denormals, bool rounds_to_nearest, bool knows_nan) {
     if (!keeps_denormals)

@@ -137,7 +137,8 @@ public:
     void remove(std::uint32_t id) { objects_.remove(id); }
 
     /// Updates the sweep's lists and the overlapping pairs that it keeps to the boxes of a frame, indexed by object id.
-    /// @throws input_error as the `update` of other sweeps
+    /// @throws input_error on a box that is not finite or inverted, if a present object has no box, and as
+    /// `require_ieee_arithmetic`
     void update(std::span<const box> boxes) {
         frame_.begin();
         require_ieee_arithmetic();

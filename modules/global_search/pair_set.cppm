@@ -26,7 +26,8 @@ public:
         table_[slot] = static_cast<std::uint32_t>(pairs_.size() - 1);
     }
 
-    /// Erases a pair if it is present. The last pair moves to its place in the array, which stays without gaps.
+    /// Erases a pair if it is present. The last pair moves to its place in the array, which stays without gaps, and the
+    /// hash table `table_`, which contains the index of each pair in the array, is updated.
     inline void erase(index_pair pair) {
         if (pairs_.empty()) return;
         const std::size_t slot = slot_of(pair);
@@ -71,9 +72,9 @@ private:
 
     [[nodiscard]] inline std::size_t next(std::size_t slot) const noexcept { return (slot + 1) & (table_.size() - 1); }
 
-    /// Empties a slot of the hash table. A linear probe for an entry goes from its home slot to the first empty one, so
-    /// entries behind the gap that were displaced from slots before it move into it, and leave the next gap. No deleted
-    /// slots need to be marked.
+    /// Empties a slot of the hash table `table_`. A search for a pair begins at the pair's home slot and ends at the
+    /// first empty one. An entry behind the gap whose search would cross the gap therefore moves into it, and leaves
+    /// the next gap. Deleted slots need no marks.
     inline void close_gap(std::size_t gap) {
         for (std::size_t at = next(gap); table_[at] != none; at = next(at)) {
             const std::size_t home = home_of(pairs_[table_[at]]);

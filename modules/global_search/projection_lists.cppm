@@ -61,8 +61,8 @@ struct no_inversion_counter {
 template <CounterPolicy Counters>
 class projection_lists {
 public:
-    /// Removes the entries of removed objects from the lists, and appends entries of inserted ones, which `sort` sorts
-    /// in. The order of the other entries is kept.
+    /// Removes the entries of removed objects from the sorted lists, one per axis k, and appends entries of inserted
+    /// ones, which `sort` sorts in. The order of the other entries is kept.
     void settle(const membership& objects) {
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_axis(axes_, k)) continue;
@@ -74,7 +74,7 @@ public:
         arrivals_ += objects.arrivals();  // number of appended entries
     }
 
-    /// Sorts the lists of these axes for the boxes of a frame, and frees the other lists. A list that was kept from the
+    /// Sorts the lists of the boxes' lower ends on these axes, and frees the other lists. A list that was kept from the
     /// previous frame (`axes_`) is almost sorted; one of a new axis is sorted from scratch.
     template <SortPolicy Sort>
     void sort(std::span<const box> boxes, axis_set axes, Sort& sort, Counters& counters) {
@@ -127,8 +127,9 @@ private:
         std::ranges::sort(list, [](const projection& p, const projection& q) { return precedes(p, q); });
     }
 
-    /// Sorts a list that was sorted for the previous frame, except new entries at its end: takes out the entries whose
-    /// key has changed, sorts these by the policy, and merges them with the others, which are still in order.
+    /// Sorts a list of the boxes' lower ends that was sorted for the previous frame, except new entries at its end:
+    /// takes out the entries whose key has changed, sorts these by the policy, and merges them with the others, which
+    /// are still in order.
     template <class Sort>
     void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         const std::span known = std::span(lists_[axis]).first(lists_[axis].size() - arrivals_);

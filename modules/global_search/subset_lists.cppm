@@ -63,8 +63,8 @@ private:
         return (std::uint64_t{1} << 24) + 64 * std::uint64_t{objects};
     }
 
-    /// Counts the copies of entries in each subset, and sets `starts_`: subset s gets the places from `starts_[s]` to
-    /// `starts_[s + 1]`.
+    /// Counts the copies of entries in each subset, and sets `starts_`: in the common array of all subsets, s gets the
+    /// places from `starts_[s]` to `starts_[s + 1]`.
     /// @param list the entries of all objects
     /// @throws input_error if there are too many copies
     template <class Partition>

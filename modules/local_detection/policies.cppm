@@ -92,6 +92,7 @@ struct tree_builder {
     std::function<balanced_order(const mesh& m)> order;
 };
 
+/// Erases the type of a builder, of which the result contains a copy.
 template <BuildPolicy Build>
 [[nodiscard]] tree_builder as_tree_builder(const Build& builder = {}) {
     return {[builder](const mesh& m, leaf_arrangement arrangement) { return builder.build(m, arrangement); },
