@@ -79,7 +79,7 @@ int run_program(int argc, char** argv) {
             "  data                        Download the mesh files of the experiments\n"
             "  benchmark                   Time each stage, elementary test and build separately\n"
             "  paper                       Write the report of a reproduction as a PDF\n"
-            "aabblab COMMAND --help lists the options of a command, except of these four.\n"
+            "Except for these four, aabblab COMMAND --help lists the options of a command.\n"
             "Exit status: 0 on success; 1 if a check fails or --exit-code finds an intersection; 2 on invalid input.");
         // Costs are loaded before every command except calibrate, which must run even if the file is malformed.
         program.parse_complete_callback([&] {

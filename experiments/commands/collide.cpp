@@ -200,12 +200,10 @@ void add_collide(const command_parser& program) {
     const command_parser command =
         program.add_command("collide", "Run the narrow phase on two meshes: find every pair of intersecting triangles");
     auto& request = command.set_action(collide);
-    command.argument(
-        "A", &request.a,
-        "Mesh file (OFF, OBJ, PLY, STL, glTF), or a shape as in torus_knot:triangles=20000; :order=sah after a file, "
-        "or ,order=sah after the parameters of a shape, sorts its triangles by the leaves of a tree, so that pairs "
-        "have their new "
-        "numbers");
+    command.argument("A", &request.a,
+                     "Mesh file (OFF, OBJ, PLY, STL, glTF), or a shape as in torus_knot:triangles=20000; :order=sah "
+                     "after a file, or ,order=sah after the parameters of a shape, sorts and renumbers its triangles "
+                     "by the leaves of a tree; pairs have the new numbers");
     command.optional_argument("B", &request.b, "The other mesh");
     command.option("--pose-a M", &request.poses[0],
                    "Pose of A: 12 numbers, the rows of [R t], separated by commas (default: the identity)");
@@ -216,7 +214,7 @@ void add_collide(const command_parser& program) {
     command.flag(
         "--self [=all|no-adjacent]", &request.self,
         "Find self-intersections of A: pairs of triangles that meet outside their shared corners and edge; all: every "
-        "pair with a common point, neighbours included; no-adjacent: only pairs without a shared corner");
+        "pair with a common point, adjacent triangles included; no-adjacent: only pairs without a shared corner");
     add_touching(command, &request.touching, "pairs");
     command.flag("--first", &request.first, "Stop at the first pair found");
     command.flag("--count", &request.count, "Count the pairs without storing them");

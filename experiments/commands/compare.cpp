@@ -15,12 +15,12 @@ int run(const compare_request& request) {
 }  // namespace
 
 void add_compare(const command_parser& program) {
-    const command_parser command = program.add_command(
-        "compare",
-        "Compare two results folders, of two commits or machines: ratios to the baseline, digests, work, bytes");
+    const command_parser command = program.add_command("compare",
+                                                       "Compare two results folders, of two commits or machines: times "
+                                                       "relative to the baseline, digests, work, bytes");
     auto& request = command.set_action(run);
     command.argument("A", &request.a, "Results folder of one experiment or several");
-    command.argument("B", &request.b, "Results folder to compare with A; ratios are B over A");
+    command.argument("B", &request.b, "Results folder to compare with A; changes are B over A");
     command.flag("--times", &request.times, "Also compare milliseconds, if both folders come from one machine");
     command.flag("--all", &request.all, "Also list what is unchanged or undecided");
 }

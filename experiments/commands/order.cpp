@@ -53,9 +53,9 @@ void add_order(const command_parser& program) {
     command.option("--out FILE", &request.out, "Mesh file to write (.off)").required();
     command.option("--numbers FILE", &request.numbers, "CSV file for the original indices: rows triangle,was");
     command.footer(
-        "For such a mesh, the build file_order with the tree implicit:vertices=fetched stores boxes only, the smallest "
-        "of eight triangles, in 1.2 bytes per triangle. collide, contacts and configs also accept FILE:order=BUILD and "
-        "SHAPE:triangles=N,order=BUILD, which need no file. Sorting twice gives another order, as builds depend on "
+        "For such a mesh, the build file_order with the tree implicit:vertices=fetched stores only boxes, down to "
+        "eight triangles each, in 1.2 bytes per triangle. collide, contacts and configs also accept FILE:order=BUILD "
+        "and SHAPE:triangles=N,order=BUILD, which need no file. Sorting twice gives another order, as builds depend on "
         "it.");
 }
 

@@ -204,7 +204,8 @@ void add_parameters(const command_parser& command, scene_request& request) {
             if (const auto [at, is_new] = request.settings.try_emplace(p.name); is_new)
                 command.option(option_names(p.name) + " V", &at->second, "").hidden();
     command.footer(
-        "`aabblab list scenes` shows all scenes and their parameters, which are options; --n 500 means --objects 500.");
+        "`aabblab list scenes` shows all scenes with their parameters. Each parameter is an option, such as --density "
+        "0.2; --n means --objects.");
 }
 
 }  // namespace
@@ -213,7 +214,7 @@ void add_scene(const command_parser& program) {
     const command_parser command = program.add_command(
         "scene", "Generate a scene, and write it as a recording of boxes, a motion file or a picture");
     auto& request = command.set_action(write_scene);
-    command.argument("NAME", &request.kind, "A scene that 'aabblab list scenes' shows");
+    command.argument("NAME", &request.kind, "A scene that `aabblab list scenes` shows");
     add_parameters(command, request);
     command
         .option("--mesh MESH", &request.meshes,

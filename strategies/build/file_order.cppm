@@ -13,7 +13,7 @@ struct file_order_build : threaded_build {
 
     static constexpr std::string_view name = "file_order";
     static constexpr std::string_view summary =
-        "splits the mesh's own order in halves, for meshes that are stored leaf by leaf";
+        "halves the mesh's own order of triangles, for meshes that are stored leaf by leaf";
 
     [[nodiscard]] std::vector<build_node> build(const mesh& m, leaf_arrangement arrangement) const {
         const auto halves = [](std::span<const build_element> range, const box&) {

@@ -24,7 +24,7 @@ class axial_cut_partition {
 public:
     static constexpr std::string_view name = "axial_cut";
     static constexpr std::string_view summary =
-        "cuts axes into segments with the same number of projections, no box more than once on an axis";
+        "cuts axes into segments with the same number of projections; no box is cut more than once per axis";
 
     enum class limit_choice : std::uint8_t { on, off };
     struct config {
@@ -41,7 +41,7 @@ public:
         integer_parameter{"segments", &config::segments, 1U, 65'535U,
                           "desired number on each of these axes; auto: the cheapest"},
         choice_parameter{"limit", &config::limit, std::array<std::string_view, 2>{"on", "off"},
-                         "cut no box more than once on an axis"}};
+                         "cut no box more than once per axis"}};
 
     static constexpr std::array contrasts{std::string_view("axes=3,segments=2")};
 

@@ -14,7 +14,7 @@ class compressed_tree : public leafless_layout {
 public:
     static constexpr std::string_view name = "compressed";
     static constexpr std::string_view summary =
-        "the paper's tree in its claims, lossless: no leaves, six planes and a symbol per two siblings";
+        "the tree of the paper's claims, lossless: no leaves, six planes and a symbol byte per two siblings";
     static constexpr leaf_arrangement arrangement = leaf_arrangement::pairs;
 
     using leafless_layout::leafless_layout;

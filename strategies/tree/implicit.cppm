@@ -33,7 +33,7 @@ public:
     };
     static constexpr std::tuple parameters{
         choice_parameter{"vertices", &config::vertices, std::array<std::string_view, 2>{"listed", "fetched"},
-                         "how a leaf's vertices are read: from a list, 5 to 6 bytes per triangle, or slower, through "
+                         "how a leaf's vertices are read: from a list of 5 to 6 bytes per triangle or, slower, through "
                          "the mesh's triangles"},
         choice_parameter{"front", &config::front, std::array<std::string_view, 2>{"forgotten", "kept"},
                          "BVTT front tracking, for exact triangle tests: pairs of close leaves are kept for queries at "

@@ -23,8 +23,9 @@ public:
     static constexpr std::tuple parameters{choice_parameter{
         "leaf_test", &config::leaf_test,
         std::array<std::string_view, 4>{"none", "triangle_box", "triangle_aabb", "moller_triangle_box"},
-        "the test that replaces that of a leaf's box: none, the triangle against the other box, or the triangle's own "
-        "box; moller_triangle_box is Möller's original form of the second, inexact"}};
+        "what replaces the test of a leaf's box: nothing, the triangle against the other box, or the triangle's own "
+        "box; "
+        "moller_triangle_box is Möller's original triangle-box test, inexact"}};
     using cursor = box_cursor;
 
     leafless_layout() = default;

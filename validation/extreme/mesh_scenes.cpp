@@ -186,9 +186,10 @@ std::vector<extreme_scene> mesh_scenes(extreme_size size) {
     constexpr vec3d survey{388096, 3948995, 10};  // coordinates as in a map
     scenes.push_back(scene_of_meshes("doubles_apart", "two cubes of doubles 1e-9 apart, far from the origin",
                                      [survey] { return cubes_apart(survey, 1e-9); }));
-    scenes.push_back(scene_of_meshes("doubles_pressed", "two cubes of doubles that intersect by less than a float sees",
+    scenes.push_back(scene_of_meshes("doubles_pressed",
+                                     "two cubes of doubles that intersect by less than a float resolves",
                                      [] { return cubes_apart({0.1, 0.2, 0.3}, -1e-12); }));
-    scenes.push_back(scene_of_meshes("flush_turned", "two cubes face to face, at poses of one rotation", flush_turned));
+    scenes.push_back(scene_of_meshes("flush_turned", "two cubes face to face, rotated alike", flush_turned));
     for (const auto& [name, far] : {std::pair{"moved_1e6", 1e6}, {"moved_1e9", 1e9}, {"moved_1e15", 1e15}})
         scenes.push_back(scene_of_meshes(name, "two intersecting spheres as far from the origin as the name says",
                                          [distance = far] { return balls_moved(distance); }));

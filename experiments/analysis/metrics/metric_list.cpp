@@ -148,13 +148,26 @@ bool describes_input(aabb::work counted) {
            counted == pieces;
 }
 
-/// Adds one metric per work counter: its value per frame after frame 0. Less is better, except for counters that only
-/// describe the input.
+constexpr std::array<std::string_view, aabb::work_names.size()> work_summaries = {
+    "key comparisons of the sort",
+    "list entries moved by the sort",
+    "inversions in the lists before the sort",
+    "restarts of an incremental sweep from a sort",
+    "overlap tests of two boxes",
+    "subsets of the partition",
+    "entries of boxes in subsets of the partition",
+    "desired segments of an axial cut, over its axes,",
+    "actual segments of an axial cut, over its axes,",
+    "pieces of boxes or meshes that were split",
+    "visited pairs of tree nodes",
+    "tests of a leaf's triangle against a box",
+    "tests of two triangles"};
+
+/// Adds one metric per work counter: its value per frame after frame 0, of which less is better if it counts work.
 void add_work_metrics(std::vector<metric>& list) {
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
-        std::string spaced(aabb::work_names[i]);
-        std::ranges::replace(spaced, '_', ' ');
-        list.push_back({std::string(aabb::work_names[i]), "", spaced + " per frame after frame 0", metric_group::counts,
+        list.push_back({std::string(aabb::work_names[i]), "",
+                        std::string(work_summaries[i]) + " per frame after frame 0", metric_group::counts,
                         describes_input(static_cast<aabb::work>(i)) ? better::neither : better::less,
                         [i](const row& r) -> std::optional<double> {
                             if (!r.counts[i]) return std::nullopt;

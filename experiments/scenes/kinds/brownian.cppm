@@ -10,7 +10,7 @@ class brownian final : public drifting_boxes {
 public:
     static constexpr std::string_view name = "brownian";
     static constexpr std::string_view summary =
-        "unit cubes that drift in a cube with reflecting walls; a hundredth of them turn in every frame";
+        "unit cubes that drift in a cube with reflecting walls; a hundredth of them change direction in every frame";
 
     struct config : scene_size {
         double density = 0.1;

@@ -27,16 +27,17 @@ public:
     };
     static constexpr auto parameters = std::tuple_cat(
         motion_parameters,
-        std::tuple{aabb::number_parameter{"moving", &config::moving, 0.0, 1.0, "share of the cubes that move", true},
-                   aabb::number_parameter{"density", &config::density, 1e-9, 1e6,
-                                          "volume of the cubes over that of the clouds that their corners lie in"},
-                   aabb::number_parameter{"ratio", &config::ratio, 1.0, 1e6,
-                                          "edge of the largest cube over that of the smallest", true},
-                   aabb::integer_parameter{"clouds", &config::clouds, 1U, 1'000'000U, "how many clouds"},
-                   aabb::number_parameter{"apart", &config::apart, 1.0, 1e6,
-                                          "edge of the lattice cell of a cloud over that of the cloud", true},
-                   aabb::number_parameter{"parked", &config::parked, 0.0, 1.0,
-                                          "share of the cubes that rest in a cloud of their own", true}});
+        std::tuple{
+            aabb::number_parameter{"moving", &config::moving, 0.0, 1.0, "share of the cubes that move", true},
+            aabb::number_parameter{"density", &config::density, 1e-9, 1e6,
+                                   "volume of the cubes over that of the clouds, which hold their least corners"},
+            aabb::number_parameter{"ratio", &config::ratio, 1.0, 1e6,
+                                   "edge of the largest cube over that of the smallest", true},
+            aabb::integer_parameter{"clouds", &config::clouds, 1U, 1'000'000U, "how many clouds"},
+            aabb::number_parameter{"apart", &config::apart, 1.0, 1e6,
+                                   "edge of the lattice cell of a cloud over that of the cloud", true},
+            aabb::number_parameter{"parked", &config::parked, 0.0, 1.0,
+                                   "share of the cubes that rest in a cloud of their own", true}});
 
     /// Places the clouds, whose width follows from the density: the volume of all cubes over that of all clouds. The
     /// first cubes rest; of them, the first `parked_` rest in an additional cloud, the last one.

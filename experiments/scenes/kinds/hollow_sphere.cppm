@@ -12,7 +12,7 @@ class hollow_sphere final : public generated_boxes {
 public:
     static constexpr std::string_view name = "hollow_sphere";
     static constexpr std::string_view summary =
-        "unit cubes that drift over a sphere, with nothing inside; a hundredth of them turn in every frame";
+        "unit cubes that drift over a sphere, with nothing inside; a hundredth of them change direction in every frame";
 
     using config = motion_config;
     static constexpr auto parameters = motion_parameters;

@@ -30,15 +30,16 @@ public:
     };
     static constexpr auto parameters = std::tuple_cat(
         size_parameters<config>("how many objects"),
-        std::tuple{aabb::number_parameter{"density", &config::density, 1e-30, 1e6,
-                                          "volume of cubes with the extents of the objects over that of the world"},
-                   aabb::number_parameter{"displacement", &config::displacement, 0.0, 1e6,
-                                          "greatest displacement of an object per frame, in mean extents; "
-                                          "its rotation, in radians"},
-                   normalise_parameter<config>("scale each mesh to a longest extent of 1"),
-                   aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many objects are huge"},
-                   aabb::number_parameter{"span", &config::span, 0.0, 1.0,
-                                          "longest extent of a huge object over the side of the world"}});
+        std::tuple{
+            aabb::number_parameter{"density", &config::density, 1e-30, 1e6,
+                                   "volume of cubes with the extents of the objects over that of the world"},
+            aabb::number_parameter{
+                "displacement", &config::displacement, 0.0, 1e6,
+                "greatest displacement of an object per frame, in mean extents, and greatest rotation, in radians"},
+            normalise_parameter<config>("scale each mesh to a longest extent of 1"),
+            aabb::integer_parameter{"huge", &config::huge, 0U, 0x7fffffffU, "how many objects are huge"},
+            aabb::number_parameter{"span", &config::span, 0.0, 1.0,
+                                   "longest extent of a huge object over the side of the world"}});
 
     /// The density gives the side of the world: it is the volume of the objects that are not huge, as cubes of their
     /// extents, over that of the world. The huge mesh is scaled to `span` of the side. Points, steps and rotations are

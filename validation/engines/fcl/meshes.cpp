@@ -183,7 +183,7 @@ engine fcl_aabb_engine() {
     return {.name = "fcl_aabb",
             .summary =
                 "FCL's trees of axis-aligned boxes, the second mesh's refitted for each new pose, with vertices "
-                "rounded to float in the first one's frame",
+                "rounded to float in the first mesh's frame",
             .exact = false,
             .meshes = make_stage<local_stage, fcl_axis_aligned>};
 }
