@@ -153,10 +153,11 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     if (shown) {
         print(
             "exact: the same pairs as the ground truth; rejected: invalid input, rejected as\n"
-            "it must be; 91 exact: each of 91 methods is; -: not run, or not wrong;\n"
+            "it must be; 91 exact: all 91 are; -: not run, or not wrong;\n"
             "flushed_, upward_: in a thread that flushes denormals to zero or rounds upward;\n"
             "beyond_float: engines in double may find no pairs instead, and count as exact;\n"
-            "wrong results: near: a displacement of a millionth changes them; other: it does\nnot;\n"
+            "classes of wrong results: near: a displacement of a millionth changes the\n"
+            "result; other: it does not;\n"
             "aabblab list engines explains engines\n\n");
         for (const named_table& t : report.tables)
             print(wrapped(t.caption) + "\n\n" + to_text(t.content, output_width()) + "\n");
@@ -177,7 +178,9 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
         note("the integrator " + std::string(name) +
              " is left out of this build: its library was not found; ./aabblab validate stiff installs it");
     if (shown)
-        print("Contacts exert forces, so wrong contacts give a wrong motion: each is compared\nwith a known one.\n\n");
+        print(
+            "Contacts exert forces, so wrong contacts give a wrong motion. Each study compares\nthe motion with a "
+            "known one.\n\n");
     suite_report report;
     for (const stiff_study& study : chosen) {
         stiff_result result;

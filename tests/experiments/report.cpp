@@ -223,6 +223,7 @@ TEST_CASE("A table fits the given width: it drops spare columns, replaces long n
           "1   1      2      3\n"
           "2   4      5      6\n"
           "\n"
+          "#  sort + tree\n"
           "1  insertion + canonical\n"
           "2  std +\n"
           "   compressed:build=sah\n");

@@ -87,16 +87,20 @@ std::string legend_of(const std::string& number, const std::vector<std::string>&
 /// Makes a table narrower: the first columns, which name the rows, become one of row numbers.
 /// @returns a legend, the names of each number
 std::string replace_names_by_numbers(table& t, std::size_t width) {
-    if (!has_numbered_rows(t)) {
+    const bool had_numbers = has_numbered_rows(t);
+    if (!had_numbers) {
         t.columns.insert(t.columns.begin(), {row_number});
         std::size_t row = 0;
         for (auto& cells : t.rows) cells.insert(cells.begin(), std::to_string(++row));
     }
     const std::size_t names = name_count(t);  // columns before the first value
-    std::string legend;
-    for (const auto& cells : t.rows)
-        legend += legend_of(std::string(width_of(t, 0) - cells[0].size(), ' ') + cells[0],
-                            {cells.begin() + 1, cells.begin() + static_cast<std::ptrdiff_t>(names)}, width);
+    const auto numbered = [&](const std::string& number, const std::vector<std::string>& cells) {
+        return legend_of(std::string(width_of(t, 0) - number.size(), ' ') + number,
+                         {cells.begin() + 1, cells.begin() + static_cast<std::ptrdiff_t>(names)}, width);
+    };
+    // The heading names what the numbers stand for; tables with numbers of their own name it elsewhere.
+    std::string legend = had_numbers ? "" : numbered(row_number, header_of(t));
+    for (const auto& cells : t.rows) legend += numbered(cells[0], cells);
     remove_columns(t, 1, names);
     return legend;
 }

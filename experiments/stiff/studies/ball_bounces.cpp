@@ -104,12 +104,11 @@ void run_ball_bounces(const stiff_setting& setting, stiff_result& result) {
 
 stiff_study ball_bounces_study() {
     return {"ball_bounces",
-            "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring: without a dashpot for the errors, "
-            "which are relative to the greatest depth and speed; with one, at dt·ω = 0.05 and k = 1e4 to 1e10 N/m, for "
-            "the restitution, 0.5, and the contact time, from touching the floor to leaving it. Neither is measured "
+            "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring. Errors are measured without a "
+            "dashpot, relative to the greatest depth and speed. The restitution, 0.5, and the contact time, from "
+            "touching the floor to leaving it, are measured with one, at dt·ω = 0.05 and k = 1e4 to 1e10 N/m, but not "
             "with symplectic_euler, whose contact may end a step late. adaptive_dormand_prince equals dormand_prince "
-            "where one "
-            "step meets its tolerance",
+            "where one step meets its tolerance",
             "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²)), with "
             "ω = √(k/m) and the damping ratio ζ",
             &run_ball_bounces,

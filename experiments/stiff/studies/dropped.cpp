@@ -156,7 +156,7 @@ std::vector<trajectory> trajectories_of(const std::vector<method>& methods, cons
 /// @returns whether it departs
 bool report_departure(const std::string& subject, const trajectory& t, const std::vector<double>& errors,
                       stiff_result& result) {
-    result.add(reported(subject, "greatest departure (diameters)", std::ranges::max(errors)));
+    result.add(reported(subject, "greatest deviation (diameters)", std::ranges::max(errors)));
     const auto first = std::ranges::find_if(errors, [](double d) { return !(d <= 0); });  // or NaN
     if (first == errors.end()) return false;
     result.add(reported(subject, "first step that is wrong", static_cast<double>(first - errors.begin()) + 1));
@@ -185,7 +185,7 @@ void compare_methods(const dropped_balls& balls, const std::string& size, const 
         const std::vector<double> errors = balls.departures(t, reference);
         const std::string subject = methods[m].label + ", " + size;
         if (methods[m].tested.exact && methods[m].tested.exact_boxes) {
-            result.add(at_most(subject, "greatest departure (diameters)", std::ranges::max(errors), 0));
+            result.add(at_most(subject, "greatest deviation (diameters)", std::ranges::max(errors), 0));
             continue;
         }
         if (!report_departure(subject, t, errors, result) || drawn == most_drawn) continue;
@@ -252,7 +252,7 @@ std::vector<figure> figures() {
                  " depart from their trajectory with exact contacts, because of a triangle test, an engine or a stale "
                  "Verlet list. At most nine of the methods that depart are drawn.",
              time,
-             {"greatest departure (diameters)", /*logarithmic=*/true}});
+             {"greatest deviation (diameters)", /*logarithmic=*/true}});
         list.push_back({figure_name("depth " + size),
                         "The greatest penetration of two balls of " + size +
                             ", with exact contacts and with those of the methods that depart.",

@@ -91,7 +91,7 @@ void run_plate(const stiff_setting& setting, stiff_result& result) {
             const double share = static_cast<double>(missed) / static_cast<double>(shots);
             result.plot("tunnelled", swept ? "swept boxes" : "plain boxes", ratio, share);
             const std::string subject = "a step of " + short_number(ratio) + " extents, " + (swept ? "swept" : "plain");
-            result.add({subject, "share tunnelled of " + std::to_string(shots), share,
+            result.add({subject, "share of " + std::to_string(shots) + " shots that tunnel", share,
                         swept ? "0" : short_number(expected) + " ± one shot",
                         verdict_if(std::abs(share - (swept ? 0 : expected)) <=
                                    (swept ? 0 : 1.01 / static_cast<double>(shots)))});  // one shot, up to rounding
@@ -112,7 +112,7 @@ stiff_study plate_study() {
         {figure{.name = "tunnelled",
                 .caption = "Share of shots that tunnel through a plate undetected, over the displacement per step.",
                 .x = {"displacement per step (extents of body and plate)", /*logarithmic=*/true},
-                .y = {"share tunnelled"},
+                .y = {"share of shots that tunnel"},
                 .lines = {
                     {"plain boxes", series_style::points}, {"swept boxes", series_style::points}, {tunnelled_share}}}}};
 }

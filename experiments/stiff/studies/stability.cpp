@@ -120,7 +120,7 @@ void run_stability(const stiff_setting& setting, stiff_result& result) {
                     result.add(reported(subject, "energy drift", drift));
                 } else if (i.is_symplectic()) {
                     result.add(
-                        at_most(subject, "energy drift, without sign", std::abs(drift), setting.quick ? 0.05 : 1e-3));
+                        at_most(subject, "energy drift, absolute value", std::abs(drift), setting.quick ? 0.05 : 1e-3));
                 } else {
                     // The energy falls: its greatest values are at the first steps of both tenths, 0.9 of all apart.
                     const double lost =
@@ -150,8 +150,9 @@ stiff_study stability_study() {
         "for the discrete element method is a step of 5 to 10 % of the contact time, dt·ω 0.157 to 0.314",
         &run_stability,
         {figure{.name = "energy_drift",
-                .caption = "Relative drift of a ball's energy over 1000 periods (100 with --quick) in contact, without "
-                           "sign, over the step size. Marks show the usual advice and the greatest stable steps.",
+                .caption =
+                    "Relative drift of a ball's energy over 1000 periods (100 with --quick) in contact, its "
+                    "absolute value, over the step size. Marks show the usual advice and the greatest stable steps.",
                 .x = {"step times angular frequency", /*logarithmic=*/true},
                 .y = {"relative energy drift", /*logarithmic=*/true},
                 .marks = {{0.157, "5 %"}, {0.314, "10 % of the contact time"}}}},

@@ -69,7 +69,7 @@ void run_stack(const stiff_setting& setting, stiff_result& result) {
                 }
                 const std::string subject = std::string(i.name) + ", masses up to " + short_number(ratio) + " kg";
                 result.add(within(subject, "greatest depth (m)", greatest, mass * gravity / stiffness, 0.01));
-                result.add(at_most(subject, "error of a depth at rest over mg/k", worst, 1e-3));
+                result.add(at_most(subject, "relative error of the depths at rest", worst, 1e-3));
                 result.add(reported(subject, "detections", static_cast<double>(stack.detections())));
             });
         }
