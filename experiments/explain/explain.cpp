@@ -177,7 +177,7 @@ int explain(const explain_request& request) {
         // A scene that cannot be created is reported before any output.
         staged_scene scene(choice);
         limits.note_scene_read();
-        if (&choice == e.scenes.data()) print(wrapped("costs to plan columns and lists: " + costs_in_force()) + "\n\n");
+        if (&choice == e.scenes.data()) print(wrapped("costs of elementary operations: " + costs_in_force()) + "\n\n");
         agree &= explain_scene(e, scene, limits);
     }
     return agree ? 0 : 1;

@@ -112,7 +112,7 @@ int recommend(const recommend_request& request) {
     const std::string name = heading_of(scene.choice());
     print_paragraph(name + ": " + counted(race.objects, "object") + ", " + counted(race.frames, "frame"));
     print_paragraph(
-        fmt::format("{} of {} compositions and engines reached the final; early stopping saved {:.0f} % of the frames",
+        fmt::format("{} of {} compositions and engines ran to the end; early stopping saved {:.0f} % of the frames",
                     race.finalists.size(), race.finalists.size() + race.dropped.size() + race.wrong.size(),
                     100 - 100 * static_cast<double>(race.frames_run) / static_cast<double>(race.frames_of_all)));
     print("\n" + to_text(table_of(race), output_width()) + "\n");

@@ -22,7 +22,7 @@ enum class absence : std::uint8_t {
 
 inline constexpr std::array absence_texts = std::to_array<std::string_view>(
     {"partition", "sort", "sorted intervals on x", "sorted intervals on y", "sorted intervals on z",
-     "sorted intervals beside those of the sweep itself", "Verlet list", "division of large objects", "local detection",
+     "sorted intervals beside those of the sweep itself", "Verlet list", "division of large objects", "narrow phase",
      "boxes of single triangles", "node indices", "work counters"});
 static_assert(absence_texts.size() == static_cast<std::size_t>(absence::counters) + 1);
 

@@ -188,7 +188,7 @@ TEST_CASE_METHOD(in_folder, "explain reports what each omitted part saves and wh
     CHECK(line_of(table, "division of large objects").ends_with(" -"));
     CHECK(holds(line_of(table, "work counters"), "counters of all work "));
     CHECK(line_of(table, "work counters").ends_with(" 0"));
-    CHECK(line_of(table, "local detection").ends_with(" -"));
+    CHECK(line_of(table, "narrow phase").ends_with(" -"));
     CHECK_FALSE(holds(table, "  none "));
     CHECK(holds(line_of(table_of("one_huge", "100"), "division of large objects"), "split_large "));
 }

@@ -164,7 +164,7 @@ TEST_CASE("Errors in a costs file are reported with their line") {
 TEST_CASE("The program plans with the saved costs and reports it") {
     const user_config shipped;
     CHECK(shipped.run({"explain", "icosphere", "icosphere"})
-              .out.starts_with("costs to plan columns and lists: as shipped (aabblab calibrate measures yours)\n"));
+              .out.starts_with("costs of elementary operations: as shipped (aabblab calibrate measures yours)\n"));
     REQUIRE(shipped.run_experiment().status == 0);
     CHECK(shipped.costs_of_run()["source"] == "shipped");
     CHECK(shipped.costs_of_run()["ns"]["search_pair"] == aabb::cost_model{}.search_pair);
@@ -173,7 +173,7 @@ TEST_CASE("The program plans with the saved costs and reports it") {
     const program_result explained = saved.run({"explain", "icosphere", "icosphere"});
     CHECK(explained.status == 0);
     CHECK(explained.err.empty());
-    CHECK(explained.out.starts_with("costs to plan columns and lists: calibrated 20"));
+    CHECK(explained.out.starts_with("costs of elementary operations: calibrated 20"));
     CHECK(holds(explained.out, saved.file().string()));
     REQUIRE(saved.run_experiment().status == 0);
     const nlohmann::json costs = saved.costs_of_run();
@@ -200,7 +200,7 @@ TEST_CASE("Costs of another processor, instruction set or version are ignored wi
         CHECK(holds(explained.err,
                     "so the shipped costs are used until aabblab calibrate measures those of this machine"));
         CHECK(explained.out.starts_with(
-            "costs to plan columns and lists: as shipped (aabblab calibrate measures yours)\n"));
+            "costs of elementary operations: as shipped (aabblab calibrate measures yours)\n"));
     }
 }
 

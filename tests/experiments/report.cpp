@@ -70,7 +70,7 @@ TEST_CASE("Ratios are computed within a repeat") {
 }
 
 TEST_CASE("Too few repeats for an interval are reported") {
-    const std::string note = "95 %: - if repeats, seeds or processes are too few; the baseline needs two\n";
+    const std::string note = "95 %: - if repeats, seeds or processes are too few (below two for the baseline)\n";
     std::vector<row> rows;
     for (const auto& [repeat, slower] : {std::pair(0, 0.5), std::pair(1, 1.9), std::pair(2, 0.7), std::pair(3, 1.1)}) {
         rows.push_back(repeat_of("std", static_cast<std::uint64_t>(repeat), 1));
@@ -177,7 +177,7 @@ TEST_CASE("A table ranks exact lines by time, then inexact ones, then those with
     CHECK(holds(aabblab::heading_of(scene),
                 "in ascending order of ratio, exact results before inexact ones\nratio: ms/frame relative to"));
     CHECK(holds(aabblab::heading_of(scene), " confidence interval\nbaseline: slow\n"));
-    CHECK(holds(aabblab::heading_of(scene), "all lines of the table, over all frames: 1,234,567 pairs of boxes\n"));
+    CHECK(holds(aabblab::heading_of(scene), "all candidates, over all frames: 1,234,567 pairs of boxes\n"));
     CHECK(holds(aabblab::heading_of(scene), "a result -3 +5 has 3 false negatives and 5 false positives\n"));
     rows[1].false_negatives = 12;
     rows[1].false_positives = 0;

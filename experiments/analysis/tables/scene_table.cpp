@@ -113,7 +113,7 @@ std::string constant_line(const scene_summary& scene, std::span<const candidate_
     for (const shared_column& c : shared_columns(scene, ranking))
         if (c.is_constant())
             constant += (constant.empty() ? "" : ", ") + fmt::format(fmt::runtime(c.above), c.cells[0]);
-    return constant.empty() ? "" : "all lines of the table, over all frames: " + constant + "\n";
+    return constant.empty() ? "" : "all candidates, over all frames: " + constant + "\n";
 }
 
 /// Explains results such as "-3 +5" by the first one in the table; empty if there are none.
@@ -149,7 +149,7 @@ std::string explanation_of_columns(const scene_summary& scene) {
         text += "ms/frame: the mean wall time per frame after frame 0, the median over repeats\n";
     if (any_has(scene, &candidate_summary::bytes)) text += "KiB: memory after the last frame, without meshes\n";
     if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
-        text += "95 %: - if repeats, seeds or processes are too few; the baseline needs two\n";
+        text += "95 %: - if repeats, seeds or processes are too few (below two for the baseline)\n";
     return text;
 }
 
