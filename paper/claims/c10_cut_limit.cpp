@@ -40,7 +40,7 @@ draft c10_claim(const measurements& m) {
         }
     c10.claim.figures.push_back(log_log(
         "c10",
-        "Time of the broad phase with at most one cut per box and axis, over that without the limit (the level 1), "
+        "Time of the broad phase with at most one cut per box and axis, over that without the limit (the line at 1), "
         "with the automatic number of segments, against the number of huge objects, by their edge over the side "
         "of the world; 95 % intervals.",
         "huge objects", "time with the limit over that without",

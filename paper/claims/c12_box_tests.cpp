@@ -7,6 +7,7 @@ namespace aabblab {
 draft c12_claim(const measurements& m) {
     draft c12{.claim = {.claim = "The axial cut avoids needless tests of boxes",
                         .measured = "box tests per frame, axial_cut over none, both with shell",
+                        .lead = "The axial cut, compared with no cut",
                         .experiments = {"figure1", "three_lists"}},
               .primary = {drifting}};
     for (const condition& c : m.conditions_of("figure1"))

@@ -40,7 +40,7 @@ table gaps_table(const std::vector<condition>& conditions) {
 /// and one for boxes on a line, one series per gap sequence, one point per condition (scene).
 figure figure_of(const std::vector<condition>& conditions) {
     figure f = log_log("c3",
-                       "Time of Shell sort over that of insertion sort (the level 1) against inversions per element, "
+                       "Time of Shell sort over that of insertion sort (the line at 1) against inversions per element, "
                        "for each gap sequence; 95 % intervals.",
                        "inversions per element", "time over that of insertion sort");
     for (const bool in_space : {true, false}) {

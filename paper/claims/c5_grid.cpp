@@ -138,7 +138,7 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
 figure cell_figure(const std::map<double, std::vector<const condition*>>& by_objects) {
     figure f = log_log(
         "c5",
-        "Time of the broad phase with a grid over that with the axial cut in the same repeat (the level 1), against "
+        "Time of the broad phase with a grid over that with the axial cut in the same repeat (the line at 1), against "
         "the cell size, for each scene; 95 % intervals. Grids with a single cell are left out.",
         "cell size (edges of the smallest box)", "time over that of axial cut");
     for (const auto& [objects, conditions] : by_objects) {

@@ -7,6 +7,7 @@ module aabblab.reproduction;
 
 import aabblab.fmt;
 import aabblab.markup;
+import aabblab.numbers;
 import aabblab.scale;
 import aabblab.svg;
 
@@ -262,8 +263,8 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
             "phase means the paper's global search, narrow phase its local detection; the scene brownian has drifting "
             "cubes; extents are edges of boxes. {}, {} size. Commit {}, {}, {}. {} rows of {} scenes, each with up to "
             "{} seeds; per composition and seed up to {} repeats in {} processes.",
-            reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler, origin.cpu, origin.rows,
-            origin.scenes, origin.seeds, origin.repeats, origin.processes),
+            reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler, origin.cpu,
+            grouped(origin.rows), origin.scenes, origin.seeds, origin.repeats, origin.processes),
         "soft");
     for (const std::string& note : origin.notes) out.paragraph("Note: " + note + ".", "soft");
     add_claim_rows(out, reproduced);
