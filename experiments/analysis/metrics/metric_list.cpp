@@ -148,20 +148,13 @@ bool describes_input(aabb::work counted) {
            counted == pieces;
 }
 
-constexpr std::array<std::string_view, aabb::work_names.size()> work_summaries = {
-    "key comparisons of the sort",
-    "list entries moved by the sort",
-    "inversions in the lists before the sort",
-    "restarts of an incremental sweep from a sort",
-    "overlap tests of two boxes",
-    "subsets of the partition",
-    "entries of boxes in subsets of the partition",
-    "desired segments of an axial cut, over its axes,",
-    "actual segments of an axial cut, over its axes,",
-    "pieces of boxes or meshes that were split",
-    "visited pairs of tree nodes",
-    "tests of a leaf's triangle against a box",
-    "tests of two triangles"};
+constexpr auto work_summaries = std::to_array<std::string_view>(
+    {"key comparisons of the sort", "list entries moved by the sort", "inversions in the lists before the sort",
+     "restarts of an incremental sweep from a sort", "overlap tests of two boxes", "subsets of the partition",
+     "entries of boxes in subsets of the partition", "desired segments of an axial cut, over its axes,",
+     "actual segments of an axial cut, over its axes,", "pieces of boxes or meshes that were split",
+     "visited pairs of tree nodes", "tests of a leaf's triangle against a box", "tests of two triangles"});
+static_assert(work_summaries.size() == aabb::work_names.size());
 
 /// Adds one metric per work counter: its value per frame after frame 0, of which less is better if it counts work.
 void add_work_metrics(std::vector<metric>& list) {
