@@ -56,10 +56,10 @@ int run(const atlas_request& request) {
     });
     write_atlas(out, atlas);
     print_paragraph(
-        "Scenes in which each candidate is the fastest, by time per frame after the first; shown: the second is slower "
-        "beyond noise; as fast: another is faster, but not beyond noise");
+        "How often each candidate is the fastest, by time per frame after the first; shown in: scenes where the second "
+        "is slower beyond noise; as fast in: scenes where another is faster, but not beyond noise");
     print(to_text(winners_table(atlas), output_width()) + "\n");
-    print("The same time, relative to the fastest candidate of each scene\n" +
+    print("Time per frame after the first, relative to the fastest candidate of each scene\n" +
           to_text(regrets_table(atlas, atlas_time::per_frame), output_width()) + "\n");
     for (const judged_statement& s : judged_statements(atlas))
         print_paragraph(fmt::format("{}: {} Here: {}. ({})", s.id, s.says, text_of(s.verdict), s.source));

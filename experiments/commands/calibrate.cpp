@@ -33,7 +33,7 @@ table table_of(const calibration& fit) {
 
 /// How far the fitted costs mispredict the times of held-out scenes.
 table checks_of(const calibration& fit) {
-    table t = empty_table({"predicted in held-out scenes"}, {"times", "median factor", "worst"});
+    table t = empty_table({"predictions for held-out scenes"}, {"count", "median error factor", "worst"});
     for (const group_check& check : fit.checks)
         t.rows.push_back({std::string(check.group), std::to_string(check.found.observations),
                           fmt::format("{:.2f}", check.found.median), fmt::format("{:.2f}", check.found.worst)});

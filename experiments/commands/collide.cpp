@@ -110,8 +110,7 @@ void print_results(const collide_request& request, const mesh_result& result) {
     for (const kind_counts& counts : result.kinds)
         for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k] += counts[k];
     print(to_text(kinds));
-    if (result.neighbours)
-        print(fmt::format("{} more among triangles that share a vertex\n", grouped(*result.neighbours)));
+    if (result.neighbours) print(fmt::format("{} more pairs that share a vertex\n", grouped(*result.neighbours)));
     if (result.degenerate.value_or(0) > 0) print(counted(*result.degenerate, "triangle") + " without area\n");
 }
 

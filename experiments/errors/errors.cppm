@@ -51,6 +51,8 @@ enum class pair_group : std::uint8_t { of_floats, of_doubles, of_meshes };
 /// False negatives + false positives of each method, one column per set of the group; scenes of meshes are numbered to
 /// keep the headers short.
 [[nodiscard]] table errors_by_set(std::span<const error_point> points, pair_group group);
+/// The scene of each numbered column, "scene 1: mesh_pair frames=2"; empty if the columns are not numbered.
+[[nodiscard]] std::vector<std::string> scenes_by_number(std::span<const error_point> points, pair_group group);
 
 /// Error over run time in all sets of a group, one curve per method over its parameter, on logarithmic axes. A line
 /// joins the Pareto front; methods without errors are drawn on the level 1/N.

@@ -352,6 +352,13 @@ table errors_by_set(std::span<const error_point> points, pair_group group) {
     return t;
 }
 
+std::vector<std::string> scenes_by_number(std::span<const error_point> points, pair_group group) {
+    if (group != pair_group::of_meshes) return {};
+    std::vector<std::string> scenes = sets_in(of_group(points, group));
+    for (std::string& scene : scenes) scene = fmt::format("scene {}: {}", &scene - scenes.data() + 1, scene);
+    return scenes;
+}
+
 figure group_figure(std::span<const error_point> points, pair_group group) {
     const std::vector<error_point> subset = of_group(points, group);
     return figure_of("errors_" + name_of(group), fmt::format("{} sets of {}", sets_in(subset).size(), title_of(group)),

@@ -18,8 +18,9 @@ void print_tables(std::span<const error_point> points) {
               "FP: false positives, share of disjoint pairs; fewest wrong first\n"
               "aabblab list triangle and list library_tests explain names and parameters\n\n" +
               to_text(error_summary(points, group), output_width()) + "\n");
-        print(fmt::format("By set of pairs: FN + FP, here both as shares of all pairs of the set\n\n{}\n",
-                          to_text(errors_by_set(points, group), output_width())));
+        print("By set of pairs: FN + FP, here both as shares of all pairs of the set\n");
+        for (const std::string& scene : scenes_by_number(points, group)) print(wrapped(scene) + "\n");
+        print("\n" + to_text(errors_by_set(points, group), output_width()) + "\n");
     }
 }
 
@@ -29,9 +30,9 @@ void print_tables(std::span<const hit_point> points) {
         const table shown = hit_summary(points, in_double);
         if (shown.rows.empty()) continue;
         print(
-            fmt::format("Intersections of triangles of {}s, compared with CGAL's exact construction:\n"
-                        "those whose kind or number of corners differs, the greatest ratio of an error\n"
-                        "to its bound, and the greatest error with its bound\n\n{}\n",
+            fmt::format("Intersections of triangles of {}s, compared with CGAL's exact construction\n"
+                        "differ: hits with another kind or number of corners; error/bound: the greatest\n"
+                        "ratio of an error to its bound; error, bound: the greatest error and its bound\n\n{}\n",
                         in_double ? "double" : "float", to_text(shown, output_width())));
     }
 }

@@ -120,7 +120,7 @@ TEST_CASE_METHOD(in_folder, "collide --self=all reports neighbours separately") 
     for (const std::string& row : lines_of(rows))
         if (row.ends_with(",0")) expected += row.substr(0, row.size() - 2) + "\n";
     REQUIRE(bytes_of_file(folder / "rest.csv") == expected);
-    REQUIRE(holds(run_program({"collide", mesh, "--self=all"}).out, "15 more among triangles that share a vertex"));
+    REQUIRE(holds(run_program({"collide", mesh, "--self=all"}).out, "15 more pairs that share a vertex"));
     // Earlier names.
     REQUIRE(json_of({"collide", mesh, "--self=together", "--json"})["neighbours"] == summary["neighbours"]);
     REQUIRE(json_of({"collide", mesh, "--self=apart", "--json"})["digest"] == excluded["digest"]);
