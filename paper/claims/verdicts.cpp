@@ -109,7 +109,7 @@ table brief_table(const reproduction& results) {
 
 /// What the paper leaves open: our choice, its reason, and a claim's ratio under each alternative.
 table choice_table(const reproduction& results) {
-    table t = empty_table({"left open", "our choice", "why", "claim", "its ratio", "changes it"});
+    table t = empty_table({"left open", "our choice", "why", "claim", "ratio with each choice", "changes outcome"});
     for (const open_choice& c : results.choices) {
         std::string ratios;
         for (const open_choice::alternative& a : c.alternatives)

@@ -96,7 +96,7 @@ report_section errors_section(const std::filesystem::path& folder, bool quick) {
     report_section section{
         .id = "errors",
         .title = "Error against run time",
-        .paragraphs = {"Beyond the paper: the errors of methods, and the time that these save. Every result is "
+        .paragraphs = {"Beyond the paper: the errors of methods, and the run time that they save. Every result is "
                        "compared with the ground truth; a method without errors is drawn at one wrong result."},
         .figures = {},
         .tables = {}};
@@ -201,8 +201,8 @@ std::vector<report_section> sections_of_reproduction(const std::filesystem::path
     if (report_section errors = errors_section(folder, quick); !errors.figures.empty())
         sections.push_back(std::move(errors));
     add_suite(sections, folder, "extreme", "Extreme scenes",
-              "Beyond the paper: whether every composition and engine is exact, rejects the input (refused) or is "
-              "wrong, in the scenes in which exactness is hardest.");
+              "Beyond the paper: the scenes in which exactness is hardest, where every composition and engine is "
+              "exact, rejects the input, or is wrong.");
     add_suite(sections, folder, "stiff", "Stiff scenes",
               "Beyond the paper: simulations of bodies with the forces of detected contacts, compared with closed "
               "forms and published results.");
