@@ -114,7 +114,7 @@ std::vector<section> sections() {
     list.push_back({"scenes", "", items_of(scene_kinds())});
     list.push_back({"shapes", ", in place of a mesh file", items_of(shapes())});
     list.push_back({"pairs", " of triangles, for errors", items_of(pair_classes())});
-    list.push_back({"recorded", ", for metrics of each", items_of(metric_groups)});
+    list.push_back({"recorded", ", groups of columns in results.csv", items_of(metric_groups)});
     list.push_back({"metrics", "", items_of(metrics())});
     return list;
 }

@@ -22,8 +22,9 @@ public:
         /// Edge of a cell in world units. auto: twice the mean longest extent, more if cells exceed four per object.
         std::optional<double> cell_size;
     };
-    static constexpr std::tuple parameters{number_parameter{
-        "cell_size", &config::cell_size, 0.0, std::numeric_limits<double>::max(), "edge of a cell, in world units"}};
+    static constexpr std::tuple parameters{
+        number_parameter{"cell_size", &config::cell_size, 0.0, std::numeric_limits<double>::max(),
+                         "edge of a cell, in world units; auto: twice the mean longest extent, or more"}};
 
     uniform_grid_partition() = default;
     explicit uniform_grid_partition(const config& c) : config_(c) {}

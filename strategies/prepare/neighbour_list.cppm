@@ -38,7 +38,8 @@ struct neighbour_list_prepare {
     static constexpr std::tuple parameters{
         number_parameter{
             "margin", &config::margin, 0.0, std::numeric_limits<double>::max(),
-            "the skin by which boxes are grown on every side, in typical extents; auto: the cheapest per list", true},
+            "the skin by which boxes are grown on every side, in typical extents; auto: the cheapest for each list",
+            true},
         integer_parameter{
             "every", &config::every, std::uint32_t{0}, std::uint32_t{1'000'000},
             "number of frames between searches, inexact above 1; 0: search when boxes have moved too far"}};
