@@ -70,7 +70,8 @@ void require_test_for_doubles(const document& doc, error_study& study) {
             else
                 float_tests += (float_tests.empty() ? "" : "; ") + to_text(choice);
     if (!float_tests.empty())
-        study.notes.push_back("triangle tests of floats only, not run on pairs of doubles: " + float_tests);
+        study.notes.push_back("these triangle tests take only floats, and do not run on pairs of doubles: " +
+                              float_tests);
     if (!has_test) doc.fail(doc.root().find("pairs")->line, "no curve has a test for triangles of doubles");
 }
 

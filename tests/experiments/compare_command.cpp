@@ -238,8 +238,8 @@ TEST_CASE_METHOD(in_folder, "compare lists changes beyond noise, or all ratios, 
     CHECK_FALSE(holds(full.out, "\nopen: "));
     const std::string noisy = write_results(folder / "noisy", rows_of({.noise = 0.3, .hour = 3}));
     CHECK(holds(run_program({"compare", a, noisy}).out,
-                " 2 undecided\nundecided: the interval extends beyond 5 %, or the change is significant only without "
-                "Holm's correction for all ratios; --all lists them\n"));
+                " 2 undecided\nundecided: the interval of B/A extends beyond a change of 5 %, or the change is "
+                "significant only without Holm's correction for all ratios; --all lists them\n"));
     const program_result unchanged = run_well({"compare", a, a});
     CHECK(holds(unchanged.out,
                 "\n2 ratios compared: 0 changed beyond noise, 2 unchanged (within 5 %), 0 undecided\n"

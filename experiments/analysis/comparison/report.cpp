@@ -107,8 +107,8 @@ void print_compared(const comparison& report, std::vector<compared_time> compare
     print("\n");
     if (undecided == 0) return;
     print(
-        fmt::format("undecided: the interval extends beyond {:.0f} %, or the change is significant only without "
-                    "Holm's correction for all {}{}\n",
+        fmt::format("undecided: the interval of B/A extends beyond a change of {:.0f} %, or the change is significant "
+                    "only without Holm's correction for all {}{}\n",
                     100 * equivalence_band, quantity, list_all ? "" : "; --all lists them"));
 }
 
