@@ -71,7 +71,8 @@ int run(const atlas_request& request) {
 
 void add_atlas(const command_parser& program) {
     const command_parser command = program.add_command(
-        "atlas", "Map the fastest composition or engine of each scene, and the slowdown of each if used everywhere");
+        "atlas",
+        "Map the fastest composition or engine of each scene, and the slowdown of each candidate if used everywhere");
     auto& request = command.set_action(run);
     command.flag("--quick", &request.quick, "Use small scenes and few repeats: a minute instead of half an hour");
     command.flag("--judge", &request.judge, "Measure nothing: draw the maps of existing results");

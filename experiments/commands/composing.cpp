@@ -41,7 +41,7 @@ void method_options::add_to(const command_parser& command, const std::string& re
                                        fmt::join(names, ", "), default_text(kind)));
         }
     command.option("--engine E", &engine_, "Engine such as cgal instead of " + replaced);
-    command.footer("aabblab list shows every strategy with its parameters.");
+    command.footer("aabblab list shows every strategy with its parameters, and every engine.");
 }
 
 /// Returns what the options say to search with: a strategy per kind, or an engine, which replaces the last stage and so
