@@ -18,7 +18,7 @@ namespace {
 
 /// The ranking of the finalists. If the output is too narrow, columns with the greatest `spare` are left out first.
 table table_of(const race_result& race) {
-    table t{{{row_number}, {"finalist", /*is_number=*/false}, {"all ms"}, {"ratio"}, {"95 %"}, {"ms/frame"}}, {}};
+    table t{{{row_number}, {"candidate", /*is_number=*/false}, {"all ms"}, {"ratio"}, {"95 %"}, {"ms/frame"}}, {}};
     t.columns.push_back({.name = "first ms", .spare = 1});
     t.columns.push_back({.name = "build ms", .spare = 2});
     t.columns.push_back({"KiB"});
