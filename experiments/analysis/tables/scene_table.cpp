@@ -139,26 +139,25 @@ std::string stopped_line(const scene_summary& scene) {
 std::string baseline_of(const scene_summary& scene) {
     const std::string& label = scene.candidates[0].label;
     return label == "none" ? std::string(name_of(scene.differing.front())) + " none" : label;
+}
 
-    /// How to read the order of the rows, the columns of the table, and missing intervals.
-    std::string explanation_of_columns(const scene_summary& scene) {
-        std::string text;
-        const bool inexact = std::ranges::any_of(scene.candidates, [](const auto& c) { return c.status != "exact"; });
-        if (scene.candidates.size() > 1 && any_has(scene, &candidate_summary::ratio))
-            text +=
-                std::string("in ascending order of ratio") +
+/// How to read the order of the rows, the columns of the table, and missing intervals.
+std::string explanation_of_columns(const scene_summary& scene) {
+    std::string text;
+    const bool inexact = std::ranges::any_of(scene.candidates, [](const auto& c) { return c.status != "exact"; });
+    if (scene.candidates.size() > 1 && any_has(scene, &candidate_summary::ratio))
+        text += std::string("in ascending order of ratio") +
                 (inexact ? ", exact results before inexact ones\n" : "\n") +
                 "ratio: ms/frame relative to the baseline in the same repeat, the median over\nrepeats, with its 95 % "
                 "confidence interval\nbaseline: " +
                 baseline_of(scene) + "\n";
-        if (any_has(scene, &candidate_summary::ms_per_frame))
-            text += "ms/frame: the mean wall time per frame after frame 0, the median over repeats\n";
-        if (any_has(scene, &candidate_summary::bytes)) text += "KiB: memory after the last frame, without meshes\n";
-        if (std::ranges::any_of(scene.candidates,
-                                [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
-            text += "95 %: - if repeats, seeds or processes are too few (below two for the baseline)\n";
-        return text;
-    }
+    if (any_has(scene, &candidate_summary::ms_per_frame))
+        text += "ms/frame: the mean wall time per frame after frame 0, the median over repeats\n";
+    if (any_has(scene, &candidate_summary::bytes)) text += "KiB: memory after the last frame, without meshes\n";
+    if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
+        text += "95 %: - if repeats, seeds or processes are too few (below two for the baseline)\n";
+    return text;
+}
 
 }  // namespace
 
