@@ -63,14 +63,11 @@ private:
 /// Filtered predicates, as `orientations`, for corners in world coordinates: computed in double, relative to the
 /// translation of the first pose, and in integers if the result lies within its error.
 ///
-/// Error of a coordinate: three products, three sums and the rounded difference of the translations have at most five
-/// roundings of a term, below 6 u of the sum of their magnitudes, u = 2^-53; the sum itself is rounded as often. So 8 u
-/// of the computed sum bounds it, plus 2^-1070 for underflow. After an overflow the bound is infinite or NaN.
-///
-/// Error of a determinant: with D the extent on an axis plus twice the error b of a coordinate, every difference, true
-/// or computed, is at most D. Replacing the true differences by those of the computed coordinates changes six products
-/// of three by at most 6 (2 b D D) per axis; rounding adds what `orientations` derives, with D for E. Likewise a turn
-/// changes by at most 2 (2 b D) per axis. The sums of these bounds are rounded as well: 13 and 5 in place of 12 and 4.
+/// Error of a coordinate: three products, three sums and the rounded difference of the translations round any term at
+/// most four times. So 4 u of the sum of the terms' magnitudes bounds it, u = 2^-53, and a quarter of a u more covers
+/// the rounding of this sum and of the bounds made of it; 2^-1070 covers underflow. After an overflow the bound is
+/// infinite or NaN. The difference of two coordinates is off by twice that, and its own rounding keeps the sign. The
+/// bounds of determinants are those of `determinant_errors`.
 class posed_orientations {
 public:
     /// @param s,t vertices of a mesh at `poses.a` and of one at `poses.b`, all of which outlive this object
@@ -96,10 +93,11 @@ public:
         for (int k = 0; k < 3; ++k) {
             const int x = (k + 1) % 3, y = (k + 2) % 3;
             error_[k] = error[k];
-            side_error_ += 13 * error[k] * d[x] * d[y];
-            turn_error_[k] = 5 * (error[x] * d[y] + error[y] * d[x]) + 10 * unit * d[x] * d[y];
+            side_error_ += determinant_errors::displacement_of_side * error[k] * d[x] * d[y];
+            turn_error_[k] = determinant_errors::displacement_of_turn * (error[x] * d[y] + error[y] * d[x]) +
+                             determinant_errors::rounding_of_turn * unit * d[x] * d[y];
         }
-        side_error_ += 52 * unit * d[0] * d[1] * d[2];
+        side_error_ += determinant_errors::rounding_of_side * unit * d[0] * d[1] * d[2];
     }
 
     /// The triangles in world coordinates, rounded; predicates take references to their corners.
@@ -121,9 +119,8 @@ public:
         for (int k = 0; k < 3; ++k) {
             const auto [s_low, s_high] = std::minmax({s_[0][k], s_[1][k], s_[2][k]});
             const auto [t_low, t_high] = std::minmax({t_[0][k], t_[1][k], t_[2][k]});
-            // The difference is rounded as well.
             const double gap = std::max(t_low - s_high, s_low - t_high);
-            apart |= gap > 3 * error_[k];
+            apart |= gap > 2 * error_[k];
         }
         return apart;
     }
@@ -171,7 +168,7 @@ public:
 
     /// The sign of a - b on an axis.
     [[nodiscard]] int order(const vec3d& a, const vec3d& b, int axis) noexcept {
-        const int sign = sign_beyond(a[axis] - b[axis], 3 * error_[axis]);
+        const int sign = sign_beyond(a[axis] - b[axis], 2 * error_[axis]);
         return sign != 0 ? sign : exact().order(index_of(a), index_of(b), axis);
     }
 
@@ -206,7 +203,7 @@ private:
             const lanes<double> x = columns[0] * v[0], y = columns[1] * v[1], z = columns[2] * v[2];
             const lanes<double> world = x + y + z + translation;
             const auto size = [](const lanes<double>& term) { return __builtin_elementwise_abs(term); };
-            const lanes<double> bound = 8 * unit * (size(x) + size(y) + size(z) + size(translation)) + 0x1p-1070;
+            const lanes<double> bound = 4.25 * unit * (size(x) + size(y) + size(z) + size(translation)) + 0x1p-1070;
             error = bound <= error ? error : bound;
             return {world[0], world[1], world[2]};
         }

@@ -55,24 +55,34 @@ struct scaled_double {
 [[nodiscard]] scaled_double exact_volume(const vec3d& a, const vec3d& b, const vec3d& c, const vec3d& d) noexcept;
 [[nodiscard]] scaled_double exact_area(const vec3d& a, const vec3d& b, const vec3d& c, int axis) noexcept;
 
+/// Error bounds of the determinants of `exact_side` and `exact_turn` computed in rounded arithmetic, as factors of the
+/// extents E of the points' box on the axes and of the unit roundoff u. Only an error that gives a wrong sign matters.
+///
+/// A turn is p_x q_y - p_y q_x for two differences p, q of points. Four differences, off by u E at most, change it by
+/// u E E each, as the two rounded products do. The last subtraction keeps the sign: 6 u E E in all.
+///
+/// A side is n · r for n = p × q and a third difference r. A difference is multiplied by twice the area of a projected
+/// triangle of points, at most E E: nine differences change the side by u E E E each. So does each product and
+/// difference in n, of which there are nine, and each product with r. With a wrong sign the side itself is within the
+/// error, so that the first two products add up to the third, negated: their sum rounds by u E E E, and the last sum
+/// keeps the sign: 22 u E E E in all. Half a u more covers terms of second order and the rounding of E and the bounds.
+///
+/// If coordinates are off by at most b, E is the extent plus 2 b. Both determinants are linear in the coordinates on
+/// one axis. A side changes by at most b times the sum, over four points, of twice the projected area of the triangle
+/// of the others: 4 b E E for each axis. A turn changes by b times the edges' lengths along the other axis: 2 b E.
+namespace determinant_errors {
+inline constexpr double rounding_of_turn = 6.5, rounding_of_side = 22.5;
+inline constexpr double displacement_of_turn = 2, displacement_of_side = 4;
+}  // namespace determinant_errors
+
 /// Filtered predicates for the corners of two triangles: computed in double, and exactly only if the result lies within
 /// its rounding error. The error bound is one number for all corners (a semi-static filter, Meyer and Pion, "FPG: a
 /// code generator for fast and certified geometric predicates", 2008).
 ///
-/// Bounds, with u = 2^-53 and E the extent of the corners' box on an axis. A difference of coordinates is at most E and
-/// has one rounding, a factor (1 + δ) with |δ| <= u, even if the coordinates were floats.
-/// - Turn, two terms: each has the roundings of two differences, a product and the last subtraction. The error is at
-///   most 2 ((1 + u)^4 - 1) E E, below 8.1 u E E.
-/// - Side, six terms: four roundings as above; one for the third difference, one for the product with it, at most two
-///   for the sum of three: 6 ((1 + u)^8 - 1) E E E, below 48.1 u E E E.
-/// E itself and the products of the bound are rounded at most six times: less than 0.9 u more. Extents between 2^-200
-/// and 2^200 cannot overflow, and the contribution of underflow, less than 2^-870, is far below u E E E >= 2^-653: one
-/// more u. Other extents make the bound infinite or NaN, so that everything is computed exactly; floats never have such
-/// extents. An extent of zero makes the bound zero, and the computed zero is exact.
-///
-/// If the coordinates themselves are known up to an error b on each axis, E is the extent of the box plus 2 b; a true
-/// difference and a computed one differ by at most 2 b, so that a turn may be off by 2 (2 b E) per axis more, and a
-/// side by 6 (2 b E E). Signs that this leaves uncertain stay undecided: 0, and `unsure`.
+/// The bounds are those of `determinant_errors`. Extents between 2^-200 and 2^200 cannot overflow, and the contribution
+/// of underflow, less than 2^-870, is far below u E E E >= 2^-653. Other extents make the bound infinite or NaN, so
+/// that everything is computed exactly; floats never have such extents. An extent of zero makes the bound zero, and the
+/// computed zero is exact.
 ///
 /// If the filter fails, all coordinates may lie on a lattice: multiples of a unit on their axis such that E is less
 /// than 2^16 units. Then differences are integers below 2^16, components of the normal below 2^33, and the sums of a
@@ -92,14 +102,13 @@ public:
         // Beyond that range the bounds become infinite, so that everything is computed exactly.
         const lanes<double> extent = in_range ? width : lanes<double>{} + std::numeric_limits<double>::infinity();
         extent_ = {extent[0], extent[1], extent[2]};
-        // In units of u E E E: 48.1 for the terms, 0.9 for rounding E and this product, and 1 for underflow.
-        side_error_ = 50 * unit * extent[0] * extent[1] * extent[2];
+        side_error_ = determinant_errors::rounding_of_side * unit * extent[0] * extent[1] * extent[2];
         if constexpr (!IsExact)
             for (int k = 0; k < 3; ++k) {
                 const int x = (k + 1) % 3, y = (k + 2) % 3;
-                // Rounding of these sums is covered by 13 in place of 12, and 5 in place of 4.
-                side_error_ += 13 * error[k] * extent[x] * extent[y];
-                turn_error_of_coordinates_[k] = 5 * (error[x] * extent[y] + error[y] * extent[x]);
+                side_error_ += determinant_errors::displacement_of_side * error[k] * extent[x] * extent[y];
+                displacement_of_turn_[k] =
+                    determinant_errors::displacement_of_turn * (error[x] * extent[y] + error[y] * extent[x]);
             }
     }
 
@@ -219,8 +228,9 @@ private:
     }
 
     [[nodiscard]] inline double turn_error(int x, int y) const noexcept {
-        if constexpr (!IsExact) return turn_error_of_coordinates_[3 - x - y] + 10 * unit * extent_[x] * extent_[y];
-        return is_lattice_ ? 0 : 10 * unit * extent_[x] * extent_[y];
+        const double rounding = determinant_errors::rounding_of_turn * unit * extent_[x] * extent_[y];
+        if constexpr (!IsExact) return displacement_of_turn_[3 - x - y] + rounding;
+        return is_lattice_ ? 0 : rounding;
     }
 
     /// Evaluated lazily if the filter fails, and only once.
@@ -238,8 +248,8 @@ private:
     double side_error_;
     bool is_lattice_known_ = false;
     bool is_lattice_ = false;
-    bool unsure_ = false;                // only for coordinates with errors, as is the next
-    vec3d turn_error_of_coordinates_{};  // by the axis of projection
+    bool unsure_ = false;           // only for coordinates with errors, as is the next
+    vec3d displacement_of_turn_{};  // by the axis of projection
 };
 
 using orientations = filtered_orientations<true>;

@@ -67,7 +67,7 @@ struct vertex_frame {
             for (int k = 0; k < 3; ++k) {
                 double error = std::abs(f[k] - rounded[k]);
                 // The difference from the origin is rounded, too, and a quotient by a scale above 1 may underflow.
-                if (frame.origin[k] != 0) error += std::abs(f[k]) * 0x1p-52;
+                error += rounding_of_difference(v[k], frame.origin[k]) / frame.scale;
                 if (frame.scale > 1) error += std::numeric_limits<double>::denorm_min();
                 if (error > 0)
                     frame.rounding[k] = std::max(frame.rounding[k], static_cast<float>(error * (1 + 0x1p-20)) +
@@ -78,6 +78,13 @@ struct vertex_frame {
     }
 
 private:
+    /// The exact error of a - b in magnitude, unless that overflows (Knuth, "The art of computer programming", 4.2.2).
+    [[nodiscard]] static double rounding_of_difference(double a, double b) noexcept {
+        const double difference = a - b;
+        const double of_b = a - difference;
+        return std::abs((a - (difference + of_b)) + (of_b - b));
+    }
+
     [[nodiscard]] vec3d unrounded(const vec3d& vertex) const noexcept {
         return {(vertex[0] - origin[0]) / scale, (vertex[1] - origin[1]) / scale, (vertex[2] - origin[2]) / scale};
     }

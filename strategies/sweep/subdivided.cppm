@@ -137,7 +137,8 @@ private:
     }
 
     /// Updates lists and pairs to the frame: moves objects into and out of the lists of regions, then sorts those of
-    /// all regions with moved objects (`touched_`). Stops early when `spend` has taken the last step.
+    /// all regions with moved objects (`touched_`). Stops early when `spend` has taken the last of as many steps as a
+    /// restart takes; the caller then restarts, which discards the unfinished lists.
     template <class Sort, CounterPolicy Counters>
     void update_lists(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         moved_.assign(boxes.size(), 0);

@@ -82,7 +82,8 @@ private:
         for (const vec3d* v : {&p, &q, &r, &w})
             for (int k = 0; k < 3; ++k) extent = std::max(extent, std::abs((*v)[k]));
         if (!(extent >= 0x1p-200 && extent <= 0x1p200)) return false;
-        // The bound of `orientations` for a volume, 50 u E³, for such extents.
+        // Six products of three differences, each at most E and rounded at most eight times: 6 ((1 + u)^8 - 1) E³ is
+        // below 48.1 u E³. The rest covers the rounding of this product, and underflow.
         const double error = 50 * (std::numeric_limits<double>::epsilon() / 2) * extent * extent * extent;
         const auto are_on_one_side = [&](const vec3d& normal, const vec3d& a, const vec3d& b) {
             const double of_a = dot(normal, a), of_b = dot(normal, b);

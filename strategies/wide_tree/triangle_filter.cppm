@@ -1,5 +1,6 @@
 export module aabb.wide_tree.triangle_filter;
 
+import aabb.geometry;
 import aabb.simd;
 import aabb.std;
 
@@ -17,11 +18,9 @@ struct filtered_pairs {
 /// signs rounding could change. The signs of eight orientations decide (Devillers and Guigue, "Faster triangle-triangle
 /// intersection tests", INRIA RR-4488, 2002). Triangles with a common corner are hits.
 ///
-/// For coordinates that differ by at most X, Y and Z, the error of a determinant is 46 u XYZ to first order, u = 2^-24:
-/// three differences, six products and their sums are rounded. Underflow adds at most 20 times 2^-150 of a factor X, Y,
-/// Z or 1. If corners of B are off by at most e, f and g along the axes, differences change by twice that, and six
-/// products of three by at most 12 (e YZ + f XZ + g XY), with 2 e, 2 f and 2 g added to X, Y and Z. After an overflow
-/// all comparisons are false, so that the pair stays undecided.
+/// The error of a determinant is that of `determinant_errors`, with u = 2^-24 and the extents X, Y and Z. Underflow
+/// adds at most 20 times 2^-150 of a factor X, Y, Z or 1. After an overflow all comparisons are false, so that the pair
+/// stays undecided.
 class triangle_filter {
 public:
     /// Decides pairs by the signs of eight orientations: the corners of each triangle against the plane of the other,
@@ -37,9 +36,9 @@ public:
         const simd::floats x = extent_of(s, t, 0) + 2 * e;
         const simd::floats y = extent_of(s, t, 1) + 2 * f;
         const simd::floats z = extent_of(s, t, 2) + 2 * g;
-        // The error of a determinant of differences is at most 46 u XYZ, u = 2^-24, which 2^-18 XYZ exceeds; the second
-        // term bounds what errors of B's corners add, and the last one what underflow adds.
-        const error_bound error(0x1p-18F * (x * y * z) + 12.5F * (e * (y * z) + f * (x * z) + g * (x * y)) +
+        constexpr auto rounding = static_cast<float>(determinant_errors::rounding_of_side * 0x1p-24);
+        constexpr auto displacement = static_cast<float>(determinant_errors::displacement_of_side);
+        const error_bound error(rounding * (x * y * z) + displacement * (e * (y * z) + f * (x * z) + g * (x * y)) +
                                 0x1p-140F * (x + y + z + 1));
 
         const point s_normal = cross(s[1] - s[0], s[2] - s[0]);
