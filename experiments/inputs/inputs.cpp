@@ -186,7 +186,9 @@ bool is_config_name(const std::string& argument) {
     return argument.ends_with(".toml");
 }
 
-/// The scene of a command without a config: a recording, one or two meshes, or a motion file and its meshes.
+/// The scene of a command without a config: a recording, one or two meshes, or a motion file and its meshes. Notes what
+/// readers of mesh files leave out of them. A name that is no file is taken for a mesh, whose reader reports it. Meshes
+/// keep their size, and two meshes move as with seed 1.
 scene_choice scene_of_arguments(const std::vector<std::string>& arguments) {
     const std::string& first = arguments.front();
     if (is_config_name(first))

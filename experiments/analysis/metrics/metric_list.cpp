@@ -208,8 +208,8 @@ row_value bytes_of(std::vector<std::string> parts) {
     };
 }
 
-/// The function that sums these metrics of a row; empty if the row lacks the first one. Others that it lacks are not
-/// added.
+/// The function that sums these metrics, at least one, of a row. Returns nothing if the row lacks the first one, which
+/// every measured row has; the others count as 0 where a method has no such part.
 row_value sum_of(const std::vector<std::string>& names) {
     std::vector<row_value> parts;
     for (const std::string& name : names) parts.push_back(measured(name));

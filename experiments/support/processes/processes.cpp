@@ -183,10 +183,10 @@ std::string read_all(int input, const std::optional<clock::time_point>& end = {}
     }
 }
 
-/// Waits until a child process ends, or until that time, and returns whether it has ended.
+/// Waits until a child process ends, or until that time.
+/// @returns whether it may be waited for without a limit: it has ended, or has no handle by which to observe its end
 bool ends_before(pid_t child, clock::time_point end) {
     const int handle = pidfd_open(child, 0);
-    // Without a handle the end cannot be observed.
     if (handle < 0) return true;
     const bool ended = becomes_readable(handle, end);
     close(handle);
