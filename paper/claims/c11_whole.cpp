@@ -45,6 +45,7 @@ draft c11_claim(const measurements& m) {
         .claim = {.claim = "Both phases improved take less time than both traditional ones on the same models",
                   .measured = "time per frame of both phases, shell + axial_cut + compressed over insertion + none + "
                               "canonical",
+                  .lead = "Improved in both phases, compared with traditional in both",
                   .experiments = {"c11"}},
         .primary = {large_crowd, far_apart}};
     claim_result& claim = c11.claim;

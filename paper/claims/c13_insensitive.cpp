@@ -42,9 +42,10 @@ draft c13_claim(const measurements& m) {
                     {{"quantity", "time"}, {"density", "0.1"}, {"over", "density 0.01"}},
                     {{"quantity", "time"}, {"ratio", "10"}, {"over", "ratio 1.01"}}}};
     const std::array<std::string, 3> varied[] = {
-        {"smb_objects", "objects", "with up to 100 times as many boxes, in a world that grows with them"},
-        {"smb_density", "density", "at up to ten times the density"},
-        {"smb_sizes", "ratio", "with sizes over a range of up to ten times"}};
+        {"smb_objects", "objects",
+         "with up to 100,000 boxes compared with 1,000, in a world that grows with their number"},
+        {"smb_density", "density", "at a volume fraction of up to 0.1 compared with 0.01"},
+        {"smb_sizes", "ratio", "at an edge ratio (longest over shortest edge) of up to 10 compared with 1.01"}};
     for (const auto& [experiment, factor, subject] : varied) {
         const std::vector<condition>& conditions = m.conditions_of(experiment);
         const auto least =

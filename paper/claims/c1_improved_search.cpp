@@ -13,14 +13,17 @@ const std::vector<method> methods{{"insertion sort (traditional)", traditional},
                                   {"Shell sort, axial cut (improved)", improved},
                                   {"insertion sort, incremental", incremental}};
 
-/// The phrase by which the sentence on claim C1 names a scene other than the drifting one.
+/// The phrase by which the sentence on claim C1 names a scene other than the drifting one, with its displacement if
+/// boxes drift.
 std::string subject_of(const condition& c) {
     const std::string scene = value_of(c.scene(), "scene");
-    return scene == "clustered"     ? "in clusters"
-           : scene == "mixed_sizes" ? "on boxes of mixed sizes"
-           : scene == "one_huge"    ? "beside one huge box"
-           : scene == "still"       ? "where nothing moves"
-                                    : "where every box jumps";
+    if (scene == "still") return "where nothing moves";
+    if (scene == "teleport") return "where every box jumps";
+    const std::string place = scene == "clustered"     ? "in clusters"
+                              : scene == "mixed_sizes" ? "on boxes of mixed sizes"
+                                                       : "beside one huge box";
+    const bool is_in_spacings = value_of(c.scene(), "unit") == "spacing";
+    return place + " at 0.1 mean " + (is_in_spacings ? "spacings" : "extents") + " per frame";
 }
 
 }  // namespace
@@ -44,10 +47,9 @@ draft c1_claim(const measurements& m) {
     const std::vector<const condition*> of_all_sizes =
         matching(conditions, {{"scene", "brownian"}, {"displacement", "0.1"}});
     const std::vector<const condition*> large = matching(conditions, {{"scene", "brownian"}, {"objects", "10000"}});
-    for (const condition* c : of_all_sizes) add(*c, "on drifting boxes", "objects");
+    for (const condition* c : of_all_sizes) add(*c, "on drifting boxes at 0.1 mean extents per frame", "objects");
     for (const condition* c : large)
-        if (!matches(c->scene(), drifting))
-            add(*c, "on 10,000 drifting boxes at displacements other than 0.1", "displacement");
+        if (!matches(c->scene(), drifting)) add(*c, "on 10,000 drifting boxes at other displacements", "displacement");
     // Both compositions with the paper's three lists, each sorted and swept.
     for (const condition& c : m.conditions_of("three_lists"))
         c1.add(endpoint_of(c, improved.with(kind::sweep, "all_axes"), traditional.with(kind::sweep, "all_axes"),

@@ -79,7 +79,7 @@ table automatic_table(const std::vector<condition>& conditions) {
 /// "the limit": the most segments with at most one cut per box. A request for more yields the limit.
 draft c4_claim(const measurements& m) {
     draft c4{
-        .claim = {.claim = "More segments are faster until one lies inside a box; tiny segments are not needed",
+        .claim = {.claim = "More segments are faster until a box spans one; tiny segments are not needed",
                   .measured = "time per frame at the limit of one cut per box over that with eight segments per axis; "
                               "with each number of segments over that with the next smaller one, up to the limit; and "
                               "with the automatic number over that at the limit",
@@ -107,7 +107,7 @@ draft c4_claim(const measurements& m) {
         return std::string(is_brownian(c) ? "drifting boxes" : "clusters");
     };
     for_each_cut([&](const condition& c, int axes) {
-        const std::string gloss = is_brownian(c) ? " (the most segments of which none lies inside a box)" : "";
+        const std::string gloss = is_brownian(c) ? " (the most segments such that no box spans one)" : "";
         c4.add(ratio(c, axes, limit, {"8", "8"}),
                boxes_of(c) + " at the limit" + gloss + ", compared with eight segments per axis", "axes");
     });

@@ -117,7 +117,7 @@ draft c6_claim(const measurements& m) {
                   .measured = "time of a triangle-box test over that of a box test, which encloses the transformed box "
                               "by an axis-aligned one, or tests it as an oriented box on six or all fifteen axes; in "
                               "whole queries, of leafless over canonical",
-                  .lead = "Testing a leaf's triangle",
+                  .lead = "Testing a leaf's triangle, with its transformation into the other mesh's frame",
                   .experiments = {"figure2"}},
         .primary = {{{"leaf_test", "triangle_box"}, {"over", "box"}, {"leaf of", b_in_frame_of_a}},
                     {{"leaf_test", "triangle_box"}, {"over", "rotated_box_6"}},
@@ -135,15 +135,19 @@ draft c6_claim(const measurements& m) {
                 .subject = subject,
                 .source = "c6: test/" + test + frame + " over test/" + over + frame});
     };
-    add_test("triangle_box", "box", "compared with its transformed axis-aligned box");
+    add_test("triangle_box", "box", "compared with the AABB of its transformed box");
     add_test("triangle_box", "rotated_box_6", "compared with an oriented box on six axes");
     add_test("triangle_box", "rotated_box_15", "compared with an oriented box on all fifteen axes");
-    add_test("triangle_box_moller", "box", "with M\u00f6ller's original test, compared with a transformed box");
+    add_test("triangle_box_moller", "box",
+             "with M\u00f6ller's original test, compared with the AABB of the transformed box");
     add_test("triangle_box_moller", "rotated_box_15",
              "with M\u00f6ller's original test, compared with an oriented box on fifteen axes");
-    add_test("triangle_aabb", "box", "computing its box and testing that, compared with a transformed box");
-    add_test("triangle_box", "box", "untransformed, compared with its stored box", std::string(frame_a_suffix));
-    add_test("triangle_aabb", "box", "computing its box and testing that, untransformed, compared with the stored one",
+    add_test("triangle_aabb", "box",
+             "testing the AABB of the transformed triangle, compared with that of the transformed box");
+    add_test("triangle_box", "box", "testing the triangle without a transformation, compared with its stored box",
+             std::string(frame_a_suffix));
+    add_test("triangle_aabb", "box",
+             "testing the AABB of the triangle without a transformation, compared with its stored box",
              std::string(frame_a_suffix));
     const std::pair<std::string, const char*> queries[] = {
         {"triangle_box", "whole queries that test a leaf's triangle, compared with those that test its stored box"},

@@ -14,7 +14,7 @@ constexpr double equality_threshold = 1.1;
 
 /// In the order of `quantity`; empty where labels name the quantity.
 std::string noun_of(quantity compared) {
-    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "ratio of the grid's time to the cut's"};
+    constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "time relative to the cut's"};
     return nouns[static_cast<std::size_t>(compared)];
 }
 
@@ -98,10 +98,10 @@ std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
     if (factor == "axes") return " on " + values + (values == "1" ? " axis" : " axes");
     if (factor == "inversions") return " at " + values + " inversions per element";
     if (factor == "displacement") return " at " + values + " mean extent" + (values == "1" ? "" : "s") + " per frame";
-    return " at a " +
-           (factor == "ratio"     ? "size ratio"
-            : factor == "density" ? "volume fraction"
-                                  : factor) +
+    return " at " +
+           (factor == "ratio"     ? "an edge ratio"
+            : factor == "density" ? "a volume fraction"
+                                  : "a " + factor) +
            " of " + values;
 }
 
@@ -171,6 +171,13 @@ std::string classic_sweep_text(std::span<const claim_result> claims) {
     return "";
 }
 
+/// What "undecided" means, to follow a sentence that has this word; otherwise empty.
+std::string meaning_of_undecided_in(const std::string& sentence) {
+    return sentence.find("undecided") == std::string::npos
+               ? ""
+               : " Undecided: the measurements do not show which is faster.";
+}
+
 /// The clause that reports a claim's first primary endpoint, for the headline.
 clause first_clause(std::span<const claim_result> claims, const std::string& id) {
     const claim_result* claim = claim_named(claims, id);
@@ -228,23 +235,25 @@ std::string sentence_of(std::span<const endpoint> endpoints, const std::string& 
     return text + ".";
 }
 
-/// A summary in three sentences: broad phase, narrow phase, number of verdicts of each kind.
+/// A summary of three parts: broad phase, narrow phase, number of verdicts of each kind.
 std::vector<std::string> headline_of(std::span<const claim_result> claims) {
     const auto count = [&](verdict_kind v) { return std::ranges::count(claims, v, &claim_result::verdict); };
-    return {
-        clause_text("The improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion "
-                    "sort, no cut)",
-                    first_clause(claims, "C1")) +
-            classic_sweep_text(claims) + ".",
-        clause_text("The compressed tree of the narrow phase, compared with the canonical one",
-                    first_clause(claims, "C7a")) +
-            clause_text("; its queries", first_clause(claims, "C7b")) + ".",
-        counts_text(fmt::format("Of {} claims", claims.size()),
-                    {{count(verdict_kind::holds), "holds", "hold"},
-                     {count(verdict_kind::in_part), "holds in part", "hold in part"},
-                     {count(verdict_kind::does_not_hold), "does not hold", "do not hold"},
-                     {count(verdict_kind::no_difference), "shows no difference", "show no difference"},
-                     {count(verdict_kind::undecided), "is undecided", "are undecided"}})};
+    const std::string broad_phase =
+        clause_text(
+            "The improved broad phase (Shell sort, axial cut), compared with the traditional one (insertion "
+            "sort, no cut)",
+            first_clause(claims, "C1")) +
+        classic_sweep_text(claims) + ".";
+    return {broad_phase + meaning_of_undecided_in(broad_phase),
+            clause_text("The compressed tree of the narrow phase, compared with the canonical one",
+                        first_clause(claims, "C7a")) +
+                clause_text("; its queries", first_clause(claims, "C7b")) + ".",
+            counts_text(fmt::format("Of {} claims", claims.size()),
+                        {{count(verdict_kind::holds), "holds", "hold"},
+                         {count(verdict_kind::in_part), "holds in part", "hold in part"},
+                         {count(verdict_kind::does_not_hold), "does not hold", "do not hold"},
+                         {count(verdict_kind::no_difference), "shows no difference", "show no difference"},
+                         {count(verdict_kind::undecided), "is undecided", "are undecided"}})};
 }
 
 }  // namespace aabblab

@@ -259,10 +259,11 @@ page report_of(const reproduction& reproduced, std::span<const report_section> s
         fmt::format(
             "\"Research on Collision Detection Algorithm Based on AABB\": its table, its figures and {} claims. C13 "
             "was made for the method that the paper builds on (Li, Feng and Owen, \"SMB: collision detection based "
-            "on temporal coherence\", 2006). Only primary ratios, listed below each claim, decide verdicts. Broad "
-            "phase means the paper's global search, narrow phase its local detection; the scene brownian has drifting "
-            "cubes; extents are edges of boxes. {}, {} size. Commit {}, {}, {}. {} rows of {} scenes, each with up to "
-            "{} seeds; per composition and seed up to {} repeats in {} processes.",
+            "on temporal coherence\", 2006). Only the primary ratios of a claim, those before \"Secondary\" in its "
+            "text, decide its verdict. Broad phase means the paper's global search, narrow phase its local detection; "
+            "the scene brownian has drifting cubes; extents are edges of boxes. {}, {} size. Commit {}, {}, {}. {} "
+            "rows of {} scenes, each with up to {} seeds; per composition and seed up to {} repeats in all, over {} "
+            "processes.",
             reproduced.claims.size(), origin.date, origin.size, origin.commit, origin.compiler, origin.cpu,
             grouped(origin.rows), origin.scenes, origin.seeds, origin.repeats, origin.processes),
         "soft");

@@ -257,7 +257,8 @@ TEST_CASE("A claim that holds from some size on states this size") {
     INFO(c1.sentence);
     CHECK(text_of(c1.verdict) == "holds");
     CHECK(c1.sentence.starts_with(
-        "On drifting boxes: 2.0 times as long with 100 objects, 10 times as fast with 1,000 or more objects"));
+        "On drifting boxes at 0.1 mean extents per frame: 2.0 times as long with 100 objects, 10 times as fast with "
+        "1,000 or more objects"));
 }
 
 TEST_CASE("A claim that compares a wrong composition is undecided") {
@@ -321,7 +322,7 @@ TEST_CASE("The whole algorithm is also judged where global search matters") {
     });
     const claim_result& c11 = named(results, "C11");
     CHECK(text_of(c11.verdict) == "holds in part");
-    CHECK(holds(c11.sentence, "Where detailed models touch: 1.20 times as long"));
+    CHECK(holds(c11.sentence, "where detailed models touch: 1.20 times as long"));
     CHECK(holds(c11.sentence, "with simple models far apart: 1.30 times as fast"));
     CHECK(c11.sentence.ends_with("% with 100,000 simple ones far apart."));
     CHECK(c11.tables.back().content.rows.front().back() == "2.00");
