@@ -19,7 +19,8 @@ namespace {
 std::string text_of(std::string_view stage, const std::string& strategies, const std::vector<aabb::part_bytes>& parts) {
     std::string text = fmt::format("    {}{}{}\n", stage, strategies.empty() ? "" : ": ", strategies);
     for (const aabb::part_bytes& part : parts)
-        text += fmt::format("      {:<16}{:>14} bytes\n", part.part == "projections" ? "lists, presence" : part.part,
+        text += fmt::format("      {:<34}{:>14} bytes\n",
+                            part.part == "projections" ? "present objects, sorted intervals" : part.part,
                             grouped(part.bytes));
     return text;
 }
@@ -62,7 +63,7 @@ std::string explanation_of(scene_frames& scene, const candidate& tested) {
         text += text_of("narrow phase", text_of(name, aabb::stage::local_detection), runner.local_bytes());
     std::vector<std::string> planned;
     for (const aabb::stage_plan& plan : runner.plans()) planned.push_back(to_text(plan.decision));
-    text += indented_list("state kept from earlier frames", planned);
+    text += indented_list("plans for the next frames", planned);
     std::vector<std::string> left_out;
     for (const aabb::omission& absent : omissions_of(name, runner.left_out())) left_out.push_back(to_text(absent));
     return text + indented_list("left out", left_out);

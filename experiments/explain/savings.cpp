@@ -105,9 +105,13 @@ void print_omissions(std::span<const variant> variants) {
                          fmt::format("{:.5f}{}", median_ms(fastest->times) - median_ms(times), undecided ? "?" : ""),
                          difference_text(fastest->times.back().bytes, times.back().bytes)};
     }
-    print("time per frame and bytes saved by what is left out, compared with the fastest\nvariant that keeps it\n");
+    print(
+        "time per frame and bytes saved by what is left out, compared with the fastest\nvariant that uses it; variants "
+        "with parameters ran for this table only\n");
     print_wrapped_table(t, 0);
-    print(wrapped("-: no variant that ran has it. Below 0: the variant takes less. ?: undecided, as above.") + "\n");
+    print(wrapped("-: no variant that ran used it; split_large divides only large objects. Below 0: the variant takes "
+                  "less. ?: undecided, as above.") +
+          "\n");
 }
 
 /// The same candidate, made with counters of all work, whatever instrumentation is asked for: its time shows what
@@ -236,7 +240,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     if (outcome.times[0].empty()) {
         const attempt& selected_run = *outcome.broken_off[0];
         if (selected_run.end == ending::rejected) throw aabb::input_error(selected_run.reason);
-        print_paragraph("the savings of each choice are unknown; as selected: " + text_of(selected_run) +
+        print_paragraph("the alternatives to each choice could not be timed; as selected: " + text_of(selected_run) +
                         (selected_run.end == ending::stopped ? "; increase --seconds" : "") + ".");
         return true;
     }
@@ -247,7 +251,7 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
     }
 
     print_paragraph(fmt::format(
-        "savings of each choice: one strategy is replaced at a time; variants run interleaved, in {} of {} each",
+        "alternatives to each choice: one strategy is replaced at a time; variants run interleaved, in {} of {} each",
         counted(outcome.rounds, "round"), counted(outcome.frames, "frame")));
     print(to_text(savings_table(std::span(variants).first(in_table)), output_width()) + "\n");
     print_unfinished(variants);
@@ -258,12 +262,14 @@ bool print_savings(staged_scene& staged, const aabb::composition& selected, cons
                                     counted(most_objects_to_vary_every_kind, "object")));
     print_paragraph(ms_per_frame_text);
     print_paragraph(fmt::format(
-        "ratio: ms/frame relative to the selected composition in the same round, above 1 if that is faster; medians of "
+        "ratio: ms/frame relative to the selected composition in the same round, below 1 if the variant is faster; "
+        "medians of "
         "rounds; range: the least and the greatest ratio; ?: undecided, since the range comes within 3 % of 1; "
         "> {:.0f}: dropped after one run.",
         hopeless_ratio));
     print_paragraph(build_ms_text);
-    print_paragraph("bytes: memory after these frames; counters of all work: as selected, with all work counted.");
+    print_paragraph(
+        "bytes: memory after the last frame of a round; counters of all work: as selected, with all work counted.");
     print("\n");
     print_omissions(variants);
     const bool agree = print_disagreements(variants);

@@ -215,8 +215,8 @@ table measures_table(const scene_measures& m) {
     if (m.boxes.typical_extent > 0)
         add("unit", fmt::format("typical extent: {:.3g}, the mean edge without outliers", m.boxes.typical_extent));
     add("displacement", fmt::format("{:.3g} {} per frame, the mean", m.motion->displacement / unit, unit_name));
-    add("relative", fmt::format("{:.3g} {} per frame at most, common motion removed",
-                                m.motion->relative_displacement / unit, unit_name));
+    add("own motion", fmt::format("{:.3g} {} per frame at most, common motion removed",
+                                  m.motion->relative_displacement / unit, unit_name));
     add("inversions", fmt::format("{:.3g} per object per frame, on the {} axis", m.motion->inversions,
                                   "xyz"[std::ranges::min_element(o) - o.begin()]));
     add("at rest", fmt::format("{:.3g} % of the objects", 100 * m.motion->at_rest));

@@ -229,12 +229,12 @@ public:
              "{u} by {v} groups of columns along the z axis"}};
         if (uses_brute_force_) return {};
         const column_plan& p = plan();
-        return {
-            {is_in_groups() ? plan_kind::groups_of_columns : plan_kind::columns,
-             {p.columns() == 1 ? "one column: boxes are sorted and swept anew" : along[is_in_groups() ? 1 : 0][p.axis],
-              {{{"u", static_cast<double>(p.across[0])},
-                {"v", static_cast<double>(p.across[1])},
-                {"axis", static_cast<double>(p.axis)}}}}}};
+        return {{is_in_groups() ? plan_kind::groups_of_columns : plan_kind::columns,
+                 {p.columns() == 1 ? "one column of all boxes, sorted and swept in each frame"
+                                   : along[is_in_groups() ? 1 : 0][p.axis],
+                  {{{"u", static_cast<double>(p.across[0])},
+                    {"v", static_cast<double>(p.across[1])},
+                    {"axis", static_cast<double>(p.axis)}}}}}};
     }
     [[nodiscard]] std::vector<omission> left_out() const {
         constexpr const char* why = "so few boxes are tested by brute force";

@@ -148,8 +148,8 @@ TEST_CASE_METHOD(in_folder, "explain reports what it measured and selected for a
     for (const char* part :
          {"objects       200\n", "frames        81; this table is measured in frames 0 to 3\n",
           "at rest       0 % of the objects\n", "counters of all work  ",
-          "prepare    neighbour_list  frames are coherent", "    state kept from earlier frames\n",
-          "one column: boxes are sorted and swept", " pairs of boxes, with a skin of ", "as selected", "split_large",
+          "prepare    neighbour_list  frames are coherent", "    plans for the next frames\n",
+          "one column of all boxes, sorted and swept", " pairs of boxes, with a skin of ", "as selected", "split_large",
           "axial_cut", "build, tree, triangle do not apply to this scene"})
         CHECK(holds(reported.out, part));
     CHECK_FALSE(holds(reported.out, "canonical"));
