@@ -228,8 +228,8 @@ void add_collide(const command_parser& program) {
     command.flag("--geometry", &request.geometry,
                  "Add to each pair the triangles' intersection, in world coordinates: kind, vertices, error bound");
     command.flag("--exit-code", &request.exit_code,
-                 "Exit with status 1 (as diff) if triangles intersect; with --self=all, only those without a shared "
-                 "corner count");
+                 "Exit with status 1 (as diff) if triangles intersect; with --self=all, only if two without a shared "
+                 "corner intersect");
     command.flag("--json", &request.json, "Print the summary as JSON");
 }
 

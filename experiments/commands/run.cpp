@@ -41,7 +41,7 @@ void add_run(const command_parser& program) {
     const command_parser command =
         program.add_command("run", "Run an experiment: validate, then time, every composition in every scene");
     auto& request = command.set_action(run);
-    command.argument("CONFIG", &request.config, "Config of the experiment (.toml); NAME is the name that it sets");
+    command.argument("CONFIG", &request.config, "Config of the experiment (.toml), which sets its NAME, used below");
     command.option("--out DIR", &request.out, "Folder of the results (default results/NAME, or results/NAME-quick)");
     command.flag("--quick", &request.quick, "Apply the quick settings of the config, for a first look");
     command.flag("--resume", &request.resume, "Skip runs whose results are in the folder already");
