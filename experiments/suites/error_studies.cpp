@@ -18,7 +18,7 @@ void print_tables(std::span<const error_point> points) {
               "FP: false positives, share of disjoint pairs; fewest wrong first\n"
               "aabblab list triangle and list library_tests explain names and parameters\n\n" +
               to_text(error_summary(points, group), output_width()) + "\n");
-        print("By set of pairs: FN + FP, here both as shares of all pairs of the set\n");
+        print("By set of pairs: FN and FP, joined by +, here as shares of all pairs of the set\n");
         for (const std::string& scene : scenes_by_number(points, group)) print(wrapped(scene) + "\n");
         print("\n" + to_text(errors_by_set(points, group), output_width()) + "\n");
     }

@@ -19,7 +19,8 @@ namespace {
 /// tables. A row is the result of one method in one scene or on one pair.
 std::vector<named_table> tables_of(std::span<const extreme_row> rows) {
     std::vector<named_table> tables = {
-        {"extreme_boxes", "Boxes, compared with a test of every pair of boxes", scene_table(rows, row_group::boxes)},
+        {"extreme_boxes", "Boxes, compared with a plain double loop over all boxes",
+         scene_table(rows, row_group::boxes)},
         {"extreme_meshes", "Meshes, compared with CGAL's exact kernel; -2 +3: 2 false negatives, 3 false positives",
          scene_table(rows, row_group::meshes)},
         {"extreme_tests", "Meshes, by inexact triangle tests", inexact_scene_table(rows)},
@@ -153,12 +154,12 @@ suite_report run_extreme_suite(const std::filesystem::path& folder, const std::s
     if (shown) {
         print(
             "exact: the same pairs as the ground truth; rejected: invalid input, rejected as\n"
-            "it must be; 91 exact: all 91 are; -: not run, or not wrong;\n"
-            "flushed_, upward_: in a thread that flushes denormals to zero or rounds upward;\n"
-            "beyond_float: engines in double may find no pairs instead, and count as exact;\n"
-            "classes of wrong results: near: a displacement of a millionth changes the\n"
-            "result; other: it does not;\n"
-            "aabblab list engines explains engines\n\n");
+            "it must be; 91 exact: all 91 are; -: not run, or, by class, no wrong pairs.\n"
+            "flushed_, upward_: in a thread that flushes denormals to zero or rounds upward.\n"
+            "beyond_float: an engine in double that finds no pairs is exact, too.\n"
+            "Classes of wrong pairs: near: a displacement by a millionth of the extent of\n"
+            "both triangles together changes the result; other: it does not.\n"
+            "aabblab list engines explains engines.\n\n");
         for (const named_table& t : report.tables)
             print(wrapped(t.caption) + "\n\n" + to_text(t.content, output_width()) + "\n");
         for (const std::string& sentence : report.paragraphs) print(sentence + "\n");
@@ -179,7 +180,7 @@ suite_report run_stiff_suite(const std::filesystem::path& folder, const std::vec
              " is left out of this build: its library was not found; ./aabblab validate stiff installs it");
     if (shown)
         print(
-            "Contacts exert forces, so wrong contacts give a wrong motion. Each study compares\nthe motion with a "
+            "Contacts exert forces, so wrong contacts give a wrong motion. Each study\ncompares the motion with a "
             "known one.\n\n");
     suite_report report;
     for (const stiff_study& study : chosen) {

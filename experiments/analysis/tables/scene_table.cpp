@@ -155,7 +155,9 @@ std::string explanation_of_columns(const scene_summary& scene) {
         text += "ms/frame: the mean wall time per frame after frame 0, the median over repeats\n";
     if (any_has(scene, &candidate_summary::bytes)) text += "KiB: memory after the last frame, without meshes\n";
     if (std::ranges::any_of(scene.candidates, [](const candidate_summary& c) { return c.ratio && !c.ratio_interval; }))
-        text += "95 %: - if repeats, seeds or processes are too few (below two for the baseline)\n";
+        text +=
+            "95 %: - if repeats, seeds or processes are too few; for one seed in one process,\n4 repeats are enough (2 "
+            "for the baseline)\n";
     return text;
 }
 

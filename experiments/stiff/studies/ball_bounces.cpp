@@ -67,8 +67,7 @@ void measure_convergence(const stiff_setting& setting, stiff_result& result) {
         for (std::size_t s = 0; s < steps.size(); ++s) result.plot("ball_error_over_step", i.name, steps[s], errors[s]);
         const std::string subject = std::string(i.name) + ", dt·ω " + short_number(steps.back());
         // The error of a first-order integrator is at most one step.
-        result.add(at_most(subject, "trajectory error (relative to the motion)", errors.back(),
-                           i.order == 1 ? steps.back() : 1e-3));
+        result.add(at_most(subject, "trajectory error (relative)", errors.back(), i.order == 1 ? steps.back() : 1e-3));
         if (!i.adaptive)
             result.add(at_least(std::string(i.name), "order of convergence", order_of(steps, errors), i.order - 0.1));
     }
@@ -104,19 +103,19 @@ void run_ball_bounces(const stiff_setting& setting, stiff_result& result) {
 
 stiff_study ball_bounces_study() {
     return {"ball_bounces",
-            "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring. Errors are measured without a "
-            "dashpot, relative to the greatest depth and speed. The restitution, 0.5, and the contact time, from "
-            "touching the floor to leaving it, are measured with one, at dt·ω = 0.05 and k = 1e4 to 1e10 N/m, but not "
-            "with symplectic_euler, whose contact may end a step late. adaptive_dormand_prince equals dormand_prince "
-            "where one step meets its tolerance",
-            "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²)), with "
-            "ω = √(k/m) and the damping ratio ζ",
+            "A ball of 1 kg hits a floor at 1 m/s. The contact is a linear spring. The trajectory error is measured "
+            "without a dashpot, relative to the greatest depth and speed. The restitution, 0.5, and the contact time, "
+            "from touching the floor to leaving it, are measured with a dashpot, at the time step dt = 0.05/ω, with "
+            "ω = √(k/m) and k = 1e4 to 1e10 N/m, but not with symplectic_euler, whose contact may end a step late. "
+            "adaptive_dormand_prince equals dormand_prince where one step meets its tolerance",
+            "closed form of the damped oscillator: contact time π/(ω√(1-ζ²)), restitution exp(-πζ/√(1-ζ²)), with the "
+            "damping ratio ζ",
             &run_ball_bounces,
             {figure{.name = "ball_error_over_step",
                     .caption = "Error of the ball's position and velocity during contact over the step size. It falls "
                                "with the order of each integrator.",
                     .x = {"step times angular frequency", /*logarithmic=*/true},
-                    .y = {"greatest error (relative to the motion)", /*logarithmic=*/true}}}};
+                    .y = {"trajectory error (relative)", /*logarithmic=*/true}}}};
 }
 
 }  // namespace aabblab

@@ -143,11 +143,12 @@ stiff_study stability_study() {
     return {
         "stability",
         "A ball of 1 kg oscillates on a floor about its equilibrium depth, always in contact, without a dashpot. The "
-        "study measures the greatest stable step and the energy drift: the relative change of the greatest energy from "
-        "the first to the last tenth of 1000 periods (100 with --quick)",
+        "study measures the greatest stable step and the energy drift: the relative change in peak energy from the "
+        "first to the last tenth of 1000 periods (100 with --quick)",
         "central differences are stable up to dt·ω = 2, with ω = √(k/m); the stability polynomial of Dormand and "
-        "Prince (1980) gives its drift, and exceeds 1 in modulus beyond 0.9972 on the imaginary axis; usual advice "
-        "for the discrete element method is a step of 5 to 10 % of the contact time, dt·ω 0.157 to 0.314",
+        "Prince (1980) gives the drift of dormand_prince, and exceeds 1 in modulus beyond 0.9972 on the imaginary "
+        "axis; usual advice for the discrete element method is a step of 5 to 10 % of the contact time, dt·ω 0.157 to "
+        "0.314",
         &run_stability,
         {figure{.name = "energy_drift",
                 .caption =
