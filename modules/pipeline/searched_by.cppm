@@ -72,7 +72,7 @@ concept PreparePolicy =
     };
 
 /// A broad phase behind a strategy that prepares its boxes, with the functions of `global_stage`. The two interact
-/// through the interface of a stage, by one virtual call per frame.
+/// through the interface of a stage, by a few virtual calls per frame.
 template <PreparePolicy Prepare, class Search>
 class prepared_search {
 public:

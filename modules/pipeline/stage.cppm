@@ -4,8 +4,8 @@ import aabb.local_detection;
 import aabb.std;
 import :scene_parts;
 
-// The run-time interfaces of the two stages. Each stage is composed statically behind one virtual call per frame (broad
-// phase) or per pair of meshes (narrow phase); they communicate by a buffer of candidate pairs.
+// The run-time interfaces of the two stages. Each stage is composed statically behind a few virtual calls per frame
+// (broad phase) or per pair of meshes (narrow phase); they communicate by a buffer of candidate pairs.
 export namespace aabb {
 
 /// Heap bytes of one part of a stage.
