@@ -68,7 +68,7 @@ struct vertex_frame {
                 double error = std::abs(f[k] - rounded[k]);
                 // The difference from the origin is rounded, too, and a quotient by a scale above 1 may underflow.
                 error += rounding_of_difference(v[k], frame.origin[k]) / frame.scale;
-                if (frame.scale > 1) error += std::numeric_limits<double>::denorm_min();
+                if (f[k] * frame.scale != v[k] - frame.origin[k]) error += std::numeric_limits<double>::denorm_min();
                 if (error > 0)
                     frame.rounding[k] = std::max(frame.rounding[k], static_cast<float>(error * (1 + 0x1p-20)) +
                                                                         std::numeric_limits<float>::denorm_min());
