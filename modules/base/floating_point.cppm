@@ -19,9 +19,8 @@ inline const volatile double least_double = std::numeric_limits<double>::denorm_
 inline const volatile double near_one = 1 + 0x1p-30;
 inline const volatile double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Reports that the arithmetic is not that of IEEE 754. If none of the conditions is false, products and sums are
-/// fused. Out of line, so that `require_ieee_arithmetic`, which every query calls, stays small.
-/// @throws input_error with the first fault, and what to do
+/// Reports the first fault of the arithmetic; if no condition is false, products and sums are fused. Out of line, so
+/// that `require_ieee_arithmetic`, which every query calls, stays small.
 [[noreturn]] void reject_arithmetic(bool keeps_denormals, bool rounds_to_nearest, bool knows_nan) {
     if (!keeps_denormals)
         throw input_error(
@@ -42,12 +41,11 @@ inline const volatile double not_a_number = std::numeric_limits<double>::quiet_N
 
 export namespace aabb {
 
-/// Rejects arithmetic other than that of IEEE 754, on which exact results depend. Every query calls this first, at the
-/// cost of a few additions. It is always inline, so that it checks the options of the importer: `-ffp-contract=fast`
-/// overrides the pragmas, and no macro reveals it. The operands are volatile, so that it is not evaluated by the
-/// compiler.
-/// @throws input_error if the thread flushes denormals to zero, as a library linked with -ffast-math makes it do, or
-/// does not round to nearest; if products are fused into sums, or comparisons ignore NaN
+/// Rejects arithmetic other than that of IEEE 754, on which exact results depend, at the cost of a few additions per
+/// query. Always inline, so that it checks the options of the importer: `-ffp-contract=fast` overrides the pragmas, and
+/// no macro reveals it. Volatile operands keep the compiler from evaluating it.
+/// @throws input_error if denormals are flushed to zero, as by a library linked with -ffast-math, rounding is not to
+/// nearest, products are fused into sums, or comparisons ignore NaN
 [[gnu::always_inline]] inline void require_ieee_arithmetic() {
     const double least = detail::least_double;  // the least positive double, a denormal number
     const double root = detail::near_one;       // 1 + 2^-30

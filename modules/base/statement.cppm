@@ -33,8 +33,7 @@ struct statement {
     bool operator==(const statement&) const = default;
 };
 
-/// The sentence with its numbers in place of their names in braces, as "a list of 5000000 pairs" for "a list of {pairs}
-/// pairs". Whole numbers are written in full, others with the precision of a float.
+/// The sentence with its numbers in place of their names in braces: whole ones in full, others as floats.
 [[nodiscard]] inline std::string to_text(const statement& s) {
     constexpr double greatest_count = 0x1p63;  // so that the conversion to u64 is defined
     std::string text(s.text);

@@ -31,8 +31,7 @@ digest::~digest() = default;
 digest::digest(digest&&) noexcept = default;
 digest& digest::operator=(digest&&) noexcept = default;
 
-/// Adds the three numbers (frame, a, b) of each pair to the hash, 256 pairs at a time, since a short update of the hash
-/// is first copied into its buffer.
+/// Hashes (frame, a, b) of each pair, 256 pairs at a time, since a short update is first copied into a buffer.
 void digest::add(std::uint32_t frame, std::span<const index_pair> sorted) {
     assert(std::ranges::is_sorted(sorted));
     constexpr std::size_t most_pairs = 256;

@@ -94,8 +94,7 @@ template <class Map, class Elements>
     using scalar = detail::scalar_of<element>;
     constexpr std::size_t rows = sizeof(element) / sizeof(scalar);
     static_assert(EigenColumns<Map, int{rows}> && std::same_as<typename Map::Scalar, scalar>);
-    // A pointer of the type that `Map` takes. The first member of an element is an array of numbers, or begins with
-    // one.
+    // A pointer of the type that `Map` takes: an element is an array of numbers, or begins with one.
     auto* const numbers = reinterpret_cast<decltype(Map(nullptr, rows, 0).data())>(elements.data());
     const auto count = static_cast<std::ptrdiff_t>(elements.size());
     if constexpr (Map::IsRowMajor)

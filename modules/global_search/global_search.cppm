@@ -81,8 +81,7 @@ public:
         frame_.taken();
     }
 
-    /// Appends every overlapping pair of the last update's boxes once, with a < b, in unspecified order. Sweeps each
-    /// subset of the partition. If this throws, nothing is appended.
+    /// Appends every overlapping pair of the last update's boxes once, a < b, in unspecified order; none if it throws.
     /// @throws input_error if the last update failed or there was none, and as `require_ieee_arithmetic`
     void search(std::vector<index_pair>& pairs) {
         frame_.require_taken();
@@ -136,9 +135,8 @@ public:
     void insert(std::uint32_t id) { objects_.insert(id); }
     void remove(std::uint32_t id) { objects_.remove(id); }
 
-    /// Updates the sweep's lists and the overlapping pairs that it keeps to the boxes of a frame, indexed by object id.
-    /// @throws input_error on a box that is not finite or inverted, if a present object has no box, and as
-    /// `require_ieee_arithmetic`
+    /// Updates the sweep's lists and pairs to the boxes of a frame, indexed by object id.
+    /// @throws input_error on a box that is invalid or missing, and as `require_ieee_arithmetic`
     void update(std::span<const box> boxes) {
         frame_.begin();
         require_ieee_arithmetic();

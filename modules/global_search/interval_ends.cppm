@@ -43,8 +43,7 @@ inline void sort_ends(std::vector<interval_end>& list) {
 /// What such sweeps share: the kept pairs, their changes by swaps, and the rule which strategies can be combined.
 class kept_pairs {
 public:
-    /// Why a sweep that keeps its pairs cannot be combined with the strategies `All`, a sort and a partition among
-    /// them; empty if it can.
+    /// Why a sweep that keeps its pairs rejects the strategies `All`; empty if it accepts them.
     template <class... All>
     static constexpr std::string_view rejects() {
         if (((CuttingPartition<All> || SearchingPartition<All>) || ...))
@@ -61,9 +60,8 @@ public:
     }
 
 protected:
-    /// Sorts the list of the intervals' ends on an axis, and updates the kept pairs (`pairs_`) at each swap of two
-    /// neighbours: a lower end that moves before an upper end can begin an overlap, an upper end that moves before a
-    /// lower end ends one. Stops when `steps_left_` reaches 0; then a restart from scratch takes fewer steps.
+    /// Sorts the ends on an axis, and updates `pairs_` at each swap of neighbours: a lower end that passes an upper end
+    /// can begin an overlap, the converse ends one. Stops when `steps_left_` is 0: a restart is then cheaper.
     template <class Sort, CounterPolicy Counters>
     void follow_swaps(std::vector<interval_end>& list, std::span<const box> boxes, Sort& sort, Counters& counters) {
         sort.sort(std::span(list), counters, [&](const interval_end& passed, const interval_end& mover) {
@@ -73,8 +71,7 @@ protected:
             const index_pair pair = ordered_pair(passed.id, mover.id);
             counters.add(work::box_tests);
             if (mover.is_upper) {
-                // Most of these pairs did not overlap on the other axes. A test of their boxes in the previous frame is
-                // faster than a look-up.
+                // Most did not overlap on the other axes; testing the previous boxes is faster than a look-up.
                 if (overlaps(before_[pair.a], before_[pair.b])) pairs_.erase(pair);
             } else if (overlaps(boxes[pair.a], boxes[pair.b])) {
                 pairs_.insert(pair);
@@ -91,10 +88,8 @@ protected:
 /// Sweeps a list of ends for all pairs with at least one new object.
 class interval_sweep {
 public:
-    /// Inserts into `pairs` the overlapping pairs with at least one new object: sweeps the sorted list of the
-    /// intervals' ends on an axis, and tests each object whose interval begins against the active ones, whose intervals
-    /// contain that point. `active_[0]` has the active objects that are known, `active_[1]` those that are new, in any
-    /// order.
+    /// Inserts into `pairs` the overlapping pairs with a new object: sweeps the list, and tests each object against the
+    /// active ones, whose intervals contain its lower end: `active_[0]` has the known ones, `active_[1]` the new ones.
     /// @param is_new whether an object, by id, is new; pairs of known objects are already in `pairs`
     /// @returns the number of tested pairs
     std::uint64_t find(std::span<const interval_end> list, std::span<const box> boxes, pair_set& pairs, auto is_new) {

@@ -56,7 +56,6 @@ public:
     /// Rejects a frame in which a present object has no box, or which has boxes although `insert` was never called: a
     /// program without that call would silently get no pairs.
     /// @param boxes number of boxes in the frame, which are indexed by object id
-    /// @throws input_error
     void require_boxes_for_all(std::size_t boxes) const {
         if (state_.empty() && boxes > 0)
             throw input_error("no object was inserted; call insert(id) for each box first");

@@ -14,8 +14,7 @@ class pair_set {
 public:
     [[nodiscard]] inline std::span<const index_pair> pairs() const noexcept { return pairs_; }
 
-    /// Inserts a pair unless it is present: appends it to the array, and stores its index there in the hash table. At
-    /// most half of the table is filled, so that probing ends soon.
+    /// Appends a pair unless it is present, and stores its index in the hash table, which is at most half full.
     /// @throws input_error beyond 2^32 - 1 pairs
     inline void insert(index_pair pair) {
         if (2 * (pairs_.size() + 1) > table_.size()) grow();
@@ -26,8 +25,7 @@ public:
         table_[slot] = static_cast<std::uint32_t>(pairs_.size() - 1);
     }
 
-    /// Erases a pair if it is present. The last pair moves to its place in the array, which stays without gaps, and the
-    /// hash table `table_`, which contains the index of each pair in the array, is updated.
+    /// Erases a pair if it is present. The last pair takes its place, so that the array has no gaps.
     inline void erase(index_pair pair) {
         if (pairs_.empty()) return;
         const std::size_t slot = slot_of(pair);
@@ -72,9 +70,8 @@ private:
 
     [[nodiscard]] inline std::size_t next(std::size_t slot) const noexcept { return (slot + 1) & (table_.size() - 1); }
 
-    /// Empties a slot of the hash table `table_`. A search for a pair begins at the pair's home slot and ends at the
-    /// first empty one. An entry behind the gap whose search would cross the gap therefore moves into it, and leaves
-    /// the next gap. Deleted slots need no marks.
+    /// Empties a slot of `table_`. A search ends at the first empty slot, so an entry behind whose search, from its
+    /// home slot, would cross this gap moves into it and leaves the next gap. Deleted slots need no marks.
     inline void close_gap(std::size_t gap) {
         for (std::size_t at = next(gap); table_[at] != none; at = next(at)) {
             const std::size_t home = home_of(pairs_[table_[at]]);

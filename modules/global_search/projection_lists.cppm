@@ -11,8 +11,7 @@ export namespace aabb {
 /// Counts the inversions of a list, the measure of "almost sorted", by merge sort in O(n log n).
 class inversion_counter {
 public:
-    /// The number of pairs of entries that are in the wrong order. A bottom-up merge sort counts them in O(n log n):
-    /// each round merges adjacent sorted runs of `width` keys.
+    /// The number of inversions, counted in O(n log n) by a bottom-up merge sort of runs of `width` keys.
     [[nodiscard]] std::uint64_t count(std::span<const projection> list) {
         keys_.clear();
         for (const projection& p : list) keys_.push_back(p.key);
@@ -61,8 +60,7 @@ struct no_inversion_counter {
 template <CounterPolicy Counters>
 class projection_lists {
 public:
-    /// Removes the entries of removed objects from the sorted lists, one per axis k, and appends entries of inserted
-    /// ones, which `sort` sorts in. The order of the other entries is kept.
+    /// Removes the entries of absent objects, keeping the order of the others, and appends those of new ones, unsorted.
     void settle(const membership& objects) {
         for (std::size_t k = 0; k < 3; ++k) {
             if (!has_axis(axes_, k)) continue;
@@ -127,9 +125,8 @@ private:
         std::ranges::sort(list, [](const projection& p, const projection& q) { return precedes(p, q); });
     }
 
-    /// Sorts a list of the boxes' lower ends that was sorted for the previous frame, except new entries at its end:
-    /// takes out the entries whose key has changed, sorts these by the policy, and merges them with the others, which
-    /// are still in order.
+    /// Sorts a list kept from the previous frame, except new entries at its end: takes out the entries whose key has
+    /// changed, sorts these by the policy, and merges them with the others.
     template <class Sort>
     void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         const std::span known = std::span(lists_[axis]).first(lists_[axis].size() - arrivals_);
@@ -152,8 +149,7 @@ private:
             merge_moved_into(known, unmoved, counters);
     }
 
-    /// Sorts the last `arrivals_` entries of a list, of new objects, from scratch, and merges them with the sorted
-    /// entries before them.
+    /// Sorts the last `arrivals_` entries, of new objects, from scratch, and merges them with those before.
     void sort_arrivals(std::span<const box> boxes, std::size_t axis) {
         if (arrivals_ == 0) return;
         const std::span list(lists_[axis]);
@@ -165,9 +161,8 @@ private:
         merge_moved_into(list, known, uncounted);
     }
 
-    /// Merges the sorted entries `moved_` into a list in place; its first `sorted` entries are sorted, the places of
-    /// the others are free. For each entry, from the greatest on, the greater ones of the list move to the back, before
-    /// `out`, and the entry is placed before them.
+    /// Merges the sorted `moved_` in place into a list whose first `sorted` entries are sorted and whose other places
+    /// are free, from the greatest entry on.
     void merge_moved_into(std::span<projection> list, std::size_t sorted, CounterPolicy auto& counters) {
         assert(list.size() == sorted + moved_.size());
         std::size_t out = list.size();
@@ -184,9 +179,8 @@ private:
         assert(out == sorted);
     }
 
-    /// The index in a sorted list before which to insert an entry, after equal ones. Galloping search: doubles the step
-    /// from the back until an entry is not greater, then bisects the last step. It takes O(log d) comparisons if d
-    /// entries are greater.
+    /// The index before which to insert an entry, after equal ones, by O(log d) comparisons if d entries are greater:
+    /// doubles the step from the back until an entry is not greater, then bisects the last step.
     static std::size_t insertion_index(const projection& entry, std::span<const projection> list,
                                        CounterPolicy auto& counters) {
         std::size_t step = 1;

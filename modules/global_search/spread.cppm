@@ -17,9 +17,9 @@ struct spread {
     vec3d extent;    ///< mean
 };
 
-/// On each axis the mean extent of the present objects' boxes, and the variance of their doubled centres times their
-/// number, Σx² - (Σx)² / n. Sums are taken in the order of ids, so that they do not depend on how a sort orders ties,
-/// and relative to the first centre, so that no digits cancel far from the origin.
+/// The mean extent of the present objects' boxes on each axis, and the variance of their doubled centres times their
+/// number, Σx² - (Σx)² / n. Sums are in the order of ids, so that ties in a sort do not change them, and relative to
+/// the first centre, so that no digits cancel far from the origin.
 [[nodiscard]] inline spread spread_of(std::span<const box> boxes, const membership& objects) {
     spread result{};
     vec3d first{}, sum{}, squares{};
@@ -44,7 +44,7 @@ struct spread {
     return result;
 }
 
-/// On each axis the distance from the least upper end of the present objects' boxes to the greatest lower end. If it is
+/// The distance on each axis from the least upper end of the present objects' boxes to the greatest lower end. If it is
 /// not positive, all boxes overlap on the axis, so that a sweep along it excludes no pair.
 [[nodiscard]] inline vec3d separation_of(std::span<const box> boxes, const membership& objects) {
     vec3f last_lower = empty_box().max;
@@ -76,9 +76,8 @@ public:
         return choose(spread_of(boxes, objects), every_axis);
     }
 
-    /// Chooses the axis with the greatest variance of the boxes' centres among some axes, at least one, but keeps the
-    /// last choice unless the variance on another is 50% greater: axes of similar variance would alternate, and each
-    /// change sorts a new list from scratch.
+    /// Chooses the axis of greatest variance among some, at least one, but keeps the last choice unless another's is
+    /// 50% greater: axes of similar variance would alternate, and each change sorts a new list from scratch.
     int choose(const spread& along, axis_set among) {
         const auto is_among = [among](int k) { return has_axis(among, static_cast<std::size_t>(k)); };
         const double margin = has_chosen_ && is_among(axis_) ? 1.5 : 1.0;

@@ -63,9 +63,7 @@ private:
         return (std::uint64_t{1} << 24) + 64 * std::uint64_t{objects};
     }
 
-    /// Counts the copies of entries in each subset, and sets `starts_`: in the common array of all subsets, s gets the
-    /// places from `starts_[s]` to `starts_[s + 1]`.
-    /// @param list the entries of all objects
+    /// Counts the copies in each subset, and sets `starts_`: subset s gets the places `starts_[s]` to `starts_[s + 1]`.
     /// @throws input_error if there are too many copies
     template <class Partition>
     void count(const Partition& partition, std::span<const box> boxes, std::span<const projection> list) {
@@ -83,8 +81,7 @@ private:
         for (std::size_t s = 0; s < subsets; ++s) starts_[s + 1] += starts_[s];
     }
 
-    /// Reports how many copies of entries the partition would make; `Partition::copies` computes the number of an
-    /// object's copies without visiting them.
+    /// Reports how many copies the partition would make; `Partition::copies` counts without visiting them.
     template <class Partition>
     [[noreturn]] static void reject_copies(const Partition& partition, std::span<const box> boxes,
                                            std::span<const projection> list) {

@@ -25,9 +25,8 @@ public:
         static_cast<void>(test_pending(test, a, b, to_a, emit));
     }
 
-    /// Passes each pair of intersecting triangles of one mesh to `emit`, in either order, until it returns true. Every
-    /// two triangles lie below different children of exactly one node, so the two children of each node are traversed
-    /// against each other.
+    /// Passes each pair of intersecting triangles of one mesh to `emit`, in either order, until it returns true. Any
+    /// two triangles lie below different children of exactly one node, so each node's children are traversed together.
     template <class Emit>
     void find_self_pairs(const query& test, const model<Tree>& m, Emit emit) {
         constexpr same_frame identity;
@@ -76,11 +75,10 @@ private:
         image_of_ = no_triangle;
     }
 
-    /// Opens the pending node pairs (`stack_`): of two leaves the triangles are tested, and of another pair the longer
-    /// node is replaced by each of its children, if their boxes overlap the other node's box. Ends when no pair is
-    /// pending or `emit`, called with each intersecting pair of triangles, returns true.
+    /// Opens the pending pairs (`stack_`): tests the triangles of two leaves, or replaces the longer node by its
+    /// children that overlap the other one.
     /// @param to_a maps boxes and triangles of B to A's frame
-    /// @returns whether `emit` returned true
+    /// @returns whether `emit`, called with each intersecting pair, returned true, which ends the walk
     template <class Frame, class Emit>
     [[nodiscard]] bool test_pending(const query& test, const model<Tree>& a, const model<Tree>& b, const Frame& to_a,
                                     Emit& emit) {
@@ -145,9 +143,8 @@ private:
         if (may_overlap(a, b, to_a, next, which_is_new)) stack_.push_back(next);
     }
 
-    /// Whether the boxes of two nodes overlap. In a layout without leaf boxes, `leaf_test` states what replaces the box
-    /// of a leaf: its triangle (triangle_box), the box of its triangle (triangle_aabb), or the box of its parent
-    /// (none). The last two are what `bounds` returns.
+    /// Whether the boxes of two nodes overlap. In a layout without leaf boxes, `leaf_test` replaces them by the
+    /// triangle (triangle_box) or, in `bounds`, by the triangle's box (triangle_aabb) or the parent's (none).
     /// @param which_is_new the node of the pair that replaces its parent, which has been tested
     template <class Frame>
     [[nodiscard]] bool may_overlap(const model<Tree>& a, const model<Tree>& b, const Frame& to_a, const node_pair& next,
@@ -171,9 +168,8 @@ private:
         return overlaps(a.tree().bounds(next.a), next.b_bounds);
     }
 
-    /// The box grown to cover rounding, so that a triangle meets it if the exact triangle meets the exact box. Both may
-    /// be off by `image_error_` on each axis: the corners of a triangle of B are rounded to floats in A's frame, and so
-    /// are the bounds of a box. Without that error, floats are exact.
+    /// The box grown to cover rounding: a triangle meets it if the exact triangle meets the exact box. B's corners and
+    /// the bounds of a box may be off by `image_error_` on each axis; without that error, floats are exact.
     [[nodiscard]] box grown(box b) const noexcept {
         for (int k = 0; k < 3; ++k) {
             if (image_error_[k] == 0) continue;

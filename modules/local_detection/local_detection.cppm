@@ -36,8 +36,7 @@ public:
     = default;
     explicit local_detection(Triangle triangle) : triangle_(std::move(triangle)) {}
 
-    /// Appends every pair of intersecting triangles (a of A, b of B) once, in unspecified order. If this throws,
-    /// nothing is appended.
+    /// Appends every pair of intersecting triangles (a of A, b of B) once, in unspecified order; none if it throws.
     void all_pairs(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                    std::vector<index_pair>& pairs) {
         append_guard guard(pairs);
@@ -70,8 +69,7 @@ public:
         return first;
     }
 
-    /// Appends every pair of intersecting triangles a < b of one mesh once, including neighbours that share a vertex.
-    /// If this throws, nothing is appended.
+    /// Appends each intersecting pair a < b of a mesh once, also those that share a vertex; none if it throws.
     void self_pairs(const model<Tree>& m, std::vector<index_pair>& pairs) {
         append_guard guard(pairs);
         each_self_pair(m, [&](index_pair pair) {
@@ -81,8 +79,7 @@ public:
         guard.keep();
     }
 
-    /// Passes each pair of intersecting triangles a < b of one mesh to `take` as it is found, without storing any,
-    /// until it returns true. The mesh is traversed with itself, at the same pose.
+    /// Passes each pair of intersecting triangles a < b of one mesh to `take` as it is found, until it returns true.
     template <class Take>
     void each_self_pair(const model<Tree>& m, const Take& take) {
         const relative_pose identity = pose_relative_to(m, {}, m, {});
@@ -112,9 +109,8 @@ private:
         walk_.find_pairs(triangle_query<Tree, Triangle>(triangle_, a, b, poses, *to_a), a, b, *to_a, goal, emit);
     }
 
-    /// As `walk`, but in B's frame, and so with the meshes swapped: a huge mesh can leave the range of float in the
-    /// frame of a tiny one, but not the other way round. Therefore it does not depend on their order whether a query is
-    /// rejected.
+    /// Walks in B's frame, with the meshes swapped: a huge mesh can leave the range of float in the frame of a tiny
+    /// one, not the other way round. So the order of the meshes does not decide whether a query is rejected.
     template <class Emit>
     void walk_in_frame_of_b(const model<Tree>& a, const pose& pose_a, const model<Tree>& b, const pose& pose_b,
                             walk_goal goal, Emit emit) {

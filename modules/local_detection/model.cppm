@@ -46,8 +46,7 @@ public:
         bounds_ = tree_.bounds(tree_.root(m));
     }
 
-    /// Updates the boxes of the tree. Must be called after vertices of the mesh have moved; if it throws, queries throw
-    /// until a refit succeeds.
+    /// Updates the tree's boxes after vertices have moved; if it throws, queries throw until a refit succeeds.
     /// @param boxes scratch memory, one box per internal node or per triangle
     /// @throws input_error if the mesh is invalid or has another number of triangles, and as `require_ieee_arithmetic`
     void refit(std::vector<box>& boxes) {

@@ -46,9 +46,8 @@ struct balanced_order {
     std::uint32_t threads = 1;              ///< number of threads that may pack it
 };
 
-/// A copy of a mesh with its triangles in the order of a tree's leaves, and its vertices in the order in which these
-/// use them; unused vertices come last. Neighbours in space are then neighbours in memory, and a layout need not store
-/// triangle indices.
+/// A copy of a mesh with triangles in the order of a tree's leaves, and vertices in the order of their use, unused ones
+/// last: neighbours in space become neighbours in memory, and a layout need not store triangle indices.
 [[nodiscard]] inline mesh in_leaf_order(const mesh& m, const balanced_order& order) {
     constexpr std::uint32_t unseen = 0xffffffff;
     std::vector<std::uint32_t> new_index(m.vertices.size(), unseen);
@@ -92,7 +91,7 @@ struct tree_builder {
     std::function<balanced_order(const mesh& m)> order;
 };
 
-/// Erases the type of a builder, of which the result contains a copy.
+/// Erases the type of a builder, which is copied into the result.
 template <BuildPolicy Build>
 [[nodiscard]] tree_builder as_tree_builder(const Build& builder = {}) {
     return {[builder](const mesh& m, leaf_arrangement arrangement) { return builder.build(m, arrangement); },

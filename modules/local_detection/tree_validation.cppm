@@ -20,10 +20,9 @@ class tree_validator {
 public:
     tree_validator(const Tree& tree, const mesh& m) : tree_(tree), mesh_(m), seen_(m.triangles.size()) {}
 
-    /// Validates the tree: each triangle must be in exactly one leaf, and each box contain the triangles below it.
-    /// Visits all nodes depth first, up to the first fault; `open_` is the path from the root to the current node.
-    /// @returns the fault, if any, and the measures of a valid tree: depth, and how much larger its boxes are than
-    /// tight ones
+    /// Validates, depth first up to the first fault, that each triangle is in exactly one leaf, and each box contains
+    /// the triangles below it; `open_` is the path from the root.
+    /// @returns the fault, or the depth of a valid tree and how much larger its boxes are than tight ones
     [[nodiscard]] tree_validation validate_tree() {
         open_.push_back({.cursor = tree_.root(mesh_), .below = empty_box(), .opened = 0});
         // An explicit stack, since trees may be too deep for recursion.
@@ -54,8 +53,7 @@ private:
         unsigned opened;  // number of visited children
     };
 
-    /// Marks the triangle of a leaf as seen, and sets the leaf's `below` to its box. It is a fault if the mesh does not
-    /// have the triangle, or another leaf has it.
+    /// Marks a leaf's triangle as seen, and sets `below` to its box. An unknown or repeated triangle is a fault.
     void visit_leaf(node& leaf) {
         const std::uint32_t triangle = tree_.triangle(leaf.cursor);
         if (triangle >= seen_.size())

@@ -45,9 +45,8 @@ public:
     void insert(std::uint32_t object) { change_pieces_of(object, /*inserts=*/true); }
     void remove(std::uint32_t object) { change_pieces_of(object, /*inserts=*/false); }
 
-    /// A frame has three steps, `update`, `search` and `detect`, which can be timed separately. The first takes one
-    /// pose per object, refits the trees of deformed meshes, and passes the world boxes of the objects to the broad
-    /// phase.
+    /// The first step of a frame, before `search` and `detect`, which can be timed separately: takes one pose per
+    /// object, refits deformed meshes, and passes the world boxes to the broad phase.
     /// @throws input_error on a pose that is singular or moves an object beyond the range of float, with its number
     void update(std::span<const pose> poses) {
         frame_.begin();
@@ -97,8 +96,7 @@ public:
         guard.keep();
     }
 
-    /// Some contact of the frame, if there is one, instead of all by `detect`: ends at the first pair of intersecting
-    /// triangles.
+    /// Some contact of the frame, if there is one; ends at the first, unlike `detect`.
     /// @throws input_error as `detect`
     [[nodiscard]] std::optional<contact> first_contact() {
         require_searched();
@@ -162,9 +160,7 @@ private:
         return parts_ ? parts_->deforms(model) : scene_.deforms(model);
     }
 
-    /// Inserts an object into the broad phase, or removes it: the whole object, or all pieces into which it is divided.
-    /// If one of these operations throws, those before it are undone.
-    /// @param inserts true to insert, false to remove
+    /// Inserts or removes an object in the broad phase, with all its pieces; undone if one operation throws.
     void change_pieces_of(std::uint32_t object, bool inserts) {
         const auto change = [&](std::uint32_t id, bool insert) { insert ? global_->insert(id) : global_->remove(id); };
         assert(searches());

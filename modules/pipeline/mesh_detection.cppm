@@ -45,8 +45,7 @@ public:
     }
     [[nodiscard]] const Counters& counters() const noexcept { return detection_.counters(); }
 
-    /// Heap bytes by part: nodes and indices of all models' trees, the stack of the traversal, and the scratch memory
-    /// of refits.
+    /// Heap bytes of the trees' nodes and indices, the traversal's stack, and the scratch memory of refits.
     [[nodiscard]] std::vector<part_bytes> bytes() const {
         tree_bytes trees{};
         for (const model<Tree>& m : models_) {

@@ -37,9 +37,8 @@ public:
         for (const mesh& m : scene.meshes) mesh_bounds_.push_back(bounds_of(m));
     }
 
-    /// Computes the world boxes of a frame's objects: each is the box of the object's mesh, moved by the object's pose.
-    /// The box of a deforming mesh is computed anew; such a mesh must still be valid.
-    /// @param poses one per object
+    /// Computes the world box of each object from its mesh's box and its pose. The box of a deforming mesh is computed
+    /// anew; such a mesh must still be valid.
     /// @throws input_error as `require_poses`, and on an object beyond the range of float, with its number
     void update(std::span<const pose> poses) {
         require_poses(scene_, poses);

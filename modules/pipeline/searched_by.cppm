@@ -44,8 +44,7 @@ public:
             return 0;
     }
 
-    /// The features that this composition of strategies lacks, with reasons, for the command `explain`: a partition,
-    /// the sorted lists of some axes, counters of work.
+    /// The features that this composition lacks, with reasons, for the command `explain`.
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent;
         if constexpr (!really_cuts<Partition>) absent.push_back({absence::partition, "no cells, no copies of objects"});

@@ -31,8 +31,7 @@ struct text_values {
 };
 using parameter_values = std::variant<integer_values, number_values, name_values, text_values>;
 
-/// The valid values of a parameter in words that complete "must be …" in help and error messages: "a whole number from
-/// 1 to 8 or auto", "one of x, y".
+/// The valid values in words that complete "must be …": "a whole number from 1 to 8 or auto", "one of x, y".
 [[nodiscard]] inline std::string to_text(const parameter_values& values) {
     if (const auto* integers = std::get_if<integer_values>(&values))
         return "a whole number from " + std::to_string(integers->least) + " to " + std::to_string(integers->most) +
@@ -96,9 +95,8 @@ struct integer_parameter {
             return std::to_string(config.*field);
     }
 
-    /// Parses a text, and sets the parameter's field of the configuration; "auto" leaves it empty where that is
-    /// allowed.
-    /// @returns false if the text is none of the valid values (`values()`)
+    /// Parses a text into the parameter's field; "auto" leaves it empty where that is allowed.
+    /// @returns false if the text is no valid value
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
         if (or_auto && text == "auto") {
             config.*field = Value{};
@@ -131,9 +129,8 @@ struct number_parameter {
             return shortest(static_cast<double>(config.*field));
     }
 
-    /// Parses a text, and sets the parameter's field of the configuration; "auto" leaves it empty where that is
-    /// allowed.
-    /// @returns false if the text is none of the valid values (`values()`)
+    /// Parses a text into the parameter's field; "auto" leaves it empty where that is allowed.
+    /// @returns false if the text is no valid value
     [[nodiscard]] bool set(Config& config, std::string_view text) const {
         if (or_auto && text == "auto") {
             config.*field = Value{};

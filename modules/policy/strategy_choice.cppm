@@ -61,10 +61,9 @@ struct scene_traits {
     /// front takes about as long as two searches.
     static constexpr std::size_t fewest_frames_to_keep = 4;
 
-    /// The number of queries of two meshes from which a slower build is worth its cost: the build time added to all
-    /// meshes divided by the time saved per query. A query visits about 21 sqrt(n) pairs of nodes, where n is the
-    /// number of triangles of both meshes, as counted with meshes of 5,000 to 200,000 triangles. Meshes are assumed to
-    /// be of equal size.
+    /// The number of queries of two equally large meshes that repay a slower build: the added build time of both
+    /// divided by the time saved per query. A query visits about 21 sqrt(n) pairs of nodes for n triangles of both
+    /// meshes, as counted with meshes of 5,000 to 200,000 triangles.
     /// @param longer additional build time per triangle in nanoseconds
     /// @param share relative saving per query: 0.1 if queries take a tenth less
     [[nodiscard]] inline std::size_t queries_that_repay(double longer, double share) const {

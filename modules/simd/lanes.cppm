@@ -92,8 +92,7 @@ inline constexpr std::uint32_t every_lane = static_cast<std::uint32_t>((std::uin
 }
 
 /// Compress-store: writes the lanes whose bit is set to `to`, one after the other. `to` must have room for a whole
-/// vector, since the elements behind the stored lanes may be overwritten. AVX2 and AVX-512 need no loop.
-/// @param set bit i is set if lane i is stored
+/// vector, since the elements behind the stored lanes may be overwritten.
 /// @returns the number of stored lanes
 [[gnu::always_inline]] inline std::size_t compress_store(std::uint32_t* to, words v, std::uint32_t set) noexcept {
     const auto stored = static_cast<std::size_t>(std::popcount(set));
