@@ -16,10 +16,10 @@ struct column_group {
 /// than the first are marked. A group has boxes that begin there first, in the order of the input, on any threads.
 class column_groups {
 public:
-    /// Plans a grid whose cells are groups, each of which is later cut into columns. It divides the same two axes as
-    /// the columns (`plan.across`), in the same proportion, into about `plan.groups` cells, and no more than columns.
-    /// If fewer than half as many cells result, as for boxes along a line, the grid divides the axis along the columns
-    /// instead of the axis with fewer of them, which becomes `plan.axis`, the undivided axis.
+    /// Plans a grid whose cells are groups, to be cut into columns. It divides the columns' axes (`plan.across`) in the
+    /// same proportion, into about `plan.groups` cells, no more than columns. If fewer than half as many result, as for
+    /// boxes along a line, it divides the axis along the columns instead of the one with fewer cells, which becomes
+    /// `plan.axis`.
     [[nodiscard]] static column_plan group_grid(column_plan plan) {
         const double groups = plan.groups;
         const std::size_t fewer = plan.across[0] < plan.across[1] ? 0 : 1;  // the axis with fewer columns
@@ -44,13 +44,11 @@ public:
 
     void clear() noexcept { starts_.resize(1); }
 
-    /// Copies each box into all groups, cells of the grid `plan`, that it overlaps, by a parallel counting sort: the
-    /// threads count the boxes of their parts by group, prefix sums turn counts into start indices, and the threads
-    /// copy their parts.
+    /// Copies each box into all groups, cells of the grid `plan`, that it overlaps, by a parallel counting sort:
+    /// threads count their boxes by group, prefix sums turn counts into start indices, and the threads copy.
     /// @param ids ids of the boxes; empty if the index is the id
     /// @param most_in_group limit on the boxes of a group, copies included
-    /// @returns `complete`, or else there are no groups: `invalid` if a box is, `not_worthwhile` above this limit or
-    /// that on all copies
+    /// @returns `complete`, or without groups `invalid`, if a box is, or `not_worthwhile` above a limit on copies
     [[nodiscard]] fill_result distribute(std::span<const box> boxes, std::span<const std::uint32_t> ids,
                                          const column_plan& plan, std::size_t most_in_group, worker_threads& threads) {
         clear();
@@ -83,8 +81,7 @@ public:
 
     /// Total number of boxes over all groups.
     [[nodiscard]] std::size_t copies() const noexcept { return starts_.back(); }
-    /// Number of ordered pairs of boxes within groups, including each box with itself: n² of them without groups, so
-    /// that the difference measures what groups separate.
+    /// Number of ordered pairs of boxes within groups, each box with itself included: n² without groups.
     [[nodiscard]] double pairs() const noexcept {
         double sum = 0;
         for (std::size_t g = 0; g + 1 < starts_.size(); ++g) {
@@ -139,9 +136,8 @@ private:
     /// The limit on copies above which groups are not worth their cost.
     [[nodiscard]] static constexpr std::size_t most_copies(std::size_t boxes) noexcept { return 65'536 + 4 * boxes; }
 
-    /// The first pass of the counting sort, over one part of the boxes. By vectors, finds the cells of each box's lower
-    /// and upper corner, its first and its last group, and lists boxes for which these differ: they span several
-    /// groups. Then counts the boxes by group.
+    /// The first pass over a part: finds by vectors the groups of each box's lower and upper corner, lists the boxes
+    /// that span several groups, and counts the boxes by group.
     void find_groups(std::span<const box> boxes, std::size_t part_index) {
         part& p = parts_[part_index];
         const std::size_t length = (boxes.size() / parts_.size() + simd::width) / simd::width * simd::width;
@@ -176,8 +172,7 @@ private:
     }
 
     /// Counts by group the boxes of a part that begin there (`next`), and the copies of spanning boxes (`next_copy`).
-    /// `allocate_groups` turns these counts into the indices to write to. If there are too many copies, the result of
-    /// the part becomes `not_worthwhile`.
+    /// Too many copies make the part's result `not_worthwhile`.
     void count_boxes(part& p, std::size_t boxes) {
         std::size_t* const counts = p.next.data();
         for (const std::uint16_t group : std::span(first_group_of_box_).subspan(p.begin, p.end - p.begin))
@@ -194,8 +189,7 @@ private:
         }
     }
 
-    /// The second step of the counting sort: turns the parts' counts by group into the indices where each part writes,
-    /// by a prefix sum. Within a group, the boxes that begin in it precede the copies of others.
+    /// Turns the parts' counts into the indices where each writes; in a group, the boxes that begin in it come first.
     /// @returns whether no group exceeds the limit; if one does, all groups are discarded
     [[nodiscard]] bool allocate_groups(std::size_t most_in_group) {
         const std::uint32_t groups = plan_.columns();
@@ -226,9 +220,8 @@ private:
         return true;
     }
 
-    /// The last pass of the counting sort, over one part: reads each box once, in ascending order, and writes it to all
-    /// its groups. In groups after its first, bits in its id mark the axes on which it begins in an earlier one.
-    /// @param ids by index in `boxes`; empty if the index is the id
+    /// The last pass over a part: writes each box, in ascending order, to all its groups. In groups after its first,
+    /// bits in its id mark the axes on which it begins in an earlier one.
     void copy_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids, part& p) {
         std::size_t* const next = p.next.data();
         std::size_t* const next_copy = p.next_copy.data();
@@ -256,9 +249,8 @@ private:
         for (; i < p.end; ++i) write_to_first_group(i);
     }
 
-    /// Calls `visit(group, bits)` for the groups of box `s` of `spanning_boxes_` except its first: the cells
-    /// from (u0, v0), its first, to (u1, v1). The bits mark the axes on which the box begins in an earlier group: where
-    /// both boxes of a pair have the same bit, an earlier group reports the pair, so that only one group does.
+    /// Calls `visit(group, bits)` for the groups of spanning box `s` after its first. The bits mark the axes on which
+    /// it begins in an earlier group: an earlier group reports two boxes with the same bit, so that only one does.
     template <class Visit>
     void for_each_later_group(std::size_t s, Visit visit) const {
         const std::uint32_t u0 = first_cells_[s] & 0xffffU;

@@ -14,8 +14,7 @@ namespace aabb::simd::detail {
 /// Each lane holds two floats.
 using pairs = double __attribute__((vector_size(4 * width)));
 
-/// A step in transposing boxes, rows of six floats or three pairs: `a`, `b` and `c` hold `width / 2` such rows, one
-/// after another. Collects pair `K` of each row.
+/// Collects pair `K` of each row: `a`, `b` and `c` hold `width / 2` rows of three pairs, one after another.
 template <std::size_t K>
 [[nodiscard, gnu::always_inline]] inline pairs every_third(pairs a, pairs b, pairs c) noexcept {
     constexpr std::size_t half = width / 2;
@@ -26,8 +25,7 @@ template <std::size_t K>
     return shuffled<pairs, of_all>(from_first_two, c, std::make_index_sequence<half>{});
 }
 
-/// Transposes columns 2 `K` and 2 `K` + 1 of `width` rows of six floats: collects pair `K` of each row, and separates
-/// it into its two floats.
+/// Transposes columns 2 `K` and 2 `K` + 1 of `width` rows of six floats.
 /// @param columns output: columns[j] has float j of each row
 template <std::size_t K>
 [[gnu::always_inline]] inline void transpose_pair(const pairs (&rows)[6], floats* columns) noexcept {

@@ -11,9 +11,8 @@ export namespace aabb {
 /// behind the boxes of its column that begin earlier.
 class column_lists {
 public:
-    /// Puts boxes into columns, the cells of a grid on two axes, by a counting sort. A box has a copy in each column
-    /// that it overlaps. Within a column boxes are ordered by buckets, intervals of the third axis, along the column;
-    /// if the sort policy requires more, each column is then sorted by exact keys.
+    /// Puts boxes into all columns, cells of a grid on two axes, that they overlap, by a counting sort. Columns are
+    /// ordered by buckets, intervals of the third axis or, if the sort policy requires it, by exact keys.
     /// @param ids by index in `boxes`; empty if the index is the id
     /// @param by_keys whether to sort by exact keys even if the sort policy would accept unsorted buckets
     /// @param most_copies limit on the copies; beyond it the result is `not_worthwhile`
@@ -60,9 +59,8 @@ private:
         std::uint32_t buckets;  ///< offset to the bucket in the first column
     };
 
-    /// The first pass of the counting sort: quantizes the boxes, counts them by bucket, and lists the copies of those
-    /// that overlap several columns, in blocks that stay in the L1 cache meanwhile. The counts are in `ends_`;
-    /// `allocate_columns` turns them into start indices, and `write_entries` these into ends.
+    /// The first pass: quantizes the boxes, counts them by bucket (`ends_`), and lists the copies of those that overlap
+    /// several columns, in blocks that stay in the L1 cache meanwhile.
     [[nodiscard]] fill_result count_boxes(std::size_t most_copies) {
         quantized_.resize(block_.boxes.size() + width);
         copies_.clear();
@@ -80,9 +78,8 @@ private:
         return fill_result::complete;
     }
 
-    /// Quantizes boxes to the entries of their first columns, which run along `Axis`, by vectors: the quantized
-    /// corners, and the buckets of the column in which the box begins and ends. Boxes in several columns are listed in
-    /// `spanning_boxes_`.
+    /// Quantizes boxes by vectors to entries of their first columns, which run along `Axis`, and lists boxes in several
+    /// columns in `spanning_boxes_`.
     /// @param begin index of the first of these boxes
     /// @returns whether all boxes are valid
     template <int Axis>
@@ -164,9 +161,8 @@ private:
         return copies_.size() <= most_copies;
     }
 
-    /// Makes room for the entries, boxes in columns, and places the columns one after another: turns the counts of
-    /// their buckets (`ends_`) into start indices, and pads each column to a whole number of vectors with entries that
-    /// overlap nothing.
+    /// Places the columns one after another: turns the counts of their buckets (`ends_`) into start indices, and pads
+    /// each column to whole vectors with entries that overlap nothing.
     /// @returns the number of entries, including padding
     std::uint32_t allocate_columns() {
         const std::uint32_t columns = plan_.columns();
@@ -208,8 +204,7 @@ private:
         else
             write_entries([&](std::uint32_t i) { return block_.ids[i] & ~column_entry::index_mask; });
     }
-    /// The last pass of the counting sort: writes an entry for each box, in its first column, and for each copy.
-    /// `ends_[bucket]` is the index of the bucket's next entry, so that in the end it is the one behind its last.
+    /// Writes the entries of boxes and copies; `ends_[bucket]`, the next index, becomes the end of the bucket.
     /// @param group_bits returns the bits of `begins_earlier` that box i has in its group
     template <class GroupBits>
     void write_entries(GroupBits group_bits) {
@@ -226,9 +221,8 @@ private:
         }
     }
 
-    /// Sorts each column by the exact lower ends of its boxes, with the sort policy. A sweep tests an entry against
-    /// those after it, up to the index `ends_[end_bucket]`. Here each entry i gets a bucket of its own: its
-    /// `end_bucket` is i, and `ends_[i]` is the index of the first entry of the column that begins after its box ends.
+    /// Sorts each column by the exact lower ends, with the sort policy. Each entry i then gets a bucket of its own: its
+    /// `end_bucket` is i, and `ends_[i]` is the first entry of the column that begins after its box ends.
     template <class Sort, CounterPolicy Counters>
     void sort_columns(Sort& sort, Counters& counters) {
         column_ends_.assign(ends_.begin(), ends_.begin() + plan_.columns());

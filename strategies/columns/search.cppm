@@ -11,10 +11,9 @@ export namespace aabb {
 /// at rest but other boxes move, exponential back-off keeps ever fewer frames, down to one in 64.
 class static_frame {
 public:
-    /// Detects a frame in which nothing has moved. Compares it with the kept frame or, if there is none, decides
-    /// whether it is to be kept: if a sample of its boxes has not moved since the previous frame. Copying a frame costs
-    /// time, so after each that was kept in vain, ever more such frames are skipped (exponential back-off).
-    /// @returns whether no box has moved since the kept frame, so that `pairs` is still the result
+    /// Detects a frame in which nothing has moved since the kept one; if none is kept, keeps this one if a sample has
+    /// not moved. Copying costs time, so after frames kept in vain ever more are skipped (exponential back-off).
+    /// @returns whether `pairs` is still the result
     [[nodiscard]] bool is_still_valid(std::span<const box> boxes, const membership& objects) {
         const bool same_objects = objects.arrivals() == 0 && !objects.any_departures() && boxes.size() == size_;
         if (!boxes_.empty()) {
@@ -70,8 +69,7 @@ private:
 /// Brute-force search for few boxes: testing all pairs by vectors is faster than sorting or cutting.
 class brute_force_batch {
 public:
-    /// Loads the boxes into vectors of coordinates, one box per lane, and validates them.
-    /// @param group boxes in ascending order of ids
+    /// Loads the boxes, ascending by id, into vectors of coordinates, one box per lane.
     /// @returns whether all boxes are valid; otherwise `search` must not be called.
     [[nodiscard]] bool fill(const column_group& group) {
         group_ = group;
@@ -84,9 +82,8 @@ public:
         return simd::bits(invalid) == 0;
     }
 
-    /// Appends the overlapping pairs: tests each vector of boxes against all boxes before it, and each box of the
-    /// vector against those that follow in it, so that each pair is tested once. A test of one box against a vector
-    /// yields a mask of lanes, stored as a row if it is not 0.
+    /// Appends the overlapping pairs: tests each vector against all boxes before it, and each of its boxes against
+    /// those that follow in it. A test yields a mask of lanes, stored as a row if it is not 0.
     template <CounterPolicy Counters>
     void search(std::vector<index_pair>& pairs, Counters& counters) {
         const std::size_t n = group_.boxes.size();
@@ -135,8 +132,7 @@ private:
         std::uint32_t lanes;
     };
 
-    /// Appends the pairs of these rows, as ids, after one resize to the exact number of pairs. A row is a box and a
-    /// mask: if bit l is set, the box overlaps box `first` + l.
+    /// Appends the pairs of these rows, as ids: if bit l of a row's mask is set, its box overlaps box `first` + l.
     void append_pairs(std::span<const lane_overlaps> rows, std::vector<index_pair>& pairs) const {
         std::size_t next = pairs.size();
         std::size_t end = next;
@@ -163,7 +159,6 @@ private:
 template <SortPolicy Sort, ColumnPartition Partition, ColumnSweep Sweep, CounterPolicy Counters>
 class column_search {
 public:
-    /// Makes one worker per thread, all alike.
     column_search(Sort sort, Partition partition, Sweep sweep)
         : partition_(std::move(partition)),
           threads_(partition_.threads()),
@@ -276,8 +271,7 @@ private:
         std::size_t end = 0;
     };
 
-    /// Sets `present_`, the boxes of the present objects with their ids, which refers to copies only if some objects
-    /// are absent. Without ids, the index of a box is its id.
+    /// Sets `present_`, which refers to copies only if objects are absent; without ids, the index of a box is its id.
     void select_present(std::span<const box> boxes, const membership& objects) {
         present_ = {boxes, {}};
         if (objects.size() == boxes.size()) return;
@@ -298,8 +292,7 @@ private:
         return planned == 0 || plan_age_ + 1 == frames_per_plan || 8 * change > planned;
     }
 
-    /// Bounds of about 16 boxes at equal strides, by which a change of the scene is noticed. The strides are the same
-    /// in every frame with the same number of boxes.
+    /// Bounds of about 16 boxes at equal strides, the same in each frame, by which a change of the scene is noticed.
     [[nodiscard]] box bounds_of_sample() const noexcept {
         constexpr std::size_t sample_size = 16;
         box bounds = empty_box();
@@ -309,9 +302,8 @@ private:
         return bounds;
     }
 
-    /// Whether a plan made for the bounds `planned` no longer suits the scene: on any axis, the extent has grown by
-    /// half or shrunk by a third since, or the centre has moved by half of the extent. Short axes count as a 64th of
-    /// the longest one, as any motion would be large relative to a flat scene.
+    /// Whether the extent on an axis has grown by half or shrunk by a third since a plan was made, or the centre has
+    /// moved by half of it. Short axes count as a 64th of the longest one: any motion would be large in a flat scene.
     [[nodiscard]] static bool bounds_have_changed(const box& current, const box& planned) noexcept {
         const auto width_of = [](const box& b, int k) { return double{b.max[k]} - double{b.min[k]}; };
         const double longest = width_of(planned, longest_axis(planned));
@@ -360,8 +352,7 @@ private:
             for (std::uint32_t g = 0; g < groups_.size(); ++g) search_group(g, workers_.front(), pairs);
             return;
         }
-        // The first worker takes groups in ascending order, and appends their pairs to the result; the others take them
-        // in descending order, until all are taken.
+        // The first worker takes groups in ascending order, into the result; the others in descending order.
         for (worker& w : workers_) w.pairs.clear();
         group_pairs_.assign(groups_.size(), {});
         std::atomic<std::uint64_t> taken = 0;  // low u32: groups taken in ascending order; high u32: in descending
@@ -382,8 +373,7 @@ private:
         append_worker_pairs(pairs);
     }
 
-    /// Appends the pairs that all workers but the first have found, by group. The first worker has appended those of
-    /// the groups before, so the order of all pairs is that of the groups, whichever worker took them.
+    /// Appends the other workers' pairs by group: the order is that of the groups, whichever worker took them.
     void append_worker_pairs(std::vector<index_pair>& pairs) {
         std::size_t total = pairs.size();
         for (const worker& w : workers_) total += w.pairs.size();
@@ -399,8 +389,7 @@ private:
         w.searcher.search(partition_, groups_.group(g), groups_.region(g, everywhere), cut_.groups[g], pairs);
     }
 
-    /// Adds the workers' counts of work to `counters` and resets them. Each worker counts for itself, as they run in
-    /// parallel.
+    /// Adds the counts of the workers, which run in parallel, to `counters` and resets them.
     void collect_counters(Counters& counters) {
         if constexpr (Counters::enabled)
             for (worker& w : workers_) {

@@ -39,11 +39,10 @@ struct cut_plan {
     }
 };
 
-/// Puts boxes into groups, each of which is then cut into columns, if the plan has any: into the grid of an earlier
-/// frame or, if there is none or its fullest group has more than doubled, into a new one.
-///
-/// Groups are nested, so the recursion must terminate: each level must separate at least an eighth of all pairs of
-/// boxes. The work over all levels is then at most eight times that of brute force.
+/// Puts boxes into groups, which are then cut into columns, if the plan has any: into the grid of an earlier frame or,
+/// if there is none or its fullest group has more than doubled, into a new one. Groups are nested: each level must
+/// separate at least an eighth of all pairs of boxes, so that all levels take at most eight times the work of brute
+/// force.
 /// @param kept the plan of an earlier frame, and then that of this one
 /// @param make_plan returns a new plan
 /// @returns `not_worthwhile` if there are no groups
@@ -76,9 +75,8 @@ template <class MakePlan>
 /// Measures how long groups take to be cut and sorted, which counts as update, and to be swept.
 class phase_times {
 public:
-    /// Calls `cut` and `sweep` for a group, and adds their times. Reading a clock takes as long as processing a small
-    /// group, so only one group per 1024 boxes is timed, and its time is extrapolated to the untimed groups before it,
-    /// by their numbers of boxes.
+    /// Calls `cut` and `sweep` for a group, and adds their times. Reading a clock takes as long as a small group, so
+    /// only one group per 1024 boxes is timed, and extrapolated to those before it by their numbers of boxes.
     template <class Cut, class Sweep>
     void run(std::size_t boxes, const Cut& cut, const Sweep& sweep) {
         untimed_boxes_ += boxes;
@@ -124,7 +122,6 @@ public:
     /// into nested groups and searches each of them.
     /// @param within the region of the group, to which the plan is fitted
     /// @param kept the plan of an earlier frame, if there is one, and then that of this one
-    /// @param depth of the nesting
     void search(const Partition& partition, const column_group& group, const box& within, cut_plan& kept,
                 std::vector<index_pair>& pairs, std::size_t depth = 0) {
         if (group.boxes.size() < 2) return count(/*subsets=*/1, /*copies=*/group.boxes.size());

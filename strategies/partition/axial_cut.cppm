@@ -48,10 +48,9 @@ public:
     axial_cut_partition() = default;
     explicit axial_cut_partition(const config& c) : config_(c) {}
 
-    /// Chooses the axes to cut: the n axes of greatest variance, for the n that costs least. Axes without variance are
-    /// not cut. There is hysteresis, since similar axes would replace each other as boxes move, and a new list is
-    /// sorted from scratch: an axis is replaced only if the variance on another is 50% greater, and n changes only if
-    /// that costs 10% less.
+    /// Chooses the axes to cut: the n of greatest variance, for the n that costs least; none without variance. Similar
+    /// axes would alternate, each time with a new list to sort: so an axis is replaced only if the variance on another
+    /// is 50% greater, and n changes only if that costs 10% less.
     /// @param swept the axes along which the sweep needs sorted lists
     /// @returns the axes along which `fit` needs sorted lists
     axis_set axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
@@ -115,8 +114,7 @@ public:
         return count;
     }
 
-    /// Visits the subsets that a box overlaps, one for each combination of its segments on the three axes. Passes the
-    /// number of the subset, and the axes on which the box begins in it.
+    /// Visits the subsets that a box overlaps, a product of its segments, with the axes on which it begins there.
     template <class Visit>
     void for_each_subset(std::uint32_t id, const box&, Visit visit) const {
         const std::array<range, 3> ranges = ranges_of(id);
@@ -176,8 +174,7 @@ private:
         assert(std::ranges::adjacent_find(cuts, std::ranges::greater_equal{}) == cuts.end());
     }
 
-    /// Finds the first and last segment of each box on axis k: the numbers of cuts at or below its lower and its upper
-    /// end. The list is sorted by lower ends, so that one pass finds all first segments.
+    /// Finds each box's first and last segment on axis k: the numbers of cuts up to its lower and its upper end.
     void find_ranges(std::span<const box> boxes, std::span<const projection> list, std::size_t k) {
         const std::vector<float>& cuts = cuts_[k];
         std::size_t first = 0;
@@ -245,11 +242,10 @@ private:
         return cost_of_lists(along, swept) + machine_costs().cut_test * objects * objects / 2 * swept_share;
     }
 
-    /// The cheapest number of segments per axis, if it is not configured, in a model of n uniformly spread boxes of the
-    /// mean size. S segments of an axis make 1 + S · extent / width copies of a box, at most 2 with the limit. Within a
-    /// subset, each box is tested against those that overlap it on the swept axis. There are never more subsets than
-    /// boxes, so that no cost model can get a frame rejected.
-    /// @param cut the axes to cut
+    /// The cheapest number of segments per axis, if not configured, for n uniformly spread boxes of the mean size. S
+    /// segments make 1 + S · extent / width copies of a box, at most 2 with the limit; in a subset, a box is tested
+    /// against those that overlap it on the swept axis. Never more subsets than boxes, so that no cost model gets a
+    /// frame rejected.
     [[nodiscard]] candidate_cut cheapest_cut(const spread& along, axis_set cut, axis_set swept) const {
         const auto objects = static_cast<double>(along.objects);
         const vec3d share = shares_of(along);

@@ -55,8 +55,7 @@ public:
     columns_partition() = default;
     explicit columns_partition(const config& c) : config_(c) {}
 
-    /// Plans the columns of some boxes: the axis along which columns run, and their numbers on the other two axes, u
-    /// and v, that are cheapest in the model. Boxes are clipped to `within`.
+    /// The cheapest plan: the axis of columns, and their numbers on the other two. Boxes are clipped to `within`.
     [[nodiscard]] column_plan plan(std::span<const box> boxes, const box& within) const {
         if (boxes.empty()) return {};
         const sample seen = sample_of(boxes, within);
@@ -134,8 +133,7 @@ private:
         [[nodiscard]] box kept_box(std::size_t i) const {
             return {{ends[0][i], ends[1][i], ends[2][i]}, {ends[3][i], ends[4][i], ends[5][i]}};
         }
-        /// Adds the extents of a box, the areas of its faces and its volume to the sums, from which the means are
-        /// computed.
+        /// Adds a box's extents, face areas and volume to the sums.
         void add_extents(const box& b) {
             vec3d e{};
             for (int k = 0; k < 3; ++k) e[k] = std::max(0.0, double{b.max[k]} - double{b.min[k]});
@@ -152,8 +150,7 @@ private:
         }
     };
 
-    /// Measures a sample of the boxes: bounds without outliers, and mean extents, face areas and volume. Draws one
-    /// pseudorandom box from each stride, so that the sample does not depend on periodic orders of the boxes.
+    /// Measures a sample, one pseudorandom box per stride, so that it does not depend on periodic orders of the boxes.
     [[nodiscard]] static sample sample_of(std::span<const box> boxes, const box& within) {
         sample seen;
         std::array<std::array<float, samples + 1>, 6> ends;  // by axis: lower ends, then upper ends
@@ -195,9 +192,8 @@ private:
         return seen;
     }
 
-    /// Sets the bounds on axis k around the lower and upper ends of the sampled boxes, without outliers, which will
-    /// belong to the columns at the border. The outermost 64th or 8th on either side counts as outliers if the bounds
-    /// are less than a quarter as long without it.
+    /// Sets the bounds on axis k without outliers, which will belong to the columns at the border: the outermost 64th
+    /// or 8th on either side, if the bounds are less than a quarter as long without it.
     /// @returns whether outliers were excluded
     static bool set_bounds(box& bounds, int k, std::span<float> lower, std::span<float> upper) {
         const std::array<float, outlier_divisors.size()> first = bounds_without_outliers(lower, std::ranges::less());
@@ -246,9 +242,8 @@ private:
                                   : column_counts.back();
     }
 
-    /// The cost per box in nanoseconds of a plan, for uniformly spread boxes like the sample: placing a box's entries,
-    /// one in each column that it overlaps, and testing each of them by vectors against the entries of its column that
-    /// it overlaps along the column.
+    /// The cost per box in nanoseconds of a plan, for uniformly spread boxes like the sample: an entry in each column
+    /// that it overlaps, and tests by vectors against the entries that it overlaps along the column.
     [[nodiscard]] static double cost_of(const sample& seen, const column_plan& p, std::size_t boxes) {
         const cost_model& ns = machine_costs();
         const int u = p.axis_across(0), v = p.axis_across(1);
@@ -309,8 +304,7 @@ private:
         }
     };
 
-    /// Numbers of pairs of sampled boxes that share a column and a range of buckets in it, and of those among them that
-    /// only the exact test rejects.
+    /// Pairs of sampled boxes that share a column and a range of buckets, and those that only the exact test rejects.
     struct pair_counts {
         int met = 0;
         int rejected = 0;
@@ -341,10 +335,9 @@ private:
         return counts;
     }
 
-    /// Whether the boxes are clustered, so that groups of boxes get plans of their own: their tests, extrapolated from
-    /// pairs of the sample, cost more than the whole plan for uniformly spread boxes plus the cost of grouping.
-    /// Switching only at that point is 2-competitive: it takes at most about twice the time of the better choice,
-    /// whichever that is.
+    /// Whether the boxes are clustered, so that groups get plans of their own: their tests, extrapolated from the
+    /// sample, cost more than the plan for uniformly spread boxes plus the grouping. Switching only then is
+    /// 2-competitive: it takes at most about twice the time of the better choice.
     /// @param planned the cost per box of the plan
     [[nodiscard]] static bool are_clustered(const sample& seen, const column_plan& plan, std::size_t boxes,
                                             double planned) {

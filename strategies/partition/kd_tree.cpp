@@ -42,9 +42,8 @@ struct sampled {
         return *middle;
     }
 
-    /// The cost of a subset of `count` boxes within bounds: its entries, and a test for each pair of boxes that overlap
-    /// on the best swept axis. That is a share of about 2 e / w of all pairs, for boxes of mean extent e in bounds of
-    /// width w.
+    /// The cost of a subset: its entries, and a test for each pair of boxes that overlap on the best swept axis, a
+    /// share of about 2 e / w of all pairs, for boxes of mean extent e in bounds of width w.
     [[nodiscard]] double cost(double count, const box& within, axis_set swept) const {
         const cost_model& ns = machine_costs();
         double share = 1;
@@ -75,7 +74,6 @@ bool lies_right(const box& b, std::uint32_t axis, float plane) {
 }  // namespace
 
 /// Collects the present objects. A tree for other swept axes is discarded, since the costs of splits depend on them.
-/// @returns the axes whose sorted lists the partition needs: none
 axis_set kd_tree_partition::axes(std::span<const box> boxes, const membership& objects, axis_set swept) {
     is_tree_valid_ &= swept == swept_;
     swept_ = swept;
@@ -128,8 +126,7 @@ void kd_tree_partition::rebuild_all(std::span<const box> boxes) {
     build_subtree(boxes, /*first=*/0, ids_.size(), /*cell=*/all_space, /*depth=*/0);
 }
 
-/// Replaces the tree by a copy in which the subtrees at `stale_roots_` are rebuilt from their boxes: some of their
-/// nodes have many more or fewer boxes now than when they were built.
+/// Replaces the tree by a copy in which the subtrees at `stale_roots_` are rebuilt from their boxes.
 void kd_tree_partition::rebuild_stale(std::span<const box> boxes) {
     collect_stale_boxes();
     old_.swap(nodes_);
@@ -145,9 +142,8 @@ void kd_tree_partition::rebuild_stale(std::span<const box> boxes) {
     stale_roots_.clear();
 }
 
-/// Appends to `nodes_` a copy of the old subtree at node `old`, in which the subtrees at `stale_roots_` are rebuilt
-/// from their boxes. Notes the new index of each old node in `new_index_`; for all nodes of a rebuilt subtree, that is
-/// its new root.
+/// Appends a copy of the old subtree at `old`, with its stale subtrees rebuilt. `new_index_` gets the new index of each
+/// old node; for those of a rebuilt subtree, that of its root.
 void kd_tree_partition::copy_or_rebuild(std::span<const box> boxes, std::uint32_t old, std::size_t depth) {
     const auto self = static_cast<std::uint32_t>(nodes_.size());
     const auto root = std::ranges::lower_bound(stale_roots_, old);
@@ -246,9 +242,8 @@ bool kd_tree_partition::divide(std::span<const box> boxes, std::size_t first, st
     return true;
 }
 
-/// The cheapest split, by the cost of both sides, of a node's boxes ids_[first .. first + count) at the median of a
-/// sample's centres on one of the axes. No split (the axis is `is_leaf`) if that is cheaper, or the configured leaf
-/// size is not exceeded.
+/// The cheapest split of the boxes ids_[first .. first + count), at the median of a sample's centres on an axis. The
+/// axis is `is_leaf` if no split is cheaper, or the configured leaf size is not exceeded.
 kd_tree_partition::split kd_tree_partition::best_split(std::span<const box> boxes, std::size_t first,
                                                        std::size_t count) const {
     constexpr double never = std::numeric_limits<double>::infinity();
@@ -295,9 +290,8 @@ bool kd_tree_partition::place_boxes(std::span<const box> boxes) {
     return true;
 }
 
-/// Adds entries for all leaves that a box overlaps below node `from`, whose cell contains it. An entry has the leaf
-/// and, as bits, the axes on which the box's lower end lies in the leaf: of the leaves that two boxes share, the one
-/// where each axis is set for at least one of them reports the pair.
+/// Adds entries for all leaves that a box overlaps below node `from`. Bits mark the axes on which the box's lower end
+/// lies in the leaf: of two boxes' common leaves, the one where each axis is set for one of them reports the pair.
 /// @returns the lowest node whose cell contains the box
 inline std::uint32_t kd_tree_partition::place_box(const box& b, std::uint32_t from) {
     struct waiting {
@@ -330,8 +324,7 @@ inline std::uint32_t kd_tree_partition::place_box(const box& b, std::uint32_t fr
     }
 }
 
-/// Counts the copies of boxes below each node. A subtree is stale if their number has much changed since it was built:
-/// collects the roots of the subtrees to rebuild in `stale_roots_`.
+/// Counts the copies below each node, and collects the roots of subtrees to rebuild, whose number has much changed.
 void kd_tree_partition::find_stale_nodes() {
     copies_below_.resize(nodes_.size());
     for (std::size_t at = nodes_.size(); at-- > 0;) {
@@ -359,8 +352,7 @@ bool kd_tree_partition::is_stale(std::uint32_t at) const noexcept {
     return current > 2 * initial + 16 || 2 * current + 16 < initial;
 }
 
-/// Collects the subtrees to rebuild below a node that is not stale: their roots are the lowest nodes that are not stale
-/// but have a stale child, so that they can redistribute boxes among their children.
+/// Collects the roots to rebuild: the lowest nodes not stale with a stale child, so that they redistribute boxes.
 void kd_tree_partition::collect_stale_roots(std::uint32_t at) {
     if (nodes_[at].axis == is_leaf) return;
     const auto [left, right] = nodes_[at].children;
@@ -378,9 +370,8 @@ std::uint32_t kd_tree_partition::outermost_leaf(std::uint32_t at, std::size_t si
     return nodes_[at].children[0];
 }
 
-/// Lists the boxes below each stale root r, ascending by id, in ids_[boxes_begin_[r] .. boxes_end_[r]). A box has
-/// entries of several leaves, which ascend: those below a root are adjacent, so that comparison with the last root
-/// lists it once.
+/// Lists the boxes below each stale root r, ascending by id, in ids_[boxes_begin_[r] .. boxes_end_[r]). Entries of a
+/// box ascend by leaf, so that comparison with the last root lists it once.
 void kd_tree_partition::collect_stale_boxes() {
     root_of_leaf_.assign(leaves_, 0);
     boxes_begin_.resize(stale_roots_.size());

@@ -32,8 +32,7 @@ public:
     /// Needs no sorted lists: cells follow from the boxes alone.
     static axis_set axes(std::span<const box>, const membership&, axis_set) noexcept { return 0; }
 
-    /// Sets the cells: of the configured size, or of twice the mean longest extent, enlarged until there are at most
-    /// four per object.
+    /// Sets the cells: of the configured size, or twice the mean longest extent, grown to at most four per object.
     /// @throws input_error if there would be more than 2^26 cells.
     void fit(const whole_subset& scene) {
         // Every list that is kept has all present objects; the others are empty.
