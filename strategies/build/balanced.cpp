@@ -23,9 +23,8 @@ struct part {
 
 class balanced_order_builder {
 public:
-    /// Allocates the result and the scratch memory. The items of a build are the triangles with their boxes; they are
-    /// in two arrays, since each split moves its items from one array to the other.
-    /// @param rule how a split chooses its axis
+    /// Allocates the result and the scratch memory: two arrays of items, since a split moves its items to the other
+    /// one.
     balanced_order_builder(const mesh& m, axis_rule rule) : mesh_(m), rule_(rule) {
         const std::size_t n = m.triangles.size();
         both_arrays_.resize(2 * n);
@@ -35,13 +34,10 @@ public:
         order_.bounds.resize((n + leaf_triangles - 1) / leaf_triangles);  // one box per leaf
     }
 
-    /// Reads the triangles and splits them recursively down to leaves of eight.
-    /// @param threads number of threads, on which the result does not depend
-    /// @returns the triangles in the order of the leaves, and the leaves' boxes
+    /// Reads the triangles and splits them down to leaves of eight; the number of threads does not change the result.
     [[nodiscard]] balanced_order build(std::uint32_t threads) {
         worker_threads workers(threads);
         const std::size_t n = mesh_.triangles.size();
-        // Each thread reads `share_size` triangles at a time, and computes the box of these.
         std::vector<box> share_bounds((n + share_size - 1) / share_size);
         workers.for_each_range(n, share_size, [&](std::size_t begin, std::size_t end) {
             share_bounds[begin / share_size] = read_items(begin, end).as_box();
@@ -59,9 +55,7 @@ public:
     }
 
 private:
-    /// Fills the items of the triangles from `begin` to `end`. Each holds the triangle's box as one SIMD vector; the
-    /// upper ends are negated, so that one minimum of two vectors merges two boxes.
-    /// @returns the box of these triangles
+    /// Fills items and returns their box. Upper ends are negated, so that one minimum of two vectors merges two boxes.
     item_bounds read_items(std::size_t begin, std::size_t end) noexcept {
         item_bounds range;
         for (std::size_t t = begin; t < end; ++t) {
@@ -78,8 +72,7 @@ private:
         return range;
     }
 
-    /// Splits a range of triangles recursively down to leaves of eight, and writes each leaf to its place in the result
-    /// `order_`. The depth of the recursion is logarithmic, since the larger side of a split is a power of two.
+    /// Splits a part down to leaves of eight. Recursion is logarithmic: the larger side of a split is a power of two.
     void split_to_leaves(const part& p) {
         if (p.size() > leaf_triangles) {
             for (const part& side : split(p, single_thread_)) split_to_leaves(side);
@@ -106,8 +99,7 @@ private:
                 part{middle, p.end, bounds_of_items(to.subspan(left_count), workers), other}};
     }
 
-    /// The box of one side of a split. It is merged after the items were moved, when most are in a cache: merging while
-    /// they are moved is slower. Several threads merge `share_size` items at a time.
+    /// The box of a side, merged after its items were moved, when most are in a cache: merging meanwhile is slower.
     [[nodiscard]] static box bounds_of_items(std::span<const boxed_triangle> items, worker_threads& workers) {
         item_bounds bounds;
         if (workers.count() == 1) {
@@ -147,9 +139,9 @@ private:
         return best;
     }
 
-    /// Moves at most 64 items from `from` to `to`: the `left_count` of the left side first, then the others, each side
-    /// in its order in `from`. The mask of the split compares centres rounded to 16 bits; ties may put too many items
-    /// into it, of which the last by exact centres are then removed.
+    /// Moves at most 64 items to `to`, the `left_count` of the left side first, each side in its order. The split's
+    /// mask compares centres rounded to 16 bits; if ties put too many items into it, the last by exact centres are
+    /// removed.
     void split_few(std::span<const boxed_triangle> from, std::span<boxed_triangle> to, const box& bounds,
                    std::size_t left_count) const noexcept {
         auto [axis, left_mask] = best_split(few_items(from), bounds, left_count);
@@ -196,8 +188,7 @@ private:
         std::array<std::size_t, 3> next{};  // output positions below, in and above the bin that is split
     };
 
-    /// Moves many items from `from` to `to`, the `left_count` of the left side first. A single thread takes all items
-    /// as one share; several threads take shares of `share_size` items, of which the last is shorter.
+    /// Moves many items to `to`, the `left_count` of the left side first. Threads take shares of `share_size` items.
     /// @param bin_of_item scratch memory, one byte per item
     void split_many(std::span<boxed_triangle> from, std::span<boxed_triangle> to, const box& bounds,
                     std::size_t left_count, std::uint8_t* bin_of_item, worker_threads& workers) const {
@@ -213,8 +204,7 @@ private:
 
     /// Assigns each item to the bin floor((centre - low) * scale), clamped to the first and the last bin.
     /// @param scale bins per unit of length
-    /// @param bin_of_item receives the bin of each item
-    /// @returns the histogram: the number of items in each bin
+    /// @returns the number of items in each bin
     static std::array<std::uint32_t, bins> count_in_bins(std::span<const boxed_triangle> items, std::size_t axis,
                                                          float low, float scale, std::uint8_t* bin_of_item) noexcept {
         // Four histograms, used in turn: adjacent items mostly share a bin, so that increments of a single counter
@@ -236,10 +226,9 @@ private:
         return counts[0];
     }
 
-    /// Moves the items from `from` to `to`, the `left_count` first along an axis before the others, in two passes. The
-    /// first counts a histogram of their centres, which yields the bin that contains item `left_count` in the order of
-    /// centres. The second moves each item below, into or above that bin. Only the items of that bin are then split by
-    /// comparisons. Each side keeps the order of `from`.
+    /// Moves the items, the `left_count` first along an axis before the others, each side in its order. The first pass
+    /// counts a histogram of centres, which yields the bin of item `left_count`; the second moves each item below, into
+    /// or above that bin, whose items alone are split by comparisons.
     /// @param bin_of_item scratch memory, one byte per item
     /// @param shares the items of each unit of multithreaded work
     void split_by_histogram(std::span<boxed_triangle> from, std::span<boxed_triangle> to, const box& bounds,
@@ -286,10 +275,8 @@ private:
         split_by_selection(to.subspan(begin, size), from.subspan(begin, size), left_count - begin, axis);
     }
 
-    /// Splits items in place, the `left_count` first along the axis before the others, by selection of the element at
-    /// `left_count`. The order within each side is restored from a copy, since that of `nth_element` depends on the
-    /// standard library.
-    /// @param copy scratch memory for as many items
+    /// Splits items in place, the `left_count` first along the axis before the others, by selection. The order of each
+    /// side is restored from `copy`, scratch memory, since that of `nth_element` depends on the library.
     static void split_by_selection(std::span<boxed_triangle> items, std::span<boxed_triangle> copy,
                                    std::size_t left_count, std::size_t axis) {
         std::ranges::copy(items, copy.begin());

@@ -44,8 +44,7 @@ class item_bounds {
 public:
     inline void take(const boxed_triangle& item) noexcept { at_ = lesser(item); }
     inline void take(const item_bounds& other) noexcept { at_ = other.at_ < at_ ? other.at_ : at_; }
-    /// Grows this box to contain all items. Those at odd indices are merged into a second box, so that the two minima
-    /// of an iteration do not depend on each other.
+    /// Grows this box by all items, in two chains (even and odd indices), whose minima do not wait for each other.
     inline void take(std::span<const boxed_triangle> items) noexcept {
         item_bounds odd;
         std::size_t i = 0;
@@ -78,10 +77,9 @@ public:
     /// The sample size; trees built from larger samples are not faster to query.
     static constexpr std::size_t most = 256;
 
-    /// Samples every `step`-th item, and puts the centre of each along each axis into the bin
-    /// floor((centre - low) * bins / edge), where `low` is the lower end of the box and `edge` its length on that axis.
+    /// Puts the centre of every `step`-th item on each axis into the bin floor((centre - low) * bins / edge) of
+    /// `bounds`, the box of all items.
     /// @param items must outlive the sample
-    /// @param bounds the box of all items
     binned_items(std::span<const boxed_triangle> items, std::size_t step, const box& bounds) noexcept
         : items_(items), step_(step) {
         // Lanes 0 to 2 are the axes; the others are padding.
@@ -102,7 +100,7 @@ public:
         }
     }
 
-    /// For each axis, the surface-area cost of a split at the border between bins that leaves about `left_count` of the
+    /// The surface-area cost by axis of a split at the border between bins that leaves about `left_count` of the
     /// `count_` sampled items on the left: the sum over both sides of area times number of items.
     [[nodiscard]] std::array<double, 3> costs(std::size_t left_count) const noexcept {
         std::array<std::size_t, 3> end{};      // on each axis the first bin of the right side
@@ -169,8 +167,7 @@ public:
         return mask_by_vectors<1>(static_cast<std::int16_t>(number), axis);
     }
 
-    /// The surface-area cost of a split into the items whose bit is set in the mask and the others: the sum over both
-    /// sides of half the area of the side's box times the number of its items.
+    /// The surface-area cost of a split by a mask: the sum over both sides of half the area times the number of items.
     [[nodiscard]] inline double cost_of(std::uint64_t mask) const noexcept {
         // The padding repeats the last item, so it belongs to that item's side, whose box it does not enlarge.
         const std::uint64_t fill = count_ < most && (mask >> (count_ - 1) & 1) != 0 ? ~std::uint64_t{0} << count_ : 0;

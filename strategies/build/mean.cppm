@@ -8,8 +8,6 @@ import aabb.std;
 export namespace aabb {
 
 /// Splits at the mean of the centroids along the longest axis, or at the median if that leaves a side empty.
-/// @param range the elements of a node: its triangles with their boxes and centroids
-/// @param bounds the box of the node
 /// @returns the axis, and the number of elements on the left
 [[nodiscard]] split_choice mean_split(std::span<const build_element> range, const box& bounds) {
     const int axis = longest_axis(bounds);

@@ -30,7 +30,6 @@ private:
 
 /// Tries the splits between adjacent bins of centroids along the axis. If one costs less than `least_cost`, updates
 /// this and `best`. The cost is the sum over both sides of area times number of triangles (surface-area heuristic).
-/// @param range the elements of a node: its triangles with their boxes and centroids
 /// @param centroids the box of the centroids
 void try_sah_axis(std::span<const build_element> range, int axis, const box& centroids, double& least_cost,
                   split_choice& best) noexcept {

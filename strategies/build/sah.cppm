@@ -17,9 +17,8 @@ struct sah_build : top_down_build<sah_split, axis_rule::least_area> {
     static constexpr std::string_view name = "sah";
     static constexpr std::string_view summary = "splits by the surface-area heuristic, with 16 bins per axis";
 
-    /// Whether `auto` chooses this build for a scene, and the sentence that says why. The build takes longer than the
-    /// default one, `median`, but queries visit a twelfth fewer nodes; so many queries must be expected that they repay
-    /// the difference.
+    /// Whether `auto` chooses this build, and why. It takes longer than the default, `median`, but queries visit a
+    /// twelfth fewer nodes: enough queries must be expected to repay the difference.
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         if (scene.triangles == 0) return {.because = {{"no meshes: nothing is built"}}};
         constexpr double saving_per_query = 1.0 / 12;

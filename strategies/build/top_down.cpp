@@ -43,8 +43,7 @@ public:
     top_down_builder(const mesh& m, leaf_arrangement arrangement, const split_rule& split)
         : mesh_(m), arrangement_(arrangement), split_(split) {}
 
-    /// Reads the triangles and splits them recursively down to one triangle per leaf. The result does not depend on the
-    /// number of threads.
+    /// Splits the triangles down to one per leaf; the number of threads does not change the result.
     /// @returns the nodes in preorder: n leaves and n - 1 internal nodes for n triangles
     [[nodiscard]] std::vector<build_node> build(std::uint32_t threads) {
         worker_threads workers(threads);
@@ -62,9 +61,8 @@ public:
     }
 
 private:
-    /// Writes an internal node and partitions its elements, two or more, by the split rule. Nodes are in preorder: the
-    /// left child follows its parent, and the right child the 2 n - 1 nodes of the left subtree of n triangles.
-    /// @returns the elements and the places of both children, which are still to be built
+    /// Writes an internal node and partitions its elements, two or more. Nodes are in preorder: the left child follows
+    /// its parent, and the right child the 2 n - 1 nodes of the left subtree of n triangles.
     [[nodiscard]] std::array<task, 2> split_node(const task& t) {
         const std::span range = std::span(elements_).subspan(t.begin, t.size());
         const box bounds = bounds_of(range);

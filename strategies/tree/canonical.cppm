@@ -16,9 +16,8 @@ public:
     /// The index of an internal node, or with the top bit set that of a leaf.
     using cursor = std::uint32_t;
 
-    /// Lays out internal nodes and leaves in two arrays, and links the children. Nodes come in preorder: the left child
-    /// of node i is node i + 1. packed[i] is the cursor of node i: its index in its array, with a bit that marks
-    /// leaves.
+    /// Lays out internal nodes and leaves in two arrays. packed[i] is the cursor of node i: its index in its array,
+    /// with a bit that marks leaves.
     void pack(std::span<const build_node> nodes) {
         internals_.clear();
         leaves_.clear();

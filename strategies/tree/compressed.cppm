@@ -19,9 +19,8 @@ public:
 
     using leafless_layout::leafless_layout;
 
-    /// Lays out the internal nodes; each stores the boxes of its two children, as planes. Nodes above two leaves need
-    /// no planes, since leaves have no boxes: they are stored behind the others. packed[i] is the new index of node i,
-    /// or the triangle of a leaf.
+    /// Lays out the internal nodes with the planes of their children; nodes above two leaves need none, and come last.
+    /// packed[i] is the new index of node i, or the triangle of a leaf.
     void pack(std::span<const build_node> nodes) {
         // In preorder, the left child of node i is i + 1.
         const auto holds_leaves_only = [&](std::size_t i) {
@@ -74,9 +73,8 @@ public:
     [[nodiscard]] inline cursor root(const mesh& m) const noexcept {
         return nodes_.empty() && leaf_pairs_.empty() ? leaf_cursor(0, root_, m) : cursor{root_, 0};
     }
-    /// Decodes the boxes of a node's two children, from the node's box and the planes that it stores; nodes above two
-    /// leaves, which come last, store none. A leaf gets the box of its parent or, if the leaf test needs it, of its
-    /// triangle.
+    /// Decodes the boxes of a node's children from its box and planes; nodes above two leaves, which come last, have
+    /// none. A leaf gets the box of its parent or, if the leaf test needs it, of its triangle.
     [[nodiscard]] inline std::array<cursor, 2> children(const cursor& at, const mesh& m) const noexcept {
         const auto leaf = [&](std::uint32_t triangle) { return leaf_cursor(triangle, at.bounds, m); };
         if (at.index >= nodes_.size()) {

@@ -25,7 +25,7 @@ public:
 
     /// How a query reads the vertices of a leaf: from the leaf's own list, or through the mesh's triangles.
     enum class vertex_choice : std::uint8_t { listed, fetched };
-    /// Where a query starts: at the roots, or at pairs of leaves kept from earlier queries (BVTT front tracking).
+    /// The start of a query: at the roots, or at pairs of leaves kept from earlier queries (BVTT front tracking).
     enum class front_choice : std::uint8_t { forgotten, kept };
     struct config {
         vertex_choice vertices = vertex_choice::listed;
@@ -42,11 +42,10 @@ public:
     template <class Triangle, class Counters>
     using walk = front_walk<implicit_tree, Triangle, Counters>;
 
-    /// Chooses the settings for a scene. Vertices are fetched if there are few queries and the meshes are not large. To
-    /// write vertex lists takes about half as long as the build `sah` takes longer than `median`. They speed up a query
-    /// by a tenth if the two meshes have 150,000 triangles, whose vertices exceed the L2 cache, by less for fewer
-    /// triangles, and hardly if these fit into it. Fronts are kept over several frames, unless a frame has more pairs
-    /// of objects than the cache has fronts.
+    /// Chooses the settings for a scene. Vertices are fetched if queries are few and the meshes not large: writing
+    /// vertex lists takes about half of the time by which `sah` exceeds `median`, and saves a tenth of a query if both
+    /// meshes have 150,000 triangles, whose vertices exceed the L2 cache, less for fewer. Fronts are kept over several
+    /// frames, unless a frame has more pairs of objects than the cache has fronts.
     [[nodiscard]] static scene_fit fit(const scene_traits& scene) {
         constexpr double most_fetched_of_two = 200'000;
         constexpr std::size_t least_of_front = least_leaves_of_front * balanced_order::leaf_triangles;
@@ -78,9 +77,8 @@ public:
         std::uint32_t index;
     };
 
-    /// Builds the tree from an order of the triangles, eight per leaf: packs the triangles' indices in the mesh, writes
-    /// the vertex lists, and encodes the nodes, level by level from the leaves up. Indices are not stored if the order
-    /// is the mesh's.
+    /// Builds the tree from an order of the triangles, eight per leaf: packs their indices, unless the order is the
+    /// mesh's, writes the vertex lists, and encodes the nodes from the leaves up.
     void pack(const mesh& m, balanced_order order) {
         worker_threads workers(order.threads);
         triangles_ = static_cast<std::uint32_t>(order.triangles.size());
@@ -107,8 +105,7 @@ public:
         encode_nodes(order.bounds, workers);
     }
 
-    /// Recomputes all boxes and encodes the nodes anew, and rewrites the vertex lists if triangles have other vertices
-    /// now.
+    /// Recomputes all boxes, encodes the nodes anew, and rewrites vertex lists that no longer match.
     /// @param boxes working memory: the boxes of the triangles
     void refit(const mesh& m, std::vector<box>& boxes) {
         constexpr std::uint32_t in_leaf = balanced_order::leaf_triangles;
@@ -142,9 +139,8 @@ public:
         return {skip_single_children({at.height - 1, 2 * at.index}),
                 skip_single_children({at.height - 1, 2 * at.index + 1})};
     }
-    /// The box of a node of the binary tree, which has no box of its own: merges the children of a wide node that it
-    /// consists of. A wide node replaces three levels of the binary tree, so that a binary node consists of one, two,
-    /// four or eight of its children. A node within a leaf has the leaf's box.
+    /// The box of a binary node, merged of the one, two, four or eight children of a wide node that it consists of: a
+    /// wide node replaces three binary levels. A node within a leaf has the leaf's box.
     [[nodiscard]] inline box bounds(const cursor& at) const noexcept {
         const std::uint32_t height = std::max(at.height, leaf_height) - leaf_height;  // above the leaves
         const std::uint32_t index = at.height < leaf_height ? at.index >> (leaf_height - at.height) : at.index;

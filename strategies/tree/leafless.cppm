@@ -16,8 +16,7 @@ public:
 
     using leafless_layout::leafless_layout;
 
-    /// Lays out the internal nodes in preorder, in which a left child follows its parent, and links the children.
-    /// packed[i] is the new index of node i; for a leaf, it is the triangle with a bit that marks leaves.
+    /// Lays out the internal nodes in preorder. packed[i] is the new index of node i, or a leaf's triangle and a bit.
     void pack(std::span<const build_node> nodes) {
         nodes_.clear();
         nodes_.reserve(nodes.size() / 2);

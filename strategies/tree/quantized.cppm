@@ -31,10 +31,9 @@ public:
     quantized_tree() = default;
     explicit quantized_tree(const config& c) : leafless_layout(c), planes_(c.bits) {}
 
-    /// Lays out the nodes in one pass, and encodes them in a second one. Codes are relative to the decoded box of the
-    /// parent, which comes first. packed[i] is the first byte of node i, or the triangle of a leaf. A node above two
-    /// leaves (`pair_bytes`) has two triangles, marked by `pair_bit`; any other node is a record of an index, a symbol
-    /// and codes.
+    /// Lays out the nodes, then encodes them relative to the decoded box of the parent, which comes first. packed[i] is
+    /// the first byte of node i, or the triangle of a leaf. A node above two leaves (`pair_bytes`) has two triangles,
+    /// marked by `pair_bit`; any other node is a record of an index, a symbol and codes.
     /// @throws input_error if the nodes take more than 2 GiB
     void pack(std::span<const build_node> nodes) {
         // In preorder, the left child of node i is i + 1.

@@ -30,7 +30,6 @@ public:
 
     /// Encodes six planes as codes of `bits_` bits. A code is the greatest number of steps inward from the parent's
     /// plane that does not cut a child; a step is 2^-bits of the parent's extent.
-    /// @param parent the decoded box of the parent, which contains both children
     /// @param codes gets the packed codes, `bytes()` bytes
     void encode(const box& parent, const sibling_planes& planes, std::byte* codes) const noexcept {
         // words[0] has the codes of the lower planes, words[1] those of the upper planes.

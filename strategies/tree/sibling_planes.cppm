@@ -32,9 +32,8 @@ inline constexpr std::uint8_t plane_bits = 0b11'1111;
     return static_cast<std::uint8_t>(64U << side);
 }
 
-/// Encodes the boxes of two siblings. Their union is the parent's box, so that each plane of the parent is also one of
-/// a child, which inherits it: only the other child's plane is stored. Bit k of the symbol is set if the left child has
-/// its own plane k; the symbol's leaf flags stay.
+/// Encodes two siblings. Their union is the parent's box: a child inherits each of its planes, so only the other
+/// child's is stored. Bit k of the symbol is set if the left child has its own plane k; the symbol's leaf flags stay.
 constexpr void encode_siblings(const box& left, const box& right, sibling_planes& planes,
                                std::uint8_t& symbol) noexcept {
     symbol &= static_cast<std::uint8_t>(~plane_bits);
@@ -47,8 +46,7 @@ constexpr void encode_siblings(const box& left, const box& right, sibling_planes
     }
 }
 
-/// Decodes the boxes of the left and the right child: one inherits each plane of the parent, the other has its own. Bit
-/// k of the symbol is set if the left child has its own plane k.
+/// Decodes two siblings, the left one first. Bit k of the symbol is set if the left child has its own plane k.
 [[nodiscard]] constexpr std::array<box, 2> decode_siblings(const box& parent, const sibling_planes& planes,
                                                            unsigned symbol) noexcept {
     std::array<box, 2> boxes{};

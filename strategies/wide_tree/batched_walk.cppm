@@ -36,9 +36,8 @@ public:
         find_all_pairs(test, m, m, pose_relative_to(m, {}, m, {}), query_kind::one_mesh, emit);
     }
 
-    /// Appends the BVTT front of this pose, from which later queries start instead of the roots: the pairs of leaves
-    /// with triangles within a margin of each other, up to the rounding of B's vertices (`rounding_bound`), each with a
-    /// mask of these pairs of triangles.
+    /// Appends the BVTT front of this pose, where later queries start: pairs of leaves with triangles within a margin
+    /// of each other, up to `rounding_bound`, each with a mask of these pairs of triangles.
     /// @returns false if there are more than `most_pairs`, where it stops
     [[nodiscard]] bool collect_front(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                                      double margin, std::size_t most_pairs, std::vector<front_pair>& pairs) {
@@ -54,8 +53,7 @@ public:
         return !descend_to_leaves(a, b, to_a, query_kind::two_meshes, margin, collect);
     }
 
-    /// Passes intersecting pairs of triangles to `emit` as `find_pairs`, but tests only the pairs of triangles in a
-    /// front.
+    /// Works as `find_pairs`, but tests only the pairs of triangles in a front.
     /// @param pairs the front: pairs of leaves, each with a mask of the pairs of triangles to test
     /// @param leaves reads these leaves, and caches them during the query
     template <class Emit>
@@ -137,9 +135,8 @@ private:
         nearest_.for_each_leaf_pair(a, b, to_a, counters_, test_pair);
     }
 
-    /// Prepares the caches of leaves, when a query comes to the first leaves: one of distant meshes needs none. An
-    /// inexact test gets only triangles whose boxes in float overlap: its result must not depend on the rounding of
-    /// quantized boxes.
+    /// Prepares the caches at the first leaves of a query: distant meshes need none. An inexact test gets only
+    /// triangles whose boxes in float overlap, since its result must not depend on quantized boxes.
     void begin_leaves(const query& test, const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a,
                       query_kind kind) {
         leaf_pairs_.begin(a, b, to_a,
@@ -147,10 +144,9 @@ private:
                           test.greatest_error());
     }
 
-    /// Descends both trees at once to the pairs of leaves whose boxes overlap. `pairs_` has the pending pairs by step
-    /// of the descent; at the last step they are pairs of leaves. Each iteration takes a batch of the last step that
-    /// has pending pairs, so that few are pending at a time: it opens the nodes for the next step, or passes on all
-    /// pairs of leaves.
+    /// Descends both trees at once to the pairs of leaves whose boxes overlap. Each iteration takes a batch of the last
+    /// step that has pending pairs (`pairs_`), so that few are pending: it opens the nodes for the next step, or passes
+    /// on all pairs of leaves.
     /// @param margin the distance up to which boxes count as overlapping
     /// @param at_leaves called with a batch of pairs, as leaves of A and leaves of B; returns whether to stop
     /// @returns whether `at_leaves` stopped the walk
@@ -196,9 +192,8 @@ private:
         };
     }
 
-    /// Opens the node pairs `begin` to `end` of a step: appends their overlapping pairs of children to the next step. A
-    /// step opens both nodes of a pair or only the higher one; the other one stays in place of its children. Child i of
-    /// node n is node 8 n + i of the level below.
+    /// Opens the node pairs `begin` to `end` of a step: appends overlapping pairs of children to the next step. A step
+    /// opens both nodes or only the higher one. Child i of node n is node 8 n + i of the level below.
     void open_nodes(const Tree& a, const Tree& b, query_kind kind, std::size_t step, std::size_t begin,
                     std::size_t end) {
         const wide_node* const nodes_a = a.level(steps_[step].a - 1);

@@ -25,9 +25,8 @@ public:
         }
     }
 
-    /// Stores for each child of a node a box in the other frame that contains the image of the child's box: R c + shift
-    /// is its centre, |R| h + margin are its half extents, for the centre c and the half extents h of the child's box.
-    /// The margin covers all rounding errors. The motion's part of it is for vertices, and has room for planes, which
+    /// Stores for each child a box in the other frame that contains its image: centre R c + shift, half extents |R| h +
+    /// margin, for its centre c and half extents h. The motion's margin is for vertices, and has room for planes, which
     /// lie further out by a 60th of the node, 2^-22 of the coordinate or the smallest step; `least` covers the rest.
     void store(const wide_node& n, eight_boxes& to) const noexcept {
 #pragma clang fp contract(fast)
@@ -78,8 +77,7 @@ public:
         cached_nodes_.fill(no_node);
     }
 
-    /// The boxes of the node's children in the other frame, from the cache or transformed now. A node's slot in the
-    /// cache is its number modulo the number of slots, a power of two.
+    /// The children's boxes in the other frame, cached in the slot of the node's number modulo the number of slots.
     [[nodiscard]] inline const eight_boxes& of(const wide_node& n) {
         const auto number = static_cast<std::uint32_t>(&n - first_);
         const std::size_t slot = number & (boxes_.size() - 1);

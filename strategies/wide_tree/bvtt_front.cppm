@@ -58,11 +58,10 @@ public:
         bool is_valid;                 ///< whether the pairs are valid for this query
         std::optional<double> margin;  ///< the margin of a new front, if one is worth its cost
     };
-    /// Records a query, and decides whether the front serves it, or a new front is worth its cost; otherwise the caller
-    /// walks from the roots. An invalid front is dropped. A new one is built after two such queries in a row that moved
-    /// B little and changed neither mesh, but later after fronts that served too few queries. A front of margin m lasts
-    /// about m / step queries (`step`: B's motion between two queries), and has more pairs if m is larger: the best m
-    /// grows with sqrt(step).
+    /// Records a query, and decides whether the front serves it, or a new one is worth its cost; otherwise the caller
+    /// walks from the roots. A front is built after two queries in a row that moved B little and changed neither mesh,
+    /// later after fronts that served too few. A front of margin m lasts about m / step queries, and a larger m adds
+    /// pairs: the best m grows with sqrt(step), where `step` is B's motion between two queries.
     /// @param motion the pose of B in A's frame
     /// @param bounds the box of B's vertices, in B's frame
     /// @param leaf_size the edge length of a leaf
@@ -173,9 +172,8 @@ private:
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])};
     }
 
-    /// Finds the front of a query, or adds one, and returns its index. The front behind the last one is tried first,
-    /// since objects are mostly queried in the same order. Of the others, the centres of B's boxes are compared, eight
-    /// at a time, and those that have moved by no more than `near` on any axis are compared in full.
+    /// Finds or adds the front of a query: first the one behind the last, since objects mostly come in the same order,
+    /// then, compared eight at a time, those whose centre of B's box is within `near` on each axis.
     /// @param centre the centre of B's box in A's frame
     [[nodiscard]] std::size_t index_of(const model_pair& models, const box_motion& motion, const box& bounds,
                                        double near, const std::array<float, 3>& centre) {
@@ -205,8 +203,7 @@ private:
         return front;
     }
 
-    /// Adds a front, and returns its index. A full cache evicts one by the clock algorithm: the hand passes fronts that
-    /// were reused since it last passed them, and takes the first that was not.
+    /// Adds a front. A full cache evicts one by the clock algorithm: the first not reused since the hand passed it.
     [[nodiscard]] std::size_t add_front(const model_pair& models) {
         std::size_t added = fronts_.size();
         if (added < most) {

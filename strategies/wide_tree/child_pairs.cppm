@@ -27,9 +27,8 @@ public:
         std::uint64_t mask;
     };
 
-    /// Returns, in order, those of up to `most_at_once` pairs of nodes that have overlapping children, with a bit mask
-    /// of the pairs of children. There are no false negatives. All nodes are prefetched first, so that their cache
-    /// misses overlap, and each test runs over all pairs before the next one starts, which avoids branch
+    /// Returns, in order, the pairs of nodes, at most `most_at_once`, with overlapping children, and masks of these; no
+    /// false negatives. Nodes are prefetched, and each test runs over all pairs, against cache misses and
     /// mispredictions.
     /// @param nodes_a,nodes_b the nodes of a level of each tree
     /// @param a,b pair p is of the nodes at the indices a[p] and b[p]

@@ -79,8 +79,7 @@ private:
         if (!front.hit) static_cast<void>(builds_front());
     }
 
-    /// Emits the pair of triangles that the last first-pair query reported, if it still intersects, or forgets it.
-    /// @returns whether it was emitted
+    /// Emits the last reported first pair if it still intersects, or else forgets it; returns whether it was emitted.
     template <class Emit>
     [[nodiscard]] bool emit_last_hit(const query& test, const model<Tree>& a, const model<Tree>& b,
                                      const relative_pose& to_a, bvtt_front& front, const Emit& emit) {

@@ -54,9 +54,8 @@ using eight_selected_floats = float __attribute__((vector_size(32)));
     return _mm512_castps512_ps256(_mm512_permutexvar_ps(at, _mm512_loadu_ps(from)));
 }
 
-/// Sets bit 8 j + i where column i of `a` and column j of `b` share a number; both have three rows of eight, as the
-/// vertices of eight triangles by corner. Each comparison is of two copies of a row of `a` with two numbers of `b`,
-/// each broadcast to eight lanes.
+/// Sets bit 8 j + i where column i of `a` and column j of `b` share a number; both have three rows of eight. Each
+/// comparison is of two copies of a row of `a` with two numbers of `b`, each broadcast to eight lanes.
 [[nodiscard, gnu::always_inline]] inline std::uint64_t columns_with_shared_number(const void* a,
                                                                                   const void* b) noexcept {
     const __m512i first_two = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);

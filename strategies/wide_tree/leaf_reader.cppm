@@ -26,8 +26,7 @@ public:
     /// Releases all claims. The missing leaves of the previous group must have been read.
     void begin_group() noexcept { ++group_, missing_count_ = 0; }
 
-    /// Reserves a slot of the cache for a leaf that the current group of pairs needs. A leaf that is not cached is
-    /// listed as missing, to be read into the slot afterwards.
+    /// Reserves a slot for a leaf of the current group of pairs, and lists it as missing if it is not cached.
     /// @returns false if another leaf of the group occupies the slot, which ends the group
     [[nodiscard]] inline bool claim(std::uint32_t leaf) noexcept {
         const std::size_t slot = slot_of(leaf);
@@ -72,8 +71,7 @@ public:
     /// Forms the next group of pairs: reserves slots in both caches for its leaves, up to the first leaf that finds no
     /// slot, and prefetches the vertex lists of the leaves that are not cached. The previous group must have been read;
     /// its leaves stay valid until the next group is read.
-    /// @param begin the first pair of the group
-    /// @param end the end of all pairs
+    /// @param begin,end the remaining pairs
     /// @param pair_at returns the leaves of pair i, in A's tree and in B's
     /// @returns the end of the group
     template <class LeafOfA, class LeafOfB, class PairAt>
@@ -127,7 +125,6 @@ template <WideTreePolicy Tree>
 class front_leaves {
 public:
     /// Passes on the pairs of a front in order, a group of pairs at a time whose leaves fit into the caches.
-    /// @param reader a reader, which others may share
     /// @param take called with a pair and the triangles of both leaves; returns whether to stop
     /// @returns whether `take` stopped
     template <class Take>

@@ -11,10 +11,9 @@ export namespace aabb {
 /// it is much thinner than their boxes. A triangle outside intersects none of them.
 class leaf_slab {
 public:
-    /// Fits the slab to a leaf: the range of its corners' heights along the mean normal, relative to a corner of the
-    /// leaf, inflated by the errors of the leaf's heights and of those that are compared. It stays infinite if these
-    /// could overflow.
-    /// @param edges extents of a box around the leaf's vertices and all that are compared with the slab
+    /// Fits the slab to a leaf: the range of its corners' heights along the mean normal, relative to a corner, inflated
+    /// by the errors of all compared heights. It stays infinite if these could overflow.
+    /// @param edges extents of a box around the leaf's vertices and those compared with the slab
     /// @param margin by which the slab is inflated along each axis
     void fit(const triangle_block& block, const std::array<float, 3>& edges, float margin = 0) noexcept {
         set_normal(block);

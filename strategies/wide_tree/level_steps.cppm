@@ -17,8 +17,7 @@ public:
         friend bool operator==(const heights&, const heights&) = default;
     };
 
-    /// Lists the heights of both nodes at each step, from these roots to two leaves: each step opens the higher node,
-    /// or both if they have equal height. The list is kept if the last query had roots of the same heights.
+    /// Lists the heights from the roots to two leaves: each step opens the higher node, or both of equal height.
     void begin(heights roots) {
         if (!steps_.empty() && steps_.front() == roots) return;
         // Reserves first, so that a failed allocation leaves the old steps intact.

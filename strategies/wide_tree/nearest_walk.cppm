@@ -64,9 +64,8 @@ struct nearest_places {
 template <WideTreePolicy Tree>
 class nearest_walk {
 public:
-    /// Visits pairs of leaves whose boxes may overlap, those first that most likely intersect: descends to the nearest
-    /// pair of children, postpones the other pairs, by step, and goes some steps back after leaves that do not
-    /// intersect.
+    /// Visits first the pairs of leaves that most likely intersect: descends to the nearest pair of children, postpones
+    /// the others, by step, and goes some steps back after leaves that do not intersect.
     /// @param at_leaves called with a leaf of A and one of B; returns whether to stop
     template <class Counters, class AtLeaves>
     void for_each_leaf_pair(const model<Tree>& a, const model<Tree>& b, const relative_pose& to_a, Counters& counters,
@@ -186,8 +185,7 @@ private:
         postponed_steps_ |= bit(step);
     }
 
-    /// Pops one pair of nodes that `postpone` has stored for the step, from its last entry: a mask of pairs of children
-    /// of two nodes. An entry without further pairs is dropped.
+    /// Pops a pair of nodes from the step's last entry, and drops the entry with its last pair.
     [[nodiscard]] inline node_pair pop(std::size_t step) noexcept {
         postponed_stack& stack = stacks_[step];
         postponed_children& entry = stack.entries[stack.size - 1];

@@ -14,9 +14,8 @@ public:
     void clear() noexcept { pairs_ = leaf_pairs_ = 0; }
     [[nodiscard]] bool is_full() const noexcept { return pairs_ + most_per_leaf_pair > capacity; }
 
-    /// Adds the pairs in the mask (bit 8 j + i for triangle i of `a` and j of `b`), not zero: copies their corners to
-    /// the rows of the queue, eight pairs at a time, by permutations, and stores where they come from, for `emit`.
-    /// `is_full` must not hold.
+    /// Adds the pairs in the mask (bit 8 j + i for triangle i of `a` and j of `b`), not zero, unless `is_full`: copies
+    /// their corners to the queue by permutations, eight pairs at a time, and stores where they come from, for `emit`.
     inline void add(std::uint64_t mask, std::uint32_t leaf_a, const triangle_block& a, std::uint32_t leaf_b,
                     const triangle_block& b) noexcept {
         alignas(64) std::array<std::uint8_t, most_per_leaf_pair> bits{};
@@ -103,8 +102,7 @@ private:
             std::copy_n(&a_[row][done], simd::width, a_[row].data());
             std::copy_n(&b_[row][done], simd::width, b_[row].data());
         }
-        // An origin has the index of a pair of leaves. Pairs of leaves before that of the first remaining pair are
-        // dropped, too, and the indices shifted.
+        // Drops the pairs of leaves before that of the first remaining pair, and shifts the origins' indices.
         const std::uint32_t first = origin_[done] >> pair_bits;
         simd::store(origin_.data(), simd::load(&origin_[done]) - (first << pair_bits));
         leaf_pairs_ -= first;

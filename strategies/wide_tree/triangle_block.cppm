@@ -48,9 +48,8 @@ struct triangle_block {
 private:
     using columns = std::array<simd::eight_floats, 3>;
 
-    /// Reads the leaf's distinct vertices, at most sixteen, transforms each once, and distributes them to the
-    /// triangles' corners by permutations: `list.positions[c]` has the positions of the triangles' corners c in the
-    /// list.
+    /// Reads the leaf's distinct vertices, at most sixteen, transforms each once, and distributes them to corners by
+    /// permutations: `list.positions[c]` has the positions of the triangles' corners c in the list.
     /// @param change transforms eight points, given as three vectors of coordinates
     template <class Tree, class Change>
     inline void load(const mesh& m, const Tree& tree, std::uint32_t leaf, const vertex_list& list,

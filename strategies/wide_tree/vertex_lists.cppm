@@ -81,7 +81,6 @@ public:
     }
 
     /// Whether the list still has the corners of the leaf's triangles: a mesh may renumber its vertices.
-    /// @param of_leaf the leaf's triangles
     [[nodiscard]] bool matches(const mesh& m, std::uint32_t leaf,
                                std::span<const std::uint32_t> of_leaf) const noexcept {
         vertex_list list;
@@ -106,7 +105,7 @@ private:
     /// Writes the list of one leaf: one byte for the number of vertices, 0 if there are more than sixteen; for each
     /// corner, the positions of the eight triangles' vertices in the list, in 4 bits each; and the indices of the
     /// vertices, ascending.
-    /// @param of_leaf the leaf's triangles, the last of which pads them to eight
+    /// @param of_leaf the leaf's triangles, padded to eight by the last
     /// @returns the end of the list
     std::byte* write_list(const mesh& m, std::span<const std::uint32_t> of_leaf, std::byte* to) const {
         constexpr std::size_t corners = 3 * triangles;
