@@ -27,9 +27,8 @@ export namespace aabb {
 class growth_of_pairs {
 public:
     growth_of_pairs() = default;
-    /// Sums the polynomial (e0 + x) (e1 + x) (e2 + x) over pairs of successive boxes in a random sample. Here ek is the
-    /// sum of both extents of a pair on axis k, and x the growth of that sum, four margins. An axis on which boxes lie
-    /// closer than their extents has no factor: they overlap there anyway.
+    /// Sums the polynomial (e0 + x) (e1 + x) (e2 + x) over pairs of successive sampled boxes: ek is the sum of both
+    /// extents on axis k, x its growth, four margins. An axis on which boxes lie closer than that sum has no factor.
     explicit growth_of_pairs(std::span<const box> sample) {
         vec3d lengths{};
         box lower_corners = empty_box();
@@ -151,7 +150,6 @@ inline constexpr double worth_a_list = 0.9;
 
 /// Whether shortening a Verlet list is worth its cost, assuming that it saves half of the tests in each further frame:
 /// the shortening itself takes time, and the shorter list ends sooner, so that the next one is made sooner.
-/// @param pairs number of overlapping pairs
 /// @param tested number of listed pairs that each frame tests
 /// @param frames number of frames that the list still serves
 [[nodiscard]] inline bool is_shortening_worth_it(std::size_t boxes, std::size_t pairs, std::size_t tested,
@@ -172,9 +170,8 @@ inline constexpr double worth_a_list = 0.9;
     return certain * frames_left > 2 * static_cast<double>(listed);
 }
 
-/// The plan of a Verlet list with the least cost per frame; of plans within 1% of it, the one for the most frames,
-/// since motion may be underestimated. A list that serves more frames is made less often, but needs a greater margin,
-/// so that it has more pairs to test in each. Costs are relative to searching a frame without a list.
+/// The plan of least cost per frame, relative to a search; of plans within 1%, the one for the most frames, since
+/// motion may be underestimated. A list for more frames is made less often, but its greater margin adds pairs to test.
 /// @param worth a list must cost less than this share of a search per frame
 [[nodiscard]] inline list_plan plan_list(const list_estimate& estimate, double worth = worth_a_list,
                                          const cost_model& cost = machine_costs()) {

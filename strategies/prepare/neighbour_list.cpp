@@ -61,9 +61,8 @@ public:
         search_->remove(id);
     }
 
-    /// Chooses how to find the pairs of this frame: by a search, or from a Verlet list, the pairs of an earlier frame
-    /// whose boxes, grown by a margin, overlapped. The table `actions` states the choice by what is kept (`state_`) and
-    /// how boxes have moved since (`observation`).
+    /// Finds the pairs of this frame by a search, or from a Verlet list: the pairs whose boxes, grown by a margin,
+    /// overlapped earlier. `actions` chooses by what is kept (`state_`) and how boxes have moved since (`observation`).
     void update(std::span<const box> boxes) override {
         frame_.begin();
         require_ieee_arithmetic();
@@ -135,7 +134,7 @@ public:
         return parts;
     }
     [[nodiscard]] double share_of_update() const override { return share_of_update_; }
-    /// For `explain`: the plans of the search, and whether a list or earlier pairs serve this frame.
+    /// Reports to `explain` the plans of the search, and whether a list or earlier pairs serve this frame.
     [[nodiscard]] std::vector<stage_plan> plans() const override {
         std::vector<stage_plan> stage_plans = search_->plans();
         if (state_ == state::listing)
@@ -148,7 +147,7 @@ public:
         return stage_plans;
     }
 
-    /// For `explain`: what the search leaves out, and why no list is kept, if none is.
+    /// Reports to `explain` what the search leaves out, and why no list is kept, if none is.
     [[nodiscard]] std::vector<omission> left_out() const override {
         std::vector<omission> absent = search_->left_out();
         if (!keeps_pairs()) absent.push_back({absence::neighbour_list, why_no_list()});
@@ -175,9 +174,8 @@ private:
     /// Whether the pairs marked as certain are guaranteed to overlap in this frame.
     [[nodiscard]] bool certain_pairs_hold() const noexcept { return moved_.in_both_directions <= margin_; }
 
-    /// Estimates how many frames the next list can serve: until an object is inserted, which ends every list, or until
-    /// the last expected frame. The next insertion is expected after the interval between the last two or, if that has
-    /// passed, after as many frames as have passed since the last one.
+    /// Estimates how many frames the next list can serve: until the next insertion, which ends every list, or the last
+    /// frame. It is expected after the interval between the last two or, once that has passed, as long again.
     /// @param any whether an object was inserted for this frame
     void record_arrivals(bool any) noexcept {
         if (any && frames_ > 0) between_arrivals_ = since_arrival_;
@@ -190,8 +188,7 @@ private:
                              .in_new_memory = grown_.capacity() == 0};
     }
 
-    /// What the motion of the boxes since they were kept means for the kept pairs: above all whether these are still
-    /// complete. The motion is measured only where this result or the next list depends on it.
+    /// What motion since the boxes were kept means for the kept pairs; measured only where something depends on it.
     [[nodiscard]] observation observe_motion(std::span<const box> boxes, bool any_arrivals) {
         if (state_ == state::nothing) return observation::changed;
         if (state_ == state::searching) return observe_sample(boxes);
@@ -263,8 +260,7 @@ private:
         return next_list{.frames = 0, .margin = is_far_too_long(boxes, margin) ? 0 : margin};
     }
 
-    /// Plans the next list: repeats the last plan if its list lasted as planned, or else plans the cheapest list for
-    /// the displacement observed since the boxes were kept.
+    /// Repeats the last plan if its list lasted as planned, else plans for the displacement since boxes were kept.
     /// @param is_motion_known whether this displacement is known, and has ended what was kept
     /// @returns nullopt if no list is worth its cost, or if the last one ended before half of its planned frames: then
     /// boxes moved much farther than estimated, and must be watched before the next plan
@@ -288,7 +284,6 @@ private:
     }
 
     /// Plans the list with the least cost per frame for the displacement observed since the boxes were kept.
-    /// @param is_motion_known as for `planned_list`
     /// @returns nullopt if no list is worth its cost
     [[nodiscard]] std::optional<next_list> cheapest_list(std::span<const box> boxes, bool is_motion_known) {
         estimate_.resample(boxes, objects_, ids_drawn_);
@@ -305,10 +300,8 @@ private:
         return next;
     }
 
-    /// Starts a list with the configured, estimated or default margin. If none is worth its cost, this frame is
-    /// searched, and the next ones are too: for up to `longest_watch` frames while the motion of the boxes is observed,
-    /// and after that for a back-off.
-    /// @param is_motion_known whether the motion since the boxes were kept is known, and has ended what was kept
+    /// Starts a list with the configured, estimated or default margin. If none is worth its cost, frames are searched:
+    /// up to `longest_watch` of them while motion is observed, then for a back-off.
     void plan(std::span<const box> boxes, bool is_motion_known) {
         std::optional<next_list> next;
         if (config_.margin) {
@@ -383,9 +376,8 @@ private:
         state_ = state::resting;
     }
 
-    /// Reduces the list to a smaller margin, without a search, if boxes move much less than the current one allows, so
-    /// that many listed pairs are tested in vain. Considered at power-of-two ages of the list; the smaller margin is to
-    /// suffice until four times this age.
+    /// Reduces the list to a smaller margin, without a search, if boxes move much less than the current one allows.
+    /// Considered at power-of-two ages of the list; the smaller margin is to suffice until four times this age.
     void shorten_if_worth_it() {
         constexpr std::size_t least_age = 8;
         constexpr std::size_t times_as_long = 4;

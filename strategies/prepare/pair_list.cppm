@@ -31,9 +31,8 @@ using corner = float __attribute__((vector_size(16)));
     return (std::bit_cast<std::uint8_t>(__builtin_convertvector(overlapping, bools)) & 7U) == 7U;
 }
 
-/// Stores the pairs of a list whose boxes overlap, one after another. The tests of a vector of pairs yield a mask, and
-/// one compress-store writes the pairs selected by it; without branches, since the outcome of a test is hard to
-/// predict.
+/// Stores the overlapping pairs of a list. Tests of a vector of pairs yield a mask for one compress-store, without
+/// branches, since outcomes are hard to predict.
 /// @param to may equal the list; writes up to one vector beyond the list's length
 /// @return the number of overlapping pairs
 inline std::size_t store_overlapping(std::span<const box> boxes, std::span<const index_pair> list, index_pair* to) {
@@ -56,8 +55,7 @@ inline std::size_t store_overlapping(std::span<const box> boxes, std::span<const
     return end;
 }
 
-/// Appends the pairs of a list whose boxes overlap, by blocks of 1024: each is first written to a buffer, which stays
-/// in the cache, so that the output grows only by the overlapping pairs.
+/// Appends the overlapping pairs of a list, through a cached buffer, so that the output grows only by these.
 inline void append_overlapping(std::span<const box> boxes, std::span<const index_pair> list,
                                std::vector<index_pair>& pairs) {
     constexpr std::size_t at_a_time = 1024;
@@ -83,9 +81,8 @@ public:
         return uncertain_;
     }
 
-    /// Moves the certain pairs from `uncertain_`, which each frame tests, to `certain_`: they overlap by more than two
-    /// margins, so that they still do while no box has moved by more than the margin. Both lists are written by
-    /// compress-stores as in `store_overlapping`, the uncertain one in place.
+    /// Moves pairs that overlap by more than two margins to `certain_`: they do so while no box has moved by more than
+    /// the margin. Both lists are written by compress-stores, the uncertain one in place.
     /// @param kept the boxes from which the list was made
     void mark_certain_pairs(std::span<const box> kept, double margin) {
         const float depth = certain_depth(margin);

@@ -46,9 +46,8 @@ struct plane_motion {
     }
 };
 
-/// The least and the greatest displacement of the lower and of the upper planes of all boxes, on each axis. Boxes are
-/// read as vectors of floats: at any width, three vectors hold a whole number of boxes (`block`), of six floats each,
-/// so that a lane has the same plane in each block.
+/// The ranges of displacements of the lower and the upper planes of all boxes, by axis. Three vectors hold a whole
+/// number of boxes (`block`) of six floats, so that a lane has the same plane in each block.
 [[nodiscard]] inline plane_motion plane_motion_between(std::span<const box> from, std::span<const box> to) noexcept {
     constexpr std::size_t block = simd::width / 2;
     plane_motion motion;

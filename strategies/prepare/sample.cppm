@@ -20,7 +20,7 @@ export namespace aabb {
 
 /// Draws the boxes of random ids, to estimate how the number of overlapping pairs grows with the boxes.
 /// @param ids_drawn the state of the random numbers, see `draw_id`
-/// @return the drawn boxes in `buffer`: as many as fit, less those of absent objects
+/// @return the drawn boxes, which fill `buffer` except for those of absent objects
 [[nodiscard]] inline std::span<const box> draw_boxes(std::span<const box> boxes, const membership& objects,
                                                      std::uint32_t& ids_drawn, std::span<box> buffer) {
     std::size_t count = 0;

@@ -19,8 +19,7 @@ public:
     split_large_stage(std::unique_ptr<global_stage> search, double size, instrumentation counted)
         : search_(std::move(search)), size_(size), counted_(counted) {}
 
-    /// Inserts an object. In the inner search, the ids from `first_slot_` on are those of pieces, which follow the
-    /// objects.
+    /// Inserts an object. In the inner search, the ids from `first_slot_` on are those of pieces.
     void insert(std::uint32_t id) override {
         objects_.insert(id);
         frame_.change([&] {
@@ -34,8 +33,7 @@ public:
         search_->remove(id);
     }
 
-    /// Divides the boxes of a frame that are longer than `size_` mean extents, and updates the inner search with the
-    /// pieces: a large box would overlap many others on every axis.
+    /// Divides boxes longer than `size_` mean extents, which would overlap many others on every axis, into pieces.
     void update(std::span<const box> boxes) override {
         frame_.begin();
         objects_.require_boxes_for_all(boxes.size());
@@ -55,8 +53,7 @@ public:
         frame_.taken();
     }
 
-    /// Searches the pieces, and appends the objects of the pairs found. Two objects may have several pairs of
-    /// overlapping pieces, of which exactly one owns the pair of objects and reports it.
+    /// Appends the objects of the pairs of pieces found; of several pairs of the same objects, one reports them.
     void search(std::vector<index_pair>& pairs) override {
         frame_.require_taken();
         if (splits_.empty()) return search_->search(pairs);
@@ -118,8 +115,7 @@ private:
         return interval;
     }
 
-    /// Finds the objects to divide in this frame, those with boxes longer than `longest`, and their numbers of pieces
-    /// on each axis: `splits_now_`, in ascending order of objects.
+    /// Lists the objects with boxes longer than `longest` in `splits_now_`, ascending, with their pieces per axis.
     void find_splits(std::span<const box> boxes, double longest) {
         splits_now_.clear();
         std::size_t total = 0;
@@ -136,9 +132,8 @@ private:
         }
     }
 
-    /// Gives each piece of a divided object but the first a slot: its id in the inner search is `first_slot_` + slot.
-    /// The splits of this frame are merged with those of the last one, both sorted by object: an unchanged split keeps
-    /// its slots, and with them its places in sorted lists.
+    /// Gives each piece of a divided object but the first a slot: its id is `first_slot_` + slot. Splits are merged
+    /// with those of the last frame: an unchanged one keeps its slots, and with them its places in sorted lists.
     void assign_slots() {
         // Slots freed in the last frame can be reused now, since the search has removed their pieces.
         free_slots_.insert(free_slots_.end(), left_slots_.begin(), left_slots_.end());
@@ -188,8 +183,7 @@ private:
         splits_.clear();
     }
 
-    /// Fills `pieces_`, the boxes of the inner search by id: cuts the box of each divided object into a grid of pieces.
-    /// The first one takes the id of its object, the others those of their slots, which follow the objects.
+    /// Cuts divided boxes into grids of `pieces_`: the first takes the id of its object, the others those of slots.
     void make_pieces(std::span<const box> boxes, double longest) {
         pieces_.assign(boxes.begin(), boxes.end());
         pieces_.resize(boxes.size() + object_of_slot_.size(), box{});

@@ -20,8 +20,7 @@ public:
     }
 
     [[nodiscard]] std::size_t size() const { return cells_[0] * cells_[1] * cells_[2]; }
-    /// The number of the cell that contains the triangle's centroid, in row-major order. Clamped, since rounding may
-    /// place a centroid beyond the grid.
+    /// The cell of the triangle's centroid, in row-major order; clamped, since rounding may place it beyond the grid.
     [[nodiscard]] std::size_t cell_of(const triangle3f& t) const {
         std::size_t cell = 0;
         for (int k = 0; k < 3; ++k) {

@@ -62,9 +62,8 @@ template <class Make>
 /// A statically composed broad phase behind the interface of a stage.
 template <class... Parts>
 struct global_search_of {
-    /// Makes a broad phase of the strategies `Parts` (sort, partition, sweep), which are fixed at compile time.
+    /// Makes a broad phase of the strategies `Parts` (sort, partition, sweep).
     /// @param choices settings of each strategy, in the same order
-    /// @param wanted whether the stage counts its work
     [[nodiscard]] static std::unique_ptr<global_stage> make(std::span<const strategy_choice> choices,
                                                             instrumentation wanted) {
         return with_counters(wanted, [&]<class Counters>(Counters) -> std::unique_ptr<global_stage> {
@@ -82,10 +81,9 @@ using global_search_rows = std::vector<
 /// A statically composed narrow phase, whose tree builder is chosen separately.
 template <class... Parts>
 struct local_detection_of {
-    /// Makes a narrow phase of the strategies `Parts` (tree, triangle test), which are fixed at compile time.
+    /// Makes a narrow phase of the strategies `Parts` (tree, triangle test).
     /// @param choices settings of each strategy, in the same order
     /// @param builder builds the trees; chosen at run time
-    /// @param wanted whether the stage counts its work
     [[nodiscard]] static std::unique_ptr<local_stage> make(std::span<const strategy_choice> choices,
                                                            tree_builder builder, instrumentation wanted) {
         return with_counters(wanted, [&]<class Counters>(Counters) -> std::unique_ptr<local_stage> {
@@ -116,8 +114,7 @@ template <class Rows, template <class... Parts> class Stage, class... Lists>
     return rows;
 }
 
-/// Concatenates the table rows that these functions return. Each function is in a generated source file of its own, so
-/// that a changed strategy recompiles few of them.
+/// Concatenates table rows. Each function is in a source file of its own, so that a change recompiles few of them.
 template <class Rows>
 [[nodiscard]] Rows joined(std::initializer_list<Rows (*)()> functions) {
     Rows rows;

@@ -127,8 +127,7 @@ std::vector<std::string> strategy_names(strategy_kind kind) {
     return names;
 }
 
-/// Rejects a choice of a strategy of this kind if its name is unknown, a parameter is given twice, or a setting is
-/// invalid.
+/// Rejects an unknown name, a parameter that is given twice and an invalid setting.
 /// @throws input_error that names the kind to which the name belongs, or the nearest valid name
 void require_known(strategy_kind kind, const strategy_choice& choice) {
     const std::vector<std::string> names = strategy_names(kind);
@@ -171,8 +170,7 @@ composition::composition(const named_strategies& named) {
     }
 }
 
-/// The strategies of these kinds joined by " + ", as in "shell + axial_cut + one_axis". Kinds that are compiled alone,
-/// `prepare` and `build`, are left out if their strategy is the default.
+/// The strategies joined by " + ", as in "shell + axial_cut + one_axis", without defaults of kinds compiled alone.
 std::string text_in_line(const by_kind<std::string>& choices, std::span<const strategy_kind> kinds) {
     std::string text;
     for (const strategy_kind kind : kinds) {

@@ -107,7 +107,6 @@ std::uint64_t auto_detector::count_contacts(std::span<const pose> poses) {
     return find_candidates(poses).count_contacts();
 }
 
-/// The parts of both stages, and what the detector holds beside them.
 std::vector<part_bytes> auto_detector::bytes() const {
     std::vector<part_bytes> parts = global_->bytes();
     if (meshes_)

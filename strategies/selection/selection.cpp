@@ -26,10 +26,9 @@ fitting fitting_of(strategy_kind kind, const composition& completed, const scene
     return last;
 }
 
-/// Completes the named strategies of each stage to an accepted combination. In order of preference, the other kinds get
-/// the fastest strategies (the defaults), those usual beside the named ones, or the first combination that is accepted.
-/// A named sort other than the fastest gets no partition: columns are sorted anew in each frame, for which only
-/// `bucket` is fast.
+/// Completes the named strategies of each stage to an accepted combination: by preference with the fastest ones (the
+/// defaults), those usual beside the named ones, or the first accepted. A named sort other than the fastest gets no
+/// partition: columns are sorted anew in each frame, for which only `bucket` is fast.
 composition completed(const named_strategies& named) {
     const composition usual(named);
     composition result;

@@ -16,8 +16,7 @@ public:
         "bucket sort with one bucket of equal width per entry: linear for uniformly spread entries";
     static constexpr bool is_done_by_columns = true;
 
-    /// Sorts a list of the lower ends of boxes on an axis: distributes the entries over buckets of equal width by a
-    /// counting sort, and sorts each bucket. There are about as many buckets as entries, so that a bucket has few.
+    /// Distributes the entries over about as many buckets of equal width by a counting sort, and sorts each bucket.
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {
         if (list.size() < 2) return;
@@ -40,8 +39,7 @@ public:
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_of(next_, from_); }
 
 private:
-    /// Sorts each bucket of a list whose entries are distributed, in which bucket b ends at `next_[b]`: by insertion,
-    /// or if it has many entries by std::sort, since insertion sort is quadratic.
+    /// Sorts each bucket, b ending at `next_[b]`: by insertion, or a large one by std::sort, as insertion is quadratic.
     template <CounterPolicy Counters>
     void sort_buckets(std::span<projection> list, Counters& counters) const {
         constexpr std::size_t most_to_insert = 64;

@@ -14,9 +14,8 @@ struct ignore_swaps {
 
 using gap_of_one = std::integral_constant<std::size_t, 1>;
 
-/// Insertion sort of each subsequence of entries whose distance is a multiple of `gap`, a pass of Shell sort. With the
-/// default gap, the constant 1, it is the usual insertion sort. It takes n + d comparisons, where d is the number of
-/// inversions in these subsequences.
+/// Insertion sort of each subsequence at a distance of `gap`, a pass of Shell sort; by default, the usual insertion
+/// sort. It takes n + d comparisons for d inversions in these subsequences.
 /// @param on_swap gets the entry that is passed and the one that moves before it; returning false ends the sort there
 template <class Entry, CounterPolicy Counters, class OnSwap = ignore_swaps, class Gap = gap_of_one>
 constexpr void insert_each(std::span<Entry> list, Counters& counters, OnSwap on_swap = {}, Gap gap = {}) {

@@ -13,9 +13,8 @@ public:
     static constexpr std::string_view name = "radix";
     static constexpr std::string_view summary = "radix sort of the keys' bits: linear for any order";
 
-    /// Sorts a list of the lower ends of boxes on an axis: moves the entries between two arrays, ordered by each of the
-    /// three digits of their keys, of 11 bits, from the lowest on. One pass before counts the values of all digits.
-    /// Ordered lists are left as they are, and short ones are sorted by insertion.
+    /// Moves the entries between two arrays by each of the three 11-bit digits of their keys, lowest first; one pass
+    /// before counts all digits. Ordered lists are left as they are, and short ones are sorted by insertion.
     template <CounterPolicy Counters>
     void sort(std::span<projection> list, Counters& counters) {
         if (list.size() < 2) return;

@@ -30,8 +30,7 @@ public:
     shell_sort() = default;
     explicit shell_sort(const config& c) : config_(c) {}
 
-    /// Sorts a list of the lower ends of boxes on an axis: for each gap of the sequence, in descending order to 1,
-    /// sorts the entries at a distance of the gap by insertion.
+    /// Sorts the entries at a distance of each gap of the sequence, in descending order to 1, by insertion.
     template <CounterPolicy Counters>
     constexpr void sort(std::span<projection> list, Counters& counters) const {
         if (config_.gaps == gap_sequence::shell) {

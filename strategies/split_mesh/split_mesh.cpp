@@ -15,8 +15,7 @@ struct part {
     std::vector<std::uint32_t> triangles;  // the same for triangles
 };
 
-/// Copies the vertices of a part from its mesh, by the indices in `to.vertices`. A mesh has its vertices as floats in a
-/// frame (an offset and a scale) and, if the given doubles are not floats, also as these doubles (`given`).
+/// Copies a part's vertices, `to.vertices`: floats in the mesh's frame and, if these are rounded, the given doubles.
 void copy_vertices(const mesh& m, part& to) {
     to.own_mesh.frame = m.frame;
     const auto copy = [&to](const auto& of_mesh, auto& of_part) {
@@ -54,8 +53,7 @@ part part_of(const mesh& m, std::vector<std::uint32_t> triangles) {
 
 class divided_scene final : public scene_parts {
 public:
-    /// Makes the models of all meshes for the narrow phase, and the pieces of all objects for the broad phase: one for
-    /// each model of the object's mesh.
+    /// Makes the narrow phase's models of all meshes, and the broad phase's pieces of all objects, one per model.
     divided_scene(const mesh_scene& scene, mesh_division division) : scene_(scene) {
         division.resize(scene.meshes.size());
         std::size_t parts = 0;
@@ -86,8 +84,7 @@ public:
         return part == no_part ? scene_.meshes[source] : parts_[part].own_mesh;
     }
     [[nodiscard]] bool deforms(std::uint32_t model) const override { return scene_.deforms(models_[model].source); }
-    /// Called when vertices of the scene have moved: copies those of deforming meshes to the parts, and recomputes
-    /// bounds.
+    /// Copies moved vertices of deforming meshes to the parts, and recomputes bounds.
     void follow() override {
         for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m)
             if (scene_.deforms(m)) require_still_valid(scene_.meshes[m], triangle_counts_[m]);
@@ -137,7 +134,6 @@ private:
     };
 
     /// Adds the models of mesh m of the scene: one of each part, or of the whole mesh if it is not divided.
-    /// @param parts the triangles of each part
     void add_models(std::uint32_t m, mesh_division::value_type& parts) {
         if (parts.size() < 2) {
             models_.push_back({.source = m, .part = no_part, .bounds = bounds_of(scene_.meshes[m])});

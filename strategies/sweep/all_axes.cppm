@@ -25,9 +25,9 @@ public:
         return separating_axes(separation_of(boxes, objects));
     }
 
-    /// Reports the pairs that overlap on all lists, of which there may be one, two or three. A rank is an index in the
-    /// first list: the pair of ranks i < j overlaps there if j < end_[i]. With three lists, the pairs that overlap on
-    /// the first two are marked in a bitmap, row i and column j, for one block of rows at a time to limit its size.
+    /// Reports the pairs that overlap on all one to three lists. Of ranks i < j, indices in the first list, those with
+    /// j < end_[i] overlap there. With three, a bitmap marks overlaps on the first two, for one block of rows at a
+    /// time.
     template <class Subset, CounterPolicy Counters>
     void sweep(const Subset& subset, std::vector<index_pair>& pairs, Counters& counters) {
         std::array<std::span<const typename Subset::entry>, 3> lists;
@@ -90,8 +90,7 @@ private:
         std::uint32_t rank;
     };
 
-    /// Ranks the objects by their index in the first list. For rank i, end_[i] is the first rank whose box begins after
-    /// box i ends, so that box i overlaps those of ranks i + 1 to end_[i] - 1 on the axis.
+    /// Ranks the objects by the first list; end_[i] is the first rank whose box begins after box i ends.
     template <class Entry>
     void rank_objects(std::span<const box> boxes, std::span<const Entry> list, int axis) {
         if (rank_.size() < boxes.size()) rank_.resize(boxes.size());
@@ -105,9 +104,8 @@ private:
         }
     }
 
-    /// Visits every pair that overlaps on an axis, by ranks i < j, where i lies in the block of ranks first <= i <
-    /// last. Pairs with both ranks above the block are skipped, so that no two blocks visit the same pair: an interval
-    /// above the block is compared only with those within it.
+    /// Visits every pair that overlaps on an axis, by ranks i < j with first <= i < last. An interval above this block
+    /// is compared only with those within it, so that no two blocks visit the same pair.
     template <class Entry, CounterPolicy Counters, class Visit>
     void for_each_overlap(std::span<const box> boxes, std::span<const Entry> list, int axis, std::size_t first,
                           std::size_t last, Counters& counters, Visit visit) {

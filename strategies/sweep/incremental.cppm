@@ -27,9 +27,8 @@ public:
     static constexpr std::string_view summary =
         "keeps the overlapping pairs between frames and follows the swaps of insertion sort";
 
-    /// Updates the lists and pairs to a frame: sorts the lists by insertion sort, whose swaps of two ends begin or end
-    /// overlaps. Once this has taken as many steps as a restart would (`steps_left_` is 0), sorts and sweeps from
-    /// scratch.
+    /// Updates the lists and pairs: swaps of two ends in insertion sort begin or end overlaps. After as many steps as a
+    /// restart takes (`steps_left_` is 0), sorts and sweeps from scratch.
     template <class Sort, CounterPolicy Counters>
     void update(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         if (boxes.size() > most_interval_objects)
@@ -67,8 +66,7 @@ private:
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
     }
 
-    /// Updates the keys of an axis and sorts its list, which has no arrivals yet: by swaps, or from scratch if the
-    /// frame restarts.
+    /// Updates the keys of an axis and sorts its list, still without arrivals: by swaps, or from scratch on a restart.
     template <class Sort, CounterPolicy Counters>
     void sort_known(std::span<const box> boxes, std::size_t axis, Sort& sort, Counters& counters) {
         bool moved = false;
@@ -107,8 +105,7 @@ private:
         sort_ends(list);
     }
 
-    /// Merges the sorted ends of arriving objects into the list of an axis, from the back, so that no further list is
-    /// needed.
+    /// Merges the sorted ends of arriving objects into the list of an axis, in place, from the back.
     void merge_arrivals(std::span<const box> boxes, const membership& objects, std::size_t axis) {
         arriving_.clear();
         objects.for_each_arrival([&](std::uint32_t id) { append_ends(arriving_, boxes, id, static_cast<int>(axis)); });

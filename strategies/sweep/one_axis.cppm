@@ -61,8 +61,7 @@ private:
     };
     static_assert(sizeof(swept_box) == 32);
 
-    /// Tests each box against the later ones that begin before it ends. Reports overlapping pairs that this subset
-    /// owns: of all subsets that both boxes overlap, only one does.
+    /// Tests each box against the later ones that begin before it ends, and reports the pairs that this subset owns.
     template <class Subset, CounterPolicy Counters>
     void test_pairs(std::vector<index_pair>& pairs, Counters& counters) const {
         for (std::size_t i = 0; i < swept_.size(); ++i) {

@@ -112,12 +112,9 @@ private:
         met_.resize(candidates);
     }
 
-    /// Stores as candidates the entries that may overlap any lane of a vector, branch-free since that is hard to
-    /// predict.
+    /// Stores as candidates the entries that may overlap any lane, branch-free since that is hard to predict.
     /// @param present the lanes of `entries` in use
-    /// @param met by entry: the lanes of the vector that it may overlap
-    /// @param lanes by entry: the lanes that it is to be tested against
-    /// @param vector the number of the vector
+    /// @param met,lanes by entry: the lanes that it may overlap, and those that it is to be tested against
     inline void keep_candidates(simd::words entries, std::uint32_t present, const lane_overlaps& met, simd::words lanes,
                                 std::uint32_t vector) noexcept {
         const simd::words overlapped = simd::load_halves(met.data()) & lanes;
@@ -126,10 +123,8 @@ private:
         candidate_count_ += simd::compress_store(&met_[candidate_count_], overlapped | vector << width, any);
     }
 
-    /// Tests the active entries against the vector, and updates the active entries. Of the lanes that an entry
-    /// overlaps, only those before the entry's end count.
-    /// @param number the number of the vector, and `first` the index of its first entry
-    /// @param active the number of active entries
+    /// Tests the active entries against the lanes of the vector before their ends, and updates the active entries.
+    /// @param number,first the number of the vector, and the index of its first entry
     /// @returns the number of entries that stay active beyond the vector
     [[nodiscard]] std::size_t test_active(const column_block& block, const vector_of_entries& vector,
                                           std::uint32_t number, std::size_t first, std::size_t active) noexcept {
@@ -193,9 +188,8 @@ private:
         candidate_count_ = 0;
     }
 
-    /// Converts a sorted list to the entries of one column, quantized over its bounds, so that it is swept like
-    /// columns. Each entry is a bucket of its own, whose end in `list_ends_` is the first entry that begins after its
-    /// box ends.
+    /// Converts a sorted list to entries of one column, quantized over its bounds. Each is a bucket of its own, whose
+    /// end in `list_ends_` is the first entry that begins after its box ends.
     template <class Subset, class List>
     void convert_to_entries(const Subset& subset, const List& list) {
         column_plan plan;

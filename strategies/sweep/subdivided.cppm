@@ -120,8 +120,7 @@ private:
         for (auto& list : r.ends) std::erase_if(list, [&](const interval_end& e) { return is_leaving(e.id); });
     }
 
-    /// Removes departed objects from the pairs and from the lists of their regions. Collects these regions first, so
-    /// that each list is cleaned once, however many objects leave it.
+    /// Removes departed objects from the pairs and, in one pass per list, from their regions.
     void forget_departures(const membership& objects) {
         pairs_.erase_if([&](index_pair p) { return objects.is_leaving(p.a) || objects.is_leaving(p.b); });
         for (std::uint32_t id = 0; id < ranges_.size(); ++id) {
@@ -136,9 +135,8 @@ private:
         touched_.clear();
     }
 
-    /// Updates lists and pairs to the frame: moves objects into and out of the lists of regions, then sorts those of
-    /// all regions with moved objects (`touched_`). Stops early when `spend` has taken the last of as many steps as a
-    /// restart takes; the caller then restarts, which discards the unfinished lists.
+    /// Moves objects into and out of the lists of regions, then sorts those of `touched_` regions. Stops when `spend`
+    /// has taken as many steps as a restart, which then discards the unfinished lists.
     template <class Sort, CounterPolicy Counters>
     void update_lists(std::span<const box> boxes, const membership& objects, Sort& sort, Counters& counters) {
         moved_.assign(boxes.size(), 0);
@@ -161,9 +159,8 @@ private:
         touched_.clear();
     }
 
-    /// Removes an object from a region's lists, and erases its pairs there that have ended. Pairs normally end when two
-    /// ends swap in a list, but here the object's ends are gone. So its pairs of the last frame (boxes `before_`) are
-    /// tested.
+    /// Removes an object from a region's lists, and erases its pairs there that have ended. No swap of ends reports
+    /// them, so its pairs of the last frame (boxes `before_`) are tested.
     template <CounterPolicy Counters>
     void leave_region(std::uint32_t r, std::uint32_t id, std::span<const box> boxes, Counters& counters) {
         spend(regions_[r].ends[0].size());
@@ -194,8 +191,7 @@ private:
         follow_swaps(list, boxes, sort, counters);
     }
 
-    /// Plans a new grid, fills and sorts all lists, and sweeps those of one axis for all pairs. Counts its steps in
-    /// `restart_steps_`, by which later updates decide whether to restart.
+    /// Plans a new grid, fills, sorts and sweeps all lists, and counts its steps in `restart_steps_`.
     template <CounterPolicy Counters>
     void restart(std::span<const box> boxes, const membership& objects, Counters& counters) {
         plan_grid(boxes, objects);
@@ -225,16 +221,14 @@ private:
         restart_steps_ += tests;
     }
 
-    /// Plans the grid: cuts the two axes with the greatest variance of the boxes' centres into regions of about
-    /// `objects_per_region` objects, not narrower than `extents_per_region` mean extents, or into the configured
-    /// number.
+    /// Plans the grid: cuts the two axes of greatest variance into the configured number of regions, or regions of
+    /// about `objects_per_region` objects, not narrower than `extents_per_region` mean extents.
     void plan_grid(std::span<const box> boxes, const membership& objects) {
         planned_ = objects.size();
         const spread along = spread_of(boxes, objects);
         int least = 2;
         for (int k = 1; k >= 0; --k)
             if (along.variance[k] < along.variance[least]) least = k;
-        // The other two axes.
         cut_ = {least == 0 ? 1 : 0, least == 2 ? 1 : 2};
         box world = empty_box();
         for (std::uint32_t id = 0; id < boxes.size(); ++id)

@@ -23,9 +23,8 @@ public:
     static constexpr std::string_view summary =
         "sweeps along one axis and keeps the active boxes in the order of a second one";
 
-    /// Chooses the two axes with the greatest variance: one to sweep, and one whose list orders the active boxes, the
-    /// kept axis. Boxes longer there than four mean extents get a list of their own (`long_active_`): they would widen
-    /// the range of candidates of all boxes.
+    /// Chooses the two axes of greatest variance, one to sweep, one (kept) to order the active boxes. Boxes longer
+    /// there than four mean extents would widen the ranges of candidates, and get a list of their own (`long_active_`).
     /// @returns the axes that need sorted lists
     axis_set axes(std::span<const box> boxes, const membership& objects) {
         const spread along = spread_of(boxes, objects);
@@ -82,9 +81,8 @@ private:
         pair_count_ = 0;
     }
 
-    /// Ranks boxes by their index in the list of the kept axis, and finds for each box the first word of the bitmap of
-    /// active boxes that may hold candidates. Boxes of lower ranks may overlap it on the kept axis only from the rank
-    /// on at which the greatest upper end so far (`reached_`) is not below the box's lower end.
+    /// Ranks boxes on the kept axis, and finds for each the first word of the bitmap that may hold candidates: lower
+    /// ranks may overlap it only from where the greatest upper end so far (`reached_`) is not below its lower end.
     template <class Subset, class List>
     void rank_boxes(const Subset& subset, const List& list) {
         const std::size_t n = list.size();
@@ -119,9 +117,8 @@ private:
         }
     }
 
-    /// Lists the ranks of the active boxes, the set bits of the bitmap, from a word up to the last one that begins at
-    /// or below `last` on the kept axis. Most words have up to three bits, which are extracted without branches, since
-    /// their number is hard to predict.
+    /// Lists the active ranks, set bits of the bitmap, from a word up to the last that begins at or below `last` on the
+    /// kept axis. Up to three bits per word are extracted without branches, since their number is hard to predict.
     /// @returns the number of candidates
     std::size_t list_candidates(std::size_t word, float last) noexcept {
         std::size_t count = 0;
@@ -141,9 +138,8 @@ private:
         return count;
     }
 
-    /// Tests a box against the active boxes near it on the kept axis, and against all long ones, and activates it.
-    /// Active boxes that have ended are removed. Tests are branch-free, since overlaps and ended boxes are hard to
-    /// predict: every pair is stored, and overwritten by the next one if it does not overlap.
+    /// Compares a box with the active boxes near it on the kept axis and all long ones, removes those that have ended,
+    /// and activates it. Branch-free, since outcomes are hard to predict: a pair that does not overlap is overwritten.
     /// @returns the number of tests
     template <class Subset>
     std::size_t test_and_activate(std::uint32_t rank) {

@@ -26,7 +26,7 @@ export namespace aabb {
 /// of a coordinate, which adds to the error of the other corners.
 [[nodiscard]] triangle_intersection intersection_of(const pose_pair& poses, const triangle3d& s, const triangle3d& t);
 
-/// Only the kind of that intersection, which takes less time.
+/// The kind of that intersection alone, which takes less time.
 [[nodiscard]] intersection_kind intersection_kind_of(const pose_pair& poses, const triangle3d& s, const triangle3d& t);
 
 }  // namespace aabb

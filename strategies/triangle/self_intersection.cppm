@@ -20,7 +20,7 @@ public:
                 if (!is_in(corner, s.corner)) of_t.add(corner);
         }
 
-        /// At most three different corners.
+        /// A list of at most three different corners.
         struct list {
             std::array<vec3d, 3> at;
             std::uint32_t size = 0;
