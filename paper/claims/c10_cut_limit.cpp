@@ -17,9 +17,8 @@ bool limit_changes_cut(const condition& c, const std::string& segments) {
 
 }  // namespace
 
-/// Drafts claim C10, which is judged together with the others. Its ratios (endpoints), one per scene and number of
-/// segments, are the time with at most one cut per box and axis over that without this limit, in scenes of huge boxes,
-/// which several cuts would cross. The ratios with the factors in `primary` decide the verdict.
+/// Drafts C10: the time with at most one cut per box and axis over that without this limit, per number of segments and
+/// scene of huge boxes, which several cuts would cross. The factors in `primary` select the ratios that decide.
 draft c10_claim(const measurements& m) {
     draft c10{
         .claim = {.claim = "More than one cut through a box on an axis is not worth its cost",

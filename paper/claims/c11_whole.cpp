@@ -37,9 +37,8 @@ const factors far_apart{{"density", "0.001"}, {"objects", "100000"}};
 
 }  // namespace
 
-/// Drafts claim C11, which is judged together with the others. Its ratios (endpoints), one per scene, are the time with
-/// both phases improved over that with both traditional, in three kinds of scenes, which differ in the share of the
-/// broad phase. The remark states this share in the two scenes that decide the verdict.
+/// Drafts C11: the time with both phases improved over that with both traditional, in three kinds of scenes, which
+/// differ in the share of the broad phase. The remark states this share in the two scenes that decide the verdict.
 draft c11_claim(const measurements& m) {
     draft c11{
         .claim = {.claim = "Both phases improved take less time than both traditional ones on the same models",

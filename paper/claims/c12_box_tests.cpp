@@ -2,8 +2,7 @@ module aabblab.claims;
 
 namespace aabblab {
 
-/// Drafts claim C12, which is judged together with the others. Its ratios (endpoints), one per scene, are the box tests
-/// counted with the axial cut over those without it, both with Shell sort.
+/// Drafts C12: the box tests counted with the axial cut over those without it, both with Shell sort, per scene.
 draft c12_claim(const measurements& m) {
     draft c12{.claim = {.claim = "The axial cut avoids needless tests of boxes",
                         .measured = "box tests per frame, axial_cut over none, both with shell",

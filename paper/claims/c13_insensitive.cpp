@@ -7,9 +7,8 @@ namespace {
 /// The composition of SMB: lists sorted by diminishing increments, every axis cut.
 const selection smb{{kind::sort, "shell"}, {kind::partition, "axial_cut:axes=3"}, {kind::sweep, "one_axis"}};
 
-/// The cost per box, in time or bytes, where a factor is large over that where it is small, both of the composition of
-/// SMB (Li, Feng and Owen 2006). Two conditions share no repeats, so the means are divided, instead of times pair by
-/// pair.
+/// SMB's cost per box (Li, Feng and Owen 2006), in time or bytes, where a factor is large over that where it is small.
+/// Two conditions share no repeats, so the means are divided, instead of times pair by pair.
 endpoint cost_ratio(const condition& large, const condition& small, const std::string& factor, quantity what) {
     const bool is_time = what == quantity::time;
     const row_value cost_per_box =
@@ -25,8 +24,7 @@ endpoint cost_ratio(const condition& large, const condition& small, const std::s
 
 }  // namespace
 
-/// Drafts claim C13, which is judged together with the others. Its ratios (endpoints), one per value of a factor such
-/// as the number of objects, are the cost per box there over that at the least value. A cost in O(N) has the ratio 1.
+/// Drafts C13: the cost per box over that at the least value of a factor. A cost in O(N) has the ratio 1.
 draft c13_claim(const measurements& m) {
     // Allocations grow in steps, so that ratios of bytes are less precise and only secondary.
     draft c13{

@@ -28,9 +28,8 @@ std::string subject_of(const condition& c) {
 
 }  // namespace
 
-/// Drafts claim C1, which is judged together with the others. Its ratios (endpoints), one per scene, are the time of
-/// the improved broad phase over that of the traditional broad phase, or over that of incremental sweep and prune. The
-/// ratios with the factors in `primary` decide the verdict; those of each change alone only explain it.
+/// Drafts C1: the time of the improved broad phase over that of the traditional one, or of incremental sweep and prune,
+/// per scene. The ratios with the factors in `primary` decide; those of each change alone only explain the verdict.
 draft c1_claim(const measurements& m) {
     draft c1{
         .claim = {.claim = "Shell sort with axial cut takes less time in the broad phase than insertion sort alone",

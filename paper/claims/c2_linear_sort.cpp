@@ -27,8 +27,7 @@ row_value work() {
     return sum_of({"comparisons", "moves"});
 }
 
-/// Inversions per element, to check that "almost ordered" means the same at all sizes: one row per displacement, one
-/// column per number of elements. There is at least one displacement.
+/// Inversions per element by displacement and size, to check that "almost ordered" means the same at all sizes.
 table inversions_table(const std::map<std::string, std::vector<const condition*>>& by_displacement) {
     table t{{{"displacement"}}, {}};
     for (const condition* c : by_displacement.begin()->second)
@@ -72,9 +71,8 @@ std::vector<const condition*> equally_ordered_sizes(std::vector<const condition*
 
 }  // namespace
 
-/// Drafts claim C2, which is judged together with the others. Its ratios (endpoints), one per sort and displacement,
-/// are the counted work per element at 10 N elements over that at N, from a line fitted to all sizes. A sort in O(N)
-/// has the ratio 1.
+/// Drafts C2: the counted work per element at 10 N elements over that at N, from a line fitted to all sizes, per sort
+/// and displacement. A sort in O(N) has the ratio 1.
 draft c2_claim(const measurements& m) {
     // The paper leaves the number of gaps open: fixed numbers, two and eight, which keep O(N), are primary, too.
     draft c2{.claim = {.claim = "Shell sort takes O(N) on almost ordered input, and insertion sort too",

@@ -20,8 +20,7 @@ endpoint over_insertion(const condition& c, const std::string& gaps) {
     return ratio;
 }
 
-/// The time of Shell sort over that of insertion sort: one row per condition (scene), ordered by inversions, and one
-/// column per gap sequence.
+/// The time of Shell sort over that of insertion sort, per scene, ordered by inversions, and gap sequence.
 table gaps_table(const std::vector<condition>& conditions) {
     std::vector<const condition*> ordered = matching(conditions, {});
     std::ranges::stable_sort(ordered, {}, [](const condition* c) { return disorder_of(*c); });
@@ -62,8 +61,7 @@ figure figure_of(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Drafts claim C3, which is judged together with the others. Its ratios (endpoints), one per scene, are the time of
-/// Shell sort over that of insertion sort. The inversions per element decide which of them is faster.
+/// Drafts C3: the time of Shell sort over that of insertion sort; inversions per element decide which is faster.
 draft c3_claim(const measurements& m) {
     // In full runs, the first primary condition has few inversions (4 per element), and the second many (150): boxes on
     // a line that move by up to 300 of their edge lengths per frame. In space, 100,000 boxes that move by one edge

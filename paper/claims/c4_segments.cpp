@@ -50,8 +50,7 @@ figure figure_of(const std::string& name, const condition& c) {
     return f;
 }
 
-/// One row per scene and number of cut axes: the automatic number of segments, and its time over that with as many
-/// segments as the limit of one cut per box allows.
+/// The automatic number of segments per scene and number of cut axes, and its time over that with the limit's number.
 table automatic_table(const std::vector<condition>& conditions) {
     table t = factors_table(factors_of(conditions));
     const std::vector<std::vector<std::string>> cells_of_factors = std::exchange(t.rows, {});  // by condition
@@ -74,9 +73,8 @@ table automatic_table(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Drafts claim C4, which is judged together with the others. Its ratios (endpoints), per scene and number of cut axes,
-/// are the time of a finer cut over that of a coarser one, and that of the automatic number of segments over that of
-/// "the limit": the most segments with at most one cut per box. A request for more yields the limit.
+/// Drafts C4: the time of a finer cut over that of a coarser one, and of the automatic number of segments over "the
+/// limit": the most segments with at most one cut per box, which a request for more yields.
 draft c4_claim(const measurements& m) {
     draft c4{
         .claim = {.claim = "More segments are faster until a box spans one; tiny segments are not needed",

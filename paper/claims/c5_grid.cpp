@@ -28,8 +28,7 @@ bool is_grid(const condition& c, const std::string& size) {
 /// Times of grids of all cell sizes over that of the axial cut, in scenes with the same number of objects.
 class scenes_and_cells {
 public:
-    /// Reads, per scene and cell size, the times with a grid over those with the axial cut. Cells so large that the
-    /// world is a single one are left out, as they divide nothing.
+    /// Reads, per scene and cell size, the times with a grid over those with the axial cut, except for a single cell.
     explicit scenes_and_cells(const std::vector<const condition*>& scenes) {
         for (const std::string& size : cell_sizes)
             if (std::ranges::all_of(scenes, [&](const condition* c) { return is_grid(*c, size); }))
@@ -56,8 +55,7 @@ public:
     }
 
 private:
-    /// The least value of the elements, by `value(element)`. It is NaN if any is NaN: an element that was not measured
-    /// might be the least.
+    /// The least value of the elements; NaN if any is NaN, since an element that was not measured might be the least.
     template <class Range, class Value>
     [[nodiscard]] static double least_of(const Range& range, Value value) {
         double least = std::numeric_limits<double>::infinity();
@@ -81,8 +79,7 @@ private:
     std::vector<std::map<std::string, cells>> ratios_to_cut_;  // logarithms, by scene, then cell size
 };
 
-/// One row per scene: the median times of the axial cut, of grids of every cell size, and of one with an automatic
-/// size.
+/// One row per scene: the median times of the axial cut and of grids of every cell size, also an automatic one.
 table times_table(const std::vector<condition>& conditions) {
     table t = factors_table(factors_of(conditions));
     t.columns.push_back({"axial_cut"});
@@ -132,9 +129,7 @@ void add_growth(const std::vector<condition>& worlds, draft& c5) {
         large.logs(cut, bytes), small.logs(cut, bytes), quantity::bytes, expectation::not_more);
 }
 
-/// Times of grids over that of the axial cut against the cell size: one panel per number of objects, one line per
-/// scene.
-/// @param by_objects the scenes by their number of objects
+/// Times of grids over that of the axial cut against the cell size: one panel per number of objects.
 figure cell_figure(const std::map<double, std::vector<const condition*>>& by_objects) {
     figure f = log_log(
         "c5",
@@ -174,10 +169,9 @@ figure world_figure(const std::string& name, const std::string& quantity_name, c
 
 }  // namespace
 
-/// Drafts claim C5, which is judged together with the others. A slowdown (regret) in a scene is the time over that of
-/// the scene's best cell size. The ratio (endpoint) that decides is the worst slowdown of the axial cut over all
-/// scenes, over the worst slowdown of the single cell size for which this is least. Further ratios are those of growth
-/// with the world.
+/// Drafts C5. A slowdown (regret) in a scene is the time over that of its best cell size. The ratio that decides is the
+/// worst slowdown of the axial cut over that of the single cell size for which this is least. Further ratios are those
+/// of growth with the world.
 draft c5_claim(const measurements& m) {
     const std::string over_best_single = "axial_cut over the best single cell size";
     draft c5{

@@ -108,9 +108,8 @@ figure figure_of(const test_times& times) {
 
 }  // namespace
 
-/// Drafts claim C6, which is judged together with the others. Its ratios (endpoints) are the time of a triangle-box
-/// test over that of a box test, and the time of whole queries of trees that test the triangles of leaves over that of
-/// trees that store and test the boxes of leaves.
+/// Drafts C6: the time of a triangle-box test over that of a box test, and of whole queries of trees that test the
+/// triangles of leaves over those of trees that store and test their boxes.
 draft c6_claim(const measurements& m) {
     draft c6{
         .claim = {.claim = "Testing the triangle of a leaf costs what testing its box costs",

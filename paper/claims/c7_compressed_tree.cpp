@@ -16,9 +16,7 @@ std::vector<const condition*> conditions_by_size(const measurements& m) {
     return conditions;
 }
 
-/// A figure of the bytes or times of four tree layouts against the number of triangles, on spheres with noise of one
-/// shape and many sizes.
-/// @param value the bytes or the time of a measurement
+/// The bytes or times of four tree layouts against the number of triangles, on spheres with noise of many sizes.
 figure size_figure(const measurements& m, const std::string& name, const std::string& caption, const std::string& y,
                    const row_value& value) {
     const method layouts[] = {{"canonical", tree("canonical")},
@@ -37,8 +35,7 @@ endpoint compressed_over_canonical(const condition& c, const std::string& metric
 
 }  // namespace
 
-/// Drafts claim C7a, which is judged together with the others. Its ratios (endpoints), one per mesh, are the bytes of
-/// the compressed tree over those of the canonical one.
+/// Drafts C7a: the bytes of the compressed tree over those of the canonical one, per mesh.
 draft c7a_claim(const measurements& m) {
     draft c7a{.claim = {.claim = "Compressed storage takes less memory",
                         .measured = "bytes of the compressed tree over those of the canonical one",
@@ -54,9 +51,8 @@ draft c7a_claim(const measurements& m) {
     return c7a;
 }
 
-/// Drafts claim C7b, which is judged together with the others. Its ratios (endpoints), one per mesh and leaf test, are
-/// the query time of the compressed tree over that of the canonical one. The compressed tree stores no boxes of leaves,
-/// so a leaf test replaces the test of such a box.
+/// Drafts C7b: the query time of the compressed tree over that of the canonical one, per mesh and leaf test, which
+/// replaces the test of the box that its leaves do not store.
 draft c7b_claim(const measurements& m) {
     draft c7b{.claim = {.claim = "Compressed storage takes less time",
                         .measured = "time per query of the compressed tree over that of the canonical one",

@@ -8,8 +8,7 @@ selection canonical(const std::string& build) {
     return {{kind::tree, "canonical"}, {kind::build, build}};
 }
 
-/// One row per mesh and split rule: the median times to build a canonical tree and to query it, and the counted work of
-/// the query.
+/// One row per mesh and split rule: median times to build a canonical tree and to query it, and counted work.
 table builds_table(const std::vector<condition>& conditions) {
     table t = empty_table({"meshes", "build"},
                           {"build (ms)", "query (ms)", "box tests per query", "triangle tests per query"});
@@ -26,8 +25,7 @@ table builds_table(const std::vector<condition>& conditions) {
 
 }  // namespace
 
-/// Drafts claim C8, which is judged together with the others. Its ratios (endpoints), one per mesh and other split
-/// rule, are the query time of a canonical tree split at the median over that of a tree split otherwise.
+/// Drafts C8: the query time of a canonical tree split at the median over that with another rule, per mesh and rule.
 draft c8_claim(const measurements& m) {
     draft c8{.claim = {.claim = "The balanced (median) tree is searched faster than an unbalanced one",
                        .measured = "time per query of the canonical tree split at the median over that split otherwise",

@@ -17,9 +17,8 @@ bool has_pieces(const condition& c, const selection& split) {
 
 }  // namespace
 
-/// Drafts claim C9, which is judged together with the others. Its ratios (endpoints), one per scene and limit, are the
-/// time with objects larger than the limit split over that without, where any object is so large. The limit is in mean
-/// extents; either boxes or meshes are split.
+/// Drafts C9: the time with objects, boxes or meshes, larger than a limit in mean extents split over that without, per
+/// scene and limit that an object exceeds.
 draft c9_claim(const measurements& m) {
     draft c9{
         .claim = {.claim = "Dividing large objects into smaller ones before the broad phase is worth its cost",

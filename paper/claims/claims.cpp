@@ -7,9 +7,8 @@ namespace aabblab {
 
 namespace {
 
-/// Decides a family of endpoints (ratios of claims) together, by Holm's correction for multiple tests (1979). Sets
-/// `corrected`, the support for the claim, and `direction`: less, same or more. An outcome must be found on every
-/// machine; where machines disagree, it is undecided.
+/// Decides a family of endpoints together, by Holm's correction for multiple tests (1979): sets `corrected`, the
+/// support for the claim, and `direction`. An outcome must be found on every machine, or else it is undecided.
 /// @param band as in `tails_of`: ratios from 1 / (1 + band) to 1 + band count as no difference
 void decide_family(std::span<endpoint* const> endpoints, double band) {
     if (endpoints.empty()) return;
@@ -66,8 +65,7 @@ named_table ratio_table(const claim_result& claim) {
             std::move(ratios)};
 }
 
-/// Turns a draft and its decided endpoints (ratios) into the judged claim: the verdict, its sentences and its tables.
-/// The table of all ratios comes first.
+/// Judges a draft by its decided endpoints: verdict, sentences and tables, that of all ratios first.
 claim_result result_of(const draft& drafted, const std::vector<endpoint>& endpoints) {
     claim_result claim = drafted.claim;
     claim.verdict = verdict_of(endpoints);
@@ -111,7 +109,6 @@ std::vector<draft> drafts_of(const measurements& m) {
 
 /// Adds another machine's ratios to the drafts of the first; both lists are in the order of the claims. A ratio that
 /// the other machine did not measure becomes unknown, and is left out later.
-/// @param more the other machine's drafts
 void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
     const auto add = [](std::vector<endpoint>& endpoints, const std::vector<endpoint>& others) {
         for (endpoint& e : endpoints) {
@@ -128,8 +125,7 @@ void add_machine(std::vector<draft>& drafts, const std::vector<draft>& more) {
 
 }  // namespace
 
-/// Decides an endpoint (a ratio) by its own 95 % interval, without a correction for the number of decisions.
-/// @param band as in `tails_of`: ratios from 1 / (1 + band) to 1 + band count as no difference
+/// Decides an endpoint by its own 95 % interval, without a correction for the number of decisions.
 endpoint decided_alone(endpoint e, double band) {
     const estimate log_ratio = e.log_ratio();
     const interval range = log_ratio.range();

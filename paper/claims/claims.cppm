@@ -111,7 +111,7 @@ struct reproduction {
 
 /// The verdict in words, from all endpoints of a claim: one clause per subject, "on drifting boxes: 2.0 times as fast".
 [[nodiscard]] std::string sentence_of(std::span<const endpoint> endpoints, const std::string& lead = {});
-/// For each claim: verdict, primary ratio with its interval, and its condition.
+/// The verdict of each claim, with the primary ratio, its interval and its condition.
 [[nodiscard]] table verdict_table(const reproduction& results);
 /// A short version for the README.
 [[nodiscard]] table brief_table(const reproduction& results);

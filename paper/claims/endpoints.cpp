@@ -15,8 +15,7 @@ std::vector<const condition*> matching(const std::vector<condition>& conditions,
     return selected;
 }
 
-/// A ratio (endpoint) of a claim in one condition (scene): a metric of the composition `tested` over that of
-/// `baseline`, averaged as a logarithm; NaN if it was not measured.
+/// A ratio of a claim in one scene: a metric of `tested` over that of `baseline`; NaN if it was not measured.
 /// @param more factors that identify the endpoint, in addition to the condition's
 endpoint endpoint_of(const condition& c, const selection& tested, const selection& baseline, const std::string& metric,
                      factors more) {
@@ -59,8 +58,7 @@ std::string digits_cell(const std::optional<double>& value) {
     return value ? three_digits(*value) : "-";
 }
 
-/// Adds a column per method, except the first, to a table with one row per condition (scene): the method's time per
-/// frame over that of the first.
+/// Adds a column per method but the first to a table with a row per scene: its time per frame over that of the first.
 void add_ratios(table& t, const std::vector<condition>& conditions, std::span<const method> methods) {
     for (const method& m : methods.subspan(1)) {
         t.columns.push_back({m.label});
@@ -93,10 +91,9 @@ std::vector<series> series_of(std::span<const method> methods, std::span<const c
     return lines;
 }
 
-/// Lines of a figure in scenes with huge boxes: the ratios against the number of these boxes, one line per edge length,
-/// and the level 1 of the baseline.
+/// Lines of a figure: the ratios against the number of huge boxes, one line per edge length, and the baseline's level
+/// 1.
 /// @param wanted factors that a ratio must have to be drawn
-/// @param level the label of the baseline's level
 std::vector<series> lines_by_span(std::span<const endpoint> ratios, const factors& wanted, const std::string& level) {
     std::map<std::string, series> by_span;
     for (const endpoint& e : ratios) {

@@ -28,8 +28,7 @@ struct tried_choice {
     selection baseline;
 };
 
-/// A claim's ratio of a metric in the given condition (scene), under each choice for an open question of the paper. Our
-/// choice comes first.
+/// A claim's ratio of a metric in the condition, under each choice for an open question of the paper, ours first.
 /// @param conditions at most one; without one, the result has no ratios
 /// @param note is appended to the text of the condition
 measured_choices ratios_in_condition(const std::vector<const condition*>& conditions, const std::string& metric,
@@ -91,8 +90,7 @@ measured_choices leaf_test_choices(const measurements& m) {
     return ratios_in_condition(matching(m.conditions_of("figure2"), large_spheres), "detect_cpu_ms", "", tests);
 }
 
-/// The growth of Shell sort's work per element when N grows tenfold, as in claim C2, for gap sequences whose number of
-/// gaps is fixed or grows with N.
+/// The growth of Shell sort's work per element when N grows tenfold, for fixed and for growing numbers of gaps.
 measured_choices gap_count_choices(const measurements& m) {
     measured_choices measured{.where = "line, displacement 0.1", .ours = "enough for N"};
     for (endpoint e : c2_claim(m).endpoints) {
@@ -108,8 +106,7 @@ measured_choices gap_count_choices(const measurements& m) {
     return measured;
 }
 
-/// Claim C11's ratio, the time of both phases improved over both traditional, in each of its scenes: the paper's
-/// "different models" may mean any of them.
+/// Claim C11's ratio in each of its scenes: the paper's "different models" may mean any of them.
 measured_choices model_choices(const measurements& m) {
     measured_choices measured{.where = "displacement 0.05", .ours = ""};
     for (const condition& c : m.conditions_of("c11")) {
@@ -133,9 +130,8 @@ measured_choices first_frame_choices(const measurements& m) {
     return measured;
 }
 
-/// Judges the ratios under the alternatives to one of our choices: ours comes first and is decided alone, the others
-/// together, like the ratios of a claim. If ours was not measured, there are no alternatives, since nothing can be
-/// compared.
+/// Judges the alternatives to one of our choices: ours comes first and is decided alone, the others together, like the
+/// ratios of a claim. Without ours, there are no alternatives, since nothing can be compared.
 /// @param ours our choice in words; `measured.ours` is its label
 open_choice judge(const std::string& question, const std::string& ours, const std::string& why,
                   const std::string& claim, measured_choices measured) {
@@ -158,8 +154,7 @@ open_choice judge(const std::string& question, const std::string& ours, const st
 
 }  // namespace
 
-/// The questions that the paper leaves open, with our choices and their reasons, and a claim's ratio under the
-/// alternatives, which shows whether the outcome depends on the choice.
+/// The questions that the paper leaves open, our choices with reasons, and a claim's ratio under the alternatives.
 std::vector<open_choice> open_choices(const measurements& m) {
     const auto shell = [](const std::string& gaps, const std::string& cut = "axial_cut:axes=2") {
         return improved.with(kind::sort, "shell:gaps=" + gaps).with(kind::partition, cut);

@@ -12,7 +12,7 @@ constexpr double factor_threshold = 1.5;
 /// Ratios within this factor are reported as a single one.
 constexpr double equality_threshold = 1.1;
 
-/// In the order of `quantity`; empty where labels name the quantity.
+/// The nouns in the order of `quantity`; empty where labels name the quantity.
 std::string noun_of(quantity compared) {
     constexpr std::array nouns{"time", "bytes", "box tests", "", "slowdown", "time relative to the cut's"};
     return nouns[static_cast<std::size_t>(compared)];
@@ -35,8 +35,7 @@ std::string span_text(const std::string& low, const std::string& high) {
     return low == high ? high : low + " to " + high;
 }
 
-/// The size of ratios that all lie on one side of 1: for times "up to 2.1 times as fast" or "1.27 times as long", for
-/// other quantities "34 to 36 % of the bytes".
+/// The size of ratios on one side of 1: "up to 2.1 times as fast", "1.27 times as long", "34 to 36 % of the bytes".
 std::string size_text(std::span<const endpoint> endpoints) {
     const auto [least, greatest] = std::ranges::minmax_element(endpoints, {}, &endpoint::ratio);
     const double low = least->ratio, high = greatest->ratio;
@@ -105,8 +104,7 @@ std::string range_text(const std::vector<stretch>& stretches, std::size_t i) {
            " of " + values;
 }
 
-/// Reports the outcomes of ratios that are ordered along a factor: "1.30 times as long with 100 objects, 2.0 times as
-/// fast with 1,000 or more".
+/// Outcomes along a factor: "1.30 times as long with 100 objects, 2.0 times as fast with 1,000 or more".
 std::string ordered_outcomes(std::span<const endpoint> endpoints) {
     const std::vector<stretch> stretches = stretches_of(endpoints);
     std::string text;
@@ -116,8 +114,7 @@ std::string ordered_outcomes(std::span<const endpoint> endpoints) {
     return text;
 }
 
-/// Reports the outcomes of ratios without an order: the least and the greatest one if outcomes differ, "from 1.2 times
-/// as fast to 1.3 times as long". Undecided ratios are only counted.
+/// Outcomes without an order: "from 1.2 times as fast to 1.3 times as long"; undecided ratios are only counted.
 std::string unordered_outcomes(std::vector<endpoint> endpoints) {
     std::string undecided = outcome_text(endpoints, wording::open);
     const std::size_t count = endpoints.size();
@@ -138,8 +135,7 @@ struct clause {
     std::string outcomes;
 };
 
-/// The clause of a claim's sentence that reports the ratio `member`, together with all other ratios of the same subject
-/// and quantity.
+/// The clause of a claim's sentence that reports `member` and all other ratios of the same subject and quantity.
 clause clause_of(std::span<const endpoint> endpoints, const endpoint& member) {
     std::vector<endpoint> reported;
     std::ranges::copy_if(endpoints, std::back_inserter(reported),
@@ -195,8 +191,7 @@ wording wording_of(const endpoint& e) {
     return e.corrected == support::favours ? wording::not_more : wording::open;
 }
 
-/// Appends the counts above 0, each with its verb in the singular or plural: ", 2 hold, 1 does not hold and 3 are
-/// undecided."
+/// Appends the counts above 0 with their verbs: ", 2 hold, 1 does not hold and 3 are undecided."
 std::string counts_text(std::string text, std::initializer_list<counted_verb> counts) {
     auto left = std::ranges::count_if(counts, [](const counted_verb& c) { return c.count > 0; });
     std::string_view separator = ", ";

@@ -28,9 +28,8 @@ selection selection_of(const layout& l, const std::string& build) {
     return {{kind::tree, l.tree}, {kind::build, build}};
 }
 
-/// Bytes per triangle of every layout of trees, measured in one condition (a mesh): nominal, from the sizes of its
-/// nodes, and allocated. `nodes` are the boxes and the paper's symbols (bits that say which planes a child inherits and
-/// which children are leaves), `indices` those of children and triangles.
+/// Bytes per triangle of every layout of trees on one mesh: nominal, from the sizes of nodes, and allocated. `nodes`
+/// are boxes and symbols (bits for inherited planes and leaves), `indices` those of children and triangles.
 table bytes_table(const condition& c) {
     table t = empty_table({"tree", "internal node", "leaf"},
                           {"bytes per triangle, nominal", "allocated", "of these, boxes and symbols", "indices"});
@@ -48,9 +47,8 @@ table bytes_table(const condition& c) {
     return t;
 }
 
-/// What every layout costs under every split rule on one mesh: bytes, the inflation of its boxes (their surface area
-/// over that of tight ones), and the times to build and to query. Times are over those of the paper's first layout,
-/// canonical, with the simplest rule, the median.
+/// What every layout costs under every split rule on one mesh: bytes, inflation (surface area of boxes over that of
+/// tight ones), and the times to build and to query over those of the canonical layout with the median.
 table cost_table(const condition& c) {
     const selection baseline = selection_of(layouts[0], "median");
     table t = empty_table({"tree", "build"}, {"bytes per triangle", "boxes larger by (%)", "build time", "query time"});

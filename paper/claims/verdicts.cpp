@@ -18,8 +18,7 @@ std::string range_text(const endpoint& e) {
 
 }  // namespace
 
-/// One row per endpoint (a ratio of a claim): the factors in which their conditions differ, the ratio, its interval and
-/// its outcome.
+/// One row per endpoint: the factors in which their conditions differ, the ratio, its interval and its outcome.
 /// @param outcome returns the text of the last column
 table endpoint_table(std::span<const endpoint> endpoints, const std::function<std::string(const endpoint&)>& outcome) {
     std::vector<factors> conditions;
@@ -32,8 +31,7 @@ table endpoint_table(std::span<const endpoint> endpoints, const std::function<st
     return t;
 }
 
-/// One row per condition (scene), with a column for each factor, such as the number of objects, whose value differs
-/// between conditions. Factors with one value would only widen the table.
+/// One row per scene, with a column for each factor whose value differs between them: others only widen the table.
 table factors_table(std::span<const factors> conditions) {
     table t;
     t.rows.resize(conditions.size());
@@ -171,8 +169,7 @@ named_table null_control(const measurements& m) {
             t};
 }
 
-/// A warning, if a machine was not quiet: if the program waited for a processor, or if times vary between successive
-/// repeats, by more than the limits; otherwise empty.
+/// A warning if the program waited for a processor, or successive repeats vary, by more than the limits; or empty.
 std::string disturbance_of(std::span<const measurements> machines) {
     std::string text;
     for (const measurements& m : machines) {

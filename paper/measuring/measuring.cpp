@@ -22,7 +22,6 @@ namespace aabblab {
 namespace {
 
 /// The project's studies of error against run time that draw curves, for the report.
-/// @param quick takes the quick sizes of their configs
 std::vector<error_study> studies_with_curves(bool quick) {
     std::vector<error_study> studies;
     for (const std::filesystem::path& config : error_configs()) {
@@ -90,8 +89,7 @@ void remove_edited_test_times(const std::filesystem::path& folder) {
     }
 }
 
-/// The report's section on error against run time: statements, figures and tables of the studies that were run, on
-/// triangle pairs (errors.csv) or on whole scenes (results.csv).
+/// The report's section on error against run time, of the studies that ran, on triangle pairs or whole scenes.
 report_section errors_section(const std::filesystem::path& folder, bool quick) {
     report_section section{
         .id = "errors",
@@ -161,9 +159,8 @@ std::vector<std::string> read_failures(const std::filesystem::path& folder) {
     return failures;
 }
 
-/// Runs the paper's experiments, and the studies, suites and atlas of the report. Results of the same build and size
-/// are kept. Errors are stored as soon as they are found. The folder is unsealed at the start, and sealed with
-/// checksums at the end, so that an unfinished run has no seal.
+/// Runs the paper's experiments, and the studies, suites and atlas of the report, keeping results of the same build and
+/// size. Errors are stored as soon as they are found. Only a finished run is sealed with checksums.
 void measure_reproduction(const std::filesystem::path& folder, bool quick) {
     remove_edited_test_times(folder);
     std::vector<experiment> experiments;
@@ -223,8 +220,7 @@ void require_consistent(const reproduce_request& request) {
         throw aabb::input_error("--archive takes the results of one run, but several are given");
 }
 
-/// Reads and verifies the results of one run. It reads all of them at once, so that a damaged one is found before any
-/// output.
+/// Reads and verifies all results of one run at once, so that damage is found before any output.
 /// @param name the user's name for it
 measurements verified_measurements(const std::filesystem::path& folder, const std::string& name) {
     const std::vector<std::string> experiments = recorded_experiments(folder);
@@ -263,8 +259,7 @@ void require_different(std::span<const measurements> runs) {
     }
 }
 
-/// A sentence on how the verdicts agree with those of the published run of the same size, quick or full, an archive in
-/// the repository; empty if there is no such archive.
+/// How the verdicts agree with those of the published run of the same size, an archive; empty if there is none.
 std::string verdict_agreement_with_published(std::span<const measurements> runs, const reproduction& reproduced) {
     const std::string name = is_quick(runs.front().folder()) ? "quick_run.tar.xz" : "full_run.tar.xz";
     const std::filesystem::path archive = std::filesystem::path(AABBLAB_ARCHIVES) / name;
@@ -286,8 +281,7 @@ std::string verdict_agreement_with_published(std::span<const measurements> runs,
     }
 }
 
-/// Judges the results of several runs together, each as those of one machine, writes the report and prints the
-/// verdicts.
+/// Judges the results of several runs together, each as one machine, writes the report and prints the verdicts.
 /// @returns the exit status: 1 if validation had found wrong results
 int judge(const std::filesystem::path& out, std::span<const measurements> runs) {
     std::vector<std::string> failures;
@@ -321,8 +315,7 @@ void archive_reproduction(const std::filesystem::path& folder, const std::filesy
 
 }  // namespace
 
-/// Measures unless existing results are to be judged, then judges and reports. The folder is locked meanwhile, so that
-/// no second run writes to it.
+/// Measures, unless existing results are to be judged, and reports; the folder is locked against a second run.
 int reproduce(const reproduce_request& request) {
     outlive_reader();
     require_consistent(request);

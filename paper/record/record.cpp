@@ -19,8 +19,7 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
     return names;
 }
 
-/// The files of a reproduction's folder from which its report is made, so that they are sealed and archived; relative
-/// to the folder, sorted.
+/// The files of a reproduction's folder that are sealed and archived; relative to the folder, sorted.
 std::vector<std::filesystem::path> recorded_files(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
     const auto add = [&](const std::filesystem::path& subfolder, std::initializer_list<const char*> names) {
@@ -116,8 +115,7 @@ void results_sources::add(const std::filesystem::path& folder) {
     sources_.push_back({folder.string(), folder});
 }
 
-/// Runs the work. Archives are unpacked to temporary folders, which the user does not know, so an error message gets
-/// the name of the archive in place of the folder's.
+/// Runs the work. Error messages get the name of an archive in place of the temporary folder's.
 int results_sources::run_with_source_names(const std::function<int()>& work) const {
     try {
         return work();

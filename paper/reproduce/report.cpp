@@ -52,8 +52,7 @@ void add_arrow(svg_picture& picture, bool to_left, double y, double number) {
                  {{"text-anchor", to_left ? "start" : "end"}});
 }
 
-/// Draws a ratio as a disc on its 95 % interval, in the row at y. If the interval leaves the scale, an arrow at that
-/// end shows its limit, or the ratio, if that is beyond the scale, too.
+/// Draws a ratio as a disc on its 95 % interval. An arrow shows a limit beyond the scale, or the ratio, if beyond, too.
 void add_interval(svg_picture& picture, const endpoint& e, double y) {
     const auto& [low, high] = e.range;
     const bool is_below = low < claims_scale.from;
@@ -64,8 +63,7 @@ void add_interval(svg_picture& picture, const endpoint& e, double y) {
     if (is_above) add_arrow(picture, /*to_left=*/false, y, e.ratio > claims_scale.to ? e.ratio : high);
 }
 
-/// A claim's ratios with their intervals as SVG, one per row, against the band of no difference. All claims share a
-/// logarithmic scale with 1 in the middle, so that their pictures compare.
+/// A claim's ratios and intervals as SVG, one per row, on a logarithmic scale that is common to all claims.
 std::string interval_picture(std::span<const endpoint> endpoints) {
     const double axis_y = first_row + row_height * static_cast<double>(endpoints.size());
     std::string label;
@@ -80,8 +78,7 @@ std::string interval_picture(std::span<const endpoint> endpoints) {
     return picture.in_page("interval", label, axis_y + 16);
 }
 
-/// An SVG picture of the rule by which ratios are judged: example intervals against the band of no difference, with
-/// their outcomes.
+/// An SVG picture of the rule by which ratios are judged: example intervals with their outcomes.
 std::string rule_picture() {
     struct example {
         double low;
@@ -122,7 +119,7 @@ struct verdict_word {
     std::string_view meaning;
 };
 
-/// In the order of `verdict_kind`.
+/// The words for a verdict, in the order of `verdict_kind`.
 constexpr verdict_word verdict_words[] = {
     {"holds", "Holds", "every primary ratio favours the claim"},
     {"part", "Holds in part", "some primary ratios favour it and some do not; the text after the verdict says where"},
@@ -134,8 +131,7 @@ const verdict_word& word_of(verdict_kind verdict) {
     return verdict_words[static_cast<std::size_t>(verdict)];
 }
 
-/// The paragraphs of rule.md, the text on how a verdict is reached, each joined to one line. The file is embedded in
-/// the program.
+/// The paragraphs of rule.md, which is embedded in the program, each joined to one line.
 std::vector<std::string> rule_paragraphs() {
     std::vector<std::string> paragraphs;
     std::istringstream text{std::string(embedded::rule_md)};
@@ -160,8 +156,7 @@ std::string verdict_markup(const claim_result& c, const std::string& sentence) {
            markup_text(sentence);
 }
 
-/// Adds the overview of the claims: in HTML a row per claim, which links to its section; in Markdown a table, a
-/// sentence per claim, and the figures.
+/// Adds the overview: in HTML a row with a link per claim; in Markdown a table, a sentence per claim, and the figures.
 void add_claim_rows(page& out, const reproduction& reproduced) {
     std::string rows = "\n";
     for (const claim_result& c : reproduced.claims) {
@@ -237,8 +232,7 @@ table rule_table() {
     return t;
 }
 
-/// Composes the report as a page: warnings and headline, the claims, the decision rule, details of each claim, table 1,
-/// open choices, further sections, and provenance.
+/// Composes the report; further sections come before provenance.
 page report_of(const reproduction& reproduced, std::span<const report_section> sections, const provenance& origin,
                const std::vector<std::string>& failures) {
     page out("AABB Lab: the paper, reproduced", embedded::report_css);

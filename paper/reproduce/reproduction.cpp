@@ -20,8 +20,7 @@ private:
     std::string text_ = "% Written by ./aabblab reproduce: every number of the report.\n";
 };
 
-/// The values that each factor takes over the scenes of a claim, numbers in ascending order: "scene brownian, still;
-/// objects 100, 1000."
+/// The values of each factor over the scenes of a claim, ascending: "scene brownian, still; objects 100, 1000."
 std::string setup_of(const claim_result& c) {
     std::vector<std::pair<std::string, std::vector<std::string>>> values;
     for (const factors& scene : c.scenes)
@@ -127,8 +126,7 @@ void write_table(const std::filesystem::path& folder, const named_table& t) {
     write_file(folder / (t.name + ".tex"), to_tex(t.content));
 }
 
-/// The macros of the LaTeX report, one per number or sentence in it. A missing key ends its build, so keys of values
-/// that were not measured are set, too.
+/// The macros of the LaTeX report. A missing key ends its build, so keys of values not measured are set, too.
 std::string macros_of(const reproduction& reproduced, const provenance& origin,
                       const std::vector<std::string>& failures) {
     macros tex;
@@ -184,8 +182,7 @@ std::string macros_of(const reproduction& reproduced, const provenance& origin,
     return tex.text();
 }
 
-/// Collects the origin of the results (commit, compiler, processor, numbers of rows, …) from the manifests of all
-/// experiments on which claims, open choices and the null control rest.
+/// Collects the origin of the results (commit, compiler, processor, …) from the manifests of all experiments used.
 provenance provenance_of(const measurements& results, const reproduction& reproduced) {
     provenance origin;
     const std::filesystem::path& folder = results.folder();
