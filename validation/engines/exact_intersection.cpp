@@ -57,7 +57,7 @@ struct common_corners {
     corners operator()(const point_3& s, const point_3& t) const { return s == t ? corners{s} : corners{}; }
     corners operator()(const point_3& s, const auto& t) const { return t.has_on(s) ? corners{s} : corners{}; }
     corners operator()(const auto& s, const point_3& t) const { return (*this)(t, s); }
-    /// For two triangles or segments, by CGAL, each corner only once; the overloads above are for points.
+    /// Intersects two triangles or segments by CGAL, each corner only once; the overloads above are for points.
     corners operator()(const auto& s, const auto& t) const {
         const auto shape = CGAL::intersection(s, t);
         if (!shape) return {};
@@ -77,9 +77,8 @@ bool is_interior(const exact_hull& h, const point_3& p) {
     return true;
 }
 
-/// The kind of the intersection of g and h, which are triangles, segments or points, by its corners. With more than
-/// two, triangles overlap in their common plane. A segment is transversal if its middle, and thus all of it but its
-/// ends, lies inside both triangles, on no edge.
+/// The kind of the intersection of g and h by its corners. With more than two, triangles overlap in their common plane.
+/// A segment is transversal if its middle, and so all but its ends, is inside both triangles, on no edge.
 intersection_kind kind_of(const std::vector<point_3>& corners, const exact_hull& g, const exact_hull& h) {
     if (corners.empty()) return intersection_kind::none;
     if (corners.size() == 1) return intersection_kind::point;
@@ -89,10 +88,9 @@ intersection_kind kind_of(const std::vector<point_3>& corners, const exact_hull&
                                                             : intersection_kind::segment;
 }
 
-/// Adds the errors of a computed corner, its distances on the axes from the exact corner, in exact numbers.
+/// Adds the distances on the axes of a computed corner from the exact one, in exact numbers.
 /// @param errors of all corners so far: whether all are within their bounds, the greatest ratio of an error to its
 /// bound (`of_bound`), and the greatest error with its bound
-/// @param bounds the stated errors of the computed coordinates
 void add_errors(corner_errors& errors, const vec3d& computed, const exact_point& corner, const vec3d& bounds) {
     for (int k = 0; k < 3; ++k) {
         const exact_number error = CGAL::abs(exact_number(computed[k]) - corner[static_cast<std::size_t>(k)]);
@@ -113,8 +111,7 @@ struct alignment {
     std::array<std::size_t, 6> order{};  // indices of exact corners by computed corner
 };
 
-/// All alignments of the corners of a polygon, from the nearest one in double on: computed corners may begin at any
-/// exact corner and run in either direction.
+/// All alignments of a polygon's corners, nearest first: computed ones may begin anywhere and run in either direction.
 std::vector<alignment> alignments_of(const triangle_intersection& computed, const std::vector<exact_point>& exact) {
     const std::size_t size = exact.size();
     std::array<vec3d, 6> approximate{};
@@ -142,8 +139,7 @@ struct exact_intersection::construction {
     std::vector<exact_point> corners;
 };
 
-/// Computes the intersection of s and t at their poses: its corners and its kind. CGAL would evaluate exact coordinates
-/// only on demand, so `CGAL::exact` evaluates them here.
+/// Computes corners and kind. CGAL would evaluate coordinates only on demand, so `CGAL::exact` does it here.
 exact_intersection::exact_intersection(const pose_pair& poses, const triangle3d& s, const triangle3d& t)
     : construction_(std::make_unique<construction>()) {
     const exact_hull g = exact_hull_of(s, poses.a), h = exact_hull_of(t, poses.b);

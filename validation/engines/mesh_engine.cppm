@@ -15,9 +15,8 @@ namespace aabb {
     return transformed;
 }
 
-/// The bounds of a triangle of mesh B in the frame of mesh A, grown by the error bounds of the transform on each axis,
-/// so that they overlap the boxes of all triangles of A that intersect it exactly.
-/// @param to_a the transform; its `image_error` has the bounds
+/// The bounds of a triangle of mesh B in A's frame, grown by the error bounds of the transform (`image_error`), so that
+/// they overlap the boxes of all triangles of A that intersect it exactly.
 [[nodiscard]] box box_around(const triangle3f& of_b, const relative_pose& to_a) {
     box around = bounds_of(to_a(of_b));
     // These sums need no further margin: rounding to nearest is monotone, so that a rounded bound is not above any
@@ -61,9 +60,8 @@ public:
         all_pairs(model_a, pose_a, model_b, pose_b, pairs);
         return pairs.size();
     }
-    /// Appends the pairs of triangles of one mesh that intersect. They are found as the pairs of the mesh with its
-    /// copy, which contain each pair in both orders, and each triangle with itself; of these only pairs with a < b
-    /// count.
+    /// Finds the pairs of the mesh with its copy, which contain each pair in both orders, and each triangle with
+    /// itself; of these only pairs with a < b count.
     void self_pairs(std::uint32_t model, std::vector<index_pair>& pairs) final {
         std::vector<index_pair> both_ways;
         all_pairs(model, {}, model, {}, both_ways);
@@ -103,8 +101,7 @@ public:
         return static_cast<std::uint32_t>(models_.size() - 1);
     }
 
-    /// Updates a model whose mesh deformed. `fit` records a failure, after which queries are rejected until a refit
-    /// succeeds.
+    /// Updates a deformed model. After a failure, `fit` rejects queries until a refit succeeds.
     void refit(std::uint32_t model) final {
         Model& changed = models_[model];
         changed.fit.renew([&] {

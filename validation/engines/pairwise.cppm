@@ -61,7 +61,6 @@ private:
         });
     }
 
-    /// The first pair of triangles that intersects, if there is one; the callback ends the loop there.
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         std::optional<index_pair> first;
         decide(q, [&](index_pair pair) {
@@ -71,8 +70,7 @@ private:
         return first;
     }
 
-    /// Calls `emit({s, t})` for each triangle s of mesh A that intersects a triangle t of mesh B, until it returns
-    /// true. B's triangles get boxes in A's frame; `search_` finds pairs whose boxes overlap, and `decide_` tests them.
+    /// Calls `emit({s, t})` for each pair that `decide_` accepts, of those that `search_` finds by boxes in A's frame.
     template <class Emit>
     void decide(const model_query& q, Emit emit) const {
         const mesh& b = *q.b.source;

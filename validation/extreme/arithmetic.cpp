@@ -30,8 +30,7 @@ bool can_flush_denormals() noexcept {
 #endif
 }
 
-/// Runs the work in this floating-point mode, in a new thread: the mode is a property of the thread and ends with it.
-/// Exceptions are rethrown here.
+/// Runs the work in a new thread, whose floating-point mode ends with it. Exceptions are rethrown here.
 void in_arithmetic(arithmetic kind, const std::function<void()>& work) {
     assert(kind != arithmetic::denormals_flushed || can_flush_denormals());
     std::async(std::launch::async, [&] {

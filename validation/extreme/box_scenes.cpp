@@ -44,7 +44,7 @@ box_frames points() {
     return moving(boxes_of(80, point), /*shift=*/1);
 }
 
-/// 80 boxes with zero extent on one or two axes (`flat_axes`), the first of which is axis i % 3 for box i.
+/// 80 boxes with zero extent on one or two axes (`flat_axes`); the first is axis i % 3 for box i.
 box_frames without_extent(int flat_axes, std::uint32_t seed) {
     draws random(seed);
     const auto make_box = [&](std::uint32_t i) {
@@ -186,8 +186,7 @@ extreme_scene population(std::string name, std::string summary, IsPresent is_pre
 
 }  // namespace
 
-/// All extreme scenes of valid boxes: of extreme shapes and arrangements, then of extreme coordinates, then with
-/// extreme motion and with objects that leave and return.
+/// All extreme scenes of valid boxes: shapes and arrangements, coordinates, motion, objects that leave and return.
 std::vector<extreme_scene> box_scenes() {
     return {
         scene_of_boxes("identical", "60 copies of one box",

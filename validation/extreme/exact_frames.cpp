@@ -30,8 +30,7 @@ void for_each_true_pair(const mesh& a, const mesh& b, const pose_pair& poses, Vi
             if (judge_intersection(poses, a.given_triangle(s), b.given_triangle(t)) && visit(index_pair{s, t})) return;
 }
 
-/// The ground truth for two objects, by a double loop over their triangles. For `first_pair` it only records whether
-/// they intersect, and ends at the first pair.
+/// The ground truth for two objects by a double loop; for `first_pair`, it only records whether a pair exists.
 exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>& poses, index_pair objects,
                                extreme_query query) {
     exact_objects result{.a = objects.a, .b = objects.b, .pairs = {}};
@@ -48,8 +47,7 @@ exact_objects exact_objects_of(const mesh_scene& scene, const std::vector<pose>&
 
 }  // namespace
 
-/// The ground truth of a scene of boxes: the pairs of each frame, by a double loop over the present objects, and the
-/// objects that arrived and departed before it.
+/// The ground truth of a scene of boxes: the pairs of each frame by a double loop, and arrivals and departures.
 exact_boxes exact_boxes_of(box_scene& scene) {
     exact_boxes frames;
     std::vector<std::uint8_t> previously_present;

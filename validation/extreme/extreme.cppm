@@ -184,8 +184,7 @@ struct triangle_case {
     bool intersect_double = false;
 };
 
-/// All 72 pairs that result from permuting the corners of both triangles and swapping the triangles: the result of a
-/// test must not depend on these orders.
+/// All 72 pairs by permutations of corners and a swap of the triangles, on which no result must depend.
 /// @tparam Real float or double, to which coordinates are rounded
 template <class Real>
 [[nodiscard]] std::vector<triangle_pair<Real>> every_order(const triangle_case& original) {

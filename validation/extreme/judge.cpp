@@ -22,8 +22,7 @@ void make_rejected(extreme_result& result, const input_error& rejection) {
     result.reason = rejection.what();
 }
 
-/// Adds the false negatives and false positives of a result to its counts; the first one is the reason why it is wrong.
-/// @param where begins that reason, as in "frame 2"
+/// Adds false negatives and false positives to a result; the first is the reason, which `where` begins: "frame 2".
 void record_difference(extreme_result& result, const pair_comparison& difference, const std::string& where) {
     const auto text_of = [](const index_pair& pair) { return std::to_string(pair.a) + " " + std::to_string(pair.b); };
     result.false_negatives += difference.false_negatives.size();
@@ -67,8 +66,7 @@ void add_classes(const mesh_scene& scene, pair_comparison difference, index_pair
                                              scene.meshes[scene.mesh_of[objects.b]], pose_b);
 }
 
-/// Runs both stages on a frame, and compares the contacts of each two objects with the ground truth. Wrong pairs of
-/// triangles are also counted by class, such as touching or coplanar (`add_classes`).
+/// Compares the contacts of each two objects with the ground truth; wrong pairs also count by class (`add_classes`).
 void judge_all_pairs(const judged_frame& current, pipeline& stages, extreme_result& result) {
     stages.search();
     stages.detect();
@@ -159,8 +157,7 @@ void require_rejection(const extreme_scene& scene, const std::string& query, con
     }
 }
 
-/// Checks that a broad phase rejects each call in the scene's floating-point mode, such as rounding upward. The stage
-/// is made and updated in IEEE arithmetic, so that only the mode is at fault.
+/// Checks that a broad phase, made and updated in IEEE arithmetic, rejects each call in the scene's mode.
 void require_rejections(const extreme_scene& scene, const std::function<std::unique_ptr<global_stage>()>& make,
                         extreme_result& result) {
     std::vector<box> boxes;
@@ -173,8 +170,7 @@ void require_rejections(const extreme_scene& scene, const std::function<std::uni
     require_rejection(scene, "update", [&] { stage->update(boxes); }, result);
 }
 
-/// Checks that a narrow phase rejects each call in the scene's floating-point mode, such as rounding upward. The stage
-/// is made in IEEE arithmetic, so that only the mode is at fault.
+/// Checks that a narrow phase, made in IEEE arithmetic, rejects each call in the scene's floating-point mode.
 void require_rejections(const extreme_scene& scene, const std::function<std::unique_ptr<local_stage>()>& make,
                         extreme_result& result) {
     const std::unique_ptr<mesh_scene> meshes = scene.make_meshes();

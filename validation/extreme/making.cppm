@@ -65,11 +65,11 @@ class draws {
 public:
     explicit draws(std::uint32_t seed) : engine_(seed) {}
 
-    /// In [low, high).
+    /// A random number in [low, high).
     [[nodiscard]] float between(float low, float high) {
         return low + (high - low) * (static_cast<float>(engine_() >> 8U) * 0x1p-24F);
     }
-    /// In [0, count).
+    /// A random number in [0, count).
     [[nodiscard]] std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(engine_() % count); }
     /// Each coordinate in [low, high).
     [[nodiscard]] vec3f point(float low, float high) {

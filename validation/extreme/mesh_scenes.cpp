@@ -43,8 +43,7 @@ std::unique_ptr<mesh_scene> same_centroid() {
     return posed(soup_of(triangles), {{{}, {}}, {{}, shifted(1, 0, 0)}, {{}, turned(1, {0, 0, 5})}});
 }
 
-/// Two copies of a mesh that has each triangle four times, and once more with permuted corners: no build of a tree can
-/// separate these, and each of them must be reported.
+/// Two copies of a mesh that has each triangle four times, and once with permuted corners: no build can separate these.
 std::unique_ptr<mesh_scene> duplicates() {
     mesh m = cube();
     // One face and a half.
@@ -66,8 +65,7 @@ mesh coincident(std::uint32_t count) {
     return m;
 }
 
-/// Two copies of a mesh of thin triangles of lengths about 1, in random directions. In three frames, each a pair of
-/// poses, the second copy is at the pose of the first, then almost.
+/// Two copies of a mesh of thin triangles of lengths about 1 in random directions, at the same pose, then almost.
 /// @param height the greatest distance of the third corner from the middle of the long edge, on each axis
 std::unique_ptr<mesh_scene> needles(float height) {
     draws random(51);
@@ -116,7 +114,7 @@ std::unique_ptr<mesh_scene> balls_moved(double far) {
                               {shifted(-far, far, 0), shifted(-far, far, 0)}});
 }
 
-/// Two cubes of doubles, whose coordinates end this far apart, also after a rotation of both.
+/// Two cubes of doubles, whose coordinates end at this distance, also after a rotation of both.
 std::unique_ptr<mesh_scene> cubes_apart(const vec3d& place, double gap) {
     const mesh first = in_double(cube(), 0.1, place);
     const mesh second = in_double(cube(), 0.1, {place[0] + 0.2 + gap, place[1], place[2]});

@@ -57,8 +57,7 @@ pose stretched(double scale) {
     return p;
 }
 
-/// A scene of boxes and a scene of meshes, both valid, that must be rejected with this message since they are computed
-/// in this floating-point mode.
+/// Two valid scenes, of boxes and of meshes, that must be rejected since they are computed in this floating-point mode.
 std::vector<extreme_scene> computed_in(arithmetic kind, const std::string& name, const std::string& summary,
                                        const std::string& rejection) {
     const auto boxes = [] {
@@ -117,8 +116,7 @@ std::vector<extreme_scene> invalid_mesh_scenes() {
     };
 }
 
-/// Scenes that must be rejected in a thread that flushes denormals, if this processor can do so, and in one that rounds
-/// upward.
+/// Scenes to be rejected in threads that flush denormals, if this processor can do so, or round upward.
 std::vector<extreme_scene> other_arithmetic_scenes() {
     std::vector<extreme_scene> scenes = computed_in(arithmetic::rounded_upward, "upward", "a thread that rounds upward",
                                                     "this thread does not round to nearest");

@@ -69,8 +69,7 @@ struct world_mesh {
     std::vector<world_triangle> triangles;
     int unit;
 
-    /// Computes R v + t for each corner. `unit` is an exponent: 2^unit divides all products and t, so that the integers
-    /// are exact.
+    /// Computes R v + t for each corner. 2^unit divides all products and t, so that the integers are exact.
     world_mesh(const pose& p, std::span<const triangle3d> given) {
         std::vector<double> coordinates;
         for (const triangle3d& t : given)
@@ -114,8 +113,8 @@ bool separates(const point& axis, const world_triangle& s, const world_triangle&
     return std::ranges::max(of_s) < std::ranges::min(of_t) || std::ranges::max(of_t) < std::ranges::min(of_s);
 }
 
-/// Axes of which one separates `s` and `t` if they are disjoint, also if they degenerate to segments or points. They
-/// are normals of the Minkowski difference of `s` and `t`, by its dimension:
+/// Axes that include a separating one if `s` and `t` are disjoint, also if they degenerate to segments or points:
+/// normals of the Minkowski difference, by its dimension:
 /// - 3: the normals of its facets, each a cross product of two edges;
 /// - 2: the normal of its plane, again a cross product, and in the plane the normals of its edges;
 /// - 1: its direction, which is an edge, and the part of `between` that is perpendicular to it;
@@ -150,8 +149,7 @@ bool intersect(const world_triangle& s, const world_triangle& t) {
     return std::ranges::none_of(axes, [&](const point& axis) { return separates(axis, s, t); });
 }
 
-/// Calls `emit({s, t})` for each triangle s of A that intersects a triangle t of B, until `emit` returns true. The
-/// coordinates of both meshes are integers of the smaller unit, so that they are comparable.
+/// Passes each intersecting pair of triangles to `emit`, until it returns true. Both meshes are integers of one unit.
 template <class Emit>
 void for_each_pair(const pose_pair& poses, std::span<const triangle3d> of_a, std::span<const triangle3d> of_b,
                    Emit emit) {
@@ -190,7 +188,6 @@ class integer_engine final : public model_engine<given_model> {
             return false;
         });
     }
-    /// The first pair of triangles that intersects, if there is one; the callback ends the loop there.
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         require_valid_poses(q);
         std::optional<index_pair> first;

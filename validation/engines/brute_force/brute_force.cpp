@@ -29,8 +29,7 @@ private:
         }
     }
 
-    /// Tests each box against the boxes after it, in blocks: the test of a block has no branch, so that it vectorises,
-    /// and the few blocks with an overlap are then searched for pairs.
+    /// Tests blocks of boxes without branches, which vectorises, then searches the few blocks with an overlap.
     void find_pairs(std::vector<index_pair>& pairs) override {
         block_hits hits{};
         for (std::size_t i = 0; i < ids_.size(); ++i)
@@ -42,9 +41,8 @@ private:
             }
     }
 
-    /// Tests box i against `count` boxes from `begin` on.
+    /// Tests box i against `count` boxes from `begin` on; returns whether it overlaps any.
     /// @param hits output: hits[j] is whether box i overlaps box begin + j
-    /// @return whether any of them overlaps
     [[nodiscard]] bool test_block(std::size_t i, std::size_t begin, std::size_t count, block_hits& hits) const {
         const box tested{{min_[0][i], min_[1][i], min_[2][i]}, {max_[0][i], max_[1][i], max_[2][i]}};
         const std::array<const float*, 3> low = {&min_[0][begin], &min_[1][begin], &min_[2][begin]};

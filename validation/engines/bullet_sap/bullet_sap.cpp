@@ -10,8 +10,7 @@ namespace aabb {
 
 namespace {
 
-/// Clamps coordinates to 1e37, so that no extent of Bullet's world overflows. Their order is preserved, though not
-/// strictly: clamped boxes overlap wherever the given ones do.
+/// Clamps coordinates to 1e37, so that no extent overflows; clamped boxes overlap wherever the given ones do.
 box clamped(box b) {
     constexpr float most = 1e37F;
     for (int k = 0; k < 3; ++k) {
@@ -42,8 +41,7 @@ btVector3 corner_of(const vec3f& v) {
 /// is preserved, and lower ends precede upper ends in the same step: false positives, but no false negatives.
 class bullet_sap final : public box_engine {
 public:
-    /// Bullet does not report its memory, so it is computed from the sizes of its types: a handle and six ends per
-    /// object, and the cache of overlapping pairs.
+    /// Bytes by the sizes of Bullet's types, as it reports none: handles, six ends per object, and the cache of pairs.
     [[nodiscard]] std::vector<part_bytes> bytes() const override {
         std::size_t total = bytes_of(boxes_, proxies_, objects_);
         if (sweep_) {
@@ -57,8 +55,7 @@ public:
     }
 
 private:
-    /// Moves the boxes in Bullet's sweep. Its number of objects and its world, the range of coordinates, are fixed, so
-    /// a new sweep replaces it if there are more objects or if a box leaves the world.
+    /// Moves the boxes in Bullet's sweep. A new sweep replaces it for more objects, or if a box leaves its world.
     void take_boxes(std::span<const box> boxes, std::span<const std::uint32_t> ids) override {
         boxes_.assign(boxes.begin(), boxes.end());
         box bounds = empty_box();
@@ -78,8 +75,7 @@ private:
                                                      static_cast<unsigned>(objects), nullptr, true);
     }
 
-    /// Moves the object's proxy, by which Bullet's sweep knows its box, or creates it. Group and mask 1 admit all
-    /// pairs.
+    /// Moves the object's proxy in Bullet's sweep, or creates it. Group and mask 1 admit all pairs.
     void move_or_add(std::uint32_t id, const box& b) {
         btBroadphaseProxy*& proxy = proxies_[id];
         if (proxy) {
@@ -91,8 +87,7 @@ private:
         }
     }
 
-    /// Appends the pairs in Bullet's cache whose boxes overlap. Bullet compares quantised boxes, which may overlap
-    /// where the given ones do not.
+    /// Appends the pairs in Bullet's cache whose boxes overlap: Bullet compares larger, quantised boxes.
     void find_pairs(std::vector<index_pair>& pairs) override {
         if (!sweep_) return;
         btOverlappingPairCache& cache = *sweep_->getOverlappingPairCache();

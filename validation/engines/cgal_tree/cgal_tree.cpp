@@ -87,7 +87,6 @@ class cgal_tree final : public model_engine<tree_model> {
     }
 
     /// Queries the tree of mesh A with each triangle of B, transformed into A's frame, until a triangle of A is hit.
-    /// @returns the indices of both triangles, or nothing if the meshes do not intersect
     [[nodiscard]] std::optional<index_pair> any_pair(const model_query& q) override {
         const mesh& b = *q.b.source;
         const mesh& a = *q.a.source;
@@ -99,7 +98,6 @@ class cgal_tree final : public model_engine<tree_model> {
         return std::nullopt;
     }
 
-    /// Queries the tree of mesh A with each triangle of B, transformed into A's frame.
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         const mesh& b = *q.b.source;
         const mesh& a = *q.a.source;

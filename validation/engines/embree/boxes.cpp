@@ -44,8 +44,7 @@ private:
         scene_.commit(bounds_.data(), bounds_.size());
     }
 
-    /// Collides Embree's scene with itself, and removes pairs whose given boxes do not overlap: the scene has clamped
-    /// boxes, and Embree reports all pairs in overlapping leaves.
+    /// Collides Embree's scene of clamped boxes with itself, and keeps the pairs whose given boxes overlap.
     void find_pairs(std::vector<index_pair>& pairs) override {
         if (ids_.size() <= brute_force_threshold) return find_by_brute_force(pairs);
         const std::size_t known = pairs.size();  // pairs of earlier queries

@@ -98,9 +98,8 @@ private:
         return pairs.front();
     }
 
-    /// Appends the pairs of triangles of meshes A and B that intersect: Embree finds those whose boxes overlap, and
-    /// these are tested. Embree has no poses, so it gets B transformed into A's frame, a scene kept while neither pose
-    /// changes.
+    /// Tests the pairs of triangles whose boxes overlap by Embree. It has no poses, so it gets B transformed into A's
+    /// frame, a scene kept while neither pose changes.
     void append_pairs(const model_query& q, std::vector<index_pair>& pairs) override {
         q.b.poses.renew(q.pose_a, q.pose_b, [&] {
             q.b.transformed.build(quality_, *q.b.source,

@@ -124,8 +124,7 @@ private:
         return {static_cast<std::uint32_t>(contact.b1), static_cast<std::uint32_t>(contact.b2)};
     }
 
-    /// FCL's result with at most this number of intersecting pairs of triangles, after which its search ends. Contact
-    /// points are not requested: with them FCL reports a pair once per point.
+    /// FCL's result with at most this number of pairs. No contact points: with them FCL reports a pair once per point.
     [[nodiscard]] fcl::CollisionResultd collide_up_to(const model_query& q, std::size_t most_contacts) {
         fcl::CollisionRequestd request;
         request.num_max_contacts = most_contacts;
@@ -139,8 +138,7 @@ private:
 /// Oriented boxes. FCL uses the raw poses, so that no vertex is rounded to float. It requires rotations; at other
 /// poses, it gets B's vertices in A's frame.
 class fcl_oriented final : public fcl_meshes<fcl::OBBRSSd> {
-    /// Collides both trees. FCL takes only rigid transforms, rotations and translations: at other poses, B's tree is
-    /// transformed into A's frame first, and both have the identity as their transform.
+    /// Collides both trees. FCL takes only rigid transforms: at other poses, B is transformed into A's frame first.
     void collide(const model_query& q, const fcl::CollisionRequestd& request, fcl::CollisionResultd& result) override {
         if (is_rigid(q.pose_a) && is_rigid(q.pose_b)) {
             fcl::collide(&q.a.local.get(), transform(q.pose_a), &q.b.local.get(), transform(q.pose_b), request, result);

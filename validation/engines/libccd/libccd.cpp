@@ -50,7 +50,7 @@ struct ccd_triangle {
     }
 };
 
-/// Without a limit both algorithms may cycle on flat Minkowski differences; a test takes about ten iterations.
+/// The default limit: both algorithms may cycle on flat Minkowski differences; a test takes about ten iterations.
 constexpr std::uint32_t default_iterations = 1000;
 
 /// A test of two triangles by one of libccd's algorithms.

@@ -142,8 +142,8 @@ private:
         return space_handle(dHashSpaceCreate(nullptr));
     }
 
-    /// Sets the levels of the hashed grid: cells of level n have edges of 2^n. They reach from the smallest to the
-    /// largest object, but the least one is limited so that cell indices fit into an int.
+    /// Sets the levels of the hashed grid: cells of level n have edges of 2^n, from the smallest to the largest object,
+    /// but the least one is limited so that cell indices fit into an int.
     void prepare(dSpaceID space, std::span<const ode_box> boxes) const override {
         constexpr std::size_t most_boxes = (std::size_t{1} << 17) - 1;
         if (boxes.size() > most_boxes)
