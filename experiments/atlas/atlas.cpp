@@ -43,9 +43,8 @@ double atlas_scene::number(std::string_view parameter) const {
     return info != parameters.end() ? number_or_nan(info->fallback) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The atlas without the candidates with the partition `columns`, which wins nearly every scene, and without `auto`,
-/// which selects it: a second set of maps compares the other strategies. Scenes without a remaining candidate are left
-/// out.
+/// The atlas without candidates with the partition `columns`, which wins nearly every scene, and without `auto`, which
+/// selects it: for maps that compare the others. Scenes without a candidate are left out.
 std::vector<atlas_scene> without_columns(std::vector<atlas_scene> atlas) {
     for (atlas_scene& scene : atlas)
         std::erase_if(scene.candidates, [](const atlas_candidate& candidate) {

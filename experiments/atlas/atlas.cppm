@@ -60,7 +60,7 @@ struct atlas_scene {
 /// Reads the scenes of an experiment from its results folder. Each scene is generated again to compute its measures.
 [[nodiscard]] std::vector<atlas_scene> read_atlas(const std::filesystem::path& folder, bool is_held_out);
 
-/// In how many scenes each composition or engine is the fastest, one row each.
+/// The numbers of scenes in which each composition or engine is the fastest, one row each.
 [[nodiscard]] table winners_table(const std::vector<atlas_scene>& atlas);
 /// One row per scene: its measures, the fastest, the lead over the second, and the ratio of `auto` to the fastest.
 [[nodiscard]] table cells_table(const std::vector<atlas_scene>& atlas);
@@ -135,8 +135,7 @@ namespace aabblab {
     return labels;
 }
 
-/// The strategies in a candidate's label without their parameters (":name=value"), which distinguish it:
-/// "neighbour_list + bucket + columns + simd".
+/// The strategies in a label without their parameters: "neighbour_list + bucket + columns + simd".
 [[nodiscard]] inline std::string family_of(std::string_view label) {
     std::string family;
     for (std::size_t i = 0; i < label.size(); ++i) {
@@ -146,8 +145,7 @@ namespace aabblab {
     return family;
 }
 
-/// The regrets of one candidate: its time over that of the fastest, for each scene in which it was timed, in ascending
-/// order.
+/// A candidate's regrets, its time over that of the fastest, in the scenes in which it was timed, ascending.
 [[nodiscard]] inline std::vector<double> regrets_of(const std::vector<atlas_scene>& atlas, const std::string& label,
                                                     atlas_time time) {
     std::vector<double> regrets;
@@ -158,10 +156,9 @@ namespace aabblab {
     return regrets;
 }
 
-/// The logarithm of the ratio of two candidates' times per frame in a scene, with its standard error. Early stopping
-/// leaves slow candidates one repeat, which gives no error. The error is then √(2 s²), that of a difference of two
-/// logarithms with the variance s² pooled over the repeats of all candidates of the scene. The result is NaN if none
-/// was repeated.
+/// The logarithm of the ratio of two candidates' times per frame in a scene, with its standard error. Without repeats,
+/// as after early stopping, the error is √(2 s²), with the variance s² of logarithms pooled over all candidates of the
+/// scene; NaN if none was repeated.
 [[nodiscard]] inline estimate log_ratio_in(const atlas_scene& scene, const atlas_candidate& candidate,
                                            const atlas_candidate& baseline) {
     const estimate of_repeats = log_ratio(candidate, baseline);

@@ -21,9 +21,8 @@ std::string settings_without(const scene_choice& scene, std::string_view paramet
     return settings_text(others);
 }
 
-/// The point between two scenes at which two candidates take the same time: the fraction of the way at which the
-/// logarithm of their ratio, interpolated linearly, is 0. Its 95 % interval is that of lines whose ends are drawn with
-/// their errors.
+/// The fraction of the way between two scenes at which two candidates take the same time, by linear interpolation of
+/// the logarithm of their ratio. Its 95 % interval is that of lines whose ends are drawn with their errors.
 /// @param from the logarithm at the first scene, which the first candidate wins: below 0
 /// @param to the logarithm at the second scene: above 0
 std::pair<double, interval> crossing(const estimate& from, const estimate& to) {
@@ -53,9 +52,8 @@ const atlas_candidate* fastest_of(const atlas_scene& scene, const std::string& f
     return scene.fastest_if([&](const atlas_candidate& candidate) { return family_of(candidate.label) == family; });
 }
 
-/// The border between the winners of two scenes, which differ in one parameter only: the value of the parameter at
-/// which both winners take the same time, interpolated along its logarithm. There is none if the same strategies win
-/// both scenes, or if a winner was not timed in both.
+/// The value at which the winners of two scenes, which differ in one parameter, take the same time, interpolated along
+/// its logarithm. None if the same strategies win both, or if a winner was not timed in both.
 std::optional<border> border_between(const atlas_scene& from, const atlas_scene& to, std::string_view parameter) {
     const atlas_candidate& first_winner = from.fastest();
     const atlas_candidate& second_winner = to.fastest();
@@ -114,8 +112,7 @@ table borders_table(const std::vector<border>& borders) {
     return t;
 }
 
-/// One row per parameter and pair of winners, the most frequent first: the number of borders, and the geometric mean
-/// and range of the parameter's values at them.
+/// One row per parameter and pair of winners, the most frequent first: the number of borders and their values.
 table borders_summary(const std::vector<border>& borders) {
     std::map<std::tuple<std::string, std::string, std::string>, std::vector<const border*>> by_winners;
     for (const border& b : borders) by_winners[{b.parameter, b.before, b.after}].push_back(&b);

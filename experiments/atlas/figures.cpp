@@ -8,8 +8,7 @@ namespace {
 
 constexpr const char* kind_of_map = "cloud";
 
-/// The strategies that win the most scenes, in descending order. Each has a series of its own in figures; the others
-/// share the series "another".
+/// The strategies that win the most scenes, in descending order: the series of figures, besides "another".
 std::vector<std::string> most_frequent_winners(const std::vector<atlas_scene>& atlas) {
     constexpr std::size_t most_series = 7;
     std::map<std::string, std::size_t> wins;
@@ -34,8 +33,7 @@ void add_point(std::vector<series>& to, const std::string& winner, double x, dou
     (match != to.end() ? *match : to.back()).points.push_back({x, y});
 }
 
-/// A map of the fastest candidates in the scene `cloud`, by number of objects and displacement, with one panel per
-/// density and ratio of sizes.
+/// A map of the fastest candidates in the scene `cloud`, by objects and displacement, a panel per density and sizes.
 /// @param winners the strategies with a series of their own
 /// @param clouds only scenes with this number of separate clouds, and in which all boxes move
 /// @param among empty, or text that names the restricted set of candidates
@@ -64,10 +62,8 @@ figure map_of(const std::vector<atlas_scene>& atlas, const std::vector<std::stri
     return f;
 }
 
-/// A map of the fastest candidates in all scenes in motion. Unlike the parameters of a scene, its measures (objects,
-/// inversions) are defined for scenes of every kind.
-/// @param winners the strategies with a series of their own
-/// @param among empty, or text that names the restricted set of candidates
+/// A map of the fastest candidates in all scenes in motion, by measures that every kind of scene has.
+/// @param winners,among as in `map_of`
 figure inversions_map(const std::vector<atlas_scene>& atlas, const std::vector<std::string>& winners,
                       const std::string& among) {
     figure f{.name = among.empty() ? "map_inversions" : "map_classic_inversions",
@@ -109,7 +105,6 @@ figure regret_figure(const std::vector<atlas_scene>& atlas) {
 }
 
 /// Adds a map for each number of clouds that occurs, and the map of all scenes in motion.
-/// @param among empty, or text that names the restricted set of candidates
 void add_maps(std::vector<figure>& figures, const std::vector<atlas_scene>& atlas, const std::string& among) {
     const std::vector<std::string> winners = most_frequent_winners(atlas);
     std::vector<double> clouds;

@@ -13,7 +13,7 @@ using scene_filter = std::function<bool(const atlas_scene&)>;
 struct stated_ratio {
     std::string where, candidate, baseline;
     scene_filter scenes;
-    /// If set, the ratio is divided by the same ratio in these scenes: for statements of what a candidate suffers from.
+    /// A divisor of the ratio, if set: the same ratio in these scenes, for statements of what a candidate suffers from.
     scene_filter reference_scenes = nullptr;
     expectation expected = expectation::less;
     double band = equivalence_band;  // of no difference: 0.05 for 1/1.05 to 1.05, 1 for 1/2 to 2
@@ -205,8 +205,7 @@ struct measured_ratio {
     estimate log{std::nan(""), 0, 1};
 };
 
-/// The ratio of the times of two candidates, as a geometric mean over the matching scenes in which both were timed. The
-/// scenes count as independent estimates.
+/// The ratio of two candidates' times, a geometric mean over matching scenes, which count as independent.
 measured_ratio ratio_in(const std::vector<atlas_scene>& atlas, const stated_ratio& r, const scene_filter& matches) {
     std::vector<estimate> logs;
     for (const atlas_scene& scene : atlas) {
@@ -230,8 +229,7 @@ measured_ratio measure(const std::vector<atlas_scene>& atlas, const stated_ratio
 
 }  // namespace
 
-/// The verdicts on the published statements from the ratios in the atlas. All ratios are measured before any is
-/// decided, because Holm's correction for multiple tests needs the whole family.
+/// The verdicts on all statements: Holm's correction for multiple tests needs all ratios before any is decided.
 std::vector<judged_statement> judged_statements(const std::vector<atlas_scene>& atlas) {
     std::vector<judged_statement> verdicts;
     std::vector<tested> evidence;

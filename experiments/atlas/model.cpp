@@ -68,8 +68,7 @@ double predicted_ns(const std::vector<estimate>& costs, const scene_measures& m)
 
 }  // namespace
 
-/// Fits a linear cost model (ns per box, pair and so on) to the times of each candidate in the scenes of the map, and
-/// tests it in the scenes held out. A fit needs more scenes than the model has terms.
+/// Fits a linear cost model (ns per box, pair and so on) to each candidate with more scenes than terms, and tests it.
 std::vector<candidate_model> models_of(const std::vector<atlas_scene>& atlas) {
     std::vector<candidate_model> models;
     const std::vector<std::string> labels = labels_of(atlas);
@@ -89,8 +88,7 @@ std::vector<candidate_model> models_of(const std::vector<atlas_scene>& atlas) {
     return models;
 }
 
-/// One row per candidate: the factor by which its model is off, as the median and at worst, in the scenes of the map
-/// and in unseen scenes.
+/// One row per candidate: the factor by which its model is off, median and worst, in the map and in unseen scenes.
 table models_table(const std::vector<candidate_model>& models) {
     table t = empty_table({"candidate"}, {"scenes", "off by", "worst", "unseen scenes", "off by there", "worst there"});
     for (const candidate_model& m : models)
@@ -100,8 +98,7 @@ table models_table(const std::vector<candidate_model>& models) {
     return t;
 }
 
-/// One row per candidate: each cost of its linear model in ns per unit, with its 95 % interval, which begins at 0 at
-/// the least, as no cost is negative.
+/// One row per candidate: each cost of its linear model in ns per unit, and its 95 % interval, which is not negative.
 table costs_table(const std::vector<candidate_model>& models) {
     table t = empty_table({"candidate"});
     for (const term& cost : terms)
@@ -115,8 +112,7 @@ table costs_table(const std::vector<candidate_model>& models) {
     return t;
 }
 
-/// What relying on the cost models would lose, in each scene that they were not fitted to: the time of the candidate
-/// with the least predicted time, over that of the fastest.
+/// The loss by relying on cost models in scenes held out: the time of the predicted winner over that of the fastest.
 std::vector<double> regrets_of_models(const std::vector<atlas_scene>& atlas,
                                       const std::vector<candidate_model>& models) {
     std::vector<double> regrets;

@@ -16,8 +16,7 @@ struct section {
     bool is_shown = true;  ///< in the page; otherwise only in its file
 };
 
-/// The text above the table of cost models, with the regrets (time over that of the fastest) of relying on their
-/// predictions in scenes held out from the fit.
+/// The text above the table of cost models, with the regrets of relying on them in scenes held out from the fit.
 std::string models_text(const std::vector<atlas_scene>& atlas, const std::vector<candidate_model>& models) {
     std::string text =
         "A linear model predicts the time per frame as a sum of costs per box, pair, inversion and so on, fitted to "

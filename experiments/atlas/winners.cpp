@@ -20,9 +20,8 @@ bool is_slower(const atlas_candidate& candidate, const atlas_candidate& best) {
 
 }  // namespace
 
-/// One row per candidate: the number of scenes that it wins (`fastest`), those of them in which the second fastest is
-/// significantly slower (`shown`), and the other scenes in which it is not significantly slower than the winner
-/// (`as_fast`).
+/// One row per candidate: the scenes that it wins (`fastest`), those in which the second is significantly slower
+/// (`shown`), and the others in which it is not significantly slower than the winner (`as_fast`).
 table winners_table(const std::vector<atlas_scene>& atlas) {
     table t = empty_table({"candidate"}, {"scenes", "fastest in", "shown in", "as fast in"});
     t.columns.insert(t.columns.begin(), {row_number});
@@ -89,8 +88,7 @@ table cells_table(const std::vector<atlas_scene>& atlas) {
     return t;
 }
 
-/// One row per candidate: the distribution over scenes of its regret, the time over that of the fastest of the scene.
-/// The row with the least median comes first.
+/// One row per candidate, by median: the distribution over scenes of its time over that of the fastest.
 table regrets_table(const std::vector<atlas_scene>& atlas, atlas_time time) {
     struct standing {
         std::string label;

@@ -47,8 +47,7 @@ void add_once(std::vector<T>& list, const T& value) {
     if (std::ranges::find(list, value) == list.end()) list.push_back(value);
 }
 
-/// The scenes that occur in both of the compared runs, A and B, each with the seeds and the candidates (compositions
-/// and engines) that both have. Scenes that differ only in their seed are one.
+/// The scenes of both runs, whatever their seeds, with the seeds and the candidates that both have.
 std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_scene& b) {
     std::vector<shared_scene> scenes;
     std::map<scene_key, std::size_t> indices;  // keyed without the seed
@@ -63,8 +62,7 @@ std::vector<shared_scene> scenes_shared(std::span<const row> a, const rows_by_sc
     return scenes;
 }
 
-/// Short labels of the candidates of a scene: the strategies that differ among them, as in the table of the scene. To
-/// get the same labels, it summarises rows that have only names.
+/// Short labels of the candidates of a scene: the strategies that differ, as in its table.
 std::vector<std::string> labels_of(std::span<const candidate_name> names) {
     std::vector<row> rows(names.size());
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].name = names[i];
@@ -105,9 +103,8 @@ double least_p_value(std::size_t n, std::size_t m) {
     return chance;
 }
 
-/// Logarithms of a candidate's milliseconds per frame in one run, in a cell per process and seed. With a baseline, they
-/// are of the ratios to its time in the same repeat.
-/// @param baseline null for times in milliseconds
+/// Logarithms of a candidate's milliseconds per frame or, with a baseline (not null), of the ratios to its time in the
+/// same repeat, in a cell per process and seed.
 cells log_times(const rows_by_scene& run, const shared_scene& scene, const candidate_name& name,
                 const candidate_name* baseline) {
     std::map<std::uint64_t, std::size_t> processes;  // with their indices in the cells
@@ -125,8 +122,7 @@ cells log_times(const rows_by_scene& run, const shared_scene& scene, const candi
     return logs;
 }
 
-/// The candidate whose times are the denominator of ratios: the first composition that is timed in both runs, or else
-/// the first engine.
+/// The baseline of ratios: the first composition that is timed in both runs, or else the first engine.
 std::optional<candidate_name> baseline_of(const shared_scene& scene, const rows_by_scene& a, const rows_by_scene& b) {
     for (const bool engine : {false, true})
         for (const candidate_name& name : scene.names)
@@ -144,8 +140,8 @@ struct measured_candidate {
     cells b;
 };
 
-/// Decides for each candidate whether its time changed from A to B beyond noise, and adds it to its scene. So many
-/// tests show some change by chance, so that their p-values are corrected together (Holm's rule).
+/// Decides for each candidate whether its time changed beyond noise, and adds it to its scene. Many tests show some
+/// change by chance, so that their p-values are corrected together (Holm's rule).
 /// @param measured logarithms of ratios or times
 /// @param times_of_scene the list of a scene to which they are added: `ratios` or `times`
 void add_decided(std::span<const measured_candidate> measured,
@@ -179,8 +175,7 @@ void add_decided(std::span<const measured_candidate> measured,
 
 using number = std::pair<std::string, std::optional<std::uint64_t>>;
 
-/// The values of a row that do not vary between repeats, with the names of their columns. A change between two runs is
-/// a change of the program.
+/// The values of a row that do not vary between repeats: a change of one is a change of the program.
 std::vector<number> numbers_of(const row& r) {
     std::vector<number> numbers = {{"candidates", r.candidates}, {"contacts", r.contacts}};
     for (std::size_t i = 0; i < r.counts.size(); ++i) numbers.emplace_back(aabb::work_names[i], r.counts[i]);
@@ -219,7 +214,6 @@ void compare_results(const rows_by_scene& a, const rows_by_scene& b, comparison&
 }
 
 /// Compares counts of work and bytes, which no noise disturbs, of all candidates of a scene in the runs A and B.
-/// @param labels of the candidates
 /// @param changed receives those that differ for any seed, as sums over the seeds
 /// @returns the number of values compared
 std::size_t compare_numbers(const shared_scene& scene, const rows_by_scene& a, const rows_by_scene& b,

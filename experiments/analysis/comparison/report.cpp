@@ -134,8 +134,7 @@ void print_numbers(const comparison& report) {
 
 }  // namespace
 
-/// Reads the verified results of a folder, or of all its sub-folders with results, which must be of different
-/// experiments.
+/// Reads and verifies the results of a folder, or of all its sub-folders, which must be of different experiments.
 run_results read_results(const std::filesystem::path& folder) {
     if (!std::filesystem::is_directory(folder))
         throw aabb::input_error(folder.string() +
@@ -160,8 +159,7 @@ run_results read_results(const std::filesystem::path& folder) {
     return run;
 }
 
-/// Reads the results of the runs A and B, and prints what differs: pairs, ratios of times, times if requested, counts.
-/// @returns the exit status: 1 if the pairs differ
+/// Prints what differs: pairs, ratios of times, times if requested, counts. Returns 1 as exit status if pairs differ.
 int print_comparison(const compare_request& request) {
     const run_results a = read_results(request.a);
     const run_results b = read_results(request.b);

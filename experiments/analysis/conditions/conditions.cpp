@@ -65,8 +65,7 @@ std::string text_of(const selection& s) {
     return text;
 }
 
-/// Rows of one scene with any seeds. Lists the seeds and processes that occur, in order: statistics have a cell for
-/// each combination.
+/// Rows of one scene. Lists the seeds and processes that occur, in order: statistics have a cell for each combination.
 condition::condition(factors scene, std::vector<const row*> rows) : factors_(std::move(scene)), rows_(std::move(rows)) {
     for (const row* r : rows_) {
         if (std::ranges::find(seeds_, r->scene.seed) == seeds_.end()) seeds_.push_back(r->scene.seed);
@@ -94,8 +93,7 @@ std::vector<const row*> condition::rows_of(const selection& composition) const {
     return rows;
 }
 
-/// Logarithms of the ratio of a quantity of two compositions, in a cell per process and seed. Rows are paired by repeat
-/// and seed. Values that are empty or not positive have no logarithm and are left out.
+/// Logarithms of the ratio of two compositions, paired by repeat and seed; values not above 0 have none.
 cells condition::log_ratios(const selection& composition, const selection& baseline, const row_value& quantity) const {
     cells ratios(processes(), seeds());
     const std::vector<const row*> base_rows = rows_of(baseline);
@@ -147,8 +145,7 @@ std::optional<figure_point> condition::point(double x, const selection& composit
     return figure_point{x, q->median, q->low, q->high};
 }
 
-/// Reads an experiment on first use, and groups its rows by condition: a scene with all its seeds. Empty if it has no
-/// results.
+/// Reads an experiment on first use, by condition: a scene with all its seeds. Empty if it has no results.
 const measurements::experiment_results& measurements::read(const std::string& experiment) const {
     std::unique_ptr<experiment_results>& results = read_[experiment];
     if (results) return *results;

@@ -117,10 +117,8 @@ struct flag {
     std::size_t row = 0;  ///< counted from below
 };
 
-/// Assigns rows, one above the other, to the texts of marks. The vertical line of a mark ends in the row of its text.
-/// So texts that overlap get different rows, and a text that is crossed by the line of another mark a higher row than
-/// it.
-/// @returns the number of rows
+/// Assigns rows to the texts of marks, whose lines end in the row of their text: texts that overlap get different rows,
+/// and one that is crossed by another's line a higher row. Returns the number of rows.
 std::size_t assign_rows(std::vector<flag>& flags) {
     const auto crosses = [](const flag& line, const flag& text) {
         return text.begin < line.line_x && line.line_x < text.end;
@@ -193,8 +191,7 @@ private:
         return left_margin_ + static_cast<double>(panel % column_count_) * (plot_width() + column_gap_);
     }
 
-    /// Sets the height of the plots, which grows with the number of names on the y axis, and the left margin, which has
-    /// room for the label of the y axis and for its tick labels. Lengths are in ems.
+    /// Sets the height of the plots, which grows with names on the y axis, and the left margin for its labels.
     void place_left() {
         const auto [width, height] = extent_of_labels(drawing_.y, y_name_length);
         plot_height_ = panel_count_ == 1 ? 17 : 10;
@@ -225,9 +222,8 @@ private:
             if (i % step != 0) labelled[i]->label.clear();
     }
 
-    /// Places the labels of the x axis below the plots. Of numbers that would overlap, some are omitted; names that do
-    /// not fit side by side are turned.
-    /// @returns the height of the labels in ems
+    /// Places the labels of the x axis, and returns their height. Of numbers that would overlap, some are omitted;
+    /// names that do not fit side by side are turned.
     double place_x_ticks() {
         layout_.x_name_length = longest_name;
         layout_.x_ticks = drawing_.x.ticks;
@@ -249,8 +245,7 @@ private:
         return height;
     }
 
-    /// Widens the right margin and the gap between plots if the labels of outer ticks, which are centred there, extend
-    /// beyond the plot.
+    /// Widens the right margin and the gap between plots for labels, centred at outer ticks, that extend beyond.
     void make_room_for_overhang(const tick& first, const tick& last) {
         const double plot = plot_width();
         const auto overhang = [&](const tick& t, double to_edge) {
@@ -263,10 +258,9 @@ private:
             column_gap_ = std::max(column_gap_, std::max(left_overhang, 0.) + std::max(right_overhang, 0.) + gap);
     }
 
-    /// Slants names below the plots, so that each ends at its tick. If lines of slanted text would overlap, or if the
-    /// left margin, into which the first ones extend, would narrow the plots too much, names are vertical.
+    /// Slants names below the plots, each ending at its tick, or makes them vertical if lines would overlap, or the
+    /// left margin would narrow the plots too much. Returns their height.
     /// @param slot the distance of two names in ems
-    /// @returns the height of the names in ems
     double turn_x_names(const std::vector<tick>& labelled, double slot) {
         constexpr int slant_degrees = 30;
         constexpr double slant = slant_degrees * std::numbers::pi / 180;
@@ -289,8 +283,7 @@ private:
         return longest;
     }
 
-    /// The labels of series beside the ends of their lines, at the height of the last point. Empty for a figure with
-    /// panels, or if any labelled series does not end near the right edge.
+    /// The labels beside the ends of lines; none with panels, or if a line does not end near the right edge.
     [[nodiscard]] std::vector<end_label> wanted_ends() const {
         constexpr double near_edge = 0.9;
         std::vector<end_label> ends;
@@ -307,9 +300,8 @@ private:
         return ends;
     }
 
-    /// Places labels beside the ends of lines, which then need no legend, and moves them apart where they overlap.
-    /// @returns none, for a legend instead, if a label has too many lines, is too wide, still overlaps another or ends
-    /// up too far from its line
+    /// Places labels beside the ends of lines, and moves them so that none overlap.
+    /// @returns none, for a legend instead, if one is too long or wide, still overlaps, or is too far from its line
     std::vector<end_label> place_ends() {
         constexpr std::size_t most_lines = 3;
         constexpr double furthest = 2.2;      // from its line: further away, a label seems to belong to another
@@ -343,8 +335,7 @@ private:
         return ends;
     }
 
-    /// The legend: in the free cell that an incomplete last row of panels leaves, if it fits there, otherwise below the
-    /// plots.
+    /// The legend: in the free cell of an incomplete last row of panels, if it fits, otherwise below the plots.
     /// @param row_height of a row of panels
     /// @param below_plot the height of the tick labels
     [[nodiscard]] legend placed_legend(double row_height, double below_plot) const {
@@ -360,8 +351,7 @@ private:
         return below;
     }
 
-    /// Breaks the labels of the legend into lines and chooses the number of columns, filled one after the other, that
-    /// fit into the width. The legend is aligned to its right.
+    /// Breaks the legend's labels into lines, in as many columns, filled one after the other, as fit. Right-aligned.
     [[nodiscard]] legend legend_of(double width) const {
         legend result;
         const std::size_t most = length_in(width - legend_sample - gap);  // characters in a line
@@ -384,8 +374,7 @@ private:
         return result;
     }
 
-    /// The horizontal extents of the texts of a panel's marks (vertical lines). A text is to the right of its line, or
-    /// to the left if the figure ends before it does.
+    /// The horizontal extents of the texts of marks: right of the line, or left if the figure ends before.
     [[nodiscard]] std::vector<flag> flags_of(std::size_t panel) const {
         std::vector<flag> flags;
         for (const figure_mark& m : drawing_.panels[panel].marks) {
@@ -404,8 +393,7 @@ private:
         for (std::size_t i = 0; i < lines.size(); ++i) add(centres[i], lines[i], end);
     }
 
-    /// Adds the label of the x axis, centred below the plots. Takes the height of its lower edge.
-    /// @returns that of its upper edge
+    /// Adds the label of the x axis; takes the height of its lower edge, and returns that of its upper edge.
     double add_x_label(double bottom) {
         const double middle = (left_margin_ + figure_width - right_margin_) / 2;
         const double room = 2 * std::min(middle, figure_width - middle);
@@ -423,10 +411,8 @@ private:
         }
     }
 
-    /// Adds the plot of a panel, its title above it, and the texts of its marks between these.
+    /// Adds the plot of a panel with its title and the texts of its marks, whose room is the same in all panels.
     /// @param bottom the height of the plot's lower edge
-    /// @param height_of_marks the room for the texts, which is the same in all panels
-    /// @param flags the rows and horizontal extents of the texts
     void add_plot(std::size_t panel, double bottom, double height_of_marks, const std::vector<flag>& flags) {
         const double left = plot_left(panel);
         const double top = bottom + plot_height_;
@@ -448,8 +434,7 @@ private:
         }
     }
 
-    /// Adds the labels at the ends of lines, each after the sign of its line (the symbol of its points), because it may
-    /// be slightly above or below the end.
+    /// Adds the labels at ends of lines, each after its line's sign, since it may be slightly above or below.
     void add_ends(const std::vector<end_label>& ends, double bottom) {
         const double left = layout_.plots.front().right + 0.7;  // the centre of a sign; a label begins 0.8 after it
         for (const end_label& end : ends) {
@@ -461,8 +446,7 @@ private:
         }
     }
 
-    /// Adds the legend column by column. An entry of several lines of text has one sample of its series, beside the
-    /// first.
+    /// Adds the legend by columns. An entry of several lines has its sample beside the first.
     void add_legend(const legend& labels, double bottom) {
         std::size_t line = 0;
         for (std::size_t i = 0; i < labels.entries.size(); ++i)

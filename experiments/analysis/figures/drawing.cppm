@@ -36,8 +36,7 @@ struct numbered_series {
     return list;
 }
 
-/// Half the distance of the two nearest names on an axis, the room on either side of a name. On a logarithmic axis it
-/// is a factor: the square root of their ratio.
+/// Half the distance of the two nearest names, the room beside a name; on a logarithmic axis the root of their ratio.
 [[nodiscard]] double half_gap(const figure_axis& axis) {
     double gap = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < axis.names.size(); ++i) {
@@ -89,8 +88,7 @@ struct extent {
     return std::isfinite(value) && (!axis.logarithmic || value > 0);
 }
 
-/// The index of the appearance (colour, dashes and sign) of each series. Each has its own, but series with the same
-/// label in several panels share one.
+/// The index of each series' colour, dashes and sign; series with one label in several panels share them.
 [[nodiscard]] std::vector<std::size_t> appearances_of(const figure& f, const std::vector<numbered_series>& lines) {
     std::vector<std::size_t> appearances;
     std::vector<const series*> first;  // the first series of each appearance
@@ -113,8 +111,7 @@ struct extent {
     return marks;
 }
 
-/// The panels with the series and points that can be shown: on logarithmic axes only positive ones. A figure without
-/// panels counts as one.
+/// The panels, or the figure as one, with the series and points that can be shown: positive ones on logarithmic axes.
 [[nodiscard]] std::vector<shown_panel> shown_panels_of(const figure& f) {
     const std::vector<numbered_series> series_list = numbered_series_of(f);
     const std::vector<std::size_t> appearances = appearances_of(f, series_list);
@@ -136,8 +133,7 @@ struct extent {
     return panels;
 }
 
-/// The entries of the legend, one per appearance (colour, dashes and sign). A line is shown as a point if every panel
-/// has only a single point of it.
+/// The legend's entries, one per appearance; a line is a point if every panel has only a single point of it.
 [[nodiscard]] std::vector<shown_label> labels_of(const std::vector<shown_panel>& panels) {
     std::vector<shown_label> labels;
     for (const shown_panel& panel : panels)
@@ -153,8 +149,7 @@ struct extent {
     return labels;
 }
 
-/// Scales an axis to its values. If it has names instead of numbers, it also includes their positions, with half the
-/// distance of two names on either side.
+/// Scales an axis to its values or, with half a distance on either side, to its names.
 /// @param end whether a linear axis ends near the values or on a tick
 [[nodiscard]] scale axis_scale(const figure_axis& axis, extent values, scale_end end) {
     std::vector<tick> names;
@@ -172,8 +167,7 @@ struct extent {
 
 /// A prepared figure; it refers to the original, which must outlive it.
 struct drawing {
-    /// Selects what can be shown, and scales both axes to all its values: points, quartiles and marks. A level, a
-    /// horizontal line across the plot, has no x.
+    /// Selects what can be shown, and scales both axes to points, quartiles and marks; a level has no x.
     explicit drawing(const figure& source) : f(source), panels(shown_panels_of(source)), labels(labels_of(panels)) {
         extent x_values;
         extent y_values;

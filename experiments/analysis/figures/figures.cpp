@@ -20,8 +20,7 @@ namespace {
 
 }  // namespace
 
-/// The points of a figure as CSV, one row per point, so that it can be drawn by other programs. Columns for panels and
-/// for names on the axes exist only if the figure has them.
+/// The points of a figure as CSV, for other programs; columns for panels and names only if the figure has them.
 std::string csv_of(const figure& f) {
     std::vector<std::string> header{"number", "x", "y", "low", "high", "series"};
     if (!f.panels.empty()) header.emplace_back("panel");

@@ -29,7 +29,7 @@ struct series {
 struct figure_axis {
     std::string label;  ///< with the unit: "time a frame (ms)"
     bool logarithmic = false;
-    /// If not empty, the names that replace numbers, each with its position, from left to right.
+    /// The names that replace numbers, each with its position, from left to right; empty for numbers.
     std::vector<std::pair<double, std::string>> names{};
 };
 

@@ -52,8 +52,7 @@ std::string encoded(std::string_view utf8) {
     return text;
 }
 
-/// The width of a text in Helvetica, in ems: PDF has no anchors, so that centred texts need it. The table of widths is
-/// in thousandths; control codes stand for mathematical signs, other codes for letters with accents.
+/// The width in Helvetica, in ems, for centred texts. Control codes stand for mathematical signs, others for accents.
 double width_of(std::string_view encoded_text) {
     double width = 0;
     for (const char c : encoded_text)
@@ -81,9 +80,8 @@ std::string operands_of(std::string_view hexadecimal) {
     return text;
 }
 
-/// The PDF operators that draw lines or fill areas (strokes without a width), in a graphics state of their own (q, Q).
-/// They set colour (RG of lines, rg of areas), opacity (gs), width (w), caps (J) and dashes (d), describe paths (m:
-/// move, l: line, h: close), and paint them (S: stroke, f: fill).
+/// The operators that draw lines or fill areas (strokes without a width): colour (RG, rg), opacity (gs), width (w),
+/// caps (J), dashes (d), path (m, l, h: close) and paint (S: stroke, f: fill), within q and Q.
 std::string operators_of(const strokes& s) {
     const bool is_area = s.width == 0;
     std::string text = "q ";
@@ -125,8 +123,7 @@ std::string operators_of(const words& w) {
 
 }  // namespace
 
-/// A PDF file of one page: five objects (catalog, list of pages, page, its content, font), then the table of their byte
-/// positions (xref), which PDF requires.
+/// A PDF file of one page: catalog, pages, page, content, font, then their byte positions (xref).
 std::string pdf_of(const sheet& s) {
     std::string page;  // its content
     for (const auto& part : s.parts) page += std::visit([](const auto& p) { return operators_of(p); }, part);

@@ -147,9 +147,8 @@ private:
         return y(drawing_.y.logarithmic ? std::max(p.low, drawing_.y.from) : p.low);
     }
 
-    /// The horizontal shift of a series of points, so that n series are side by side over a name of the x axis. Series
-    /// k is shifted by k - (n - 1)/2 steps of min(0.3, 1.4/n) h, with h half the distance of two names: all stay within
-    /// 0.7 h of the name.
+    /// The horizontal shift of a series of points, so that n series are side by side over a name: k - (n - 1)/2 steps
+    /// of min(0.3, 1.4/n) h, with h half the distance of two names, so that all stay within 0.7 h.
     [[nodiscard]] double shift_of(const shown_series& s) const {
         if (!drawing_.x.named || drawing_.x.logarithmic || !s.is(series_style::points)) return 0;
         double count = 0, before = 0;  // of series with points
@@ -222,8 +221,7 @@ private:
         }
     }
 
-    /// Draws both axes of a plot with their ticks (longer ones with labels). Inner plots share the tick labels of the
-    /// outer ones. Labels below may be turned, because long names do not fit side by side.
+    /// Draws the axes with ticks. Inner plots share the labels of outer ones; long names below may be turned.
     void draw_frame() {
         const auto& [left, right, bottom, top, has_x, has_y, mark_tops] = *plot_;
         std::vector<places> lines{{{left, top}, {left, bottom}, {right, bottom}}};
@@ -246,8 +244,7 @@ private:
         }
     }
 
-    /// Draws how a series looks, beside its label: its sign at the end of its line, or in the legend a short line with
-    /// the sign in the middle.
+    /// Draws a series' sign beside its label: at the end of its line, or on a short line in the legend.
     void draw_sample(const arrangement::sample& s) {
         if (s.is_end) return put_signs({s.at}, s.label->appearance);
         constexpr double length = 4.4;  // of the line, in ems

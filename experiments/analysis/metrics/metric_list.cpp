@@ -96,8 +96,7 @@ optional_number wrong_share(const row& r) {
     return (false_negatives + false_positives) / std::max(reported - false_positives + false_negatives, 1.0);
 }
 
-/// The metrics of times, bytes and errors, each with its name, summary (as `aabblab list` prints it) and the function
-/// that computes it from a row of results. Metrics that count work are not among them.
+/// The metrics of times, bytes and errors; those that count work are not among them.
 std::vector<metric> row_metrics() {
     using enum metric_group;
     const std::string cpu = "processor ";
@@ -156,7 +155,7 @@ constexpr auto work_summaries = std::to_array<std::string_view>(
      "visited pairs of tree nodes", "tests of a leaf's triangle against a box", "tests of two triangles"});
 static_assert(work_summaries.size() == aabb::work_names.size());
 
-/// Adds one metric per work counter: its value per frame after frame 0, of which less is better if it counts work.
+/// Adds one metric per work counter: its value per frame after frame 0; less is better if it counts work.
 void add_work_metrics(std::vector<metric>& list) {
     for (std::size_t i = 0; i < aabb::work_names.size(); ++i) {
         list.push_back({std::string(aabb::work_names[i]), "",

@@ -37,8 +37,7 @@ double median_of(std::span<double> values) {
     return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
-/// The variance of a statistic over bootstrap resamples of one level: processes, seeds or repeats are drawn with
-/// replacement, the other two stay as measured.
+/// The variance of a statistic over bootstrap resamples of one level; the other two levels stay as measured.
 double variance_of(const sample_size& size, level drawn, const std::function<double(const resample&)>& statistic) {
     std::uint64_t state = 1;
     std::vector<double> values;
@@ -106,10 +105,9 @@ double estimate::p_if_below(double limit) const {
     return cdf(boost::math::students_t(degrees), (limit - value) / error);
 }
 
-/// Estimates a statistic of measurements in several processes, with several seeds and repeats. Its variance is the sum
-/// of those of the levels: between processes, between seeds and between repeats (noise). Each is that over bootstrap
-/// resamples times n / (n - 1), as the bootstrap of n values underestimates it. The degrees of freedom of the sum
-/// follow Satterthwaite (1946): sum^2 / (sum of variance^2 / degrees).
+/// Estimates a statistic. Its variance is the sum of those between processes, seeds and repeats (noise), each over
+/// bootstrap resamples times n / (n - 1), as the bootstrap underestimates it. The degrees of freedom follow
+/// Satterthwaite (1946): sum^2 / (sum of variance^2 / degrees).
 estimate bootstrap(const sample_size& size, const std::function<double(const resample&)>& statistic) {
     estimate result{.value = statistic(resample(size.processes, size.seeds, level::none, /*random=*/0))};
     const auto variance = [&](level drawn, std::size_t count) {
@@ -170,8 +168,7 @@ estimate difference_of(const estimate& a, const estimate& b) {
     return {a.value - b.value, std::sqrt(sum), sum * sum / (var_a * var_a / a.degrees + var_b * var_b / b.degrees)};
 }
 
-/// Quartiles and median: a share p of n sorted values is at the position p (n - 1), between two of which it
-/// interpolates.
+/// Quartiles and median: a share p of n sorted values is at position p (n - 1), interpolated between values.
 quartiles quartiles_of(std::vector<double> values) {
     std::ranges::sort(values);
     const auto quantile_at = [&](double share) {

@@ -10,9 +10,8 @@ double least_p_value(const tested& t) {
     return std::min(direction, t.expected == expectation::not_more ? t.p.not_more : t.p.same);
 }
 
-/// The significance level of each test by Holm's step-down rule (1979), which corrects for many tests: the k-th least
-/// of n p-values is compared with 1/(n - k + 1) of the level. From the first that exceeds it on, none is significant,
-/// and levels are 0.
+/// The levels of tests by Holm's step-down rule (1979) for many tests: the k-th least of n p-values is compared with
+/// 1/(n - k + 1) of the level. From the first that exceeds it on, levels are 0.
 /// @param p_of returns the p-value of a test
 template <class Tested, class P>
 std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
@@ -31,9 +30,8 @@ std::vector<double> holm_levels(std::span<const Tested> family, P p_of) {
 }  // namespace
 
 /// Tests whether a ratio is below, within or above the equivalence band around 1, and returns the outcome with the
-/// least p-value. The p-value of an outcome is the probability of the estimate if another were true. The ratio is
-/// within the band if it is shown to be neither above nor below: two one-sided tests, of which the greater p-value
-/// counts.
+/// least p-value: the probability of the estimate if another outcome were true. The ratio is within the band if two
+/// one-sided tests show that it is neither above nor below; the greater p-value counts.
 evidence evidence_of(const estimate& log_ratio) {
     const double high = std::log1p(equivalence_band);
     const double low = -high;
@@ -93,8 +91,7 @@ std::vector<double> levels_together(std::span<const tested> family) {
     return holm_levels(family, least_p_value);
 }
 
-/// Judges a claim by the support of its primary endpoints. A verdict other than undecided is one that further
-/// measurements of the undecided endpoints cannot change.
+/// Judges a claim by its primary endpoints; only an undecided verdict can change with more measurements.
 verdict_kind verdict_of(std::span<const support> primary) {
     const auto any_is = [&](support s) { return std::ranges::find(primary, s) != primary.end(); };
     const bool any_otherwise = any_is(support::contradicts) || any_is(support::no_difference);  // not as claimed

@@ -37,8 +37,7 @@ struct standing {
     }
 };
 
-/// The ratios of each candidate in the scenes in which it was timed. The candidates are sorted by the geometric mean of
-/// their ratios, exact ones before inexact ones.
+/// The ratios of each candidate, sorted by their geometric means, exact candidates before inexact ones.
 std::vector<standing> standings_of(std::span<const scene_summary> scenes) {
     std::vector<standing> standings;
     std::map<candidate_name, std::size_t> indices;
@@ -93,9 +92,8 @@ std::vector<std::string> cells_of(const scene_summary& scene, const candidate_su
 
 }  // namespace
 
-/// A row per candidate over all scenes. Its ratio in a scene is its time over that of the scene's baseline, its regret
-/// the ratio over the least one of an exact candidate. The table has the geometric mean of its ratios, the least and
-/// the greatest, in how many scenes it is the fastest, and the median and the worst regret.
+/// A row per candidate over all scenes. Its ratio in a scene is its time over that of the baseline, its regret the
+/// ratio over the least one of an exact candidate.
 table overall_table_of(std::span<const scene_summary> scenes) {
     const std::vector<standing> standings = standings_of(scenes);
     std::vector<candidate_name> names;

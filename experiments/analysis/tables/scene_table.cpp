@@ -57,8 +57,7 @@ struct shared_column {
     }
 };
 
-/// The columns that move to the heading if all their cells are equal, as results are if all candidates are exact:
-/// result, pairs of boxes, pairs of triangles (contacts) and bytes.
+/// The columns that move to the heading if all their cells are equal, as results of exact candidates are.
 std::vector<shared_column> shared_columns(const scene_summary& scene,
                                           std::span<const candidate_summary* const> ranking) {
     shared_column result{{"result"}, "{}", {}};
@@ -163,9 +162,8 @@ std::string explanation_of_columns(const scene_summary& scene) {
 
 }  // namespace
 
-/// The candidates of a scene, by rank: times if any was timed, results and bytes unless they are the same for all (then
-/// the heading has them), and the metrics asked for.
-/// @param shown the names of these metrics
+/// The candidates of a scene by rank: times if timed, results and bytes unless the heading has them, and metrics.
+/// @param shown the names of the metrics asked for
 table table_of(const scene_summary& scene, std::span<const std::string> shown) {
     const bool has_meshes = any_has(scene, &candidate_summary::contacts);
     const int decimals = decimals_of(scene);
@@ -215,8 +213,7 @@ std::string heading_of(const scene_summary& scene) {
     return text + errors_line(ranking) + stopped_line(scene) + explanation_of_columns(scene);
 }
 
-/// The work of each composition per frame after frame 0, and its memory by part, by rank. Columns in which no
-/// composition has a value, and rows of other libraries, which count nothing, are omitted.
+/// Work per frame after frame 0 and memory by part, by rank, without empty columns and rows of other libraries.
 table counts_table_of(const scene_summary& scene) {
     constexpr auto copies = static_cast<std::size_t>(aabb::work::subset_copies);
     table t{name_columns_of(scene.differing), {}};

@@ -21,7 +21,6 @@ void add(std::optional<Number>& sum, const std::optional<Number>& value) {
 
 /// Adds a seed to the summary of a candidate, without times. Over the seeds, pairs and errors are sums, bytes are
 /// maxima and counts of work are means.
-/// @param r a row of any repeat, since all repeats of a seed have the same values
 /// @param share the weight of the seed in means: 1 / number of seeds
 void add_untimed(const row& r, double share, candidate_summary& summary) {
     summary.pairs += r.candidates;
@@ -76,8 +75,7 @@ candidate_summary summary_of(std::span<const row* const> repeats) {
     return summary;
 }
 
-/// Sets the ratio of a candidate's times to those of the baseline in the same repeat and seed, and its 95 % interval,
-/// by a bootstrap of its logarithms over processes, seeds and repeats (a cell per process and seed).
+/// Sets the ratio to the baseline's times in the same repeat and seed, and its 95 % interval, by a bootstrap.
 void set_ratio(candidate_summary& summary, std::span<const row* const> repeats, std::span<const row* const> baseline) {
     std::map<std::pair<std::optional<std::uint64_t>, std::uint64_t>, double> base_ms;  // by seed and repeat
     for (const row* b : baseline)
@@ -106,8 +104,7 @@ void set_ratio(candidate_summary& summary, std::span<const row* const> repeats, 
     summary.ratio_interval = {std::exp(low), std::exp(high)};
 }
 
-/// Sets the label of each candidate: an engine's name, or those strategies of a composition that differ within the
-/// scene. `common` names the strategies that all compositions share, for the heading.
+/// Labels candidates by an engine's name, or by strategies that differ within the scene; `common` has the others.
 void set_labels(scene_summary& scene) {
     std::vector<candidate_name> names;
     for (const candidate_summary& summary : scene.candidates) names.push_back(summary.name);
@@ -174,8 +171,7 @@ std::vector<scene_summary> summarise(std::span<const row> rows) {
     return scenes;
 }
 
-/// The candidates in the order of tables: timed before untimed ones, exact before inexact ones, then by the ratio to
-/// the baseline, or by time if there is none.
+/// The candidates in the order of tables: timed ones and exact ones first, then by ratio to the baseline or by time.
 std::vector<const candidate_summary*> ranking_of(const scene_summary& scene) {
     std::vector<const candidate_summary*> candidates;
     for (const candidate_summary& summary : scene.candidates) candidates.push_back(&summary);
@@ -207,8 +203,7 @@ std::vector<column> name_columns_of(std::span<const aabb::strategy_kind> differi
     return columns;
 }
 
-/// The first cells of a row: the rank of a candidate, then its strategies of the kinds that differ within the scene. An
-/// engine has its name in the first of these; the others stay empty.
+/// The first cells of a row: the rank, then the strategies of the kinds that differ, or in the first an engine's name.
 std::vector<std::string> name_cells_of(std::span<const aabb::strategy_kind> differing, const candidate_name& name,
                                        std::size_t rank) {
     std::vector<std::string> cells{std::to_string(rank)};

@@ -50,8 +50,7 @@ void remove_columns(table& t, std::size_t begin, std::size_t end) {
     for (auto& cells : t.rows) remove(cells);
 }
 
-/// Removes columns, the most dispensable (greatest `spare`) first, until the table fits into the width or only
-/// necessary ones (`spare` 0) are left.
+/// Removes columns, the greatest `spare` first, until the table fits or only those of `spare` 0 are left.
 /// @returns a line that lists them
 std::string leave_out_spare_columns(table& t, std::size_t width) {
     std::string names;
@@ -84,8 +83,7 @@ std::string legend_of(const std::string& number, const std::vector<std::string>&
     return text + line + "\n";
 }
 
-/// Makes a table narrower: the first columns, which name the rows, become one of row numbers.
-/// @returns a legend, the names of each number
+/// Replaces the first columns, which name the rows, by one of numbers, and returns a legend.
 std::string replace_names_by_numbers(table& t, std::size_t width) {
     const bool had_numbers = has_numbered_rows(t);
     if (!had_numbers) {
@@ -167,9 +165,8 @@ std::string to_markdown(const table& t) {
     return text;
 }
 
-/// A table for terminals, in lines of at most `width` characters where possible. If it is too wide, it loses spare
-/// columns, then long names become numbers with a legend, and the columns that remain are split into blocks, each with
-/// the names of the rows.
+/// A table for terminals. If it is too wide, it loses spare columns, then long names become numbers with a legend, and
+/// the columns that remain are split into blocks, each with the names of the rows.
 std::string to_text(table t, std::size_t width) {
     if (name_count(t) == t.columns.size()) return to_text(t);
     table fewer = t;

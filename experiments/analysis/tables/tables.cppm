@@ -17,7 +17,7 @@ inline constexpr const char* row_number = "#";
 struct column {
     std::string name;
     bool is_number = true;  ///< aligned to the right
-    /// If a table is too wide, columns are dropped in descending order of this; columns with 0 stay.
+    /// The order in which columns are dropped from too wide a table: the greatest first; columns with 0 stay.
     int spare = 0;
 };
 
