@@ -22,9 +22,8 @@ constexpr std::array<std::string_view, 2> built_meshes = {"noise_sphere:triangle
 
 constexpr int turns = 5;
 
-/// Times the build of a tree by one thread, by two threads, and two builds at once, in turn. The counter `two_threads`
-/// is the speedup of a build by two threads. `two_builds` is that of two independent builds, the most that this machine
-/// allows.
+/// Times the build of a tree by one thread, by two, and two builds at once, in turn. `two_threads` is the speedup of a
+/// build by two threads, `two_builds` that of two independent builds, the most that this machine allows.
 template <class Build>
 void time_build(benchmark::State& state, const aabb::mesh& m) {
     Build sequential;
@@ -62,8 +61,7 @@ void time_build(benchmark::State& state, const aabb::mesh& m) {
 
 }  // namespace
 
-/// Adds a benchmark per strategy `build` and mesh. The thread is pinned to one processor except while it builds, since
-/// threads that it starts would inherit that.
+/// Adds a benchmark per build and mesh. The thread is not pinned while it builds, as new threads would inherit that.
 void add_build_benchmarks(const idlest_processor& pinned) {
     for_each_strategy(aabb::builds{}, [&]<class Build>(aabb::type_list<Build>) {
         for (const std::string_view mesh : built_meshes)

@@ -18,8 +18,7 @@ void for_each_strategy(aabb::type_list<Strategies...>, Run run) {
 }
 
 namespace detail {
-/// All values of a parameter that has names or few integers as values, as text. Other parameters have no list of
-/// values, so the result is empty, and they keep their default.
+/// All values of a parameter with names or few integers as values; empty for others, which keep their default.
 template <class Parameter>
 [[nodiscard]] std::vector<std::string> values_of(const Parameter& parameter) {
     constexpr std::size_t few = 8;
@@ -34,8 +33,7 @@ template <class Parameter>
 }
 }  // namespace detail
 
-/// The strategy with every combination of its parameters' values: each parameter with V values makes V choices of each
-/// choice so far.
+/// The strategy with every combination of its parameters' values.
 template <aabb::Strategy S>
 [[nodiscard]] std::vector<aabb::strategy_choice> choices_of() {
     std::vector<aabb::strategy_choice> choices{{std::string(S::name), {}}};

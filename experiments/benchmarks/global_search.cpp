@@ -23,9 +23,8 @@ auto* add_case(std::string_view stage, const aabb::strategy_choice& choice, std:
 
 using list_of_frame = std::vector<aabb::projection>;
 
-/// The input of a sort in a moving scene, frame by frame: the list of one axis, with the lower ends of this frame's
-/// boxes as keys, in the sorted order of the previous frame. With fewer frames, the branch predictor would learn the
-/// outcomes of the comparisons.
+/// A sort's input in a moving scene: this frame's lower ends, in the sorted order of the previous one. With fewer
+/// frames, the branch predictor would learn the outcomes of the comparisons.
 std::vector<list_of_frame> lists_over_frames(std::uint32_t objects, std::string_view displacement) {
     constexpr std::uint32_t frames = 16;
     constexpr int axis = 0;
@@ -42,7 +41,7 @@ std::vector<list_of_frame> lists_over_frames(std::uint32_t objects, std::string_
     return lists;
 }
 
-/// Shared by all sorts, each of which Google Benchmark calls several times.
+/// Shared by all sorts: Google Benchmark calls each several times.
 const std::vector<list_of_frame>& lists_of(std::uint32_t objects, std::string_view displacement) {
     static std::map<std::pair<std::uint32_t, std::string_view>, std::vector<list_of_frame>> cache;
     std::vector<list_of_frame>& lists = cache[{objects, displacement}];
@@ -50,8 +49,7 @@ const std::vector<list_of_frame>& lists_of(std::uint32_t objects, std::string_vi
     return lists;
 }
 
-/// Reports the work of a sort per list element, counted in a separate pass, so that counting does not slow down the
-/// timed one.
+/// Reports the work of a sort per list element, counted in a separate pass, which is not timed.
 template <class Sort>
 void count_work(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
     aabb::work_counters counted;
@@ -70,8 +68,7 @@ void count_work(benchmark::State& state, Sort sort, std::span<const list_of_fram
     if (counted[aabb::work::moves] > 0) state.counters["moves/n"] = per_element(aabb::work::moves);
 }
 
-/// Times the sort of the lists of successive frames, one per iteration. Each is copied first, as the sort changes it;
-/// the copy is not timed.
+/// Times the sort of the lists of successive frames, one per iteration; the copy of a list is not timed.
 template <class Sort>
 void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame> lists) {
     aabb::no_counters none;
@@ -90,8 +87,7 @@ void time_sort(benchmark::State& state, Sort sort, std::span<const list_of_frame
 
 constexpr aabb::axis_set swept = 0b001;  // x
 
-/// Times what a partition that cuts sorted lists does per frame: it chooses the axes to cut, fits the cuts, and
-/// distributes the lists over subsets for a sweep along the axis `swept`. The work is counted separately.
+/// Times what a partition that cuts sorted lists does per frame, for a sweep along `swept`. Work is counted separately.
 template <class Partition>
 void time_partition(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);
@@ -116,8 +112,7 @@ void time_partition(benchmark::State& state, Partition partition, std::uint32_t 
     state.counters["bytes"] = static_cast<double>(aabb::bytes_of(partition) + subsets.bytes());
 }
 
-/// Times a partition into columns by the update of a whole search, which distributes the boxes over columns bucket by
-/// bucket. A second search counts the work.
+/// Times a partition into columns by the update of a whole search; a second search counts the work.
 template <class Partition>
 void time_column_search(benchmark::State& state, Partition partition, std::uint32_t objects) {
     const sorted_frame frame(objects);
@@ -229,9 +224,8 @@ private:
     std::size_t step_ = 0;
 };
 
-/// Times a sweep that keeps its pairs from frame to frame, one frame of a moving scene per iteration. `moving_sweep`
-/// runs through the frames forwards and backwards, so that every step is the motion of one frame. The work is counted
-/// before, over a period, the steps until the first frame recurs.
+/// Times a sweep that keeps its pairs, one frame of a moving scene per iteration, forwards and backwards
+/// (`moving_sweep`). The work is counted before, over a period, the steps until the first frame recurs.
 template <aabb::CoherentSweep Sweep>
 void time_steps(benchmark::State& state, Sweep sweep, std::uint32_t objects, std::string_view displacement) {
     constexpr std::uint32_t last_frame = 16;
@@ -280,8 +274,7 @@ void add_sweep(const aabb::strategy_choice& choice) {
 
 }  // namespace
 
-/// Adds a benchmark per sort, setting of its parameters, number of objects and displacement. The sort is timed first,
-/// then its work is counted.
+/// Adds a benchmark per sort, setting of its parameters, number of objects and displacement.
 void add_sort_benchmarks() {
     for_each_strategy(aabb::sorts{}, []<class Sort>(aabb::type_list<Sort>) {
         for (const aabb::strategy_choice& choice : choices_of<Sort>())
@@ -295,8 +288,7 @@ void add_sort_benchmarks() {
     });
 }
 
-/// Adds a benchmark per partition, setting of its parameters and number of objects. A partition divides into columns or
-/// cuts sorted lists; `none` and other partitions have nothing to time.
+/// Adds a benchmark per partition, setting and number of objects; `none` and others have nothing to time.
 void add_partition_benchmarks() {
     for_each_strategy(aabb::partitions{}, []<class Partition>(aabb::type_list<Partition>) {
         for (const aabb::strategy_choice& choice : choices_of<Partition>())

@@ -22,7 +22,7 @@ namespace {
 
 using walked_tree = aabb::canonical_tree;
 
-/// A pair of nodes of which one is a leaf that the traversal has just reached.
+/// A pair of nodes with a leaf to which the traversal has just come.
 struct reached_leaf {
     walked_tree::cursor a;
     walked_tree::cursor b;
@@ -42,8 +42,7 @@ struct leaf_pair {
 /// of hits and misses and the relative sizes of boxes are representative.
 class walked_pairs {
 public:
-    /// Records the tests of a traversal, then runs `local_detection` on the same meshes to compare the numbers of
-    /// tests.
+    /// Records the tests of a traversal, and compares their numbers with those of `local_detection`.
     /// @throws std::logic_error if `local_detection` no longer tests as many pairs as recorded
     walked_pairs() {
         traverse();
@@ -80,8 +79,7 @@ private:
         return poses;
     }
 
-    /// Records the tests of `local_detection` in its order. `open_` is the stack of node pairs whose boxes overlap. Of
-    /// two inner nodes, the one with the longer box is opened.
+    /// Records the tests in the order of `local_detection`; `open_` is the stack of node pairs whose boxes overlap.
     void traverse() {
         test({a_.root(), b_.root(), to_a_(b_.bounds())});
         while (!open_.empty()) {
@@ -141,7 +139,7 @@ private:
     std::size_t box_tests_ = 0;
 };
 
-/// Shared by all benchmarks, each of which Google Benchmark calls several times.
+/// Shared by all benchmarks: Google Benchmark calls each several times.
 const walked_pairs& walked() {
     static const walked_pairs pairs;
     return pairs;
@@ -277,8 +275,7 @@ struct rotated_box_15_test {
     return triangles;
 }
 
-/// True if any two triangles below the pair of nodes intersect. If so, a leaf test that rejects the pair has a false
-/// negative.
+/// Whether triangles below the pair of nodes intersect: if so, a leaf test that rejects it has a false negative.
 [[nodiscard]] bool any_intersect(const walked_pairs& walk, const reached_leaf& p) {
     for (const std::uint32_t of_b : triangles_below(walk.b(), p.b)) {
         const aabb::triangle3f image = walk.to_a()(walk.b().triangles().triangle(of_b));
@@ -299,8 +296,7 @@ template <class Test>
 template <class Test>
 constexpr bool may_miss = requires { requires !Test::exact; };
 
-/// Times a test of a leaf against a node on the recorded pairs. If the test is inexact, the counter `kept` is one minus
-/// its share of false negatives.
+/// Times a test of a leaf against a node on the recorded pairs; `kept` is one minus its share of false negatives.
 /// @throws std::logic_error if an exact test has false negatives
 template <class Test, class Leaf>
 void time_leaf_test(benchmark::State& state) {
@@ -357,8 +353,7 @@ void add_leaf_test_benchmarks() {
     add_leaf_tests<leaf_of_a>(tests);
 }
 
-/// Adds each triangle test twice: including the transform of B's triangle into A's frame, and ("/frame:a") with its
-/// cached image.
+/// Adds each triangle test with the transform of B's triangle and, "/frame:a", with its cached image.
 void add_triangle_test_benchmarks() {
     for_each_strategy(aabb::triangles{}, []<class Triangle>(aabb::type_list<Triangle>) {
         for (const aabb::strategy_choice& choice : choices_of<Triangle>()) {

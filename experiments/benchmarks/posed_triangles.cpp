@@ -81,16 +81,14 @@ pose after_permutation(const pose& p, const vec3d& shift) {
     return result;
 }
 
-/// The two meshes of a case, at poses: sheets that cross, that coincide, or whose planes nearly coincide; otherwise
-/// gears in mesh.
+/// The posed meshes of a case: sheets that cross, coincide, or nearly do; otherwise gears in mesh.
 posed_meshes make(std::string_view name) {
     const aabb::mesh sheets = sheet(64);
     const pose r = turned(30);
     if (name == "crossing") return {sheets, sheets, {r, turned(50)}};
     if (name == "flush") return {sheets, sheets, {r, after_permutation(r, {0, 0, 0})}};
     if (name == "apart:1e-9") return {sheets, sheets, {r, after_permutation(r, {1e-9, 1e-9, 1e-9})}};
-    // Gears in mesh under one rotation: a tooth of the first lies in a gap of the second, flank to flank. The distance
-    // of the axes is the sum of both radii, and the second gear is displaced by half a layer along its axis.
+    // Gears under one rotation, flank to flank, at the distance of both radii; the second shifted by half a layer.
     const aabb::mesh wheel = gear(24);
     pose beside = r;
     for (std::size_t k = 0; k < 3; ++k)
@@ -130,8 +128,7 @@ struct candidates {
     std::vector<posed_pair> pairs;
 };
 
-/// Adds the benchmarks of one stage of the exact triangle test, one per case; an iteration tests one pair. The counter
-/// `decided` is the share of the pairs that the stage decides.
+/// Adds the benchmarks of one stage of the exact test, one per case; `decided` is the share of pairs that it decides.
 /// @param stage called with the candidates and a pair; returns whether it decides the pair
 template <class Stage>
 void add(const std::string& name, Stage stage) {
@@ -151,9 +148,8 @@ void add(const std::string& name, Stage stage) {
 
 }  // namespace
 
-/// Times the stages of the exact test of triangles at poses, each alone: the filter in double, which may leave a pair
-/// undecided; the whole exact test; and its integer arithmetic, by which `side` says on which side of a triangle a
-/// corner lies.
+/// Times the stages of the exact test alone: the filter in double, which may leave a pair undecided; the whole test;
+/// and its integer arithmetic, `side`.
 void add_posed_triangle_benchmarks() {
     add("filter_in_double", [](const candidates& given, const posed_pair& p) {
         return aabb::exact_triangle::intersects_if_certain(p.s_in_float, p.image_of_t, given.image_error).has_value();

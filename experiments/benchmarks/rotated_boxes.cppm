@@ -26,9 +26,8 @@ struct box_pair {
 /// which holds for all axes here, and all rounding errors in double.
 class rotated_boxes {
 public:
-    /// Computes what all tests of a pair of meshes share: with the rotations A and B, the columns of Aᵀ B (B's axes in
-    /// A's frame) and of its transpose, their absolute values, the shift between the origins, and the margin for
-    /// rounding.
+    /// Computes what all tests of a pair of meshes share: B's axes in A's frame (Aᵀ B), their transpose and absolute
+    /// values, the shift between the origins, and the margin for rounding.
     /// @param b_bounds the bounds of B's vertices in B's frame
     rotated_boxes(const aabb::pose& a, const aabb::pose& b, const aabb::box& b_bounds) {
         for (std::size_t i = 0; i < 3; ++i)
@@ -49,9 +48,7 @@ public:
         for (int k = 0; k < 3; ++k) margin_[k] = furthest * 0x1p-22;  // four times the rounding to float, 2^-24
     }
 
-    /// Computes the centres and half extents of a pair of boxes, as the tests take them.
-    /// @param a a box of A, in A's frame
-    /// @param b a box of B, in B's frame
+    /// Computes the centres and half extents of a box of A and one of B, in their frames.
     [[nodiscard, gnu::always_inline]] inline box_pair pair_of(const aabb::box& a, const aabb::box& b) const noexcept {
         const three low_a = doubles(a.min);
         const three high_a = doubles(a.max);
@@ -90,9 +87,8 @@ private:
     [[nodiscard]] static inline three yzx(const three& v) noexcept { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
     [[nodiscard]] static inline three zxy(const three& v) noexcept { return __builtin_shufflevector(v, v, 2, 0, 1, 3); }
 
-    /// True if one of the axes b × e, of B's axis b = J and an edge e of A, separates the boxes: if the distance of
-    /// their centres along it exceeds the sum of their radii. The three edges of A are unit vectors, so a cross product
-    /// is a permutation of b's coordinates, and the three axes are tested at once.
+    /// Whether one of the axes b × e, of B's axis b = J and A's edges e, separates the boxes. The edges are unit
+    /// vectors, so cross products permute b's coordinates, and three axes are tested at once.
     template <std::size_t J>
     [[nodiscard]] inline bool edge_separates(const box_pair& p) const noexcept {
         constexpr std::size_t next = (J + 1) % 3;

@@ -72,8 +72,7 @@ struct box_run {
     aabb::cost_model planned_by;
 };
 
-/// Runs the broad phase on all frames and measures each: its work if the run counts it, otherwise its time, which
-/// counting would lengthen. Strategies plan by the costs of the run.
+/// Runs the broad phase and measures each frame: its work if the run counts it, otherwise its time.
 std::vector<frame_sample> sample_frames(const box_run& run, aabb::instrumentation counted) {
     const costs_in_scope costs(run.planned_by);
     scene_frames scene(std::make_unique<aabb::known_boxes>(*run.frames));
@@ -127,8 +126,7 @@ struct generated_scene {
 /// The work of a mean frame: first the kinds with a cost, then kinds that no strategy plans by, with a constant 1.
 using work_of_frame = std::function<std::vector<double>(const frame_sample&)>;
 
-/// A trial that measures one thing, the mean frame after the warm-up: its time, and its amounts of work, which `work`
-/// computes from the counters.
+/// A trial that measures the mean frame after the warm-up; `work` computes its work from the counters.
 trial frames_trial(const generated_scene& scene, cost_group group, const aabb::composition& c,
                    const aabb::cost_model& planned_by, work_of_frame work) {
     const box_run run{scene.frames, c, planned_by};
@@ -193,8 +191,7 @@ void add_cut_trial(std::vector<trial>& trials, const generated_scene& scene, con
     }));
 }
 
-/// Adds trials of axial cuts: with one subset, with few and with many, and so with few and many copies of boxes in
-/// several subsets. Work in different ratios lets the fit separate the costs.
+/// Adds trials of axial cuts with one, few and many subsets: work in different ratios lets the fit separate the costs.
 void add_cut_trials(std::vector<trial>& trials, const generated_scene& scene) {
     const auto cut = [](const char* axes, const char* segments) {
         return aabb::strategy_choice{"axial_cut", {{"axes", axes}, {"segments", segments}}};
@@ -270,7 +267,7 @@ void add_mesh_trial(std::vector<trial>& trials, const scene_choice& choice, bool
                       }});
 }
 
-/// Adds trials of two meshes, one of which passes through the other.
+/// Adds trials of two meshes; one passes through the other.
 void add_mesh_trials(std::vector<trial>& trials, const std::string& standing, const std::string& passing,
                      std::size_t triangles, bool held_out) {
     const std::string size = ":triangles=" + std::to_string(triangles);
@@ -281,8 +278,7 @@ void add_mesh_trials(std::vector<trial>& trials, const std::string& standing, co
 
 using sizes = std::vector<std::size_t>;
 
-/// Trials of Verlet lists, axial cuts and columns, on scenes of several kinds and sizes. The held-out ones, which check
-/// the fit, use other kinds of scenes than the fitted ones.
+/// Trials of Verlet lists, axial cuts and columns; the held-out ones, which check the fit, use other kinds of scenes.
 std::vector<trial> box_trials(calibration_size size) {
     const bool quick = size == calibration_size::quick;
     std::vector<trial> trials;
@@ -373,8 +369,7 @@ std::vector<group_observations> observe_trials(std::vector<trial> trials, double
 
 }  // namespace
 
-/// Measures the costs of operations on this machine: fits the costs of each group to the work and times of its trials,
-/// and checks the times that they predict on held-out scenes.
+/// Fits the costs of operations on this machine to work and times of trials, and checks them on held-out scenes.
 calibration calibrate(calibration_size size, double seconds) {
     std::vector<trial> trials = box_trials(size);
     std::ranges::move(mesh_trials(size), std::back_inserter(trials));

@@ -27,8 +27,7 @@ struct normal_equations {
     Eigen::VectorXd sums;
 };
 
-/// Improves the given costs until they solve the least-squares problem with costs >= 0, by coordinate descent (Franc,
-/// Hlaváč and Navara 2005): each cost in turn becomes the best one while the others stay.
+/// Improves costs to the least-squares solution with costs >= 0, by coordinate descent (Franc, Hlaváč and Navara 2005).
 void descend(const normal_equations& equations, Eigen::VectorXd& costs) {
     constexpr int most_rounds = 20'000;
     constexpr double near_enough = 1e-12;
@@ -52,8 +51,7 @@ double median_of(std::vector<double> values) {
     return quartiles_of(std::move(values)).median;
 }
 
-/// The Huber weight of each observation: 1 up to a threshold of its residual, the relative error of the predicted time;
-/// threshold / residual beyond.
+/// Huber weights: 1 up to a threshold of the relative error of the predicted time, threshold / error beyond.
 std::vector<double> weights_of(std::span<const timed_work> observations, const Eigen::VectorXd& costs) {
     constexpr double most_deviations = 1.345;         // standard deviations: 95 % efficient for normal errors
     constexpr double deviations_per_median = 1.4826;  // standard deviation over median of absolute normal errors
@@ -69,8 +67,7 @@ std::vector<double> weights_of(std::span<const timed_work> observations, const E
 /// Normal equations that can be bootstrapped. Whole scenes are resampled, in the role of processes.
 class resampled_equations {
 public:
-    /// Sums up the normal equations of each scene and repeat, over the observations of the scene. The bootstrap, made
-    /// for processes, seeds and repeats, takes each scene as a process with a single seed.
+    /// Sums up the normal equations of each scene and repeat; the bootstrap takes a scene as a process with one seed.
     resampled_equations(std::span<const timed_work> observations, std::span<const double> weights)
         : count_(static_cast<Eigen::Index>(observations.front().work.size())) {
         std::map<std::string, std::vector<std::size_t>> scenes;
@@ -96,8 +93,7 @@ public:
     }
 
     [[nodiscard]] const sample_size& size() const { return size_; }
-    /// The normal equations of one bootstrap resample: means over the drawn scenes and repeats. They are symmetric, so
-    /// only the entries on and below the diagonal are stored.
+    /// The normal equations of one resample: means over drawn scenes and repeats, stored on and below the diagonal.
     [[nodiscard]] normal_equations draw(const resample& drawn) const {
         normal_equations equations(count_);
         for (Eigen::Index i = 0; i < count_; ++i) {
