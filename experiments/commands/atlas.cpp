@@ -22,8 +22,7 @@ struct atlas_request {
     }
 };
 
-/// Reads the measured scenes of an atlas from results, which may also be those of a reproduction: they have the atlas
-/// in the folder of their report. Notes which parts of the atlas are unfinished.
+/// Reads the measured scenes of an atlas, or of the one in a reproduction's report, and notes unfinished parts.
 std::vector<atlas_scene> existing_atlas(const results_source& source) {
     verify_record(source.folder);
     std::filesystem::path parts = source.folder;
@@ -34,8 +33,7 @@ std::vector<atlas_scene> existing_atlas(const results_source& source) {
     return atlas;
 }
 
-/// Measures the atlas: the times of all candidates (compositions and engines) in many scenes. With --judge it
-/// reads existing results instead. Then writes its maps, and prints which candidate is the fastest where.
+/// Measures the atlas, or with --judge reads results, writes its maps, and prints which candidate is the fastest where.
 /// @returns the exit status: 1 if a check failed
 int run(const atlas_request& request) {
     outlive_reader();  // a closed pipe does not stop the measurement

@@ -17,8 +17,7 @@ struct calibrate_request {
     bool quick = false, reset = false;
 };
 
-/// The fitted costs of operations ("here", on this machine) beside those that the program ships with (the defaults of
-/// `cost_model`), and the 95 % confidence interval of each fit.
+/// The fitted costs ("here") with 95 % intervals beside those that the program ships with (`cost_model`).
 table table_of(const calibration& fit) {
     table t = empty_table({"cost", "unit"}, {"shipped", "here", "95 %"});
     for (std::size_t k = 0; k < aabb::cost_infos.size(); ++k) {
@@ -40,8 +39,7 @@ table checks_of(const calibration& fit) {
     return t;
 }
 
-/// Measures the costs of elementary operations, which decide what is fast on this machine, and stores them where
-/// commands look for them, or in the file of --out. With --reset it removes the stored costs instead.
+/// Measures the costs of operations and stores them for commands, or in --out; or with --reset removes stored ones.
 void calibrate(const calibrate_request& request) {
     const std::filesystem::path file = request.out ? std::filesystem::path(*request.out) : calibrated_costs_file();
     if (file.empty())

@@ -20,8 +20,7 @@ struct classify_request {
     bool keep_doubles = false, geometry = false;
 };
 
-/// The triangle test of this name, for --geometry, which asks for the intersection of two triangles: a point, segment
-/// or polygon. Many tests only decide whether there is one.
+/// The triangle test of this name, for --geometry; many tests only decide whether there is an intersection.
 /// @throws aabb::input_error if the test does not construct intersections, with the names of those that do
 std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choice& choice) {
     auto test = triangle_test_named(choice);
@@ -32,8 +31,7 @@ std::unique_ptr<aabb::triangle_test> constructing_test(const aabb::strategy_choi
                     choice.name, fmt::join(constructing_tests(), " or ")));
 }
 
-/// Tests two triangles and returns the line to print: 0 or 1, or with `geometry` their intersection. `words` are 18
-/// numbers: the corners of the first triangle, then of the second.
+/// The line to print: 0 or 1, or with `geometry` the intersection; `words` are the 18 numbers of the corners.
 template <class Real>
 std::string result_of(const aabb::triangle_test& test, const std::vector<std::string>& words, bool geometry) {
     if (words.size() != 18)
@@ -45,8 +43,7 @@ std::string result_of(const aabb::triangle_test& test, const std::vector<std::st
     return test.intersects(triangles[0], triangles[1]) ? "1\n" : "0\n";
 }
 
-/// Tests the pair of triangles of each line and prints its result. A malformed line ends the input with an error; the
-/// results before it are still printed, as the program flushes its output before errors.
+/// Prints the result of each line's pair. A malformed line ends the input with an error, after the earlier results.
 void classify_lines(line_stream lines, const aabb::triangle_test& test, const classify_request& request) {
     std::optional<progress> shown;  // results on a terminal show the progress themselves
     if (isatty(STDOUT_FILENO) == 0) shown.emplace("bytes classified", lines.size());

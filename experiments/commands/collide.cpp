@@ -31,8 +31,7 @@ struct collide_request {
     bool touching = true, first = false, count = false, geometry = false, exit_code = false, json = false;
 
     [[nodiscard]] std::vector<std::string> meshes() const { return b ? std::vector{a, *b} : std::vector{a}; }
-    /// What the options ask for: all pairs, the first or their number, of A and B or of A with itself, at one pose or
-    /// many.
+    /// The query: all pairs, the first or their number, of A and B or of A with itself, at one pose or many.
     [[nodiscard]] mesh_query query() const {
         const query_kind ask = count ? query_kind::count : first ? query_kind::first : query_kind::pairs;
         return {.ask = ask,
@@ -52,8 +51,7 @@ nlohmann::ordered_json geometry_of(const intersecting_pair& pair) {
     return geometry;
 }
 
-/// Prints the result as one JSON object. With --poses, each result is an array with a value per pose, else one value.
-/// Values that were not asked for are null or absent.
+/// Prints one JSON object. With --poses, results are arrays by pose; values not asked for are null or absent.
 void print_json(const collide_request& request, const mesh_result& result) {
     // `several` values stay an array even without --poses, such as the times of repeats.
     const auto by_pose = [&](nlohmann::ordered_json values, bool several = false) {
@@ -114,7 +112,6 @@ void print_results(const collide_request& request, const mesh_result& result) {
     if (result.degenerate.value_or(0) > 0) print(counted(*result.degenerate, "triangle") + " without area\n");
 }
 
-/// Prints the result for reading: the meshes, what was found, the median of the query times, memory.
 void print_text(const collide_request& request, const mesh_result& result) {
     const auto description_of = [&](const std::string& mesh, std::size_t i) {
         return visible(mesh) + " (" + counted(result.triangles[i], "triangle") + ")";

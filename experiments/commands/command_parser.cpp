@@ -58,8 +58,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-/// How to set a parameter of a strategy, "--partition axial_cut:axes=…", for users who write it as an option of its
-/// own.
+/// The form "--partition axial_cut:axes=…", for users who write a strategy's parameter as an option of its own.
 /// @param options those of the command, in which each kind of strategy has one
 /// @returns empty if no strategy that the command accepts has a parameter of this name
 std::string option_of_parameter(const std::string& parameter, const std::vector<std::string>& options) {
@@ -141,9 +140,8 @@ parsed_option parsed_option::hidden() const {
     return *this;
 }
 
-/// Adds a command, or a subcommand if this is a command, as in `validate extreme`. A command takes at most one
-/// subcommand. Options between the two names are rejected, as the parser would accept them and the subcommand would
-/// ignore them.
+/// Adds a command, or one subcommand at most, as in `validate extreme`. Options between the two names are rejected, as
+/// the subcommand would ignore them.
 command_parser command_parser::add_command(const std::string& name, const std::string& help) const {
     CLI::App* const subcommand = command_->add_subcommand(name, help);
     if (command_->get_parent() != nullptr) {
@@ -158,8 +156,7 @@ command_parser command_parser::command(const std::string& name) const {
     return {*command_->get_subcommand(name), *action_};
 }
 
-/// Adds an option whose value is stored in a variable or passed to a function. `names` is "--out FILE" or, for an
-/// argument, "FILE".
+/// Adds an option, "--out FILE", or argument, "FILE", whose value is stored in a variable or passed to a function.
 parsed_option command_parser::option(const std::string& names, const option_value& value,
                                      const std::string& help) const {
     const std::pair<std::string, std::string> parts = split_value_name(names);
@@ -212,8 +209,7 @@ std::string rejection_of(const CLI::App& program, const CLI::ParseError& error) 
     if (const auto rest = program.remaining(); !rest.empty())
         return rejection_of_argument(program, program, rest.front());
     const std::string message = error.what();
-    // On a repeated option, the parser's message has a count of values, and no name if the option is hidden. Each
-    // option takes one value, so the message says that, with the name.
+    // On a repeated option, the parser's message has a count of values, and no name if the option is hidden.
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
         std::string name = message.substr(0, message.find(':'));
         for (const CLI::Option* option : command.get_options())

@@ -27,8 +27,7 @@ std::string option_names(aabb::stage stage) {
 
 }  // namespace
 
-/// Adds an option for each kind of strategy of the stages, such as --sort, and --engine. A command without meshes does
-/// not offer strategies that need them.
+/// Adds an option per kind of strategy of the stages, --sort and so on, except those that need meshes, and --engine.
 void method_options::add_to(const command_parser& command, const std::string& replaced) {
     const bool has_meshes = std::ranges::find(stages_, aabb::stage::local_detection) != stages_.end();
     for (const aabb::stage stage : stages_)

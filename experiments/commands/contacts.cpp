@@ -51,8 +51,7 @@ std::string text_of(const contacts_request& request, const search_method& method
                        result.build_ms, result.mean_ms());
 }
 
-/// Finds the intersecting triangles of moving meshes in each frame, writes them to the file of --out, and prints
-/// totals.
+/// Finds the contacts of moving meshes in each frame, writes them to the file of --out, and prints totals.
 void find_contacts(const contacts_request& request) {
     if (request.geometry && !request.out)
         throw aabb::input_error("--geometry adds columns to the contacts, so give --out FILE");

@@ -13,8 +13,7 @@ struct errors_request {
     bool quick = false;
 };
 
-/// Runs a study of errors: measures how often each method is wrong, and how fast it is, prints the tables and says
-/// where the numbers and plots are.
+/// Runs a study of how often methods are wrong and how fast they are, prints tables, and says where the results are.
 /// @returns the exit status: 1 if a check failed
 int run(const errors_request& request) {
     outlive_reader();  // a closed pipe does not stop the study

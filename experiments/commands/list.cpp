@@ -59,8 +59,7 @@ std::string summary_of(const metric& m) {
     return fmt::format("{} ({}{})", m.summary, m.unit.empty() ? "" : m.unit + ", ", group_of(m));
 }
 
-/// An item of the list from the description of a strategy, engine, scene, metric and so on. Its JSON has those
-/// properties that the type of the description has.
+/// An item of the list, from the description of a strategy, engine, scene, metric and so on.
 list_item item_of(const auto& info) {
     list_item item{
         std::string(info.name), summary_of(info), /*parameters=*/{}, {{"name", info.name}, {"summary", info.summary}}};

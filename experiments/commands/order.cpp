@@ -17,8 +17,7 @@ struct order_request {
     std::optional<std::string> numbers;
 };
 
-/// Writes the mesh with its triangles in the order of the leaves of a bounding volume hierarchy, which then needs no
-/// triangle indices. With --numbers also writes the original index of each triangle.
+/// Writes the mesh with triangles in leaf order, which needs no indices; with --numbers also the original ones.
 void write_ordered(const order_request& request) {
     const aabb::strategy_choice build = aabb::parse_strategy(request.build);
     require_known(aabb::strategy_kind::build, build);

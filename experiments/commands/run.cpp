@@ -15,8 +15,8 @@ struct run_request {
     bool quick = false, resume = false, counts = false;
 };
 
-/// Runs the experiment of a config and says where its results are. An experiment may run in several processes, each of
-/// which this program starts with the hidden option --process.
+/// Runs the experiment of a config, perhaps in several processes with the hidden option --process, and says where its
+/// results are.
 /// @returns the exit status: 1 if a check failed
 int run(const run_request& request) {
     outlive_reader();  // a closed pipe does not stop the experiment

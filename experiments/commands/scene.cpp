@@ -148,8 +148,7 @@ void require_outputs(const scene_request& request) {
     require_extension("--picture", request.picture, ".svg", "a picture");
 }
 
-/// Runs a scene once and writes all requested outputs from it: a recording of its boxes, the poses of its meshes, a
-/// picture.
+/// Runs a scene once and writes all outputs from it: a recording of boxes, the poses of meshes, a picture.
 void write_scene(const scene_request& request) {
     require_outputs(request);
     const scene_info& kind = scene_named(request.kind);

@@ -11,9 +11,8 @@ namespace {
 /// A validator that throws aabb::input_error on an unknown or malformed choice.
 using choice_check = std::function<void(const aabb::strategy_choice&)>;
 
-/// Adds the strategies of one list entry: a name, or a table of a name and parameters, whose lists of values multiply.
-/// @param key the key of the list, for messages, as is the `example` of a valid name
-/// @param require throws on an unknown strategy or setting
+/// Adds the strategies of a list entry: a name, or a table of a name and parameters, whose lists of values multiply.
+/// @param key,example the key of the list and a valid name, for messages
 void add_strategies(const document& doc, const std::string& key, const node& value, const std::string& example,
                     const choice_check& require, unique_list<aabb::strategy_choice>& choices) {
     const auto add = [&](const aabb::strategy_choice& choice) {
@@ -121,9 +120,8 @@ void add_composition(const document& doc, int line, const aabb::composition& c, 
     if (!list.add(c, text_of(c))) doc.fail(line, "this composition is listed twice: " + text_of(c));
 }
 
-/// Every combination of the strategies that a [compose] table lists, one per kind; the last kind varies fastest.
-/// Invalid combinations are dropped if one of their strategies comes from others_but. Those of strategies that the
-/// config names are kept, so that the caller reports them as errors.
+/// Every combination of the listed strategies, one per kind; the last kind varies fastest. Invalid ones with a strategy
+/// from others_but are dropped; others are kept, so that the caller reports them as errors.
 /// @param listed the number of compositions that the config has already, which count towards its limit
 std::vector<aabb::named_strategies> combinations_of(const document& doc, const node& compose, std::size_t listed) {
     aabb::by_kind<listed_strategies> strategies;
@@ -197,8 +195,8 @@ std::string label_of(const node& methods, const error_curve& curve) {
 
 }  // namespace
 
-/// Reads one [compose], several [[compose]], of which each has combinations of its own, or compose = "auto".
-/// Combinations that `auto` completes go to e.automatic, the others to e.compositions.
+/// Reads compose = "auto", or any number of [compose], each with combinations of its own. Those that `auto` completes
+/// go to e.automatic, the others to e.compositions.
 /// @param compose null if the config has none
 void read_compositions(const document& doc, const node* compose, experiment& e) {
     static const node nothing{};  // an empty table composes the defaults

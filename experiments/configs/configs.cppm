@@ -151,8 +151,8 @@ struct calibrated_costs {
 [[nodiscard]] calibrated_costs read_costs(const std::filesystem::path& file);
 [[nodiscard]] calibrated_costs parse_costs(const std::string& text, const std::string& file);
 
-/// Where `calibrate` stores costs: $XDG_CONFIG_HOME/aabblab/costs.toml, else ~/.config/aabblab/costs.toml.
-/// @returns an empty path if the environment names neither folder.
+/// The path of the costs that `calibrate` stores: $XDG_CONFIG_HOME/aabblab/costs.toml, else
+/// ~/.config/aabblab/costs.toml; empty if the environment names neither folder.
 [[nodiscard]] std::filesystem::path calibrated_costs_file();
 /// Replaces the shipped costs by calibrated ones in this process; those of another version or machine are ignored.
 /// @throws aabb::input_error like `read_costs`.

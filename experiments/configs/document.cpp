@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t most_parts = 16;  // per dotted key; a config needs two
 constexpr std::size_t most_products = 100'000;
 
-/// Copies a value of toml++ with all that it contains, so that only this file depends on toml++.
+/// Copies a value of toml++ and its contents, so that only this file depends on toml++.
 node to_node(const toml::node& value) {
     node result;
     result.line = static_cast<int>(value.source().begin.line);
@@ -72,8 +72,7 @@ std::string_view name_of(node_kind kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
-/// The first line, from 1, at which an assertion of toml++ fails, since the failure does not say where: bisects for the
-/// shortest text of whole lines that fails.
+/// The first line, from 1, at which an assertion of toml++ fails, which the failure does not say: by bisection.
 int line_of_failed_assertion(std::string_view text) {
     const auto fails = [&](std::size_t end) {  // the text before `end`
         try {
@@ -98,8 +97,7 @@ std::size_t end_of_quotes(std::string_view text, std::size_t end, std::size_t mo
     return end;
 }
 
-/// The index of the last character of the TOML string whose opening quote is at `begin`: its closing quote, or the end
-/// of its line or of the text if it is unterminated.
+/// The index of the closing quote of the TOML string that opens at `begin`, or of the end of its line or of the text.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
     const std::string_view quote = text.substr(begin, 1);
     const std::string triple(3, quote[0]);
@@ -117,8 +115,8 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     return text.size();
 }
 
-/// The line of the first dotted key (a.b.c) with more than `most_parts` parts, or 0 if there is none: toml++ recurses
-/// into each part, and so many would overflow the stack. Strings and comments are skipped.
+/// The line of the first dotted key with more than `most_parts` parts, or 0: toml++ recurses into each part, and would
+/// overflow the stack. Strings and comments are skipped.
 int line_of_deep_key(std::string_view text) {
     const auto continues_key = [](unsigned char c) {
         return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '\t';
@@ -239,8 +237,7 @@ std::vector<located_text> document::texts_of(const std::string& key, const node&
     return texts;
 }
 
-/// Removes the entry { others_but = […] } from a list, which stands for all names but those. @returns these names, or
-/// nullopt if the list has no such entry
+/// Removes { others_but = […] }, all names but those, from a list. @returns these names; nullopt without the entry
 std::optional<std::vector<located_text>> document::take_others(node& list) const {
     const auto is_others = [](const node& item) { return item.find("others_but") != nullptr; };
     const auto others = std::ranges::find_if(list.items, is_others);
@@ -251,7 +248,7 @@ std::optional<std::vector<located_text>> document::take_others(node& list) const
     return excluded;
 }
 
-/// The values of a key: a scalar, or a list of distinct scalars, of which each makes a scene or composition of its own.
+/// The values of a key: a scalar, or a list of distinct scalars; each makes a scene or composition of its own.
 std::vector<located_text> document::alternatives_of(const std::string& key, const node& value) const {
     if (value.is_scalar()) return {{value.text, value.line}};
     if (value.kind != node_kind::list) fail_type(key, value, "a value or a list of values");

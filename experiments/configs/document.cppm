@@ -6,7 +6,7 @@ import aabb.std;
 
 namespace aabblab {
 
-/// In bytes: the largest config that is accepted.
+/// The size in bytes of the largest config that is accepted.
 inline constexpr std::size_t longest_config = 262'144;
 
 enum class node_kind { text, integer, real, boolean, date, list, table };

@@ -31,9 +31,8 @@ std::uint64_t count_of(const document& doc, const node& pairs, experiment_size s
     return size == experiment_size::quick ? quick_count : full_count;
 }
 
-/// Adds the sets of pairs of one table: every class that it lists, or all classes, in every precision that it lists.
+/// Adds the sets of pairs of a table: every class that it lists, or all, in every precision that it lists.
 /// @param key "pairs", or "hits", whose count includes only pairs that intersect
-/// @param sets rejects a class that is listed twice in a precision
 void add_pairs(const document& doc, const std::string& key, const node& written, experiment_size size,
                std::uint64_t seed, unique_list<pair_set>& sets) {
     doc.require_table(key, written, " of [[" + key + "]]", {"class", "precision", "count", "quick"});
@@ -58,7 +57,7 @@ void add_pairs(const document& doc, const std::string& key, const node& written,
     }
 }
 
-/// If the study has pairs of doubles: notes which tests support only floats, and rejects the study if all do.
+/// Rejects a study with pairs of doubles if all its tests support only floats, and notes which do.
 void require_test_for_doubles(const document& doc, error_study& study) {
     if (std::ranges::none_of(study.pairs, &pair_set::in_double)) return;
     bool has_test = false;
@@ -135,8 +134,7 @@ std::vector<metric_plot> plots_of(const document& doc) {
     return plots;
 }
 
-/// The experiment for curves of compositions, which run whole scenes of the config as `run` does. A curve is a line of
-/// a plot, through compositions that differ in parameters; the experiment runs the compositions of all curves.
+/// The experiment for curves of compositions: it runs the scenes of the config with the compositions of all curves.
 experiment scene_experiment_of(const document& doc, const error_study& study, experiment_size size) {
     experiment e;
     // A config is read for full and for quick runs. `read_scenes` does not generate scenes of the first reading again.
@@ -188,8 +186,7 @@ void read_triangles(const document& doc, experiment_size size, error_study& stud
         doc.fail(1, "this config has no pairs of triangles; expected [[pairs]], or a [[scene]] of meshes");
 }
 
-/// Reads what differs between full and quick runs, as the kind of the curves requires: triangle pairs for triangle
-/// tests, whole scenes for compositions. Without curves, only hits are read.
+/// Reads what differs between full and quick runs: triangle pairs for triangle tests, scenes for compositions.
 void read_sized(const document& doc, experiment_size size, error_study& study) {
     study.hits = pairs_of(doc, "hits", size);
     if (study.curves.empty()) {

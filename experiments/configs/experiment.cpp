@@ -80,8 +80,7 @@ std::vector<external_engine> externals_of(const document& doc) {
     return externals.items();
 }
 
-/// Reads `metrics`, a list of metrics and of groups of them, which replaces the recorded groups of the default. A
-/// listed group is only recorded; a listed metric is also shown in the tables.
+/// Reads `metrics`, which replaces the recorded groups of the default: groups are only recorded, metrics also shown.
 void read_metrics(const document& doc, const node& value, experiment& e) {
     e.recorded.clear();
     std::vector<std::string> known;
@@ -140,9 +139,8 @@ void read_query(const document& doc, experiment& e) {
     if (e.query.cold) e.notes.emplace_back("caches: cold before each query");
 }
 
-/// Reads `processes`, the number of fresh processes among which the repeats are divided; in quick runs, that of `quick`
-/// overrides it. There is at least one repeat for each process. More processes than repeats are an error, but in quick
-/// runs, which have fewer repeats, and without timing, they are reduced.
+/// Reads `processes`, the fresh processes among which the repeats are divided. More processes than repeats are an
+/// error, but in quick runs, which have fewer repeats, and without timing, they are reduced.
 void read_processes(const document& doc, experiment& e) {
     const node* measure = doc.root().find("measure");
     const node* processes = measure ? measure->find("processes") : nullptr;
@@ -172,8 +170,7 @@ std::string read_name(const document& doc) {
     return plain_name_of(doc, doc.required(doc.root(), "name", "this config has no name; expected name = \"…\""));
 }
 
-/// Reads [measure], except what `read_processes` and `read_query` read. Its table `quick` applies in quick runs only,
-/// but its keys are checked in all.
+/// Reads the rest of [measure]. Its table `quick` applies in quick runs only, but its keys are checked in all.
 void read_measure(const document& doc, experiment_size size, experiment& e) {
     const bool quick = size == experiment_size::quick;
     if (quick) e.repeats = quick_repeats;

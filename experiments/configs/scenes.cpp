@@ -166,8 +166,7 @@ int line_naming(const node& in, const std::string& strategy) {
     return 0;
 }
 
-/// Rejects compositions with strategies that need meshes if the scene has only boxes. The error is at the line
-/// that names such a strategy.
+/// Rejects compositions that need meshes if the scene has only boxes, at the line that names such a strategy.
 void require_runnable(const document& doc, const written_scene& scene, const experiment& e) {
     if (scene.info->has_meshes) return;
     const node* compose = doc.root().find("compose");
@@ -188,8 +187,7 @@ int line_of_file(const scene_choice& choice, const std::vector<alternatives>& ke
     return std::ranges::find(key->second, file->value, &located_text::text)->line;
 }
 
-/// Digests the scene. Errors are reported at the line of the scene, but one whose message begins with the name of the
-/// scene's file, at the line that names the file.
+/// Digests the scene. Errors are reported at its line, but those of its file at the line that names the file.
 void add_content(const document& doc, const written_scene& scene, aabb::digest& digest) {
     try {
         add_content(digest, scene.choice, *scene.info);
